@@ -1,5 +1,5 @@
 // The page: settings from the form or the address, a run in pieces, and what there is to see of it between them.
-import { Recorder, csv } from "./recording.js";
+import { Live, Recorder, csv } from "./recording.js";
 import { drawBoards, drawFaces, drawLatency, drawRing, drawTimeline, layOutEyes, picture } from "./draw.js";
 
 const at = (id) => document.getElementById(id);
@@ -10,6 +10,8 @@ const KEYS = ["pipeline", "scene", "triangles", "display", "head.motion", "head.
 const FIRST = { pipeline: "slats", scene: "aircraft", display: "ntsc", fields: "3600" };
 /** What a recording of the visitor is called in settings and files. */
 const RECORDED = "recorded.csv";
+/** The same of a head that is moved while the machine runs. */
+const LIVE = "live.csv";
 /** Most simulated time of one piece, picoseconds: four fields. */
 const LONGEST = 66.7e9;
 /** Milliseconds between two looks at boards and errors, and at timeline and latency. */
@@ -20,6 +22,8 @@ let settings = {};
 let beside = "";
 /** What the visitor recorded, as the address has it. */
 let motion = "";
+/** The head that is moved while the machine runs; null for another. */
+let live = null;
 /** The file that was dropped last: name and bytes. */
 let dropped = null;
 let machines = [];
@@ -99,6 +103,8 @@ function settingsOf(pipeline) {
   if (pipeline.startsWith("arp") !== (all.display === "arp")) all.display = pipeline.startsWith("arp") ? "arp" : "ntsc";
   if (!all["head.motion"]) ["head.tracker", "head.predict"].forEach((key) => delete all[key]);
   if (all["head.motion"]?.endsWith(".csv")) all["head.end"] = "hold";
+  // What is done now is not known ahead.
+  if (all["head.motion"] === LIVE) all["head.predict"] = "none";
   return all;
 }
 
@@ -132,6 +138,8 @@ async function build() {
     if (text === null) return say("expected motion=yaw,pitch_yaw,pitch_... in tenths of a degree in the address"), false;
     files.push([RECORDED, new TextEncoder().encode(text)]);
   }
+  const begun = settings["head.motion"] === LIVE ? new Live() : null;
+  if (begun) files.push([LIVE, new TextEncoder().encode(csv("0,0"))]);
   const texts = pipelines().map((name) => Object.entries(settingsOf(name)).map(([key, value]) => `${key}=${value}`).join("\n"));
   say("");
   document.body.dataset.busy = "true";
@@ -144,6 +152,8 @@ async function build() {
     delete document.body.dataset.busy;
   }
   at("run").inert = false;
+  live = begun;
+  reached = 0;
   chosen = null;
   pixel = null;
   of = 0;
@@ -179,12 +189,17 @@ function wanted(now) {
 }
 
 let piece = Promise.resolve();
+/** Where the run stands, picoseconds. */
+let reached = 0;
+/** How far one step goes at most: an event is not later than the next field. */
+const STEP = 35e9;
 
 /** One piece of a run, one at a time; what cannot go on is said. */
 function go(how) {
   piece = piece.then(async () => {
     try {
-      draw(await ask("go", { ...how, want: wanted(performance.now()) }));
+      const rows = live?.until(how.to ?? reached + (how.by ?? (how.step ? STEP : 0))) ?? null;
+      draw(await ask("go", { ...how, rows, want: wanted(performance.now()) }));
     } catch (error) {
       pause();
       await refused(error);
@@ -196,6 +211,7 @@ function go(how) {
 function draw(seen) {
   const states = seen.machines.map((machine) => machine.state);
   const state = states[0];
+  reached = Math.max(...states.map((one) => one.now_ps));
   if (machines.length === 0) layOut(states);
   machines.forEach(({ eyes }, n) => {
     seen.machines[n].surfaces.forEach((surface, number) => {
@@ -256,12 +272,17 @@ function choose(name) {
 }
 
 function drawLink(state) {
-  const address = new URLSearchParams({ ...settings, at: String(state.now_ps) });
+  // What was moved while the machine ran is a recording now.
+  if (live) motion = live.text();
+  const told = live ? { ...settings, "head.motion": RECORDED, "head.predict": "none" } : settings;
+  const address = new URLSearchParams({ ...told, at: String(state.now_ps) });
   if (beside) address.set("beside", beside);
-  if (settings["head.motion"] === RECORDED) address.set("motion", motion);
+  if (told["head.motion"] === RECORDED) address.set("motion", motion);
+  at("again").hidden = told["head.motion"] === RECORDED && motion === null;
   at("link").href = `#${address}`;
   const commands = pipelines().map((name) => {
-    const options = Object.entries(settingsOf(name)).map(([key, value]) => `--set ${key}=${value}`);
+    const all = live ? { ...settingsOf(name), "head.motion": RECORDED } : settingsOf(name);
+    const options = Object.entries(all).map(([key, value]) => `--set ${key}=${value}`);
     return `pxpl5 debug ${options.join(" ")} --do "run to ${state.now_ps}ps; show time"`;
   });
   at("command").textContent = commands.join("\n");
@@ -271,7 +292,7 @@ function drawLink(state) {
 /** Files that the command needs beside it. */
 let needed = "";
 function drawNeeds() {
-  const recorded = settings["head.motion"] === RECORDED ? motion : "";
+  const recorded = (live || settings["head.motion"] === RECORDED) && !running ? motion : "";
   const model = dropped && Object.values(settings).includes(dropped.name) ? dropped.name : "";
   if (needed === `${recorded} ${model}`) return;
   needed = `${recorded} ${model}`;
@@ -309,7 +330,6 @@ async function run() {
     const by = Math.min(((now - last) * 1e9) / slowness(), LONGEST);
     last = now;
     await go({ by });
-    const reached = parseFloat(at("time").textContent) * 1e9;
     if (counted.ps === null) counted = { at: now, ps: reached };
     if (now - counted.at > 1000) {
       const share = (reached - counted.ps) / ((now - counted.at) * 1e9);
@@ -361,23 +381,27 @@ function remember() {
 /** Width of a picture in degrees, as a drag across it turns the head. */
 const WIDE = 60;
 
-/** Has a canvas record a motion while somebody drags across it. */
+/** Has a canvas move the head while somebody drags across it, or record a motion where the head is not moved live. */
 function record(canvas) {
   let recorder = null;
   let from = null;
+  let before = null;
   canvas.addEventListener("pointerdown", (event) => {
     canvas.setPointerCapture(event.pointerId);
     recorder = new Recorder();
     from = event;
+    before = live?.now;
   });
   canvas.addEventListener("pointermove", (event) => {
     if (!recorder) return;
     const degrees = (pixels) => (pixels / canvas.clientWidth) * WIDE;
-    recorder.turn(degrees(event.clientX - from.clientX), degrees(event.clientY - from.clientY));
+    const turned = [degrees(event.clientX - from.clientX), degrees(event.clientY - from.clientY)];
+    if (live) return live.turn(...turned.map((angle, n) => before[n] / 10 + angle));
+    recorder.turn(...turned);
     at("recorded").textContent = `Recording: ${recorder.angles.length} samples`;
   });
   const end = () => {
-    if (recorder && recorder.angles.length > 3) follow(recorder);
+    if (!live && recorder && recorder.angles.length > 3) follow(recorder);
     recorder = null;
   };
   canvas.addEventListener("pointerup", end);
@@ -515,7 +539,7 @@ choices("pipeline", catalog.pipelines);
 choices("beside", [none, ...catalog.pipelines]);
 choices("scene", catalog.scenes);
 choices("display", catalog.displays.map((name) => ({ name })));
-choices("head.motion", catalog.motions.map((one) => ({ ...one, label: one.name || "scene's own" })));
+choices("head.motion", catalog.motions.map((one) => ({ ...one, label: one.name === LIVE ? "live" : one.name || "scene's own" })));
 choices("head.tracker", [{ name: "", label: "usual" }, ...catalog.trackers.map((name) => ({ name }))]);
 choices("head.predict", [{ name: "", label: "usual" }, ...catalog.predictors.map((name) => ({ name }))]);
 choices("level", [{ name: "", label: "transaction" }, { name: "cycle", about: glossary["cycle level"] }]);

@@ -23,15 +23,46 @@ export class Recorder {
   }
 }
 
-/** The recording of a text in the address, as pxpl5 reads it; null for what is none. */
-export function csv(text) {
-  const samples = text.split("_").map((pair) => pair.split(",").map(Number));
-  if (samples.length > MOST || samples.some((pair) => pair.length !== 2 || !pair.every(Number.isFinite))) return null;
-  const rows = samples.map(([yaw, pitch], n) => {
+/** Rows of a recording as pxpl5 reads it: samples of yaw and pitch in tenths of a degree, the first of which has this number. */
+function rows(samples, first) {
+  const of = ([yaw, pitch], n) => {
     const [y, p] = [yaw, pitch].map((tenths) => (tenths * Math.PI) / 3600);
     // First about y, then about the turned x.
     const q = [Math.cos(y) * Math.cos(p), Math.cos(y) * Math.sin(p), Math.sin(y) * Math.cos(p), -Math.sin(y) * Math.sin(p)];
-    return [(n / RATE).toFixed(6), 0, 0, 0, ...q.map((part) => part.toFixed(9))].join(",");
-  });
-  return `time_s,x,y,z,qw,qx,qy,qz\n${rows.join("\n")}\n`;
+    return [((first + n) / RATE).toFixed(6), 0, 0, 0, ...q.map((part) => part.toFixed(9))].join(",");
+  };
+  return `time_s,x,y,z,qw,qx,qy,qz\n${samples.map(of).join("\n")}\n`;
+}
+
+/** The recording of a text in the address; null for what is none. */
+export function csv(text) {
+  const samples = text.split("_").map((pair) => pair.split(",").map(Number));
+  if (samples.length > MOST || samples.some((pair) => pair.length !== 2 || !pair.every(Number.isFinite))) return null;
+  return rows(samples, 0);
+}
+
+/** A head that is moved while the machine runs: where it is now, and where it was at each sample of simulated time. */
+export class Live {
+  constructor() {
+    this.samples = [[0, 0]];
+    this.now = [0, 0];
+  }
+
+  /** The head is turned so far, degrees to the left and upwards. */
+  turn(yaw, pitch) {
+    this.now = [yaw, pitch].map((angle) => Math.round(angle * 10));
+  }
+
+  /** The rows that are missing for a run to an instant, picoseconds; null where none is. */
+  until(ps) {
+    const first = this.samples.length;
+    const last = Math.ceil((ps * RATE) / 1e12) + 1;
+    while (this.samples.length <= last) this.samples.push(this.now);
+    return this.samples.length > first ? rows(this.samples.slice(first), first) : null;
+  }
+
+  /** As it stands in the address; null where it has become too long for it. */
+  text() {
+    return this.samples.length <= MOST ? this.samples.join("_") : null;
+  }
 }

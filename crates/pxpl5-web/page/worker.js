@@ -33,7 +33,8 @@ const OPERATIONS = {
     return null;
   },
   /** Goes on to an instant, as far as it comes in time, or by a step, and looks. */
-  go({ by, to, step, want }) {
+  go({ by, to, step, rows, want }) {
+    if (rows) machines.forEach((machine) => machine.moved(rows));
     if (step) machines.forEach((machine) => machine.step(step));
     const goal = to ?? (by ? Math.min(...machines.map((machine) => machine.now())) + by : 0);
     const begun = performance.now();

@@ -3,12 +3,13 @@
 use serde_json::{Value, json};
 
 /// Motions of a head that need no recording, with what they are; the empty one is the scene's own.
-const MOTIONS: [(&str, &str); 5] = [
+const MOTIONS: [(&str, &str); 6] = [
     ("", "the scene's own motion, followed without delay"),
     ("still", "a head that stands still"),
     ("pan:100", "a turn at 100 degrees a second"),
     ("sine:20:0.5", "to and fro by 20 degrees at half a hertz"),
     ("synthetic:1", "somebody who looks around"),
+    ("live.csv", "your own: drag across a picture while the machine runs"),
 ];
 
 /// Pipelines, scenes, displays and motions.
