@@ -8,7 +8,7 @@ import assert from "node:assert/strict";
 
 const [site, pictures] = process.argv.slice(2);
 mkdirSync(pictures, { recursive: true });
-const MODELS = { ply: triangle(), obj: "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", broken: "ply\nformat ascii 1.0\nelement vertex x\n" };
+const MODELS = { ply: triangle(), obj: "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", pdb: "ATOM      1  C   ALA A   1       0.000   0.000   0.000\nATOM      2  O   ALA A   1       1.200   0.000   0.000\n", broken: "ply\nformat ascii 1.0\nelement vertex x\n" };
 const KINDS = { ".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".wasm": "application/wasm" };
 const server = createServer((request, response) => {
   const path = normalize(new URL(request.url, "http://x").pathname);
@@ -96,6 +96,29 @@ const drop = (name, contents) => run(`
   const data = new DataTransfer();
   data.items.add(new File([${JSON.stringify(contents)}], '${name}'));
   dispatchEvent(new DragEvent('drop', { dataTransfer: data, cancelable: true }))`);
+
+/** A drag of 60 pixels to the right across the first picture, in half a second. */
+async function drag() {
+  await run("document.querySelector('#eyes canvas').scrollIntoView({ block: 'center' })");
+  const box = await run("const b = document.querySelector('#eyes canvas').getBoundingClientRect(); return [b.left, b.top, b.width, b.height]");
+  const [x, y] = [Math.round(box[0] + box[2] / 2), Math.round(box[1] + box[3] / 2)];
+  const moves = Array.from({ length: 12 }, (_, n) => ({ type: "pointerMove", duration: 40, x: x + 5 * (n + 1), y }));
+  const actions = [{ type: "pointerMove", duration: 0, x, y }, { type: "pointerDown", button: 0 }, ...moves, { type: "pointerUp", button: 0 }];
+  await ask("POST", `${session}/actions`, { actions: [{ type: "pointer", id: "mouse", parameters: { pointerType: "mouse" }, actions }] });
+}
+
+/** The link of what was recorded finds the same hash on the page, and its command the same. */
+async function recordedAgain() {
+  const link = await run("return document.getElementById('link').hash");
+  assert.match(link, /motion=/);
+  const recording = await run("return fetch(document.querySelector('#needs a').href).then((file) => file.text())");
+  const folder = resolve(pictures);
+  writeFileSync(join(folder, "recorded.csv"), recording);
+  await sameHash(folder);
+  const hash = await text("hash");
+  await open(link);
+  assert.equal(await text("hash"), hash);
+}
 
 function triangle() {
   const head = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
@@ -256,29 +279,50 @@ const TESTS = {
   },
   async "dragging across a picture records a head that the machine follows, and the link carries it"() {
     await open("#pipeline=slats&scene=aircraft&fields=120&head.tracker=fastrak&head.predict=none");
-    await run("document.querySelector('#eyes canvas').scrollIntoView({ block: 'center' })");
-    const box = await run("const b = document.querySelector('#eyes canvas').getBoundingClientRect(); return [b.left, b.top, b.width, b.height]");
-    const [x, y] = [Math.round(box[0] + box[2] / 2), Math.round(box[1] + box[3] / 2)];
-    const moves = Array.from({ length: 12 }, (_, n) => ({ type: "pointerMove", duration: 40, x: x + 5 * (n + 1), y }));
-    const actions = [{ type: "pointerMove", duration: 0, x, y }, { type: "pointerDown", button: 0 }, ...moves, { type: "pointerUp", button: 0 }];
-    await ask("POST", `${session}/actions`, { actions: [{ type: "pointer", id: "mouse", parameters: { pointerType: "mouse" }, actions }] });
+    await drag();
     await until("a run", "document.getElementById('go').textContent === 'Pause' || !document.getElementById('error').hidden");
     assert.equal(await text("error"), "");
     assert.match(await text("recorded"), /^Recorded 0\.\d s/);
     await later(500);
     await press("#go");
-    const link = await run("return document.getElementById('link').hash");
-    assert.match(link, /motion=/);
-    const recording = await run("return fetch(document.querySelector('#needs a').href).then((file) => file.text())");
-    const folder = resolve(pictures);
-    writeFileSync(join(folder, "recorded.csv"), recording);
-    await sameHash(folder);
-    const hash = await text("hash");
-    await open(link);
-    assert.equal(await text("hash"), hash);
+    await recordedAgain();
+  },
+  async "a live head moves while the machine runs, in two machines at once; its link replays it"() {
+    const settings = "scene=aircraft&fields=1000&head.motion=live.csv&head.tracker=fastrak";
+    await open(`#pipeline=slats&beside=rendering-control&${settings}`);
+    assert.equal(await text("error"), "");
+    const before = await run("return document.querySelector('#eyes canvas').toDataURL()");
+    await click("#go");
+    await drag();
+    await later(700);
+    await press("#go");
+    assert.equal(await text("error"), "");
+    assert.notEqual(await run("return document.querySelector('#eyes canvas').toDataURL()"), before);
+    const moved = new URLSearchParams((await run("return document.getElementById('link').hash")).slice(1)).get("motion");
+    const yaws = moved.split("_").map((pair) => Number(pair.split(",")[0]));
+    assert.ok(new Set(yaws).size > 3, `the head was turned bit by bit: ${yaws}`);
+    await recordedAgain();
+  },
+  async "turning the device moves the head"() {
+    const turn = (alpha) => ask("POST", `${session}/goog/cdp/execute`, {
+      cmd: "DeviceOrientation.setDeviceOrientationOverride", params: { alpha, beta: 0, gamma: 0 },
+    });
+    await turn(10);
+    await open("#pipeline=slats&scene=aircraft&fields=600&head.tracker=fastrak&head.predict=none");
+    await click("#tilt");
+    for (const alpha of [11, 13, 16, 18]) {
+      await later(200);
+      await turn(alpha);
+    }
+    await until("the recording", "document.getElementById('recorded').textContent.startsWith('Recorded')");
+    await settled();
+    await later(300);
+    await press("#go");
+    const motion = new URLSearchParams((await run("return document.getElementById('link').hash")).slice(1)).get("motion");
+    assert.equal(motion.split("_").at(-1), "80,0", "8 degrees to the left");
   },
   async "a model that is dropped is drawn; a broken file is said, and the page lives on"() {
-    for (const kind of ["ply", "obj"]) {
+    for (const kind of ["ply", "obj", "pdb"]) {
       await open("#pipeline=slats&scene=aircraft&fields=60");
       await drop(`mine.${kind}`, MODELS[kind]);
       await until("the model", "document.getElementById('dropped').textContent !== ''");
@@ -286,7 +330,7 @@ const TESTS = {
       for (let n = 0; n < 12; n += 1) await press('[data-step="field"]');
       assert.ok((await lit()) > 0, kind);
     }
-    writeFileSync(join(pictures, "mine.obj"), MODELS.obj);
+    writeFileSync(join(pictures, "mine.pdb"), MODELS.pdb);
     await sameHash(resolve(pictures));
     await drop("broken.ply", MODELS.broken);
     await until("an error", "document.getElementById('error').hidden === false");

@@ -378,6 +378,8 @@ function remember() {
 
 // The visitor's own head and files.
 
+/** Milliseconds of turning that are recorded, and after which a device that reports none is known. */
+const TILTED = 5000;
 /** Width of a picture in degrees, as a drag across it turns the head. */
 const WIDE = 60;
 
@@ -425,19 +427,20 @@ if (window.DeviceOrientationEvent && matchMedia("(pointer: coarse)").matches) at
 at("tilt").addEventListener("click", async () => {
   const allowed = (await DeviceOrientationEvent.requestPermission?.()) ?? "granted";
   if (allowed !== "granted") return say("The device does not let this page know how it is turned.");
-  const recorder = new Recorder();
+  const head = live ?? new Recorder();
   let from = null;
   const turned = ({ alpha, beta }) => {
     if (alpha === null) return;
     from ??= [alpha, beta];
-    recorder.turn(((alpha - from[0] + 540) % 360) - 180, beta - from[1]);
+    head.turn(((alpha - from[0] + 540) % 360) - 180, beta - from[1]);
   };
   addEventListener("deviceorientation", turned);
-  setTimeout(() => {
-    removeEventListener("deviceorientation", turned);
-    if (from === null) say("This device reports no turning.");
-    else follow(recorder);
-  }, 5000);
+  await new Promise((later) => setTimeout(later, TILTED));
+  if (from === null) say("This device reports no turning.");
+  // A live head is turned by the device until another machine is built.
+  else if (head === live) return;
+  removeEventListener("deviceorientation", turned);
+  if (from !== null) follow(head);
 });
 
 async function take(file) {
