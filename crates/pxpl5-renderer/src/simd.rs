@@ -1,10 +1,12 @@
 //! Choice of the vector unit at run time.
 //!
-//! The only `unsafe` of this crate is here and in `simd/x86.rs`: calling what is compiled for a vector unit, after
-//! asking the processor whether it has it. Measured to pay: see the bench groups `lanes/Portable` and `lanes/Avx2` of
-//! `cargo bench -p pxpl5-renderer`.
+//! The only `unsafe` of this crate is here, in `simd/x86.rs` and in `simd/wasm.rs`: calling what is compiled for a vector unit, after
+//! asking the processor whether it has it (a module of WebAssembly is compiled for it as a whole or not). Measured to pay: see the bench
+//! groups `lanes/Portable` and `lanes/Avx2` of `cargo bench -p pxpl5-renderer`.
 #![allow(unsafe_code)] // The compiler cannot know what the processor has.
 
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+mod wasm;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
@@ -19,6 +21,8 @@ static MOST: AtomicU8 = AtomicU8::new(Vectors::Avx512 as u8);
 pub enum Vectors {
     /// What every processor of the target has.
     Portable,
+    /// WebAssembly with simd128: twice 4 numbers of 32 bits at a time.
+    Simd128,
     /// x86-64 with AVX2: 8 numbers of 32 bits at a time.
     Avx2,
     /// x86-64 with AVX-512 (F, BW, DQ and VL): 16 numbers of 32 bits at a time.
@@ -26,19 +30,20 @@ pub enum Vectors {
 }
 
 impl Vectors {
+    /// The best last; each as its place.
+    const ALL: [Self; 4] = [Self::Portable, Self::Simd128, Self::Avx2, Self::Avx512];
+
     /// All units that this processor has, the best last.
     #[must_use]
     pub fn available() -> Vec<Self> {
-        let all = [Self::Portable, Self::Avx2, Self::Avx512];
-        all.into_iter().filter(|vectors| vectors.present()).collect()
+        Self::ALL.into_iter().filter(|vectors| vectors.present()).collect()
     }
 
     /// The best unit that this processor has and that [`Vectors::at_most`] allows.
     #[must_use]
     pub fn best() -> Self {
-        let best = if Self::Avx2.present() { Self::Avx2 } else { Self::Portable };
-        let best = if Self::Avx512.present() { Self::Avx512 } else { best };
-        best.min(Self::from_rank(MOST.load(Ordering::Relaxed)))
+        let most = MOST.load(Ordering::Relaxed) as usize;
+        Self::ALL[..=most].iter().rev().copied().find(|vectors| vectors.present()).unwrap_or(Self::Portable)
     }
 
     /// From now on no pixel array of this process takes a better unit by itself, so that whole experiments can be run on each:
@@ -47,18 +52,11 @@ impl Vectors {
         MOST.store(self as u8, Ordering::Relaxed);
     }
 
-    const fn from_rank(rank: u8) -> Self {
-        match rank {
-            0 => Self::Portable,
-            1 => Self::Avx2,
-            _ => Self::Avx512,
-        }
-    }
-
     #[cfg(target_arch = "x86_64")]
     fn present(self) -> bool {
         match self {
             Self::Portable => true,
+            Self::Simd128 => false,
             Self::Avx2 => is_x86_feature_detected!("avx2") && is_x86_feature_detected!("bmi2"),
             Self::Avx512 => {
                 Self::Avx2.present()
@@ -72,7 +70,7 @@ impl Vectors {
 
     #[cfg(not(target_arch = "x86_64"))]
     fn present(self) -> bool {
-        self == Self::Portable
+        self == Self::Portable || self == Self::Simd128 && cfg!(target_feature = "simd128")
     }
 }
 
@@ -96,6 +94,8 @@ impl PresentVectors {
             // SAFETY: as above.
             #[cfg(target_arch = "x86_64")]
             Vectors::Avx2 => unsafe { avx2(kernel) },
+            #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+            Vectors::Simd128 => kernel.run::<wasm::Simd128>(),
             _ => kernel.run::<PortableVector>(),
         }
     }
