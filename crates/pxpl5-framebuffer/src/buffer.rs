@@ -159,3 +159,94 @@ fn cut(target: &CopyTarget) -> [u32; 6] {
     let grid = target.grid;
     [lines, u32::from(target.region.0), grid.width, grid.height, grid.region_width, grid.region_height]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pxpl5_sim::Time;
+    use pxpl5_wire::{FieldParity, NodeId, PictureNumber, PixelSource, RegionGrid, RegionId, RegionPixels, Word};
+
+    const SIZE: [u32; 2] = [640, 480];
+
+    #[derive(Debug)]
+    struct NoPixels;
+
+    impl PixelSource for NoPixels {
+        fn pixels(&self) -> Arc<[Word]> {
+            Arc::new([])
+        }
+    }
+
+    /// Regions of four cuts, whose borders agree nowhere.
+    fn target(picture: u64, random: u64) -> CopyTarget {
+        let cut = |region_width, region_height| RegionGrid { width: 640, height: 240, region_width, region_height };
+        let (lines, grid) = [
+            (Lines::Frame, RegionGrid::FRAME),
+            (Lines::Field(FieldParity::Even), RegionGrid::FIELD),
+            (Lines::Field(FieldParity::Odd), cut(100, 67)),
+            (Lines::Field(FieldParity::Even), cut(128, 9)),
+        ][random as usize % 4];
+        let region = RegionId((random >> 8) as u16 % grid.regions() as u16);
+        let picture = PictureNumber(picture);
+        CopyTarget { frame_buffer: NodeId(7), buffer: 0, lines, grid, region, picture }
+    }
+
+    /// Notes the number of a region in all its pixels, as the grid and its lines say, whatever segments say.
+    fn paint(frame: &mut [u64], target: &CopyTarget) {
+        let [left, top, width, height] = target.grid.rectangle(target.region);
+        for row in top..top + height {
+            let y = match target.lines {
+                Lines::Frame => row,
+                Lines::Field(FieldParity::Even) => 2 * row,
+                Lines::Field(FieldParity::Odd) => 2 * row + 1,
+            };
+            frame[(y * SIZE[0] + left) as usize..][..width as usize].fill(target.picture.0);
+        }
+    }
+
+    fn painted<'a>(regions: impl Iterator<Item = &'a RegionWrite>) -> Vec<u64> {
+        let mut frame = vec![0; (SIZE[0] * SIZE[1]) as usize];
+        regions.for_each(|region| paint(&mut frame, &region.target));
+        frame
+    }
+
+    /// Pixels decide: what is forgotten is what nothing is seen of, and nothing else; and there is never more to look through than is
+    /// seen at once and twice what was left when it was looked through last.
+    #[test]
+    fn what_is_forgotten_is_what_later_regions_have_covered() {
+        let video = Video::new(crate::FrameBufferConfig::NTSC.video).expect("valid");
+        let mut buffer = Buffer::new();
+        let mut frame = vec![0; (SIZE[0] * SIZE[1]) as usize];
+        let mut random = 0x9E37_79B9_7F4A_7C15_u64;
+        let mut searches = 0;
+        for picture in 1..=1500 {
+            random = random.wrapping_mul(0x5851_F42D_4C95_7F2D).wrapping_add(0x1405_7B7E_F767_814F);
+            let target = target(picture, random >> 33);
+            let [_, _, width, height] = target.grid.rectangle(target.region);
+            let parts = (width * height).div_ceil(pxpl5_wire::MAX_MESSAGE_WORDS);
+            let pixels = RegionPixels { target, image: Arc::new(NoPixels), part: 0, parts };
+            let place = buffer.add(RegionWrite::new(&pixels, &video).expect("within the frame"));
+            for part in 0..parts {
+                buffer.region_mut(place).arrive(part, Time(picture));
+            }
+            buffer.hide_below(place);
+            paint(&mut frame, &target);
+            let before = buffer.held.iter().filter(|held| !held.hidden).count();
+            buffer.prune(SIZE[0], SIZE[1]);
+            assert_eq!(painted(buffer.regions().iter().map(|region| &**region)), frame, "{picture}");
+            if buffer.held.len() < before {
+                searches += 1;
+                let seen: std::collections::BTreeSet<u64> = frame.iter().copied().collect();
+                for held in &buffer.held {
+                    assert!(
+                        seen.contains(&held.region.target.picture.0),
+                        "{picture}: nothing is seen of {:?}",
+                        held.region.target
+                    );
+                }
+            }
+            assert!(buffer.held.len() <= 2 * FEW, "{picture}");
+        }
+        assert!(searches > 1);
+    }
+}
