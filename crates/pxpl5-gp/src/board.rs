@@ -261,9 +261,12 @@ impl GpBoard {
         self.fault.as_ref()
     }
 
-    /// Takes what the programs have told the observer.
-    pub fn take_marks(&mut self) -> Vec<Mark> {
-        std::mem::take(&mut self.shared.borrow_mut().marks)
+    /// Takes what the programs have told the observer, in order.
+    pub fn drain_marks(&mut self, take: impl FnMut(Mark)) {
+        let marks = &mut self.shared.borrow_mut().marks;
+        if !marks.is_empty() {
+            marks.drain(..).for_each(take);
+        }
     }
 
     /// CPU time spent so far.
