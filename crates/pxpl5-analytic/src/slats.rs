@@ -132,34 +132,27 @@ impl SlatsModel {
     }
 
     /// When each renderer has copied the bottom regions of the field before.
-    fn bottom_of_the_field_before(&self) -> [f64; MOST_RENDERERS] {
+    fn bottom_of_the_field_before(&self, layouts: &Layouts) -> [f64; MOST_RENDERERS] {
         if !self.split {
             return [0.0; MOST_RENDERERS];
         }
-        let mut queues = self.queues(|region| region >= REGIONS / 2, 0.0);
+        let mut queues = self.queues(&layouts.bottom, 0.0, |_| 0.0);
         copy_all(&mut queues[..self.renderers], self.region_ns);
-        std::array::from_fn(|i| if i < self.renderers { queues[i].ready_ns } else { 0.0 })
+        queues.map(|queue| queue.ready_ns)
     }
 
     /// The copies of a field whose last clump was accepted at an instant, by renderers that are busy until then.
-    fn copies(&self, rendered_ns: f64, busy_until_ns: impl Fn(usize) -> f64) -> FieldTimes {
+    fn copies(&self, layouts: &Layouts, rendered_ns: f64, busy_until_ns: impl Fn(usize) -> f64) -> FieldTimes {
         let commanded_ns = rendered_ns + self.message_ns;
-        let mut queues = self.queues(|region| !self.split || region < REGIONS / 2, commanded_ns);
-        for (i, queue) in queues.iter_mut().enumerate() {
-            queue.ready_ns = queue.ready_ns.max(busy_until_ns(i));
-        }
+        let mut queues = self.queues(&layouts.top, commanded_ns, busy_until_ns);
         let top = copy_all(&mut queues[..self.renderers], self.region_ns);
-        let bottom = self.split.then(|| self.bottom(&queues, commanded_ns + self.message_ns));
+        let bottom = self.split.then(|| {
+            let from_ns = self.field_ns.max(commanded_ns + self.message_ns);
+            let mut bottoms = self.queues(&layouts.bottom, from_ns, |renderer| queues[renderer].ready_ns);
+            copy_all(&mut bottoms[..self.renderers], self.region_ns)
+        });
         let bottom_in_time = bottom.is_none_or(|times| times.end_ns <= self.field_ns + self.bottom_ns);
         FieldTimes { rendered_ns, top, bottom, in_time: top.end_ns <= self.field_ns && bottom_in_time }
-    }
-
-    fn bottom(&self, tops: &[Queue; MOST_RENDERERS], prepared_ns: f64) -> CopyTimes {
-        let mut queues = self.queues(|region| region >= REGIONS / 2, self.field_ns.max(prepared_ns));
-        for (queue, top) in queues.iter_mut().zip(tops) {
-            queue.ready_ns = queue.ready_ns.max(top.ready_ns);
-        }
-        copy_all(&mut queues[..self.renderers], self.region_ns)
     }
 
     /// Field after field like this one: one is begun at every retrace at which the one before is done with its commands.
@@ -173,9 +166,9 @@ impl SlatsModel {
         DuePictures::count(begun.map(|field| (PeriodNumber(field), end)), 1, PeriodNumber(fields))
     }
 
-    /// Copies of the regions for which `wanted` holds; the commands go out one after the other from `from_ns` on.
-    fn queues(&self, wanted: impl Fn(usize) -> bool, from_ns: f64) -> [Queue; MOST_RENDERERS] {
-        let mut queues: [Queue; MOST_RENDERERS] = std::array::from_fn(|_| Queue::default());
+    /// The copies that each renderer makes, of the regions for which `wanted` holds.
+    fn layout(&self, wanted: impl Fn(usize) -> bool) -> [Queue; MOST_RENDERERS] {
+        let mut queues = [Queue::default(); MOST_RENDERERS];
         let per_half = REGIONS / 4;
         // Left and right eye by turns; the odd renderers of a split copy begin right.
         let regions = (0..REGIONS).zip((0..self.renderers).cycle());
@@ -183,12 +176,23 @@ impl SlatsModel {
             let right = (region / per_half) % 2 == 1;
             queues[renderer].push(u8::from(right));
         }
+        for queue in queues.iter_mut().take(self.renderers).skip(1).step_by(2).filter(|_| self.split) {
+            queue.boards[..queue.len].reverse();
+        }
+        queues
+    }
+
+    /// The same, of which the commands go out one after the other from `from_ns` on, to renderers that are busy until some instants.
+    fn queues(
+        &self,
+        layout: &[Queue; MOST_RENDERERS],
+        from_ns: f64,
+        busy_until_ns: impl Fn(usize) -> f64,
+    ) -> [Queue; MOST_RENDERERS] {
+        let mut queues = *layout;
         let each_ns = self.overhead_ns + 2.0 * 11.0 * self.fifo.word_ns;
         for (index, queue) in queues.iter_mut().enumerate().take(self.renderers) {
-            if self.split && index % 2 == 1 {
-                queue.boards[..queue.len].reverse();
-            }
-            queue.ready_ns = from_ns + each_ns * (index + 1) as f64;
+            queue.ready_ns = (from_ns + each_ns * (index + 1) as f64).max(busy_until_ns(index));
         }
         queues
     }
@@ -217,13 +221,23 @@ fn fields_together(models: [&SlatsModel; TOGETHER], triangles: f64, entries: f64
     fields_at_once(models, triangles, entries)
 }
 
+/// Which regions each renderer copies before the retrace, all of them without a split copy, and which after it.
+struct Layouts {
+    top: [Queue; MOST_RENDERERS],
+    bottom: [Queue; MOST_RENDERERS],
+}
+
 /// Fields of machines of the same structure.
 #[inline(always)]
 fn fields_at_once<const N: usize>(models: [&SlatsModel; N], triangles: f64, entries: f64) -> [FieldTimes; N] {
-    let before = models.map(SlatsModel::bottom_of_the_field_before);
+    let layouts = Layouts {
+        top: models[0].layout(|region| !models[0].split || region < REGIONS / 2),
+        bottom: models[0].layout(|region| region >= REGIONS / 2),
+    };
+    let before = models.map(|model| model.bottom_of_the_field_before(&layouts));
     let mut arrays = std::array::from_fn(|renderer| Array::busy_until(Times::each(|i| before[i][renderer])));
     let rendered = render(models, &mut arrays, triangles, entries);
-    std::array::from_fn(|i| models[i].copies(rendered.0[i], |renderer| arrays[renderer].free.0[i]))
+    std::array::from_fn(|i| models[i].copies(&layouts, rendered.0[i], |renderer| arrays[renderer].free.0[i]))
 }
 
 /// TRANSFORM and RENDER: clumps of all GPs by turns; when the last one was accepted.
