@@ -117,7 +117,7 @@ fn every_pipeline_on_every_display_runs_in_pieces_as_in_one_go() {
         for plain in [experiment.clone().record_traffic(false), experiment.clone()].map(|plain| outcome(plain.run())) {
             assert_eq!(plain.record().trace_hash(), whole.record().trace_hash(), "{settings:?}");
             assert_eq!(plain.pictures(), whole.pictures(), "{settings:?}");
-            assert!(plain.record().events() < whole.record().events(), "{settings:?}");
+            assert!(plain.record().events() <= whole.record().events(), "{settings:?}");
         }
         (1..4).for_each(|seed| assert_same(&whole, &in_pieces(&experiment, seed), &format!("{settings:?}, {seed}")));
         ran.extend([pipeline, display]);
