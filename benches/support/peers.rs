@@ -9,9 +9,9 @@ use pphigs::{
     Share,
 };
 use pxpl5::ViewNumber;
-use pxpl5::scene::{self, Hmd, HmdConfig, Scene, View};
+use pxpl5::scene::{Hmd, HmdConfig, Scene, View};
 use pxpl5_geometry::{Culling, Viewport};
-use pxpl5_renderer::{BitSerial, Lanes, Layout, PixelArray};
+use pxpl5_renderer::{Layout, PixelArray};
 use pxpl5_wire::{RegionId, Word};
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ const HEIGHT: usize = 480;
 /// Views in turn, more than the display list remembers, so that nothing is drawn from memory.
 const VIEWS: u64 = 8;
 
-pub fn views(head: &Scene) -> Vec<EyeView> {
+pub(crate) fn views(head: &Scene) -> Vec<EyeView> {
     let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is valid");
     let views = (0..VIEWS).map(|i| hmd.mono(&head.motion().pose(i * 100_000_000_000)));
     views
@@ -71,20 +71,20 @@ impl euc::Pipeline for Gouraud<'_> {
     }
 }
 
-pub struct Euc {
+pub(crate) struct Euc {
     indices: Vec<u32>,
     colour: Buffer2d<u32>,
     depth: Buffer2d<f32>,
 }
 
 impl Euc {
-    pub fn new(head: &Scene) -> Self {
+    pub(crate) fn new(head: &Scene) -> Self {
         let size = [WIDTH, HEIGHT];
         let indices = head.triangles().as_flattened().to_vec();
         Self { indices, colour: Buffer2d::new(size, 0), depth: Buffer2d::new(size, 1.0) }
     }
 
-    pub fn draw(&mut self, head: &Scene, view: &EyeView) {
+    pub(crate) fn draw(&mut self, head: &Scene, view: &EyeView) {
         self.colour.clear(0);
         self.depth.clear(1.0);
         let gouraud = Gouraud { head, matrix: view.projection * view.world_to_eye };
@@ -96,13 +96,13 @@ impl Euc {
         );
     }
 
-    pub fn covered(&self) -> usize {
+    pub(crate) fn covered(&self) -> usize {
         self.colour.as_ref().iter().filter(|pixel| **pixel != 0).count()
     }
 }
 
 /// One GP that holds everything, and one pixel array for all regions in turn.
-pub struct Ours<A> {
+pub(crate) struct Ours<A> {
     share: Share,
     picture: Picture,
     array: A,
@@ -113,7 +113,7 @@ pub struct Ours<A> {
 const BACKGROUND: [u8; 3] = [1, 2, 3];
 
 impl<A: PixelArray> Ours<A> {
-    pub fn new(head: &Scene, array: impl Fn(&Layout) -> A) -> Self {
+    pub(crate) fn new(head: &Scene, array: impl Fn(&Layout) -> A) -> Self {
         let light = head.lighting();
         let structure = DisplayStructure {
             triangles: 0..head.triangles().len(),
@@ -146,7 +146,7 @@ impl<A: PixelArray> Ours<A> {
         }
     }
 
-    pub fn draw(&mut self, view: &EyeView) {
+    pub(crate) fn draw(&mut self, view: &EyeView) {
         let view = FrameView { number: ViewNumber::FIRST, eyes: vec![*view], edits: Vec::new() };
         let pass = self.share.transform(&view, 0, self.picture);
         self.pixels.clear();
@@ -163,7 +163,7 @@ impl<A: PixelArray> Ours<A> {
         }
     }
 
-    pub fn covered(&self) -> usize {
+    pub(crate) fn covered(&self) -> usize {
         self.pixels.iter().flat_map(|region| region.iter()).filter(|pixel| **pixel != 0x01_02_03).count()
     }
 }

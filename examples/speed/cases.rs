@@ -12,30 +12,30 @@ use std::hint::black_box;
 
 /// A line of the table of goals.
 #[derive(Clone, Debug)]
-pub struct Row {
-    pub work: String,
-    pub goal: Option<f64>,
-    pub unit: &'static str,
+pub(crate) struct Row {
+    pub(crate) work: String,
+    pub(crate) goal: Option<f64>,
+    pub(crate) unit: &'static str,
     /// Whether more is better.
-    pub is_rate: bool,
-    pub measured: f64,
-    pub spread: f64,
+    pub(crate) is_rate: bool,
+    pub(crate) measured: f64,
+    pub(crate) spread: f64,
     /// Whether README shows it.
-    pub is_chosen: bool,
+    pub(crate) is_chosen: bool,
 }
 
 impl Row {
-    pub fn is_missed(&self) -> bool {
+    pub(crate) fn is_missed(&self) -> bool {
         self.goal.is_some_and(|goal| if self.is_rate { self.measured < goal } else { self.measured > goal })
     }
 }
 
 /// A saving and what it is worth.
-pub struct SavingRow {
-    pub saving: Saving,
-    pub work: &'static str,
-    pub with_ms: f64,
-    pub without_ms: f64,
+pub(crate) struct SavingRow {
+    pub(crate) saving: Saving,
+    pub(crate) work: &'static str,
+    pub(crate) with_ms: f64,
+    pub(crate) without_ms: f64,
 }
 
 /// NTSC fields a second of real time.
@@ -58,7 +58,7 @@ fn stereo(machine: MachineConfig, scene: Scene) -> Experiment {
 }
 
 /// The head of 59,592 triangles in stereo.
-pub fn head() -> Fallible<Experiment> {
+pub(crate) fn head() -> Fallible<Experiment> {
     Ok(stereo(MachineConfig::small_hmd(), scene::builtin("head")?))
 }
 
@@ -127,12 +127,12 @@ const fn chosen_row(mut row: Row) -> Row {
 }
 
 /// Those of README.
-pub fn chosen(rows: &[Row]) -> Vec<Row> {
+pub(crate) fn chosen(rows: &[Row]) -> Vec<Row> {
     rows.iter().filter(|row| row.is_chosen).cloned().collect()
 }
 
 /// All lines of the table of goals.
-pub fn goals(rounds: usize) -> Fallible<Vec<Row>> {
+pub(crate) fn goals(rounds: usize) -> Fallible<Vec<Row>> {
     let mut rows = heads(rounds)?;
     rows.extend(pictures(rounds)?);
     rows.extend(aircraft(rounds)?);
@@ -296,7 +296,7 @@ const fn fields_without(saving: Saving) -> u64 {
 }
 
 /// Every saving, with and without.
-pub fn savings(rounds: usize) -> Fallible<Vec<SavingRow>> {
+pub(crate) fn savings(rounds: usize) -> Fallible<Vec<SavingRow>> {
     let works = [
         ("Mig, Rendering Control", stereo(MachineConfig::small_hmd(), mig(417)?)),
         ("Slats, 140 triangles", slats(140)?),

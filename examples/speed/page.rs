@@ -8,7 +8,7 @@ use std::process::Command;
 use std::time::SystemTime;
 
 /// A number with three digits.
-pub fn digits(number: f64) -> String {
+pub(crate) fn digits(number: f64) -> String {
     match number.abs() {
         large if large >= 1e4 => {
             let whole = format!("{:.0}", number);
@@ -22,7 +22,7 @@ pub fn digits(number: f64) -> String {
     }
 }
 
-pub fn of_goals(rows: &[Row]) -> String {
+pub(crate) fn of_goals(rows: &[Row]) -> String {
     let mut text = "| work | goal | measured | median above best | |\n|---|---|---|---|---|\n".to_owned();
     for row in rows {
         let Row { work, goal, unit, measured, spread, .. } = row;
@@ -35,7 +35,7 @@ pub fn of_goals(rows: &[Row]) -> String {
     text
 }
 
-pub fn of_savings(rows: &[SavingRow]) -> String {
+pub(crate) fn of_savings(rows: &[SavingRow]) -> String {
     let mut text =
         "| saving | work | with it, ms a field | without, ms a field | times |\n|---|---|---|---|---|\n".to_owned();
     for SavingRow { saving, work, with_ms, without_ms } in rows {
@@ -46,7 +46,7 @@ pub fn of_savings(rows: &[SavingRow]) -> String {
 }
 
 /// Replaces what is between a document's marks of a name.
-pub fn replace(path: &Path, name: &str, table: &str) -> Fallible<()> {
+pub(crate) fn replace(path: &Path, name: &str, table: &str) -> Fallible<()> {
     let text = std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
     let begin = format!("<!-- speed: {name} -->\n");
     let end = "<!-- end of speed -->";
@@ -57,7 +57,7 @@ pub fn replace(path: &Path, name: &str, table: &str) -> Fallible<()> {
 }
 
 /// Who measured when, and beside what.
-pub fn conditions(rounds: usize, load_before: &str) -> String {
+pub(crate) fn conditions(rounds: usize, load_before: &str) -> String {
     format!(
         "Measured by `scripts/speed` on {}: {}, {}; CPU time of the process, best of {rounds} rounds in turns. Load average of the machine \
          {load_before} when it began, {} when it ended, the measuring process included.",
@@ -68,7 +68,7 @@ pub fn conditions(rounds: usize, load_before: &str) -> String {
     )
 }
 
-pub fn load_average() -> String {
+pub(crate) fn load_average() -> String {
     let loads = std::fs::read_to_string("/proc/loadavg").unwrap_or_default();
     loads.split(' ').next().filter(|load| !load.is_empty()).unwrap_or("unknown").to_owned()
 }

@@ -74,7 +74,7 @@ fn makespan(pieces: &[Piece], workers: usize) -> f64 {
 const THREADS: [usize; 7] = [1, 2, 3, 4, 6, 8, 16];
 
 /// The table.
-pub fn table() -> Fallible<String> {
+pub(crate) fn table() -> Fallible<String> {
     const FIELDS: u64 = 480;
     let noting = Noting::default();
     let pairs = head()?.fields(FIELDS).pixels(Pixels::All).host(noting.clone()).run()?.pictures().len();
