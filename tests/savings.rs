@@ -89,6 +89,17 @@ fn tokens_that_find_an_empty_bin_go_on_when_two_payments_would_have_let_them() {
 }
 
 #[test]
+fn events_that_nothing_comes_between_are_as_good_as_one() {
+    for experiment in experiments() {
+        let experiment = experiment.pixels(Pixels::Lazy);
+        assert_same(&experiment, Saving::JointEvents, 10);
+        let [joint, apart] =
+            [experiment.clone(), experiment.without(Saving::JointEvents)].map(|e| after(&e, 10).events());
+        assert!(joint < apart, "{joint} events, {apart} by themselves");
+    }
+}
+
+#[test]
 fn regions_without_primitives_look_as_if_they_had_been_drawn() {
     for experiment in experiments() {
         assert_same(&experiment.pixels(Pixels::All), Saving::EmptyRegions, 10);
@@ -137,6 +148,6 @@ fn savings_are_known_by_their_names() {
     let error = "idleness".parse::<Saving>().expect_err("no saving");
     assert_eq!(
         error,
-        "expected idle-boards, transfers, empty-regions, repeated-code, delayed-work, empty-bins, found \"idleness\""
+        "expected idle-boards, transfers, empty-regions, repeated-code, delayed-work, empty-bins, joint-events, found \"idleness\""
     );
 }

@@ -193,7 +193,7 @@ fn pass_on(gp: &Gp, config: &CubeControlConfig, index: usize, token: Token) {
         (config.slaves[(index + 1) % config.slaves.len()], UpdateOrder::Token(next))
     };
     let (words, body) = order.message();
-    gp.send_prepared(vec![(receiver, words, body)]);
+    gp.send_prepared([(receiver, words, body)]);
 }
 
 /// Frees an update's commands and bins when all its tokens have been here.

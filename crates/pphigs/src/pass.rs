@@ -37,6 +37,7 @@ pub struct Pass {
     placed: Arc<[PlacedStructure]>,
     picture: Picture,
     counts: Vec<PrimitiveCounts>,
+    all_regions: RegionMask,
     /// By region; empty without pixels.
     bins: Vec<Bin>,
     screen_counts: PrimitiveCounts,
@@ -72,6 +73,9 @@ impl Pass {
             placed,
             picture,
             counts: vec![PrimitiveCounts::default(); regions],
+            all_regions: (0..regions as u16)
+                .map(|i| RegionMask::only(RegionId(i)))
+                .fold(RegionMask::EMPTY, RegionMask::union),
             bins,
             screen_counts: PrimitiveCounts::default(),
             stats: SetupStats::default(),
@@ -146,10 +150,7 @@ impl Pass {
     fn receivers(&self, mask: RegionMask) -> RegionMask {
         match self.picture.binning {
             RegionBinning::Touched => mask,
-            RegionBinning::All => {
-                let all = (0..self.counts.len()).map(|i| RegionMask::only(RegionId(i as u16)));
-                all.fold(RegionMask::EMPTY, RegionMask::union)
-            }
+            RegionBinning::All => self.all_regions,
         }
     }
 

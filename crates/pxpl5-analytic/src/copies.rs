@@ -3,7 +3,7 @@
 use super::renderer::{later, sooner};
 
 /// Copies that a renderer has to make, by frame buffer, and when it can begin.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Queue {
     pub(super) boards: [u8; 4],
     pub(super) len: usize,

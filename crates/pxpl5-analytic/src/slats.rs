@@ -2,8 +2,9 @@
 
 use super::copies::{CopyTimes, Queue, copy_all};
 use super::load::Load;
-use super::renderer::{Array, Commands, Cost, Fifo, later};
+use super::renderer::{Array, Commands, Cost, Fifo, Times};
 use crate::{pipeline_of, video_of};
+use multiversion::multiversion;
 use pphigs::{RegionBinning, TransformCost};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::GpTiming;
@@ -105,32 +106,53 @@ impl SlatsModel {
     /// A field in the steady state: renderers begin with the bottom regions of the field before.
     #[must_use]
     pub fn field(&self, triangles: f64, entries_per_triangle: f64) -> FieldTimes {
-        let mut arrays = [Array::busy_until(0.0); MOST_RENDERERS];
-        if self.split {
-            let mut queues = self.queues(|region| region >= REGIONS / 2, 0.0);
-            copy_all(&mut queues[..self.renderers], self.region_ns);
-            for (array, queue) in arrays.iter_mut().zip(&queues).take(self.renderers) {
-                *array = Array::busy_until(queue.ready_ns);
-            }
-        }
-        let rendered_ns = self.render(&mut arrays, triangles, entries_per_triangle);
-        let commanded_ns = rendered_ns + self.message_ns;
-        let mut queues = self.queues(|region| !self.split || region < REGIONS / 2, commanded_ns);
-        for (queue, array) in queues.iter_mut().zip(&arrays) {
-            queue.ready_ns = queue.ready_ns.max(array.free_ns);
-        }
-        let top = copy_all(&mut queues[..self.renderers], self.region_ns);
-        let bottom = self.split.then(|| self.bottom(&queues, commanded_ns + self.message_ns));
-        let bottom_in_time = bottom.is_none_or(|times| times.end_ns <= self.field_ns + self.bottom_ns);
-        FieldTimes { rendered_ns, top, bottom, in_time: top.end_ns <= self.field_ns && bottom_in_time }
+        let [times] = fields_at_once([self], triangles, entries_per_triangle);
+        times
     }
 
-    fn bottom(&self, tops: &[Queue; MOST_RENDERERS], prepared_ns: f64) -> CopyTimes {
-        let mut queues = self.queues(|region| region >= REGIONS / 2, self.field_ns.max(prepared_ns));
-        for (queue, top) in queues.iter_mut().zip(tops) {
-            queue.ready_ns = queue.ready_ns.max(top.ready_ns);
+    /// The same of many machines, in their order: exactly what [`field`](Self::field) gives of each. Eight after another that have as
+    /// many boards and channels and the same program go through it together, which is faster.
+    #[must_use]
+    pub fn fields(models: &[Self], triangles: f64, entries_per_triangle: f64) -> Vec<FieldTimes> {
+        let mut all = Vec::with_capacity(models.len());
+        for some in models.chunks(TOGETHER) {
+            match <[&Self; TOGETHER]>::try_from(some.iter().collect::<Vec<_>>()) {
+                Ok(some) if some.iter().all(|model| model.structure() == some[0].structure()) => {
+                    all.extend(fields_together(some, triangles, entries_per_triangle));
+                }
+                _ => all.extend(some.iter().map(|model| model.field(triangles, entries_per_triangle))),
+            }
         }
-        copy_all(&mut queues[..self.renderers], self.region_ns)
+        all
+    }
+
+    /// What decides how many messages there are, and in which order they go.
+    const fn structure(&self) -> (usize, usize, usize, bool) {
+        (self.renderers, self.gps, self.source_channels, self.split)
+    }
+
+    /// When each renderer has copied the bottom regions of the field before.
+    fn bottom_of_the_field_before(&self, layouts: &Layouts) -> [f64; MOST_RENDERERS] {
+        if !self.split {
+            return [0.0; MOST_RENDERERS];
+        }
+        let mut queues = self.queues(&layouts.bottom, 0.0, |_| 0.0);
+        copy_all(&mut queues[..self.renderers], self.region_ns);
+        queues.map(|queue| queue.ready_ns)
+    }
+
+    /// The copies of a field whose last clump was accepted at an instant, by renderers that are busy until then.
+    fn copies(&self, layouts: &Layouts, rendered_ns: f64, busy_until_ns: impl Fn(usize) -> f64) -> FieldTimes {
+        let commanded_ns = rendered_ns + self.message_ns;
+        let mut queues = self.queues(&layouts.top, commanded_ns, busy_until_ns);
+        let top = copy_all(&mut queues[..self.renderers], self.region_ns);
+        let bottom = self.split.then(|| {
+            let from_ns = self.field_ns.max(commanded_ns + self.message_ns);
+            let mut bottoms = self.queues(&layouts.bottom, from_ns, |renderer| queues[renderer].ready_ns);
+            copy_all(&mut bottoms[..self.renderers], self.region_ns)
+        });
+        let bottom_in_time = bottom.is_none_or(|times| times.end_ns <= self.field_ns + self.bottom_ns);
+        FieldTimes { rendered_ns, top, bottom, in_time: top.end_ns <= self.field_ns && bottom_in_time }
     }
 
     /// Field after field like this one: one is begun at every retrace at which the one before is done with its commands.
@@ -144,9 +166,9 @@ impl SlatsModel {
         DuePictures::count(begun.map(|field| (PeriodNumber(field), end)), 1, PeriodNumber(fields))
     }
 
-    /// Copies of the regions for which `wanted` holds; the commands go out one after the other from `from_ns` on.
-    fn queues(&self, wanted: impl Fn(usize) -> bool, from_ns: f64) -> [Queue; MOST_RENDERERS] {
-        let mut queues: [Queue; MOST_RENDERERS] = std::array::from_fn(|_| Queue::default());
+    /// The copies that each renderer makes, of the regions for which `wanted` holds.
+    fn layout(&self, wanted: impl Fn(usize) -> bool) -> [Queue; MOST_RENDERERS] {
+        let mut queues = [Queue::default(); MOST_RENDERERS];
         let per_half = REGIONS / 4;
         // Left and right eye by turns; the odd renderers of a split copy begin right.
         let regions = (0..REGIONS).zip((0..self.renderers).cycle());
@@ -154,30 +176,25 @@ impl SlatsModel {
             let right = (region / per_half) % 2 == 1;
             queues[renderer].push(u8::from(right));
         }
-        let each_ns = self.overhead_ns + 2.0 * 11.0 * self.fifo.word_ns;
-        for (index, queue) in queues.iter_mut().enumerate().take(self.renderers) {
-            if self.split && index % 2 == 1 {
-                queue.boards[..queue.len].reverse();
-            }
-            queue.ready_ns = from_ns + each_ns * (index + 1) as f64;
+        for queue in queues.iter_mut().take(self.renderers).skip(1).step_by(2).filter(|_| self.split) {
+            queue.boards[..queue.len].reverse();
         }
         queues
     }
 
-    /// TRANSFORM and RENDER: clumps of all GPs by turns; when the last one was accepted.
-    fn render(&self, arrays: &mut [Array; MOST_RENDERERS], triangles: f64, entries: f64) -> f64 {
-        let share = triangles / self.gps as f64;
-        let clumps = (share / CLUMP as f64).ceil().max(1.0) as usize;
-        let mut chain = Chain { released_ns: [0.0; MOST_RENDERERS], accepted_ns: 0.0, draining_ns: 0.0 };
-        let mut cpu_ns = TransformCost { passes: 1.0, ..TransformCost::default() }.ns(&self.gp);
-        for clump in 0..clumps {
-            let count = (share - (clump * CLUMP) as f64).min(CLUMP as f64);
-            // The one clump buffer is written again when all renderers have begun with what was in it.
-            cpu_ns = cpu_ns.max(chain.draining_ns) + self.clump_ns(count, entries);
-            cpu_ns = cpu_ns.max(chain.accepted_ns) + self.message_ns;
-            self.send(arrays, &mut chain, cpu_ns, count * entries / 10.0, clump == 0);
+    /// The same, of which the commands go out one after the other from `from_ns` on, to renderers that are busy until some instants.
+    fn queues(
+        &self,
+        layout: &[Queue; MOST_RENDERERS],
+        from_ns: f64,
+        busy_until_ns: impl Fn(usize) -> f64,
+    ) -> [Queue; MOST_RENDERERS] {
+        let mut queues = *layout;
+        let each_ns = self.overhead_ns + 2.0 * 11.0 * self.fifo.word_ns;
+        for (index, queue) in queues.iter_mut().enumerate().take(self.renderers) {
+            queue.ready_ns = (from_ns + each_ns * (index + 1) as f64).max(busy_until_ns(index));
         }
-        chain.accepted_ns
+        queues
     }
 
     /// TRANSFORM of a clump of so many triangles for both eyes, each of which makes so many entries in bins.
@@ -187,82 +204,150 @@ impl SlatsModel {
         TransformCost { triangles: both_eyes, entries, ..TransformCost::default() }.ns(&self.gp)
     }
 
-    /// The messages of one clump of every GP, as many at a time as a port drives channels.
-    fn send(&self, arrays: &mut [Array; MOST_RENDERERS], chain: &mut Chain, from_ns: f64, count: f64, first: bool) {
-        let mut channels = Channels::new(self.source_channels);
-        let mut granted_ns = from_ns;
-        let of_first = self.commands(count, first);
-        let of_others = self.commands(count, false);
-        chain.accepted_ns = from_ns;
-        // A round is a region of every renderer.
-        for round in (0..REGIONS).step_by(self.renderers) {
-            let renderers = arrays.iter_mut().zip(&mut chain.released_ns).take(self.renderers.min(REGIONS - round));
-            for (renderer, (array, released_ns)) in renderers.enumerate() {
-                let latency_ns = self.hop_ns * (renderer + self.gps) as f64;
-                granted_ns = later(later(granted_ns, channels.take_first()), *released_ns);
-                let mut accepted_ns = array.take(granted_ns + self.overhead_ns + latency_ns, &of_first);
-                *released_ns = accepted_ns - latency_ns;
-                channels.put(*released_ns);
-                chain.accepted_ns = later(chain.accepted_ns, accepted_ns);
-                // Several GPs share the ports of the renderers: their messages follow each other.
-                for _ in 1..self.gps {
-                    let begin_ns = later(granted_ns, *released_ns);
-                    accepted_ns = array.take(begin_ns + self.overhead_ns + latency_ns, &of_others);
-                    *released_ns = accepted_ns - latency_ns;
-                    chain.accepted_ns = later(chain.accepted_ns, accepted_ns);
-                }
-            }
-            if round == 0 {
-                chain.draining_ns = chain.accepted_ns;
-            }
-        }
-    }
-
-    fn commands(&self, count: f64, clearing: bool) -> Commands {
+    /// What a message of a clump holds: select, and clear in the first one, then `count` triangles.
+    fn commands(&self, count: f64, clearing: bool) -> (Fifo, Cost, f64, Cost) {
         let clear = if clearing { self.clear } else { Cost::default() };
         let head = Cost { words: self.select.words + clear.words, ns: self.select.ns + clear.ns };
-        Commands::new(self.fifo, head, count, self.command)
+        (self.fifo, head, count, self.command)
+    }
+}
+
+/// Configurations that are computed together: the numbers of f64 in two registers of 256 bits, or one of 512.
+const TOGETHER: usize = 8;
+
+/// As wide as the processor is.
+#[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+fn fields_together(models: [&SlatsModel; TOGETHER], triangles: f64, entries: f64) -> [FieldTimes; TOGETHER] {
+    fields_at_once(models, triangles, entries)
+}
+
+/// Which regions each renderer copies before the retrace, all of them without a split copy, and which after it.
+struct Layouts {
+    top: [Queue; MOST_RENDERERS],
+    bottom: [Queue; MOST_RENDERERS],
+}
+
+/// Fields of machines of the same structure.
+#[inline(always)]
+fn fields_at_once<const N: usize>(models: [&SlatsModel; N], triangles: f64, entries: f64) -> [FieldTimes; N] {
+    let layouts = Layouts {
+        top: models[0].layout(|region| !models[0].split || region < REGIONS / 2),
+        bottom: models[0].layout(|region| region >= REGIONS / 2),
+    };
+    let before = models.map(|model| model.bottom_of_the_field_before(&layouts));
+    let mut arrays = std::array::from_fn(|renderer| Array::busy_until(Times::each(|i| before[i][renderer])));
+    let rendered = render(models, &mut arrays, triangles, entries);
+    std::array::from_fn(|i| models[i].copies(&layouts, rendered.0[i], |renderer| arrays[renderer].free.0[i]))
+}
+
+/// TRANSFORM and RENDER: clumps of all GPs by turns; when the last one was accepted.
+#[inline(always)]
+fn render<const N: usize>(
+    models: [&SlatsModel; N],
+    arrays: &mut [Array<N>; MOST_RENDERERS],
+    triangles: f64,
+    entries: f64,
+) -> Times<N> {
+    let share = triangles / models[0].gps as f64;
+    let clumps = (share / CLUMP as f64).ceil().max(1.0) as usize;
+    let none = Times::all(0.0);
+    let mut chain = Chain { released: [none; MOST_RENDERERS], accepted: none, draining: none };
+    let mut cpu = Times::each(|i| TransformCost { passes: 1.0, ..TransformCost::default() }.ns(&models[i].gp));
+    let message = Times::each(|i| models[i].message_ns);
+    for clump in 0..clumps {
+        let count = (share - (clump * CLUMP) as f64).min(CLUMP as f64);
+        // The one clump buffer is written again when all renderers have begun with what was in it.
+        cpu = cpu.later(chain.draining) + Times::each(|i| models[i].clump_ns(count, entries));
+        cpu = cpu.later(chain.accepted) + message;
+        send(models, arrays, &mut chain, cpu, count * entries / 10.0, clump == 0);
+    }
+    chain.accepted
+}
+
+/// The messages of one clump of every GP, as many at a time as a port drives channels.
+#[inline(always)]
+fn send<const N: usize>(
+    models: [&SlatsModel; N],
+    arrays: &mut [Array<N>; MOST_RENDERERS],
+    chain: &mut Chain<N>,
+    from: Times<N>,
+    count: f64,
+    first: bool,
+) {
+    let (renderers, gps, source_channels, _) = models[0].structure();
+    let mut channels = Channels::new(source_channels);
+    let mut granted = from;
+    let of_first = Commands::new(|i| models[i].commands(count, first));
+    let of_others = if first && gps > 1 { Commands::new(|i| models[i].commands(count, false)) } else { of_first };
+    let overhead = Times::each(|i| models[i].overhead_ns);
+    let latencies: [Times<N>; MOST_RENDERERS] =
+        std::array::from_fn(|renderer| Times::each(|i| models[i].hop_ns * (renderer + gps) as f64));
+    chain.accepted = from;
+    // A round is a region of every renderer.
+    for round in (0..REGIONS).step_by(renderers) {
+        for renderer in 0..renderers.min(REGIONS - round) {
+            let latency = latencies[renderer];
+            let (array, released) = (&mut arrays[renderer], &mut chain.released[renderer]);
+            granted = granted.later(channels.take_first()).later(*released);
+            let mut accepted = array.take(granted + overhead + latency, &of_first);
+            *released = accepted - latency;
+            channels.put(*released);
+            chain.accepted = chain.accepted.later(accepted);
+            // Several GPs share the ports of the renderers: their messages follow each other.
+            for _ in 1..gps {
+                let begin = granted.later(*released);
+                accepted = array.take(begin + overhead + latency, &of_others);
+                *released = accepted - latency;
+                chain.accepted = chain.accepted.later(accepted);
+            }
+        }
+        if round == 0 {
+            chain.draining = chain.accepted;
+        }
     }
 }
 
 /// Messages of clumps on their way.
-struct Chain {
+struct Chain<const N: usize> {
     /// When each renderer's port was free again.
-    released_ns: [f64; MOST_RENDERERS],
+    released: [Times<N>; MOST_RENDERERS],
     /// When the last message of the last clump was accepted.
-    accepted_ns: f64,
+    accepted: Times<N>,
     /// When every renderer had accepted its first message of that clump.
-    draining_ns: f64,
+    draining: Times<N>,
 }
 
 /// Channels that a ring can have; a power of two.
 const MOST_CHANNELS: usize = 8;
 
 /// When the channels of a port are free, soonest first, from a place on that goes round.
-struct Channels {
-    free_ns: [f64; MOST_CHANNELS],
+struct Channels<const N: usize> {
+    free: [Times<N>; MOST_CHANNELS],
     first: usize,
     number: usize,
 }
 
-impl Channels {
+impl<const N: usize> Channels<N> {
     const fn new(number: usize) -> Self {
-        Self { free_ns: [f64::MIN; MOST_CHANNELS], first: 0, number }
+        Self { free: [Times::all(f64::MIN); MOST_CHANNELS], first: 0, number }
     }
 
-    fn take_first(&mut self) -> f64 {
+    #[inline(always)]
+    fn take_first(&mut self) -> Times<N> {
         self.first += 1;
-        self.free_ns[(self.first - 1) % MOST_CHANNELS]
+        self.free[(self.first - 1) % MOST_CHANNELS]
     }
 
-    /// Gives the channel that was taken back. It is nearly always the last one to be free.
-    fn put(&mut self, free_ns: f64) {
-        let mut place = self.first + self.number - 1;
-        while place > self.first && self.free_ns[(place - 1) % MOST_CHANNELS] > free_ns {
-            self.free_ns[place % MOST_CHANNELS] = self.free_ns[(place - 1) % MOST_CHANNELS];
-            place -= 1;
+    /// Gives the channel that was taken back: it moves before all that are free later.
+    #[inline(always)]
+    fn put(&mut self, free: Times<N>) {
+        let mut here = free;
+        for place in (self.first + 1..self.first + self.number).rev() {
+            let before = self.free[(place - 1) % MOST_CHANNELS];
+            self.free[place % MOST_CHANNELS] = before.later(here);
+            here = before.sooner(here);
         }
-        self.free_ns[place % MOST_CHANNELS] = free_ns;
+        self.free[self.first % MOST_CHANNELS] = here;
     }
 }
 
@@ -328,4 +413,47 @@ fn summary(fields: u64, model: &SlatsModel, times: FieldTimes) -> Summary {
 
 fn length_ms(copy: CopyTimes) -> f64 {
     (copy.end_ns - copy.begin_ns) * 1e-6
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// A machine for Slats with some of its numbers changed.
+    fn model(gps: usize, renderers: usize, numbers: [u64; 5], split: bool) -> SlatsModel {
+        let mut config = MachineConfig { n_gps: gps, n_renderers: renderers, ..MachineConfig::slats() };
+        let [triangle_ns, message_ns, fifo_words, word_ns, hop_ns] = numbers;
+        config.gp.triangle_ns = triangle_ns;
+        config.gp.message_ns = message_ns;
+        config.renderer.fifo_words = fifo_words;
+        config.ring.word_ns = word_ns;
+        config.ring.hop_ns = hop_ns;
+        let program = if split { Slats::split() } else { Slats::whole() };
+        SlatsModel::new(&config, program).expect("in range")
+    }
+
+    fn numbers() -> impl Strategy<Value = [u64; 5]> {
+        (1_000u64..60_000, 0u64..90_000, 64u64..2_000, 10u64..200, 0u64..100)
+            .prop_map(|(triangle, message, fifo, word, hop)| [triangle, message, fifo, word, hop])
+    }
+
+    proptest! {
+        /// To the last bit, in any number, and where not all are of the same structure.
+        #[test]
+        fn machines_that_are_computed_together_are_what_they_are_alone(
+            gps in 1usize..5,
+            renderers in 5usize..23,
+            all in proptest::collection::vec(numbers(), 1..30),
+            other in 0usize..40,
+            split: bool,
+            triangles in 1.0f64..400.0,
+            entries in 1.0f64..12.0,
+        ) {
+            let of = |(i, numbers): (usize, &[u64; 5])| model(gps, renderers, *numbers, split != (i == other));
+            let models: Vec<SlatsModel> = all.iter().enumerate().map(of).collect();
+            let alone: Vec<FieldTimes> = models.iter().map(|model| model.field(triangles, entries)).collect();
+            prop_assert_eq!(SlatsModel::fields(&models, triangles, entries), alone);
+        }
+    }
 }

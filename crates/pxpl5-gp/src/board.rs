@@ -231,17 +231,25 @@ impl GpBoard {
         }
     }
 
+    /// Polls the programs until nothing moves: each again when another has come on since it was polled. By itself it cannot.
     fn poll_until_quiet(&mut self) {
         let mut task_context = TaskContext::from_waker(Waker::noop());
+        let mut seen = [None; Priority::ALL.len()];
         loop {
-            let before = self.shared.borrow().progress;
-            let fault = &mut self.fault;
-            let shared = &self.shared;
-            self.tasks.retain_mut(|task| {
-                if shared.borrow().is_at_work(task.priority) {
-                    return true;
+            let Self { shared, tasks, fault, .. } = self;
+            let mut polled = false;
+            tasks.retain_mut(|task| {
+                let seen = &mut seen[task.priority as usize];
+                {
+                    let shared = shared.borrow();
+                    if *seen == Some(shared.progress) || shared.is_at_work(task.priority) {
+                        return true;
+                    }
                 }
-                match task.firmware.as_mut().poll(&mut task_context) {
+                polled = true;
+                let result = task.firmware.as_mut().poll(&mut task_context);
+                *seen = Some(shared.borrow().progress);
+                match result {
                     Poll::Pending => true,
                     Poll::Ready(result) => {
                         *fault = fault.take().or(result.err());
@@ -249,7 +257,7 @@ impl GpBoard {
                     }
                 }
             });
-            if self.shared.borrow().progress == before {
+            if !polled {
                 return;
             }
         }
@@ -261,9 +269,12 @@ impl GpBoard {
         self.fault.as_ref()
     }
 
-    /// Takes what the programs have told the observer.
-    pub fn take_marks(&mut self) -> Vec<Mark> {
-        std::mem::take(&mut self.shared.borrow_mut().marks)
+    /// Takes what the programs have told the observer, in order.
+    pub fn drain_marks(&mut self, take: impl FnMut(Mark)) {
+        let marks = &mut self.shared.borrow_mut().marks;
+        if !marks.is_empty() {
+            marks.drain(..).for_each(take);
+        }
     }
 
     /// CPU time spent so far.

@@ -153,8 +153,9 @@ impl Shared {
     /// The next batch, if the DMA is free.
     pub(crate) fn next_batch(&mut self) -> Option<Batch> {
         let batch = if self.in_flight.is_empty() { self.batches.pop_front() } else { None }?;
-        self.in_flight = (0..).zip(batch.links.iter().map(|link| link.message.destination)).collect();
-        self.not_begun = self.in_flight.iter().map(|flight| flight.1).collect();
+        self.in_flight.extend((0..).zip(batch.links.iter().map(|link| link.message.destination)));
+        self.not_begun.clear();
+        self.not_begun.extend(self.in_flight.iter().map(|flight| flight.1));
         Some(batch)
     }
 
@@ -287,7 +288,8 @@ impl Gp {
 
     /// Sends one message in the background: pays the software cost, then queues it behind earlier ones.
     pub async fn send(&self, destination: NodeId, words: u32, body: Body) -> Ticket {
-        self.send_batch(vec![(destination, words, body)]).await
+        self.spend_message().await;
+        self.send_prepared([(destination, words, body)])
     }
 
     /// Sends several messages as one chain of the DMA: one software cost, then all go in the background, at the same
@@ -301,12 +303,11 @@ impl Gp {
     /// last of a group the receiver takes no message of another board, because the group keeps its port.
     pub async fn send_groups(&self, groups: Vec<(NodeId, Vec<(u32, Body)>)>) -> Ticket {
         self.spend_message().await;
-        let links = groups.into_iter().flat_map(|(destination, group)| {
+        self.post(groups.into_iter().flat_map(|(destination, group)| {
             let last = group.len().saturating_sub(1);
             let numbered = (0..).zip(group);
             numbered.map(move |(place, (words, body))| (destination, words, body, place < last))
-        });
-        self.post(links.collect())
+        }))
     }
 
     /// Waits until the clump buffer is free: everything sent before has been accepted.
@@ -328,25 +329,26 @@ impl Gp {
     }
 
     /// Hands a chain of messages to the DMA whose software cost was paid before by [`Gp::spend_message`].
-    pub fn send_prepared(&self, batch: Vec<(NodeId, u32, Body)>) -> Ticket {
-        self.post(batch.into_iter().map(|(destination, words, body)| (destination, words, body, false)).collect())
+    pub fn send_prepared(&self, batch: impl IntoIterator<Item = (NodeId, u32, Body)>) -> Ticket {
+        self.post(batch.into_iter().map(|(destination, words, body)| (destination, words, body, false)))
     }
 
     /// Hands a chain to the DMA: of each message its receiver, words, what it carries, and whether it keeps the receiver's
     /// port for the next one.
-    fn post(&self, batch: Vec<(NodeId, u32, Body, bool)>) -> Ticket {
+    fn post(&self, batch: impl Iterator<Item = (NodeId, u32, Body, bool)>) -> Ticket {
+        let source = self.node();
+        let links = batch.map(|(destination, words, body, hold)| ChainLink {
+            message: Message { source, destination, words, body },
+            hold,
+        });
+        let links: Vec<ChainLink> = links.collect();
         let shared = &mut *self.shared.borrow_mut();
-        if batch.is_empty() {
+        if links.is_empty() {
             return Ticket(shared.issued);
         }
         shared.issued += 1;
         let ticket = Ticket(shared.issued);
-        let source = shared.node;
-        let links = batch.into_iter().map(|(destination, words, body, hold)| ChainLink {
-            message: Message { source, destination, words, body },
-            hold,
-        });
-        shared.batches.push_back(Batch { ticket, links: links.collect() });
+        shared.batches.push_back(Batch { ticket, links });
         ticket
     }
 

@@ -15,6 +15,9 @@ pub struct Workstation {
 }
 
 impl Workstation {
+    /// Regions that may wait for a worker thread; more would only hold memory.
+    pub const WAITING_REGIONS: usize = 256;
+
     /// With a worker thread for each core.
     #[must_use]
     pub fn new() -> Self {
@@ -50,9 +53,6 @@ impl Host for Workstation {
     }
 }
 
-/// Regions that may wait for a worker; more would only hold memory.
-const WAITING_REGIONS: usize = 256;
-
 /// A pool of threads that compute pixels.
 #[derive(Debug)]
 struct PixelThreads {
@@ -62,7 +62,7 @@ struct PixelThreads {
 
 impl PixelThreads {
     fn start(threads: usize) -> Self {
-        let (regions, waiting) = bounded::<Arc<dyn PixelSource>>(WAITING_REGIONS);
+        let (regions, waiting) = bounded::<Arc<dyn PixelSource>>(Workstation::WAITING_REGIONS);
         let threads = (0..threads).map(|_| start_thread(waiting.clone())).collect();
         Self { regions, threads }
     }

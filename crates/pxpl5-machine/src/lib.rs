@@ -8,9 +8,11 @@
 //!
 //! **Not here:** the computer that the simulation runs on. Clocks, threads and files are handed in ([`PixelWorker`]).
 
+mod agenda;
 mod board;
 mod config;
 mod event;
+mod facts;
 mod host_line;
 mod machine;
 mod observation;

@@ -10,9 +10,11 @@
 //!                   +---- tick and swap status -----------+  (of the first display, to the first GP)
 //! ```
 
+use crate::agenda::{schedule_brought, schedule_own, schedule_requests};
 use crate::board::{Board, Happening};
 use crate::config::{ConfigError, MachineConfig};
 use crate::event::Event;
+use crate::facts::{facts, facts_of, facts_of_line};
 use crate::host_line::HostLine;
 use crate::observation::{Arrival, Swap};
 use crate::pixels::PixelWorker;
@@ -21,11 +23,11 @@ use crate::record::Record;
 use crate::run_error::RunError;
 use crate::savings::Saving;
 use pxpl5_display::{DisplayContext, DisplayEvent, DisplayOutput};
-use pxpl5_gp::{BreakpointHit, Firmware, Gp, GpBoard, GpEvent, GpOutput, Mark, Priority};
+use pxpl5_gp::{BreakpointHit, Firmware, Gp, GpBoard, GpEvent, GpOutput, Priority};
 use pxpl5_renderer::{ArrayPool, Layout, Renderer, RendererEvent, RendererOutput};
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput};
 use pxpl5_sim::{Blocked, Clock, Context, Cycles, EventQueue, Phase, Span, Time};
-use pxpl5_wire::{Body, Message, NodeId, PeriodNumber, RegionPixels, SurfaceId};
+use pxpl5_wire::{Body, Message, NodeId, PeriodNumber, SurfaceId};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A whole machine at work: its boards and what was observed of them ([`Record`]), programs, and what is going to happen.
@@ -45,6 +47,8 @@ pub struct Machine {
     pixels: Option<Box<dyn PixelWorker>>,
     /// Whether every edge of the boards' clock is an event.
     every_edge: bool,
+    /// Whether what nothing can come between is one event.
+    joint_events: bool,
     failure: Option<RunError>,
     /// Events since the last tick of the first display that were no tick, and the ticks up to it without any.
     work_events: u64,
@@ -108,6 +112,7 @@ impl Machine {
             host_lines: Vec::new(),
             pixels: None,
             every_edge: false,
+            joint_events: true,
             failure: None,
             work_events: 0,
             idle_ticks: 0,
@@ -133,7 +138,7 @@ impl Machine {
         }
     }
 
-    /// Gives up a saving: what it skips is done from now on. To be called before the machine is switched on.
+    /// Gives up a saving: what it skips is done from now on. To be called before the machine has run.
     pub fn give_up(&mut self, saving: Saving) {
         match saving {
             Saving::IdleBoards => self.every_edge = true,
@@ -142,6 +147,7 @@ impl Machine {
             Saving::RepeatedCode => self.processors.iter_mut().for_each(GpBoard::count_every_clock),
             Saving::DelayedWork => self.processors.iter_mut().for_each(GpBoard::announce_every_end),
             Saving::EmptyBins => self.processors.iter_mut().for_each(GpBoard::pay_one_by_one),
+            Saving::JointEvents => self.joint_events = false,
         }
     }
 
@@ -261,6 +267,14 @@ impl Machine {
         match event {
             Event::Ring(event) => self.ring_event(now, event),
             Event::FromRing(output) => self.bring(now, output),
+            Event::DeliveredAndSent(message, ticket) => {
+                let source = message.source;
+                self.bring(now, RingOutput::Delivered(message));
+                self.bring(now, RingOutput::Sent { source, ticket });
+            }
+            Event::Requests(requests) => {
+                requests.into_iter().for_each(|request| self.ring_event(now, RingEvent::Request(request)));
+            }
             Event::Gp(board, event) => self.gp_event(now, board, event),
             Event::Renderer(board, event) => self.renderer_event(now, board, event),
             Event::HostLine(line) => self.host_says(now, line),
@@ -338,9 +352,25 @@ impl Machine {
             traffic.channels(now, ring.busy_channels());
         }
         schedule_own(queue, context, Event::Ring);
-        for (time, output) in context.drain_outputs() {
-            queue.schedule(time, Phase::Arrive, Event::FromRing(output));
+        schedule_brought(queue, context, self.joint_events);
+    }
+
+    /// The answer of a renderer leaves it after a cycle. What it says of the end of a message holds from then on, before which nothing
+    /// can happen to that message: so the ring may know it at once.
+    fn accept(&mut self, now: Time, at: Time, destination: NodeId, last_word_at: Time) {
+        let event = RingEvent::Accept { destination, last_word_at };
+        if !self.joint_events {
+            return self.queue.schedule(at, Phase::Arrive, Event::Ring(event));
         }
+        debug_assert!(at > now, "nothing leaves a board at once");
+        let Self { record: Record { ring, observation, .. }, contexts: Contexts { ring: context, .. }, queue, .. } =
+            self;
+        if let Some(traffic) = observation.traffic.as_deref_mut() {
+            traffic.accept(destination, last_word_at);
+        }
+        ring.handle(event, context.at(at));
+        schedule_own(queue, context, Event::Ring);
+        schedule_brought(queue, context, true);
     }
 
     /// What the ring has brought to a board enters the trace now.
@@ -408,17 +438,19 @@ impl Machine {
         let processor = &mut processors[board];
         processor.handle(event, context.at(now));
         schedule_own(queue, context, |event| Event::Gp(board, event));
-        for (order, (time, GpOutput::Send { message, ticket, hold })) in (0..).zip(context.drain_outputs()) {
-            let request = Request { message, ticket: Some(ticket), hold, order };
-            queue.schedule(time, Phase::Arrive, Event::Ring(RingEvent::Request(request)));
-        }
-        let fault = processor.fault().cloned();
-        let marks = processor.take_marks();
-        if let Some(fault) = fault {
+        let sends =
+            (0..).zip(context.drain_outputs()).map(|(order, (time, GpOutput::Send { message, ticket, hold }))| {
+                (time, Request { message, ticket: Some(ticket), hold, order })
+            });
+        schedule_requests(queue, sends, self.joint_events);
+        if let Some(fault) = processor.fault().cloned() {
             self.failure = Some(RunError::Fault { board: Board::of_processor(board).to_string(), time: now, fault });
         }
-        marks.iter().for_each(|mark| self.record.hash.record(mark.time, &facts_of(mark)));
-        self.record.observation.marks.extend(marks);
+        let Record { hash, observation, .. } = &mut self.record;
+        processor.drain_marks(|mark| {
+            hash.record(mark.time, &facts_of(&mark));
+            observation.marks.push(mark);
+        });
     }
 
     fn renderer_event(&mut self, now: Time, board: usize, event: RendererEvent) {
@@ -430,15 +462,20 @@ impl Machine {
         }
         schedule_own(queue, context, |event| Event::Renderer(board, event));
         let destination = record.ports.renderers[board];
-        for (order, (time, output)) in (0..).zip(context.drain_outputs()) {
-            let event = match output {
-                RendererOutput::Accept { last_word_at } => RingEvent::Accept { destination, last_word_at },
-                RendererOutput::Send { message, ticket, hold } => {
-                    compute_pixels(pixels, &message.body);
-                    RingEvent::Request(Request { message, ticket: ticket.then_some(0), hold, order })
-                }
-            };
-            queue.schedule(time, Phase::Arrive, Event::Ring(event));
+        let mut answer = None;
+        let sends = (0..).zip(context.drain_outputs()).filter_map(|(order, (time, output))| match output {
+            RendererOutput::Accept { last_word_at } => {
+                answer = Some((time, last_word_at));
+                None
+            }
+            RendererOutput::Send { message, ticket, hold } => {
+                compute_pixels(pixels, &message.body);
+                Some((time, Request { message, ticket: ticket.then_some(0), hold, order }))
+            }
+        });
+        schedule_requests(queue, sends, self.joint_events);
+        if let Some((at, last_word_at)) = answer {
+            self.accept(now, at, destination, last_word_at);
         }
     }
 
@@ -529,49 +566,11 @@ impl Machine {
     }
 }
 
-/// Puts what a board scheduled for itself into the queue.
-fn schedule_own<E, O>(queue: &mut EventQueue<Event>, context: &mut Context<E, O>, event_of: impl Fn(E) -> Event) {
-    for (time, phase, event) in context.drain_events() {
-        queue.schedule(time, phase, event_of(event));
-    }
-}
-
 /// Hands a region over when its first message is on its way.
 fn compute_pixels(worker: &mut Option<Box<dyn PixelWorker>>, body: &Body) {
     if let (Some(worker), Body::Pixels(pixels)) = (worker, body)
         && pixels.part == 0
     {
         worker.compute(&pixels.image);
-    }
-}
-
-/// What of a message enters the trace, under a number for what happened to it.
-fn facts(kind: u64, message: &Message) -> [u64; 4] {
-    [kind, u64::from(message.source.0), u64::from(message.destination.0), u64::from(message.words)]
-}
-
-/// What of a message that came to a port by a line of the host enters the trace.
-fn facts_of_line(port: usize, body: &Body) -> Vec<u64> {
-    match body {
-        Body::Words(words) => [8, port as u64].into_iter().chain(words.iter().map(|word| u64::from(*word))).collect(),
-        Body::Pixels(RegionPixels { target, part, .. }) => {
-            vec![9, port as u64, u64::from(target.region.0), target.picture.0, u64::from(*part)]
-        }
-        Body::Commands(_) => vec![10, port as u64],
-    }
-}
-
-/// What of a mark enters the trace.
-fn facts_of(mark: &Mark) -> [u64; 6] {
-    let surface = surface_fact(mark.surface);
-    [4, u64::from(mark.node.0), mark.picture.0, surface, mark.stage as u64, mark.edge as u64]
-}
-
-/// The surface as traces have it since there were two at most, which 2 stands for: none.
-fn surface_fact(surface: Option<SurfaceId>) -> u64 {
-    match surface {
-        None => 2,
-        Some(SurfaceId(number)) if number < 2 => u64::from(number),
-        Some(SurfaceId(number)) => u64::from(number) + 1,
     }
 }

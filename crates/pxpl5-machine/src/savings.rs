@@ -27,12 +27,23 @@ pub enum Saving {
     /// A token that finds an empty bin is paid for once, receiving and sending together. Without it the processor is asked
     /// between the two.
     EmptyBins,
+    /// What nothing can come between is one event: the messages that a board hands to the ring at once, a delivery and the news of it
+    /// to its sender, an announcement and the renderer's answer. Without it each is an event of its own, as in a run that is
+    /// stepped through.
+    JointEvents,
 }
 
 impl Saving {
     /// Every saving that an experiment can give up.
-    pub const ALL: [Self; 6] =
-        [Self::IdleBoards, Self::Transfers, Self::EmptyRegions, Self::RepeatedCode, Self::DelayedWork, Self::EmptyBins];
+    pub const ALL: [Self; 7] = [
+        Self::IdleBoards,
+        Self::Transfers,
+        Self::EmptyRegions,
+        Self::RepeatedCode,
+        Self::DelayedWork,
+        Self::EmptyBins,
+        Self::JointEvents,
+    ];
 
     /// The name by which the command knows it.
     #[must_use]
@@ -44,6 +55,7 @@ impl Saving {
             Self::RepeatedCode => "repeated-code",
             Self::DelayedWork => "delayed-work",
             Self::EmptyBins => "empty-bins",
+            Self::JointEvents => "joint-events",
         }
     }
 }

@@ -144,15 +144,15 @@ impl Renderer {
 
     fn announce(&mut self, message: Message, begins: Time, context: &mut Context<RendererEvent, RendererOutput>) {
         self.note(&message, context.now());
-        let work = match message.body {
+        match message.body {
             Body::Commands(list) => self.take(list),
             // Words of no known command still occupy the FIFO and are thrown away.
             Body::Pixels(_) | Body::Words(_) => {
                 self.stats.illegal_commands += 1;
-                vec![EqualCommands { words_each: message.words, count: 1, span_each: Some(Span::ZERO) }]
+                self.fifo.take(EqualCommands { words_each: message.words, count: 1, span_each: Some(Span::ZERO) });
             }
-        };
-        let progress = self.fifo.message(begins, work);
+        }
+        let progress = self.fifo.message(begins, []);
         self.report(progress, context);
     }
 
@@ -176,7 +176,7 @@ impl Renderer {
         }
     }
 
-    fn take(&mut self, list: CommandList) -> Vec<EqualCommands> {
+    fn take(&mut self, list: CommandList) {
         let log = &mut self.logs[usize::from(list.context) % MAX_CONTEXTS];
         if begins_with_clear(&list.runs) {
             *log = ContextLog { cleared: true, ..ContextLog::default() };
@@ -190,7 +190,10 @@ impl Renderer {
             let is_released = order.way != CopyWay::IntoBacking;
             self.copies.push_back(PendingCopy { order: *order, image, is_released });
         }
-        list.runs.iter().map(|run| self.work(run)).collect()
+        for run in &list.runs {
+            let work = self.work(run);
+            self.fifo.take(work);
+        }
     }
 
     fn work(&mut self, run: &CommandRun) -> EqualCommands {

@@ -48,11 +48,17 @@ struct Departures {
 
 impl Departures {
     fn push(&mut self, made_room_for: u64, left_at: Time) {
+        self.forget(1);
+        self.all.push((made_room_for, left_at));
+    }
+
+    /// Gives up what nobody asks for any more, and has room for so many.
+    fn forget(&mut self, room: usize) {
         if self.first > self.all.len() / 2 {
             self.all.drain(..self.first);
             self.first = 0;
         }
-        self.all.push((made_room_for, left_at));
+        self.all.reserve(room);
     }
 
     /// From the one on that made room for a word, which is not less than the last one asked for.
@@ -148,7 +154,13 @@ impl InputFifo {
         }
     }
 
-    /// A message begins to arrive: its first word is on the channel from `begins` on.
+    /// Commands of the message that is told next.
+    pub(crate) fn take(&mut self, work: EqualCommands) {
+        self.in_transit.push_back(work);
+    }
+
+    /// A message begins to arrive: its first word is on the channel from `begins` on. `work` are its commands behind those that were
+    /// [taken](Self::take).
     pub(crate) fn message(&mut self, begins: Time, work: impl IntoIterator<Item = EqualCommands>) -> Progress {
         self.last_word_at = self.last_word_at.max(begins);
         self.in_transit.extend(work);
@@ -239,11 +251,17 @@ impl InputFifo {
         let on_channel = self.word * words;
         let mut words_in = self.words_in;
         let mut complete = self.last_word_at;
+        self.left.forget(work.count as usize);
+        // Places among all departures: what is pushed in the loop is found in it.
+        let Departures { all, first } = &mut self.left;
         for _ in 0..work.count {
             let last = words_in + words - 1;
             complete += on_channel;
             if last >= self.depth {
-                for (made_room_for, left_at) in self.left.from(words_in) {
+                while all.get(*first + 1).is_some_and(|next| next.0 <= words_in) {
+                    *first += 1;
+                }
+                for (made_room_for, left_at) in &all[*first..] {
                     if *made_room_for > last {
                         break;
                     }
@@ -251,7 +269,7 @@ impl InputFifo {
                 }
             }
             let start = free_at.max(complete);
-            self.left.push(words_in + self.depth, start);
+            all.push((words_in + self.depth, start));
             words_in += words;
             free_at = start + span;
         }

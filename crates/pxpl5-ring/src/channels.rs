@@ -35,7 +35,7 @@ pub(crate) struct MessageInFlight {
     pub(crate) latency: Span,
     /// Word slots that have not ended, and the message until the receiver is told of it; only where every word is moved.
     pub(crate) slots_left: u64,
-    pub(crate) message: Option<Message>,
+    pub(crate) message: Option<Box<Message>>,
 }
 
 /// All channels; free ones are taken from the lowest number.
@@ -44,6 +44,8 @@ pub(crate) struct RingChannels {
     flights: Vec<Option<MessageInFlight>>,
     /// When each channel is free again; unknown on a free one and until the receiver has answered.
     ends_at: Vec<Time>,
+    /// The earliest of them, unknown where none is known.
+    first_end: Time,
     /// One bit a channel.
     free: u64,
 }
@@ -51,7 +53,7 @@ pub(crate) struct RingChannels {
 impl RingChannels {
     /// 1 to 64 free channels.
     pub(crate) fn new(n: usize) -> Self {
-        Self { flights: vec![None; n], ends_at: vec![UNKNOWN; n], free: u64::MAX >> (64 - n) }
+        Self { flights: vec![None; n], ends_at: vec![UNKNOWN; n], first_end: UNKNOWN, free: u64::MAX >> (64 - n) }
     }
 
     pub(crate) const fn has_free(&self) -> bool {
@@ -71,17 +73,25 @@ impl RingChannels {
         let channel = self.free.trailing_zeros() as usize;
         self.free &= !(1 << channel);
         self.flights[channel] = Some(flight);
-        self.ends_at[channel] = ends_at.unwrap_or(UNKNOWN);
+        // A free channel has no end.
+        if let Some(end) = ends_at {
+            self.ends(channel, end);
+        }
         channel
     }
 
     pub(crate) fn ends(&mut self, channel: usize, at: Time) {
-        self.ends_at[channel] = at;
+        let before = std::mem::replace(&mut self.ends_at[channel], at);
+        self.first_end = if before == self.first_end {
+            self.ends_at.iter().copied().min().unwrap_or(UNKNOWN)
+        } else {
+            self.first_end.min(at)
+        };
     }
 
     /// The earliest end that is known.
     pub(crate) fn first_end(&self) -> Option<Time> {
-        self.ends_at.iter().copied().min().filter(|end| *end != UNKNOWN)
+        Some(self.first_end).filter(|end| *end != UNKNOWN)
     }
 
     /// The end of the message on a channel, if it is known.
@@ -91,8 +101,12 @@ impl RingChannels {
 
     /// Takes a message whose time is over, with its channel and the end of that time.
     pub(crate) fn take_ended(&mut self, now: Time) -> Option<(usize, Time, MessageInFlight)> {
+        if self.first_end > now {
+            return None;
+        }
         let channel = self.ends_at.iter().position(|end| *end <= now && *end != UNKNOWN)?;
         let ended = std::mem::replace(&mut self.ends_at[channel], UNKNOWN);
+        self.first_end = self.ends_at.iter().copied().min().unwrap_or(UNKNOWN);
         self.free |= 1 << channel;
         Some((channel, ended, self.flights[channel].take()?))
     }

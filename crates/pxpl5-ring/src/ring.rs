@@ -225,8 +225,11 @@ impl Ring {
     /// The end of a message matters only if somebody waits for just that one.
     fn arbitrate_at_next_end(&mut self, context: &mut RingContext) {
         let any_end = self.watched || self.at_limit > 0;
-        let awaited = self.heads.iter().filter_map(|head| self.awaited_end(head.destination));
-        let next = if any_end { self.channels.first_end() } else { awaited.min() };
+        let next = if any_end || (!self.heads.is_empty() && !self.channels.has_free()) {
+            self.channels.first_end()
+        } else {
+            self.heads.iter().filter_map(|head| self.awaited_end(head.destination)).min()
+        };
         if let Some(end) = next {
             self.arbitrate_at(end.max(context.now()), context);
         }
@@ -337,7 +340,7 @@ impl Ring {
     /// else at the answer to the announcement; a ring that moves every word waits for the words.
     fn carry(&mut self, flight: MessageInFlight, message: Message, context: &mut RingContext) -> usize {
         if self.word_by_word {
-            let channel = self.channels.occupy(MessageInFlight { message: Some(message), ..flight }, None);
+            let channel = self.channels.occupy(MessageInFlight { message: Some(Box::new(message)), ..flight }, None);
             context.schedule(context.now() + self.word, Phase::Arrive, RingEvent::Slot { channel });
             return channel;
         }
@@ -363,11 +366,11 @@ impl Ring {
         {
             if elastic {
                 let now = context.now();
-                self.deliver(&flight, message, now, context);
+                self.deliver(&flight, *message, now, context);
                 self.channels.ends(channel, now);
                 self.arbitrate_at_next_end(context);
             } else {
-                self.announce(&flight, message, context);
+                self.announce(&flight, *message, context);
             }
         }
         self.channels.put_back(channel, flight);

@@ -52,6 +52,23 @@ impl<E, O> Context<E, O> {
         self.own.drain(..)
     }
 
+    /// Takes the events that were scheduled since the last call, one after the other. Mostly there is none or one.
+    #[inline]
+    pub fn each_event(&mut self, mut take: impl FnMut(Time, Phase, E)) {
+        if self.own.len() > 1 {
+            return self.own.drain(..).for_each(|(time, phase, event)| take(time, phase, event));
+        }
+        if let Some((time, phase, event)) = self.own.pop() {
+            take(time, phase, event);
+        }
+    }
+
+    /// Whether nothing was put out since the outputs were taken.
+    #[must_use]
+    pub const fn is_silent(&self) -> bool {
+        self.outputs.is_empty()
+    }
+
     /// Takes everything put out.
     pub fn drain_outputs(&mut self) -> std::vec::Drain<'_, (Time, O)> {
         self.outputs.drain(..)

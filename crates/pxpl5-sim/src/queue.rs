@@ -2,6 +2,7 @@
 
 use crate::heap::{Keyed, QuadHeap};
 use crate::{Time, mix};
+use std::collections::VecDeque;
 
 /// The three steps of one instant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -31,12 +32,19 @@ impl Keyed for Due {
 
 const PHASE_SHIFT: u32 = 62;
 
+/// Above the keys of all work of an instant, below those of what observes it.
+const fn work_key(now: Time) -> u128 {
+    (now.0 as u128) << 64 | ((Phase::Observe as u64) << PHASE_SHIFT) as u128
+}
+
 /// Events in order of (time, phase), ties in order of scheduling or shuffled.
 #[derive(Debug)]
 pub struct EventQueue<E> {
     heap: QuadHeap<Due>,
     /// An event that comes before all of the heap: what is scheduled next often is, and need not go through it.
     next: Option<Due>,
+    /// Work of the present instant that was scheduled during it, in order: it needs no place among others. Empty where ties are shuffled.
+    soon: VecDeque<E>,
     events: Vec<Option<E>>,
     free: Vec<u32>,
     now: Time,
@@ -50,6 +58,7 @@ impl<E> Default for EventQueue<E> {
         Self {
             heap: QuadHeap::default(),
             next: None,
+            soon: VecDeque::new(),
             events: Vec::new(),
             free: Vec::new(),
             now: Time::ZERO,
@@ -79,6 +88,9 @@ impl<E> EventQueue<E> {
     /// When `time` is in the past: a device has broken the contract. When 2^32 events wait.
     pub fn schedule(&mut self, time: Time, phase: Phase, event: E) {
         assert!(time >= self.now, "an event at {time} was scheduled at {}", self.now);
+        if time == self.now && phase == Phase::Work && self.shuffle.is_none() {
+            return self.soon.push_back(event);
+        }
         let tie = self.shuffle.map_or(self.sequence, |seed| mix(seed ^ mix(self.sequence)));
         let order = (phase as u64) << PHASE_SHIFT | tie & ((1 << PHASE_SHIFT) - 1);
         self.sequence += 1;
@@ -95,6 +107,12 @@ impl<E> EventQueue<E> {
         self.next.or_else(|| self.heap.peek().copied())
     }
 
+    /// Whether the next event is of those scheduled for work at once: arrivals of the instant, and work that was scheduled before it
+    /// began, come before them.
+    fn is_soon(&self) -> bool {
+        !self.soon.is_empty() && self.first().is_none_or(|first| first.key() > work_key(self.now))
+    }
+
     fn keep(&mut self, event: E) -> u32 {
         if let Some(slot) = self.free.pop() {
             self.events[slot as usize] = Some(event);
@@ -106,6 +124,10 @@ impl<E> EventQueue<E> {
 
     /// Takes the next event and moves the present to it.
     pub fn next_event(&mut self) -> Option<(Time, Phase, E)> {
+        if self.is_soon() {
+            self.popped += 1;
+            return self.soon.pop_front().map(|event| (self.now, Phase::Work, event));
+        }
         let due = self.next.take().or_else(|| self.heap.pop())?;
         self.now = due.time;
         self.popped += 1;
@@ -121,18 +143,24 @@ impl<E> EventQueue<E> {
 
     /// All events that wait, in no order.
     pub fn pending(&self) -> impl Iterator<Item = &E> {
-        self.events.iter().flatten()
+        self.events.iter().flatten().chain(&self.soon)
     }
 
     /// The time of the next event.
     #[must_use]
     pub fn next_time(&self) -> Option<Time> {
+        if !self.soon.is_empty() {
+            return Some(self.now);
+        }
         self.first().map(|due| due.time)
     }
 
     /// The next event and its time, without taking it.
     #[must_use]
     pub fn peek(&self) -> Option<(Time, &E)> {
+        if self.is_soon() {
+            return Some((self.now, self.soon.front()?));
+        }
         let due = self.first()?;
         Some((due.time, self.events[due.slot as usize].as_ref()?))
     }
@@ -152,7 +180,7 @@ impl<E> EventQueue<E> {
     /// Number of events that wait.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.heap.len() + usize::from(self.next.is_some())
+        self.heap.len() + self.soon.len() + usize::from(self.next.is_some())
     }
 
     /// Whether no event waits.
@@ -201,7 +229,61 @@ mod tests {
         queue.schedule(Time(4), Phase::Work, ());
     }
 
+    /// What an event schedules when it is taken: how much later, in which phase, each twice at most.
+    type Follow = (u64, u8);
+
+    /// A queue that keeps everything in one sorted list.
+    #[derive(Default)]
+    struct Plain {
+        waiting: Vec<(u64, u8, usize)>,
+        now: u64,
+        scheduled: usize,
+    }
+
+    impl Plain {
+        fn schedule(&mut self, time: u64, phase: u8) {
+            self.waiting.push((time, phase, self.scheduled));
+            self.scheduled += 1;
+        }
+
+        fn take(&mut self) -> Option<(u64, u8, usize)> {
+            let first = self.waiting.iter().copied().min()?;
+            self.waiting.retain(|event| *event != first);
+            self.now = first.0;
+            Some(first)
+        }
+    }
+
     proptest! {
+        /// Work that is scheduled for the instant at which it is scheduled has a way of its own.
+        #[test]
+        fn what_events_schedule_comes_as_from_a_sorted_list(
+            begun in proptest::collection::vec((0u64..4, 0u8..3), 1..20),
+            follows in proptest::collection::vec(proptest::collection::vec((0u64..3, 0u8..3), 0..3), 60)
+        ) {
+            let phases = [Phase::Arrive, Phase::Work, Phase::Observe];
+            let mut queue = EventQueue::new();
+            let mut plain = Plain::default();
+            let mut follow = |queue: &mut EventQueue<usize>, plain: &mut Plain, now: u64, some: &[Follow]| {
+                for (later, phase) in some {
+                    queue.schedule(Time(now + later), phases[usize::from(*phase)], plain.scheduled);
+                    plain.schedule(now + later, *phase);
+                }
+            };
+            follow(&mut queue, &mut plain, 0, &begun);
+            for some in follows {
+                prop_assert_eq!(queue.len(), plain.waiting.len());
+                prop_assert_eq!(queue.pending().count(), plain.waiting.len());
+                let peeked = queue.peek().map(|(time, event)| (time, *event));
+                prop_assert_eq!(queue.next_time(), peeked.map(|next| next.0));
+                let taken = queue.next_event().map(|(time, phase, event)| (time.0, phase as u8, event));
+                prop_assert_eq!(peeked.map(|(time, event)| (time.0, event)), taken.map(|t| (t.0, t.2)));
+                prop_assert_eq!(taken, plain.take());
+                let now = plain.now;
+                follow(&mut queue, &mut plain, now, &some);
+            }
+        }
+
         #[test]
         fn events_come_by_time_then_phase(times in proptest::collection::vec((0u64..20, 0u8..3), 0..200)) {
             let mut queue = EventQueue::new();

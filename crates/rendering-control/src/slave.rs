@@ -216,7 +216,7 @@ fn pass_on(gp: &Gp, config: &RenderingControlConfig, index: usize, token: Token)
         (config.slaves[(index + 1) % config.slaves.len()], StageOrder::Token(next))
     };
     let (words, body) = order.message();
-    gp.send_prepared(vec![(receiver, words, body)]);
+    gp.send_prepared([(receiver, words, body)]);
 }
 
 /// Frees a drawing's commands and bins when the tokens of all its regions have been here.

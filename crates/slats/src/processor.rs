@@ -187,7 +187,7 @@ impl SlatsProcessor {
 
     fn swap(&self, buffer: u8) {
         let requests = self.config.frame_buffers.iter().map(|node| (*node, 2, Body::Words(swap_request(buffer))));
-        self.gp.send_prepared(requests.collect());
+        self.gp.send_prepared(requests);
     }
 
     /// Where a field is written.

@@ -1,0 +1,321 @@
+//! What is measured, and what was aimed at (the project's own goals).
+
+use crate::peers::{Euc, Ours, views};
+use crate::timing::{Fallible, Measured, Way, in_turns};
+use pxpl5::{
+    Experiment, Level, MachineConfig, NtscDisplay, PeriodNumber, Pixels, RenderingControl, Saving, Slats, Workstation,
+    scene, scene::Scene,
+};
+use pxpl5_analytic::SlatsModel;
+use pxpl5_renderer::Lanes;
+use std::hint::black_box;
+
+/// A line of the table of goals.
+#[derive(Clone, Debug)]
+pub(crate) struct Row {
+    pub(crate) work: String,
+    pub(crate) goal: Option<f64>,
+    pub(crate) unit: &'static str,
+    /// Whether more is better.
+    pub(crate) is_rate: bool,
+    pub(crate) measured: f64,
+    pub(crate) spread: f64,
+    /// Whether README shows it.
+    pub(crate) is_chosen: bool,
+}
+
+impl Row {
+    pub(crate) fn is_missed(&self) -> bool {
+        self.goal.is_some_and(|goal| if self.is_rate { self.measured < goal } else { self.measured > goal })
+    }
+}
+
+/// A saving and what it is worth.
+pub(crate) struct SavingRow {
+    pub(crate) saving: Saving,
+    pub(crate) work: &'static str,
+    pub(crate) with_ms: f64,
+    pub(crate) without_ms: f64,
+}
+
+/// NTSC fields a second of real time.
+const FIELD_HZ: f64 = 60_000.0 / 1_001.0;
+
+fn mig(triangles: usize) -> Fallible<Scene> {
+    Ok(scene::builtin("mig")?.decimated(triangles)?)
+}
+
+/// A machine of the papers with so many boards, and memory for every scene here.
+fn machine(n_gps: usize, n_renderers: usize) -> MachineConfig {
+    let mut config = MachineConfig { n_gps, n_renderers, ..MachineConfig::small_hmd() };
+    config.gp.memory_bytes = 1 << 28;
+    config.gp.bin_bytes = 1 << 28;
+    config
+}
+
+fn stereo(machine: MachineConfig, scene: Scene) -> Experiment {
+    Experiment::new(machine, RenderingControl::stereo(), scene).pixels(Pixels::Off).host(Workstation::with_threads(0))
+}
+
+/// The head of 59,592 triangles in stereo.
+pub(crate) fn head() -> Fallible<Experiment> {
+    Ok(stereo(MachineConfig::small_hmd(), scene::builtin("head")?))
+}
+
+fn slats(triangles: usize) -> Fallible<Experiment> {
+    let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), mig(triangles)?);
+    Ok(experiment.pixels(Pixels::Off).host(Workstation::with_threads(0)))
+}
+
+/// Runs so many fields without looking; the number of them.
+fn fields(experiment: &Experiment, fields: u64) -> Fallible<f64> {
+    let mut machine = experiment.build()?;
+    let end = machine.record().tick(PeriodNumber(fields));
+    machine.run_until(end)?;
+    black_box(machine.finish_pixels());
+    Ok(fields as f64)
+}
+
+/// Runs so many fields; the number of stereo pairs that were shown.
+fn pairs(experiment: &Experiment, fields: u64) -> Fallible<f64> {
+    Ok(experiment.clone().fields(fields).run()?.pictures().len() as f64)
+}
+
+/// Runs so many fields, and looks at the left eye's last picture every so many.
+fn looking(experiment: &Experiment, all: u64, every: Option<u64>) -> Fallible<f64> {
+    let mut machine = experiment.build()?;
+    for field in (1..=all).filter(|field| *field == all || every.is_some_and(|every| field % every == 0)) {
+        let end = machine.record().tick(PeriodNumber(field));
+        machine.run_until(end)?;
+        if every.is_some_and(|every| field % every == 0) {
+            let display = machine.record().display_of_kind::<NtscDisplay>().ok_or("a machine without NTSC")?;
+            black_box(display.boards()[0].last_seen().map(|seen| seen.picture()));
+        }
+    }
+    black_box(machine.finish_pixels());
+    Ok(all as f64)
+}
+
+/// Events of so many fields, each one by itself.
+fn events(experiment: &Experiment, fields: u64) -> Fallible<f64> {
+    let mut machine = experiment.build()?;
+    let end = machine.record().tick(PeriodNumber(fields));
+    machine.run_until(end)?;
+    Ok(machine.events() as f64)
+}
+
+fn row(work: &str, goal: Option<f64>, unit: &'static str, is_rate: bool, value: f64, measured: &Measured) -> Row {
+    Row { work: work.to_owned(), goal, unit, is_rate, measured: value, spread: measured.spread(), is_chosen: false }
+}
+
+fn time_ms(work: &str, goal: Option<f64>, measured: &Measured) -> Row {
+    row(work, goal, " ms", false, measured.best() * 1e3, measured)
+}
+
+fn rate(work: &str, goal: Option<f64>, unit: &'static str, measured: &Measured) -> Row {
+    row(work, goal, unit, true, 1.0 / measured.best(), measured)
+}
+
+/// One in parts of another, which was measured in turns with it.
+fn ratio(work: &str, goal: Option<f64>, one: &Measured, other: &Measured) -> Row {
+    row(work, goal, "", false, one.best() / other.best(), one)
+}
+
+const fn chosen_row(mut row: Row) -> Row {
+    row.is_chosen = true;
+    row
+}
+
+/// Those of README.
+pub(crate) fn chosen(rows: &[Row]) -> Vec<Row> {
+    rows.iter().filter(|row| row.is_chosen).cloned().collect()
+}
+
+/// All lines of the table of goals.
+pub(crate) fn goals(rounds: usize) -> Fallible<Vec<Row>> {
+    let mut rows = heads(rounds)?;
+    rows.extend(pictures(rounds)?);
+    rows.extend(aircraft(rounds)?);
+    rows.extend(growth(rounds)?);
+    rows.extend(looks(rounds)?);
+    rows.extend(analytic(rounds)?);
+    Ok(rows)
+}
+
+/// The head in stereo on the machine.
+fn heads(rounds: usize) -> Fallible<Vec<Row>> {
+    const FIELDS: u64 = 480;
+    let off = head()?;
+    let all = off.clone().pixels(Pixels::All);
+    let measured =
+        in_turns(rounds, vec![Way::new("off", || pairs(&off, FIELDS)), Way::new("all", || pairs(&all, FIELDS))])?;
+    Ok(vec![
+        chosen_row(time_ms("a stereo pair of the head, no pixels", Some(4.5), &measured[0])),
+        chosen_row(time_ms("the same, all pixels, on one thread", Some(12.0), &measured[1])),
+    ])
+}
+
+/// One eye without the machine, beside `euc`.
+fn pictures(rounds: usize) -> Fallible<Vec<Row>> {
+    let head = scene::builtin("head")?;
+    let views = views(&head);
+    let mut euc = Euc::new(&head);
+    let mut ours = Ours::new(&head, Lanes::new);
+    let each = views.len() as f64;
+    let measured = in_turns(
+        rounds,
+        vec![
+            Way::new("euc", || {
+                views.iter().for_each(|view| euc.draw(&head, view));
+                Ok(each)
+            }),
+            Way::new("ours", || {
+                views.iter().for_each(|view| ours.draw(view));
+                Ok(each)
+            }),
+        ],
+    )?;
+    let agree = (euc.covered() as f64 / ours.covered() as f64 - 1.0).abs() < 0.02;
+    if !agree {
+        return Err(format!("euc covers {} pixels, we {}", euc.covered(), ours.covered()).into());
+    }
+    Ok(vec![
+        time_ms("one eye of the head, `euc` 0.5", None, &measured[0]),
+        time_ms("the same, ours, without the machine", None, &measured[1]),
+        chosen_row(ratio("ours in parts of `euc`", Some(0.42), &measured[1], &measured[0])),
+    ])
+}
+
+/// The Mig: on the large machine, under Slats, and with code on the i860s.
+fn aircraft(rounds: usize) -> Fallible<Vec<Row>> {
+    let large = stereo(machine(50, 20), mig(417)?);
+    let apart = large.clone().without(Saving::JointEvents);
+    let slats_off = slats(140)?;
+    let slats_all = slats_off.clone().pixels(Pixels::All);
+    let preset = MachineConfig::preset("slats-optimised")?;
+    let slats_code = Experiment::new(preset, Slats::split(), mig(110)?).level(Level::Cycle);
+    let slats_code = slats_code.pixels(Pixels::Off).host(Workstation::with_threads(0));
+    let mig_code = stereo(MachineConfig::small_hmd(), mig(417)?).level(Level::Cycle);
+    let measured = in_turns(
+        rounds,
+        vec![
+            Way::new("large", || pairs(&large, 360)),
+            Way::new("events", || events(&apart, 60)),
+            Way::new("slats", || fields(&slats_off, 480)),
+            Way::new("slats, all", || fields(&slats_all, 240)),
+            Way::new("slats, code", || fields(&slats_code, 48)),
+            Way::new("mig, code", || fields(&mig_code, 24)),
+        ],
+    )?;
+    let [large, event, slats_off, slats_all, slats_code, mig_code] = &measured[..] else { return Ok(Vec::new()) };
+    let mut of_real_time = rate("the Mig at the cycle level", Some(3.4), " times real time", mig_code);
+    of_real_time.measured /= FIELD_HZ;
+    Ok(vec![
+        chosen_row(time_ms("a stereo pair of the Mig on 50 GPs and 20 renderers", Some(1.2), large)),
+        row("an event of it, each by itself", Some(70.0), " ns", false, event.best() * 1e9, event),
+        chosen_row(rate("Slats, 140 triangles, no pixels", Some(11_000.0), " fields/s", slats_off)),
+        chosen_row(rate("the same, all pixels, on one thread", Some(4_000.0), " fields/s", slats_all)),
+        chosen_row(rate("Slats, 110 triangles, cycle level", Some(412.0), " fields/s", slats_code)),
+        of_real_time,
+    ])
+}
+
+/// The same scene on more boards.
+fn growth(rounds: usize) -> Fallible<Vec<Row>> {
+    const FIELDS: u64 = 120;
+    let scene = scene::builtin("head")?.decimated(10_000)?;
+    let machines = [(13, 5), (50, 5), (13, 20)].map(|(gps, renderers)| stereo(machine(gps, renderers), scene.clone()));
+    let ways = machines.iter().map(|experiment| Way::new("", || pairs(experiment, FIELDS))).collect();
+    let measured = in_turns(rounds, ways)?;
+    Ok(vec![
+        ratio("10,000 triangles, a pair: 50 GPs in parts of 13", Some(1.40), &measured[1], &measured[0]),
+        ratio("20 renderers in parts of 5", Some(1.12), &measured[2], &measured[0]),
+    ])
+}
+
+/// What looking costs, and what does not.
+fn looks(rounds: usize) -> Fallible<Vec<Row>> {
+    const FIELDS: u64 = 120;
+    let off = head()?;
+    let lazy = off.clone().pixels(Pixels::Lazy);
+    let measured = in_turns(
+        rounds,
+        vec![
+            Way::new("off", || looking(&off, FIELDS, None)),
+            Way::new("nobody", || looking(&lazy, FIELDS, None)),
+            Way::new("one of 120", || looking(&lazy, FIELDS, Some(120))),
+            Way::new("one of 60", || looking(&lazy, FIELDS, Some(60))),
+        ],
+    )?;
+    let part = |work, goal, way: usize| ratio(work, goal, &measured[way], &measured[0]);
+    Ok(vec![
+        part("lazy pixels of the head, nobody looks, in parts of no pixels", Some(1.02), 1),
+        part("the same, one eye's field of 120 is looked at", Some(1.10), 2),
+        part("the same, one of 60", None, 3),
+    ])
+}
+
+fn analytic(rounds: usize) -> Fallible<Vec<Row>> {
+    const CONFIGURATIONS: u64 = 20_000;
+    let one_by_one = || {
+        let mut machine = MachineConfig::slats();
+        let mut in_time = 0;
+        for i in 0..CONFIGURATIONS {
+            machine.gp.triangle_ns = 20_000 + i;
+            in_time += u64::from(SlatsModel::new(&machine, Slats::split())?.field(140.0, 10.0).in_time);
+        }
+        black_box(in_time);
+        Ok(CONFIGURATIONS as f64)
+    };
+    let together = || {
+        let mut machine = MachineConfig::slats();
+        let mut in_time = 0;
+        for begin in (0..CONFIGURATIONS).step_by(80) {
+            let models: Result<Vec<_>, _> = (begin..begin + 80)
+                .map(|i| {
+                    machine.gp.triangle_ns = 20_000 + i;
+                    SlatsModel::new(&machine, Slats::split())
+                })
+                .collect();
+            in_time += SlatsModel::fields(&models?, 140.0, 10.0).iter().filter(|times| times.in_time).count();
+        }
+        black_box(in_time);
+        Ok(CONFIGURATIONS as f64)
+    };
+    let measured = in_turns(rounds, vec![Way::new("one by one", one_by_one), Way::new("eight together", together)])?;
+    let unit = " configurations/s";
+    Ok(vec![
+        rate("analytic level, Slats, one by one", None, unit, &measured[0]),
+        rate("the same, eight together", Some(4e6), unit, &measured[1]),
+    ])
+}
+
+/// Fields of a run without a saving: long enough to show something, short enough for the slowest way.
+const fn fields_without(saving: Saving) -> u64 {
+    if matches!(saving, Saving::IdleBoards | Saving::Transfers) { 2 } else { 48 }
+}
+
+/// Every saving, with and without.
+pub(crate) fn savings(rounds: usize) -> Fallible<Vec<SavingRow>> {
+    let works = [
+        ("Mig, Rendering Control", stereo(MachineConfig::small_hmd(), mig(417)?)),
+        ("Slats, 140 triangles", slats(140)?),
+    ];
+    let mut rows = Vec::new();
+    for saving in Saving::ALL {
+        for (work, experiment) in &works {
+            let pixels = if saving == Saving::EmptyRegions { Pixels::All } else { Pixels::Off };
+            let level = if saving == Saving::RepeatedCode { Level::Cycle } else { Level::Transaction };
+            let with = experiment.clone().pixels(pixels).level(level);
+            let without = with.clone().without(saving);
+            let all = fields_without(saving);
+            let measured = in_turns(
+                rounds,
+                vec![Way::new("with", || fields(&with, all)), Way::new("without", || fields(&without, all))],
+            )?;
+            let [with_ms, without_ms] = [0, 1].map(|way: usize| measured[way].best() * 1e3);
+            rows.push(SavingRow { saving, work, with_ms, without_ms });
+        }
+    }
+    Ok(rows)
+}

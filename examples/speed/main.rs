@@ -1,0 +1,49 @@
+//! Measures the speed of whole machines and writes the tables of docs/speed.md and README.md that lie between
+//! `<!-- speed: NAME -->` and `<!-- end of speed -->`: nothing of them is typed. `scripts/speed` builds and runs it.
+//!
+//! Times are CPU time of the process. What a table compares is measured in one process, in turns, and the best of some rounds
+//! counts: beside other work that is what swings least. `cargo run --release --example speed [-- --check]`, which only
+//! measures one round and prints.
+
+mod cases;
+mod page;
+#[path = "../../benches/support/peers.rs"]
+#[allow(dead_code, reason = "the bench draws with more arrays")]
+mod peers;
+mod timing;
+mod workers;
+
+use std::error::Error;
+use std::path::Path;
+
+/// Rounds of each table.
+const ROUNDS: usize = 7;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let is_check = std::env::args().nth(1).is_some_and(|argument| argument == "--check");
+    let rounds = if is_check { 1 } else { ROUNDS };
+    let begin = page::load_average();
+    let goals = cases::goals(rounds)?;
+    let savings = cases::savings(rounds.min(3))?;
+    let threads = workers::table()?;
+    let conditions = page::conditions(rounds, &begin);
+    let tables = [
+        ("goals", format!("{conditions}\n\n{}", page::of_goals(&goals))),
+        ("savings", page::of_savings(&savings)),
+        ("threads", threads),
+    ];
+    if is_check {
+        for (name, table) in &tables {
+            println!("{name}\n{table}");
+        }
+        return Ok(());
+    }
+    for (name, table) in &tables {
+        page::replace(Path::new("docs/speed.md"), name, table)?;
+    }
+    page::replace(
+        Path::new("README.md"),
+        "summary",
+        &format!("{conditions}\n\n{}", page::of_goals(&cases::chosen(&goals))),
+    )
+}

@@ -1,0 +1,102 @@
+//! The tables as text, and their places in the documents.
+
+use crate::cases::{Row, SavingRow};
+use crate::timing::Fallible;
+use std::fmt::Write;
+use std::path::Path;
+use std::process::Command;
+use std::time::SystemTime;
+
+/// A number with three digits.
+pub(crate) fn digits(number: f64) -> String {
+    match number.abs() {
+        large if large >= 1e4 => {
+            let whole = format!("{:.0}", number);
+            let groups: Vec<&str> =
+                whole.as_bytes().rchunks(3).rev().map(|group| std::str::from_utf8(group).unwrap_or("")).collect();
+            groups.join(",")
+        }
+        large if large >= 100.0 => format!("{number:.0}"),
+        large if large >= 10.0 => format!("{number:.1}"),
+        _ => format!("{number:.2}"),
+    }
+}
+
+pub(crate) fn of_goals(rows: &[Row]) -> String {
+    let mut text = "| work | goal | measured | median above best | |\n|---|---|---|---|---|\n".to_owned();
+    for row in rows {
+        let Row { work, goal, unit, measured, spread, .. } = row;
+        let missed = if row.is_missed() { "**missed**" } else { "" };
+        let most = if row.is_rate { "at least" } else { "at most" };
+        let goal = goal.map_or("-".to_owned(), |goal| format!("{most} {}{unit}", digits(goal)));
+        let spread = if spread.is_nan() { "-".to_owned() } else { format!("{:.0} %", spread * 100.0) };
+        let _ = writeln!(text, "| {work} | {goal} | {}{unit} | {spread} | {missed} |", digits(*measured));
+    }
+    text
+}
+
+pub(crate) fn of_savings(rows: &[SavingRow]) -> String {
+    let mut text =
+        "| saving | work | with it, ms a field | without, ms a field | times |\n|---|---|---|---|---|\n".to_owned();
+    for SavingRow { saving, work, with_ms, without_ms } in rows {
+        let times = without_ms / with_ms;
+        let _ = writeln!(text, "| {saving} | {work} | {} | {} | {times:.2} |", digits(*with_ms), digits(*without_ms));
+    }
+    text
+}
+
+/// Replaces what is between a document's marks of a name.
+pub(crate) fn replace(path: &Path, name: &str, table: &str) -> Fallible<()> {
+    let text = std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let begin = format!("<!-- speed: {name} -->\n");
+    let end = "<!-- end of speed -->";
+    let missing = |mark: &str| format!("{}: expected {mark:?}, found none", path.display());
+    let (before, rest) = text.split_once(&begin).ok_or_else(|| missing(&begin))?;
+    let (_, after) = rest.split_once(end).ok_or_else(|| missing(end))?;
+    Ok(std::fs::write(path, format!("{before}{begin}\n{}\n\n{end}{after}", table.trim_end()))?)
+}
+
+/// Who measured when, and beside what.
+pub(crate) fn conditions(rounds: usize, load_before: &str) -> String {
+    format!(
+        "Measured by `scripts/speed` on {}: {}, {}; CPU time of the process, best of {rounds} rounds in turns. Load average of the machine \
+         {load_before} when it began, {} when it ended, the measuring process included.",
+        date(),
+        machine(),
+        compiler(),
+        load_average()
+    )
+}
+
+pub(crate) fn load_average() -> String {
+    let loads = std::fs::read_to_string("/proc/loadavg").unwrap_or_default();
+    loads.split(' ').next().filter(|load| !load.is_empty()).unwrap_or("unknown").to_owned()
+}
+
+fn machine() -> String {
+    let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model =
+        info.lines().find_map(|line| line.strip_prefix("model name")).map(|rest| rest.trim_matches([' ', '\t', ':']));
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    format!("{} ({cores} threads)", model.unwrap_or("unknown processor"))
+}
+
+fn compiler() -> String {
+    let version = Command::new("rustc").arg("--version").output();
+    version.map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned()).unwrap_or_default()
+}
+
+/// Today, UTC (Hinnant's algorithm for the civil date of a day).
+fn date() -> String {
+    let seconds = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |since| since.as_secs());
+    let days = seconds / 86_400 + 719_468;
+    let era = days / 146_097;
+    let of_era = days % 146_097;
+    let year = (of_era - of_era / 1_460 + of_era / 36_524 - of_era / 146_096) / 365;
+    let of_year = of_era - (365 * year + year / 4 - year / 100);
+    let month = (5 * of_year + 2) / 153;
+    let day = of_year - (153 * month + 2) / 5 + 1;
+    let civil_month = if month < 10 { month + 3 } else { month - 9 };
+    let civil_year = year + era * 400 + u64::from(civil_month <= 2);
+    format!("{civil_year}-{civil_month:02}-{day:02}")
+}

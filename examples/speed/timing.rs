@@ -1,0 +1,52 @@
+//! Several ways of some work, measured in turns.
+
+use cpu_time::ProcessTime;
+use std::error::Error;
+
+pub(crate) type Fallible<T> = Result<T, Box<dyn Error>>;
+
+/// What is measured: a name, and what does it once and says how many of its elements that were.
+pub(crate) struct Way<'a> {
+    pub(crate) name: String,
+    pub(crate) run: Box<dyn FnMut() -> Fallible<f64> + 'a>,
+}
+
+impl<'a> Way<'a> {
+    pub(crate) fn new(name: impl Into<String>, run: impl FnMut() -> Fallible<f64> + 'a) -> Self {
+        Self { name: name.into(), run: Box::new(run) }
+    }
+}
+
+/// CPU times of an element, seconds, in rising order.
+#[derive(Clone, Debug)]
+pub(crate) struct Measured {
+    pub(crate) seconds: Vec<f64>,
+}
+
+impl Measured {
+    pub(crate) fn best(&self) -> f64 {
+        self.seconds.first().copied().unwrap_or(f64::NAN)
+    }
+
+    /// The middle one above the best one, in parts of it.
+    pub(crate) fn spread(&self) -> f64 {
+        self.seconds.get(self.seconds.len() / 2).map_or(f64::NAN, |median| median / self.best() - 1.0)
+    }
+}
+
+/// Runs all ways in turns, so many rounds, after one that does not count.
+pub(crate) fn in_turns(rounds: usize, mut ways: Vec<Way<'_>>) -> Fallible<Vec<Measured>> {
+    let mut all = vec![Measured { seconds: Vec::new() }; ways.len()];
+    for round in 0..=rounds {
+        for (way, measured) in ways.iter_mut().zip(&mut all) {
+            let begin = ProcessTime::try_now()?;
+            let elements = (way.run)().map_err(|error| format!("{}: {error}", way.name))?;
+            let seconds = begin.try_elapsed()?.as_secs_f64() / elements;
+            if round > 0 {
+                measured.seconds.push(seconds);
+            }
+        }
+    }
+    all.iter_mut().for_each(|measured| measured.seconds.sort_by(f64::total_cmp));
+    Ok(all)
+}

@@ -1,0 +1,104 @@
+//! How far worker threads for pixels carry: each region's work is measured alone, on one thread, and the schedule of 1 to 16 threads is
+//! simulated from these pieces.
+
+use crate::cases::head;
+use crate::timing::Fallible;
+use cpu_time::ThreadTime;
+use pxpl5::machine::PixelWorker;
+use pxpl5::{Host, Pixels, Workstation};
+use pxpl5_wire::PixelSource;
+use std::collections::VecDeque;
+use std::fmt::Write;
+use std::sync::{Arc, Mutex};
+
+/// CPU time of the simulating thread before a region is handed over, and of its pixels; seconds.
+type Piece = (f64, f64);
+
+/// A computer whose one thread does all, and notes how long.
+#[derive(Clone, Debug, Default)]
+struct Noting(Arc<Mutex<Vec<Piece>>>);
+
+impl Host for Noting {
+    fn pixel_worker(&self) -> Box<dyn PixelWorker> {
+        Box::new(NotingWorker { pieces: Arc::clone(&self.0), since: ThreadTime::now(), regions: 0 })
+    }
+}
+
+#[derive(Debug)]
+struct NotingWorker {
+    pieces: Arc<Mutex<Vec<Piece>>>,
+    since: ThreadTime,
+    regions: u64,
+}
+
+impl PixelWorker for NotingWorker {
+    fn compute(&mut self, region: &Arc<dyn PixelSource>) {
+        let simulating = self.since.elapsed().as_secs_f64();
+        let begin = ThreadTime::now();
+        let _ = region.pixels();
+        let piece = (simulating, begin.elapsed().as_secs_f64());
+        self.pieces.lock().expect("nobody panics with it").push(piece);
+        self.since = ThreadTime::now();
+        self.regions += 1;
+    }
+
+    fn finish(self: Box<Self>) -> u64 {
+        self.regions
+    }
+}
+
+/// When all is done, with so many workers, of whom the first free one takes the first region of a queue that holds so many; without
+/// workers the simulating thread does all.
+fn makespan(pieces: &[Piece], workers: usize) -> f64 {
+    if workers == 0 {
+        return pieces.iter().map(|(simulating, pixels)| simulating + pixels).sum();
+    }
+    let mut free = vec![0.0_f64; workers];
+    // When each region that waits is taken, by rising time.
+    let mut waiting: VecDeque<f64> = VecDeque::new();
+    let mut now = 0.0_f64;
+    for (simulating, pixels) in pieces {
+        now += simulating;
+        if waiting.len() == Workstation::WAITING_REGIONS {
+            now = now.max(waiting.pop_front().unwrap_or(now));
+        }
+        let next = free.iter_mut().min_by(|a, b| a.total_cmp(b)).expect("there is a worker");
+        let begun = now.max(*next);
+        *next = begun + pixels;
+        waiting.push_back(begun);
+    }
+    free.into_iter().fold(now, f64::max)
+}
+
+/// Threads that simulate and compute together.
+const THREADS: [usize; 7] = [1, 2, 3, 4, 6, 8, 16];
+
+/// The table.
+pub(crate) fn table() -> Fallible<String> {
+    const FIELDS: u64 = 480;
+    let noting = Noting::default();
+    let pairs = head()?.fields(FIELDS).pixels(Pixels::All).host(noting.clone()).run()?.pictures().len();
+    let pieces = noting.0.lock().map_err(|_| "a worker panicked")?.clone();
+    let simulating: f64 = pieces.iter().map(|piece| piece.0).sum();
+    let alone = makespan(&pieces, 0);
+    let mut text = format!(
+        "Pieces of {} regions in {pairs} stereo pairs of the head, measured one by one: {:.2} ms a pair of the simulating thread, {:.2} ms \
+         of pixels. The schedule is simulated from them: one thread simulates, the others take regions from its queue of {}.\n\n\
+         | threads | ms a pair | faster than one | of what the simulating thread alone allows |\n|---|---|---|---|\n",
+        pieces.len(),
+        simulating / pairs as f64 * 1e3,
+        (alone - simulating) / pairs as f64 * 1e3,
+        Workstation::WAITING_REGIONS,
+    );
+    for threads in THREADS {
+        let seconds = makespan(&pieces, threads - 1);
+        writeln!(
+            text,
+            "| {threads} | {:.2} | {:.2} | {:.0} % |",
+            seconds / pairs as f64 * 1e3,
+            alone / seconds,
+            simulating / seconds * 100.0
+        )?;
+    }
+    Ok(text)
+}
