@@ -232,7 +232,8 @@ impl Pass {
     }
 
     /// Triangles not wholly inside the guard band.
-    pub(crate) const fn unguarded(&self) -> u64 {
+    #[must_use]
+    pub const fn unguarded(&self) -> u64 {
         self.unguarded
     }
 

@@ -153,7 +153,7 @@ fn samples(version: CodeVersion, of: CodeUse, scene: &str, boards: usize) -> Res
 
 fn sample(pass: &Pass, processor: &mut Processor, context: u8) -> Result<Option<Sample>, ProcessorFault> {
     let Some(made) = pass.run_code(processor, context)? else { return Ok(None) };
-    let outside = made.left_to_clipper();
+    let outside = pass.unguarded();
     let inside = u64::from(pass.transformed().triangles) - outside;
     Ok(Some([inside as f64, outside as f64, made.entries() as f64, made.span.0 as f64 / 1e3]))
 }
