@@ -1,15 +1,11 @@
 //! TRANSFORM as work of a board: by the timing table, or as i860 code over the board's memory.
 //!
-//! ```text
-//!   0          1 MB                            ...                 8 MB
-//!   | code, parameters, | display list | commands, bins   ...  | commands, bins |
-//!   | table of bins, stack             | of context 0          |  of context 1  |
-//! ```
-//!
 //! The code is that of [`pxpl5_geometry::kernel`]; each structure of the display list is one call. What has no code
-//! takes the table's time: spheres, their entries in bins, and the beginning of a pass.
+//! takes the table's time: spheres and their entries in bins.
 
+use crate::begin::Beginning;
 use crate::cost::TransformCost;
+use crate::layout::{BIN_TABLE, CODE, DISPLAY_LIST, PARAMETERS, STACK};
 use crate::list::Share;
 use crate::pass::Pass;
 use crate::picture::{RegionBinning, Shading};
@@ -27,16 +23,6 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
-/// Where the code begins; below are a processor's vectors.
-const CODE: u32 = 0x1000;
-/// A kernel's parameter block.
-const PARAMETERS: u32 = 0x1_0000;
-/// Where a kernel finds the end of each bin, and leaves it.
-const BIN_TABLE: u32 = 0x1_0200;
-/// A kernel's stack frame, and the clipper's below.
-const STACK: u32 = 0x1_1400;
-/// The display list lies behind the first megabyte, which is the program's.
-const DISPLAY_LIST: u32 = 1 << 20;
 /// Bytes of a triangle in it.
 const TRIANGLE_BYTES: u32 = 4 * TRIANGLE_WORDS as u32;
 
@@ -84,10 +70,16 @@ impl Work for Transforming<'_> {
     }
 
     fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
-        let mut span = self.begin(timing);
+        let mut span = match self.passes.first() {
+            Some(pass) if self.begins => {
+                let eyes = self.passes.iter().map(|pass| pass.placed()).collect();
+                Beginning::new(pass.share().list(), eyes, *pass.picture()).by_code(timing, processor)?
+            }
+            _ => Span::ZERO,
+        };
         for (context, pass) in (self.context..).zip(self.passes) {
             span += match pass.run_code(processor, context % 2)? {
-                Some(output) => output.span + pass.cost_without_code(&output).span(timing),
+                Some(output) => output.span + pass.cost_without_code().span(timing),
                 None => pass.cost().span(timing),
             };
         }
@@ -127,16 +119,14 @@ impl Pass {
     #[must_use]
     pub fn cost(&self) -> TransformCost {
         let counted = TransformCost::primitives(self.transformed());
-        TransformCost { unguarded: self.unguarded(), entries: self.entries(), ..counted }
+        TransformCost { clipped: self.stats().clipped, entries: self.entries(), ..counted }
     }
 
-    /// What the kernel does not do, so that it takes the table's time.
-    fn cost_without_code(&self, output: &KernelOutput) -> TransformCost {
-        TransformCost {
-            triangles: 0,
-            entries: self.entries_without_code(output),
-            ..TransformCost::primitives(self.transformed())
-        }
+    /// What the kernel does not do, so that it takes the table's time: spheres.
+    fn cost_without_code(&self) -> TransformCost {
+        let regions = self.picture().viewport.grid().regions() as u16;
+        let entries = (0..regions).map(|region| u64::from(self.counts(RegionId(region)).spheres)).sum();
+        TransformCost { triangles: 0, entries, ..TransformCost::primitives(self.transformed()) }
     }
 
     /// Runs the kernel for all triangles on a board that holds the display list, in one of its two bin contexts; `None`
@@ -216,7 +206,7 @@ impl Pass {
         let regions = self.picture().viewport.grid().regions() as u16;
         let entries: Vec<u32> = (0..regions).map(|region| self.counts(RegionId(region)).triangles).collect();
         let entries = if self.is_binned() { entries } else { vec![0; entries.len()] };
-        let more_pieces = (MOST_PIECES - 1) * self.unguarded() as u32;
+        let more_pieces = (MOST_PIECES - 1) * self.stats().clipped as u32;
         let commands = kernel.command_bytes() * (self.transformed().triangles + more_pieces + 1);
         let list = DISPLAY_LIST + self.share().all_triangles().len() as u32 * TRIANGLE_BYTES;
         let bytes = commands + 4 * entries.iter().sum::<u32>();
@@ -228,15 +218,6 @@ impl Pass {
             next += 4 * entries;
         }
         Ok(Places { commands: begin, bins })
-    }
-
-    /// Entries of bins that the kernel did not make.
-    fn entries_without_code(&self, output: &KernelOutput) -> u64 {
-        if self.is_binned() {
-            return self.entries().saturating_sub(output.entries());
-        }
-        let regions = self.picture().viewport.grid().regions() as u16;
-        (0..regions).map(|region| u64::from(self.counts(RegionId(region)).spheres)).sum()
     }
 }
 

@@ -176,15 +176,17 @@ fn what_has_no_code_takes_the_time_of_the_table() {
     list.structures[0].spheres = 0..1;
     let share = Share::new(Arc::new(list), 0, 1);
     let pass = share.transform(&view(), 0, picture(Viewport::FRAME, Shading::Phong, RegionBinning::Touched));
-    let made = pass.run_code(&mut board(CodeVersion::Scheduled, &share), 0).expect("it returns").expect("a kernel");
+    let mut processor = board(CodeVersion::Scheduled, &share);
+    let beginning = share.beginning(&view(), &[0], *pass.picture());
+    let begun = beginning.by_code(&GpTiming::PAPERS, &mut processor).expect("it returns");
+    let made = pass.run_code(&mut processor, 0).expect("it returns").expect("a kernel");
     let by_kernel: u32 = made.bins.iter().map(|bin| (bin.end - bin.start) / 4).sum();
     let timing = GpTiming { triangle_ns: 1_000_000, sphere_ns: 50_000, bin_entry_ns: 700, ..GpTiming::PAPERS };
     let work = Transforming { passes: &[Arc::clone(&pass)], context: 0, begins: true };
     let span = work.by_code(&timing, &mut board(CodeVersion::Scheduled, &share)).expect("it returns");
     let entries = pass.entries() - u64::from(by_kernel);
     assert!(entries > 0, "the sphere is in bins");
-    let rest = Span::from_ns(timing.pass_ns + 50_000 + 700 * entries);
-    assert_eq!(span, made.span + rest);
+    assert_eq!(span, begun + made.span + Span::from_ns(50_000 + 700 * entries));
 }
 
 #[test]

@@ -57,6 +57,15 @@ pub struct FieldTimes {
     pub in_time: bool,
 }
 
+/// What a triangle is for one eye, in the mean.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PerTriangle {
+    /// Entries in bins.
+    pub entries: f64,
+    /// Part of the triangles that the clipper cuts, 0 to 1.
+    pub clipped: f64,
+}
+
 impl SlatsModel {
     /// Reduces a machine; the program's code is applied first.
     ///
@@ -104,7 +113,7 @@ impl SlatsModel {
 
     /// A field in the steady state: renderers begin with the bottom regions of the field before.
     #[must_use]
-    pub fn field(&self, triangles: f64, entries_per_triangle: f64) -> FieldTimes {
+    pub fn field(&self, triangles: f64, each: PerTriangle) -> FieldTimes {
         let mut arrays = [Array::busy_until(0.0); MOST_RENDERERS];
         if self.split {
             let mut queues = self.queues(|region| region >= REGIONS / 2, 0.0);
@@ -113,7 +122,7 @@ impl SlatsModel {
                 *array = Array::busy_until(queue.ready_ns);
             }
         }
-        let rendered_ns = self.render(&mut arrays, triangles, entries_per_triangle);
+        let rendered_ns = self.render(&mut arrays, triangles, each);
         let commanded_ns = rendered_ns + self.message_ns;
         let mut queues = self.queues(|region| !self.split || region < REGIONS / 2, commanded_ns);
         for (queue, array) in queues.iter_mut().zip(&arrays) {
@@ -165,7 +174,7 @@ impl SlatsModel {
     }
 
     /// TRANSFORM and RENDER: clumps of all GPs by turns; when the last one was accepted.
-    fn render(&self, arrays: &mut [Array; MOST_RENDERERS], triangles: f64, entries: f64) -> f64 {
+    fn render(&self, arrays: &mut [Array; MOST_RENDERERS], triangles: f64, each: PerTriangle) -> f64 {
         let share = triangles / self.gps as f64;
         let clumps = (share / CLUMP as f64).ceil().max(1.0) as usize;
         let mut chain = Chain { released_ns: [0.0; MOST_RENDERERS], accepted_ns: 0.0, draining_ns: 0.0 };
@@ -173,18 +182,18 @@ impl SlatsModel {
         for clump in 0..clumps {
             let count = (share - (clump * CLUMP) as f64).min(CLUMP as f64);
             // The one clump buffer is written again when all renderers have begun with what was in it.
-            cpu_ns = cpu_ns.max(chain.draining_ns) + self.clump_ns(count, entries);
+            cpu_ns = cpu_ns.max(chain.draining_ns) + self.clump_ns(count, each);
             cpu_ns = cpu_ns.max(chain.accepted_ns) + self.message_ns;
-            self.send(arrays, &mut chain, cpu_ns, count * entries / 10.0, clump == 0);
+            self.send(arrays, &mut chain, cpu_ns, count * each.entries / 10.0, clump == 0);
         }
         chain.accepted_ns
     }
 
-    /// TRANSFORM of a clump of so many triangles for both eyes, each of which makes so many entries in bins.
-    fn clump_ns(&self, triangles: f64, entries_per_triangle: f64) -> f64 {
+    /// TRANSFORM of a clump of so many triangles for both eyes.
+    fn clump_ns(&self, triangles: f64, each: PerTriangle) -> f64 {
         let both_eyes = 2.0 * triangles;
-        let entries = both_eyes * entries_per_triangle;
-        TransformCost { triangles: both_eyes, entries, ..TransformCost::default() }.ns(&self.gp)
+        let [entries, clipped] = [each.entries, each.clipped].map(|n| both_eyes * n);
+        TransformCost { triangles: both_eyes, entries, clipped, ..TransformCost::default() }.ns(&self.gp)
     }
 
     /// The messages of one clump of every GP, as many at a time as a port drives channels.
@@ -294,16 +303,17 @@ fn steady_field(experiment: &Experiment) -> Result<(SlatsModel, FieldTimes), Exp
     let model = SlatsModel::new(experiment.config(), pipeline)?;
     let scene = experiment.scene();
     let triangles = (scene.triangles().len() + scene.spheres().len()) as f64;
-    let entries = match pipeline.binning {
-        RegionBinning::All => 10.0,
-        RegionBinning::Touched => {
-            let viewport = Viewport::field(FieldParity::Even);
-            let loads = Load::of_views(experiment, viewport, RegionBinning::Touched, &[0])?;
-            let per_eye = loads.iter().map(Load::entries).sum::<f64>() / loads.len() as f64;
-            per_eye / triangles.max(1.0)
+    let binned = pipeline.binning == RegionBinning::Touched;
+    let mut each = PerTriangle { entries: 10.0, clipped: 0.0 };
+    if binned || model.gp.guard_ns > 0 {
+        let loads = Load::of_views(experiment, Viewport::field(FieldParity::Even), pipeline.binning, &[0])?;
+        let all = triangles.max(1.0) * loads.len() as f64;
+        each.clipped = loads.iter().map(|load| load.clipped).sum::<f64>() / all;
+        if binned {
+            each.entries = loads.iter().map(Load::entries).sum::<f64>() / all;
         }
-    };
-    let times = model.field(triangles, entries);
+    }
+    let times = model.field(triangles, each);
     Ok((model, times))
 }
 

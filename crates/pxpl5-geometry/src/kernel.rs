@@ -444,6 +444,13 @@ const fn culled(dropped: Option<Turn>) -> [Word; 2] {
     }
 }
 
+/// The source of what a processor does before the triangles of a pass: the labels `edit`, `reset` and `place` (kernels/place.s), of
+/// which the last one fills in what [`Kernel::parameters`] takes from a view and a light.
+#[must_use]
+pub fn place_source() -> String {
+    [include_str!("../kernels/parameters.s"), include_str!("../kernels/place.s")].join("\n")
+}
+
 /// A row of the matrix of normals in units of the command's normal.
 fn normal_row(row: [f32; 3]) -> [f32; 4] {
     let [x, y, z] = row.map(|v| v * f32::from(NORMAL_UNIT));

@@ -4,8 +4,8 @@ use crate::bind::{Binding, BoundRegion};
 use crate::config::SlatsConfig;
 use crate::schedule::CopySchedule;
 use pphigs::{
-    FrameView, PROGRAM_BYTES, Pass, Picture, RegionEnvelope, Share, TransformCost, Transforming, ViewWordsError,
-    copy_message, region_messages,
+    FrameView, PROGRAM_BYTES, Pass, Picture, RegionEnvelope, Share, Transforming, ViewWordsError, copy_message,
+    region_messages,
 };
 use pxpl5_gp::{Account, Fault, Gp, Priority, Stage, Ticket};
 use pxpl5_wire::{
@@ -236,8 +236,9 @@ impl SlatsProcessor {
         let number = PictureNumber::drawn_for(field);
         self.gp.begin_view(Stage::Sample, number, view.number);
         self.gp.begin(Stage::Transform, number, None);
-        self.gp.spend(TransformCost::PASS.span(&self.gp.timing())).await;
         let picture = self.config.picture(FieldParity::of_field(field));
+        let eyes = Eye::BOTH.map(Eye::index);
+        self.gp.work(&self.share.beginning(view, &eyes, picture)).await?;
         let mut clumps: Vec<_> = self.share.clumps(CLUMP).collect();
         if clumps.is_empty() {
             // Without a primitive the regions must be cleared all the same.
