@@ -237,8 +237,6 @@ impl SlatsProcessor {
         self.gp.begin_view(Stage::Sample, number, view.number);
         self.gp.begin(Stage::Transform, number, None);
         let picture = self.config.picture(FieldParity::of_field(field));
-        let eyes = Eye::BOTH.map(Eye::index);
-        self.gp.work(&self.share.beginning(view, &eyes, picture)).await?;
         let mut clumps: Vec<_> = self.share.clumps(CLUMP).collect();
         if clumps.is_empty() {
             // Without a primitive the regions must be cleared all the same.
@@ -246,7 +244,8 @@ impl SlatsProcessor {
         }
         let last = clumps.len() - 1;
         for (i, clump) in clumps.iter().enumerate() {
-            let passes = self.transform(clump, view, picture).await?;
+            let passes = Eye::BOTH.map(|eye| clump.transform(view, eye.index(), picture));
+            self.gp.work(&Transforming { passes: &passes, context: 0, begins: i == 0 }).await?;
             self.gp.clump_buffer_free().await;
             if i == 0 {
                 self.gp.begin(Stage::Render, number, None);
@@ -259,13 +258,6 @@ impl SlatsProcessor {
         }
         self.gp.end(Stage::Transform, number, None);
         Ok(())
-    }
-
-    /// One pass over a clump for both eyes.
-    async fn transform(&self, clump: &Share, view: &FrameView, picture: Picture) -> Result<[Arc<Pass>; 2], Fault> {
-        let passes = Eye::BOTH.map(|eye| clump.transform(view, eye.index(), picture));
-        self.gp.work(&Transforming { passes: &passes, context: 0, begins: false }).await?;
-        Ok(passes)
     }
 
     /// Sends a clump to all its regions as one chain of messages.
