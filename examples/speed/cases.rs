@@ -6,7 +6,7 @@ use pxpl5::{
     Experiment, Level, MachineConfig, NtscDisplay, PeriodNumber, Pixels, RenderingControl, Saving, Slats, Workstation,
     scene, scene::Scene,
 };
-use pxpl5_analytic::SlatsModel;
+use pxpl5_analytic::{PerTriangle, SlatsModel};
 use pxpl5_renderer::Lanes;
 use std::hint::black_box;
 
@@ -37,6 +37,9 @@ pub(crate) struct SavingRow {
     pub(crate) with_ms: f64,
     pub(crate) without_ms: f64,
 }
+
+/// Triangles that cover the screen: an entry for each region of a field, none of them cut.
+const FULL_SCREEN: PerTriangle = PerTriangle { entries: 10.0, clipped: 0.0 };
 
 /// NTSC fields a second of real time.
 const FIELD_HZ: f64 = 60_000.0 / 1_001.0;
@@ -262,7 +265,7 @@ fn analytic(rounds: usize) -> Fallible<Vec<Row>> {
         let mut in_time = 0;
         for i in 0..CONFIGURATIONS {
             machine.gp.triangle_ns = 20_000 + i;
-            in_time += u64::from(SlatsModel::new(&machine, Slats::split())?.field(140.0, 10.0).in_time);
+            in_time += u64::from(SlatsModel::new(&machine, Slats::split())?.field(140.0, FULL_SCREEN).in_time);
         }
         black_box(in_time);
         Ok(CONFIGURATIONS as f64)
@@ -277,7 +280,7 @@ fn analytic(rounds: usize) -> Fallible<Vec<Row>> {
                     SlatsModel::new(&machine, Slats::split())
                 })
                 .collect();
-            in_time += SlatsModel::fields(&models?, 140.0, 10.0).iter().filter(|times| times.in_time).count();
+            in_time += SlatsModel::fields(&models?, 140.0, FULL_SCREEN).iter().filter(|times| times.in_time).count();
         }
         black_box(in_time);
         Ok(CONFIGURATIONS as f64)

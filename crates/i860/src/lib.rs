@@ -127,7 +127,7 @@ mod trap;
 #[cfg(feature = "vectors")]
 pub mod vectors;
 
-pub use assembler::{AssemblyError, AssemblyErrors, Program, assemble, instruction_word};
+pub use assembler::{AssemblyError, AssemblyErrors, Program, assemble, instruction_word, link};
 pub use bus::{Bus, Ram, Unmapped};
 pub use cpu::Cpu;
 pub use decode::{IllegalWord, decode};

@@ -1,16 +1,11 @@
 //! TRANSFORM as work of a board: by the timing table, or as i860 code over the board's memory.
 //!
-//! ```text
-//!   0          1 MB                            ...                        8 MB
-//!   | code, parameters, | display list | commands, bins, list   ...  | commands, bins, list |
-//!   | table of bins, stack             | for the clipper: context 0  |      context 1       |
-//! ```
-//!
 //! The code is that of [`pxpl5_geometry::kernel`]; each structure of the display list is one call. What has no code
-//! takes the table's time: triangles that are left to the clipper, spheres, their entries in bins, and the beginning of
-//! a pass.
+//! takes the table's time: spheres and their entries in bins.
 
+use crate::begin::Beginning;
 use crate::cost::TransformCost;
+use crate::layout::{BIN_TABLE, CODE, DISPLAY_LIST, PARAMETERS, STACK};
 use crate::list::Share;
 use crate::pass::Pass;
 use crate::picture::{RegionBinning, Shading};
@@ -28,21 +23,14 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
-/// Where the code begins; below are a processor's vectors.
-const CODE: u32 = 0x1000;
-/// A kernel's parameter block.
-const PARAMETERS: u32 = 0x1_0000;
-/// Where a kernel finds the end of each bin, and leaves it.
-const BIN_TABLE: u32 = 0x1_0200;
-/// A kernel's stack frame.
-const STACK: u32 = 0x1_0400;
-/// The display list lies behind the first megabyte, which is the program's.
-const DISPLAY_LIST: u32 = 1 << 20;
 /// Bytes of a triangle in it.
 const TRIANGLE_BYTES: u32 = 4 * TRIANGLE_WORDS as u32;
 
+/// Pieces that clipping makes of a triangle at most: six planes leave nine corners.
+const MOST_PIECES: u32 = 7;
+
 /// Instructions after which a kernel is taken to be endless: many times what a triangle needs, and its prologue.
-const BUDGET_OF_TRIANGLE: u64 = 40_000;
+const BUDGET_OF_TRIANGLE: u64 = 100_000;
 const BUDGET: u64 = 10_000;
 
 /// The TRANSFORM of a share for one eye, or for both one after the other.
@@ -65,8 +53,6 @@ pub struct KernelOutput {
     pub commands: Range<u32>,
     /// Addresses of the bins' entries, which are addresses of commands; none where there are no bins.
     pub bins: Vec<Range<u32>>,
-    /// Addresses of the entries of the list of triangles for the clipper, which are addresses of triangles.
-    pub clipped: Range<u32>,
 }
 
 impl KernelOutput {
@@ -74,12 +60,6 @@ impl KernelOutput {
     #[must_use]
     pub fn entries(&self) -> u64 {
         self.bins.iter().map(|bin| u64::from(bin.end - bin.start) / 4).sum()
-    }
-
-    /// Number of triangles left to the clipper.
-    #[must_use]
-    pub fn left_to_clipper(&self) -> u64 {
-        u64::from(self.clipped.end - self.clipped.start) / 4
     }
 }
 
@@ -90,10 +70,16 @@ impl Work for Transforming<'_> {
     }
 
     fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
-        let mut span = self.begin(timing);
+        let mut span = match self.passes.first() {
+            Some(pass) if self.begins => {
+                let eyes = self.passes.iter().map(|pass| pass.placed()).collect();
+                Beginning::new(pass.share().list(), eyes, *pass.picture()).by_code(timing, processor)?
+            }
+            _ => Span::ZERO,
+        };
         for (context, pass) in (self.context..).zip(self.passes) {
             span += match pass.run_code(processor, context % 2)? {
-                Some(output) => output.span + pass.cost_without_code(&output).span(timing),
+                Some(output) => output.span + pass.cost_without_code().span(timing),
                 None => pass.cost().span(timing),
             };
         }
@@ -126,7 +112,6 @@ impl Share {
 struct Places {
     commands: u32,
     bins: Vec<u32>,
-    clip_list: u32,
 }
 
 impl Pass {
@@ -134,16 +119,14 @@ impl Pass {
     #[must_use]
     pub fn cost(&self) -> TransformCost {
         let counted = TransformCost::primitives(self.transformed());
-        TransformCost { unguarded: self.unguarded(), entries: self.entries(), ..counted }
+        TransformCost { clipped: self.stats().clipped, entries: self.entries(), ..counted }
     }
 
-    /// What the kernel does not do, so that it takes the table's time.
-    fn cost_without_code(&self, output: &KernelOutput) -> TransformCost {
-        TransformCost {
-            triangles: output.left_to_clipper(),
-            entries: self.entries_without_code(output),
-            ..TransformCost::primitives(self.transformed())
-        }
+    /// What the kernel does not do, so that it takes the table's time: spheres.
+    fn cost_without_code(&self) -> TransformCost {
+        let regions = self.picture().viewport.grid().regions() as u16;
+        let entries = (0..regions).map(|region| u64::from(self.counts(RegionId(region)).spheres)).sum();
+        TransformCost { triangles: 0, entries, ..TransformCost::primitives(self.transformed()) }
     }
 
     /// Runs the kernel for all triangles on a board that holds the display list, in one of its two bin contexts; `None`
@@ -159,25 +142,24 @@ impl Pass {
         processor.write(BIN_TABLE, &places.bins)?;
         let mut span = Span::ZERO;
         let mut command = places.commands;
-        let mut clipped = places.clip_list;
         for (place, transform, held) in self.calls() {
             let kernel = Kernel { culls: place.structure.culling != Culling::None, ..kernel };
             let program = program(kernel);
             let light = &place.light;
-            let parameters: [Word; PARAMETER_WORDS] = kernel.parameters(transform, light, &heads);
+            let clipper = program.symbol("clipper").unwrap_or_default();
+            let parameters: [Word; PARAMETER_WORDS] = kernel.parameters(transform, light, &heads, clipper);
             processor.write(PARAMETERS, &parameters)?;
             let first = DISPLAY_LIST + held.start as u32 * TRIANGLE_BYTES;
             let count = held.len() as u32;
-            let data = [(16, first), (17, count), (18, command), (21, clipped)];
+            let data = [(16, first), (17, count), (18, command)];
             let fixed = [(2, STACK), (19, BIN_TABLE), (20, PARAMETERS)];
             let budget = BUDGET + BUDGET_OF_TRIANGLE * u64::from(count);
             span += processor.call(&program, "start", &[data.as_slice(), &fixed].concat(), budget)?;
             command = processor.register(18);
-            clipped = processor.register(21);
         }
         let tails = processor.read(BIN_TABLE, places.bins.len())?;
         let bins = places.bins.iter().zip(tails).map(|(head, tail)| *head..tail).collect();
-        Ok(Some(KernelOutput { span, commands: places.commands..command, bins, clipped: places.clip_list..clipped }))
+        Ok(Some(KernelOutput { span, commands: places.commands..command, bins }))
     }
 
     fn kernel(&self, version: CodeVersion) -> Option<Kernel> {
@@ -218,36 +200,28 @@ impl Pass {
     }
 
     /// Context 0 lies behind the display list, context 1 at the end of memory. The kernel needs a place for a command of
-    /// every triangle, seen or not, for the one being made, which may be dropped, and for an entry of its list of those for
-    /// the clipper: more than the accounts of [`pxpl5_gp::Memory`], which know what will be seen.
+    /// every triangle, seen or not, for as many as a clipped one may have pieces, and for the one being made, which may be
+    /// dropped: more than the accounts of [`pxpl5_gp::Memory`], which know what will be seen.
     fn places(&self, processor: &mut Processor, kernel: Kernel, context: u8) -> Result<Places, ProcessorFault> {
         let regions = self.picture().viewport.grid().regions() as u16;
         let entries: Vec<u32> = (0..regions).map(|region| self.counts(RegionId(region)).triangles).collect();
         let entries = if self.is_binned() { entries } else { vec![0; entries.len()] };
-        let commands = kernel.command_bytes() * (self.transformed().triangles + 1);
+        let more_pieces = (MOST_PIECES - 1) * self.stats().clipped as u32;
+        let commands = kernel.command_bytes() * (self.transformed().triangles + more_pieces + 1);
         let list = DISPLAY_LIST + self.share().all_triangles().len() as u32 * TRIANGLE_BYTES;
-        let bytes = commands + 4 * (entries.iter().sum::<u32>() + self.transformed().triangles);
+        let bytes = commands + 4 * entries.iter().sum::<u32>();
         let begin = processor.place_output(context, list, bytes)?;
-        let mut clip_list = begin + commands;
+        let mut next = begin + commands;
         let mut bins = Vec::with_capacity(entries.len());
         for entries in entries {
-            bins.push(clip_list);
-            clip_list += 4 * entries;
+            bins.push(next);
+            next += 4 * entries;
         }
-        Ok(Places { commands: begin, bins, clip_list })
-    }
-
-    /// Entries of bins that the kernel did not make.
-    fn entries_without_code(&self, output: &KernelOutput) -> u64 {
-        if self.is_binned() {
-            return self.entries().saturating_sub(output.entries());
-        }
-        let regions = self.picture().viewport.grid().regions() as u16;
-        (0..regions).map(|region| u64::from(self.counts(RegionId(region)).spheres)).sum()
+        Ok(Places { commands: begin, bins })
     }
 }
 
-/// A kernel's program, assembled when first asked for.
+/// A kernel's program with its clipper, assembled when first asked for.
 fn program(kernel: Kernel) -> Arc<Program> {
     static PROGRAMS: LazyLock<Mutex<HashMap<Kernel, Arc<Program>>>> = LazyLock::new(Mutex::default);
     let mut programs = PROGRAMS.lock().unwrap_or_else(PoisonError::into_inner);
@@ -259,7 +233,7 @@ fn assembled(kernel: Kernel) -> Program {
         Ok(source) => source,
         Err(error) => unreachable!("every kernel is scheduled by the tests: {error}"),
     };
-    match i860::assemble("kernel", CODE, &source) {
+    match i860::link(CODE, &[("kernel", &source), ("clipper", &kernel.clipper_source())]) {
         Ok(program) => program,
         Err(errors) => unreachable!("every kernel is assembled by the tests: {errors}"),
     }

@@ -15,15 +15,15 @@ pub struct TransformCost<N = u64> {
     pub triangles: N,
     /// Spheres transformed, seen or not, at [`GpTiming::sphere_ns`] each.
     pub spheres: N,
-    /// Triangles not wholly inside the guard band, at [`GpTiming::guard_ns`] each besides.
-    pub unguarded: N,
+    /// Triangles that the clipper cuts, at [`GpTiming::guard_ns`] each besides.
+    pub clipped: N,
     /// Entries made in bins, one for each region that gets a primitive's commands, at [`GpTiming::bin_entry_ns`] each.
     pub entries: N,
 }
 
 impl TransformCost {
     /// The beginning of a pass over a display list, before its first primitive.
-    pub const PASS: Self = Self { passes: 1, triangles: 0, spheres: 0, unguarded: 0, entries: 0 };
+    pub const PASS: Self = Self { passes: 1, triangles: 0, spheres: 0, clipped: 0, entries: 0 };
 
     /// Primitives transformed, without the beginning of their pass and without entries in bins.
     #[must_use]
@@ -43,7 +43,7 @@ impl TransformCost {
         timing.pass_ns * self.passes
             + timing.triangle_ns * self.triangles
             + timing.sphere_ns * self.spheres
-            + timing.guard_ns * self.unguarded
+            + timing.guard_ns * self.clipped
             + timing.bin_entry_ns * self.entries
     }
 
@@ -59,7 +59,7 @@ impl TransformCost<f64> {
     #[must_use]
     pub fn ns(self, timing: &GpTiming) -> f64 {
         let primitives = timing.triangle_ns as f64 * self.triangles + timing.sphere_ns as f64 * self.spheres;
-        let primitives = timing.pass_ns as f64 * self.passes + primitives + timing.guard_ns as f64 * self.unguarded;
+        let primitives = timing.pass_ns as f64 * self.passes + primitives + timing.guard_ns as f64 * self.clipped;
         primitives + timing.bin_entry_ns as f64 * self.entries
     }
 }
@@ -74,7 +74,7 @@ mod tests {
     #[test]
     fn a_transform_takes_the_time_of_its_pass_its_primitives_and_its_entries() {
         let cost = TransformCost {
-            unguarded: 4,
+            clipped: 4,
             entries: 9,
             ..TransformCost::pass_over(PrimitiveCounts { triangles: 11, spheres: 13 })
         };
@@ -84,7 +84,7 @@ mod tests {
 
     #[test]
     fn whole_means_take_the_time_of_counts() {
-        let means = TransformCost { passes: 1.0, triangles: 11.0, spheres: 13.0, unguarded: 4.0, entries: 9.0 };
+        let means = TransformCost { passes: 1.0, triangles: 11.0, spheres: 13.0, clipped: 4.0, entries: 9.0 };
         assert_eq!(means.ns(&TIMING), 9_388.0);
     }
 }

@@ -21,11 +21,13 @@
 //!
 //! Sources: TR94 (round-robin dealing, bins that hold pointers to shared commands).
 
+mod begin;
 mod code;
 mod commands;
 mod cost;
 mod counts;
 mod encoder;
+mod layout;
 mod list;
 mod pass;
 mod picture;
@@ -35,6 +37,7 @@ mod sending;
 mod structure;
 mod view;
 
+pub use begin::{Beginning, Editing};
 pub use code::{KernelOutput, Transforming};
 pub use commands::{
     BIN_ENTRY_BYTES, PROGRAM_BYTES, RegionEnvelope, copy_message, gouraud_sphere, region_messages, shade,

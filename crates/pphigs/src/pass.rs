@@ -42,8 +42,6 @@ pub struct Pass {
     bins: Vec<Bin>,
     screen_counts: PrimitiveCounts,
     stats: SetupStats,
-    /// Triangles not wholly inside the guard band.
-    unguarded: u64,
     /// Makes the words of triangles; `None` where nobody wants pixels.
     encoder: Option<Encoder>,
     touching: Option<[Vec<u32>; 2]>,
@@ -79,7 +77,6 @@ impl Pass {
             bins,
             screen_counts: PrimitiveCounts::default(),
             stats: SetupStats::default(),
-            unguarded: 0,
             encoder: picture.pixels.then(|| Encoder::for_picture(&picture)).flatten(),
             touching: chosen.map(|_| Default::default()),
         };
@@ -94,9 +91,7 @@ impl Pass {
         let is_chosen = |structure: usize| chosen.is_none_or(|chosen| chosen.get(structure) == Some(&true));
         for (_, place) in placed.iter().enumerate().filter(|(structure, _)| is_chosen(*structure)) {
             let Some(transform) = &place.transform else { continue };
-            let before = unguarded(&stats);
             self.bin_triangles(place, transform, &share, &mut stats);
-            self.unguarded += unguarded(&stats) - before;
             for number in share.held_spheres(&place.structure.spheres) {
                 if let Some(sphere) = transform.sphere(&share.list.spheres[number], &mut stats) {
                     self.put_sphere(sphere.regions, number as u32);
@@ -232,11 +227,6 @@ impl Pass {
         self.stats
     }
 
-    /// Triangles not wholly inside the guard band.
-    pub(crate) const fn unguarded(&self) -> u64 {
-        self.unguarded
-    }
-
     /// The picture that is made of the view.
     #[must_use]
     pub const fn picture(&self) -> &Picture {
@@ -255,6 +245,10 @@ impl Pass {
         self.placed.first().map(|placed| &placed.light)
     }
 
+    pub(crate) fn placed(&self) -> Arc<[PlacedStructure]> {
+        Arc::clone(&self.placed)
+    }
+
     pub(crate) const fn share(&self) -> &Share {
         &self.share
     }
@@ -271,11 +265,6 @@ impl Pass {
     pub(crate) fn drawn(&self) -> impl Iterator<Item = (&PlacedStructure, &Transform)> {
         drawn(&self.placed)
     }
-}
-
-/// Triangles so far that were not wholly inside the guard band.
-const fn unguarded(stats: &SetupStats) -> u64 {
-    stats.clipped + stats.outside + stats.not_finite
 }
 
 fn drawn(placed: &[PlacedStructure]) -> impl Iterator<Item = (&PlacedStructure, &Transform)> {

@@ -2,6 +2,7 @@
 
 use crate::structure::DisplayStructure;
 use crate::view::{EyeView, ModelEdit};
+use glam::Mat4;
 use pxpl5_geometry::{Light, ScreenVertex, Touched, Transform, VertexSurface, Viewport};
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -15,6 +16,8 @@ pub struct PlacedStructure {
     pub light: Light,
     /// Which primitives belong to it, and what it is fixed to.
     pub structure: DisplayStructure,
+    /// From its frame to the eye, from its own coordinates to its frame, and from the eye to the picture.
+    pub(crate) matrices: [Mat4; 3],
     pub(crate) vertices: OnceLock<Vertices>,
     pub(crate) touched: OnceLock<Touched>,
 }

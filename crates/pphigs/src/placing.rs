@@ -61,6 +61,7 @@ fn place(
         transform,
         light,
         structure: structure.clone(),
+        matrices: [to_eye, model, eye.projection],
         vertices: OnceLock::new(),
         touched: OnceLock::new(),
     }

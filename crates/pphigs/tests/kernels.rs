@@ -2,11 +2,12 @@
 
 mod kernel;
 
-use glam::Vec3;
+use glam::{Mat4, Vec3, Vec4};
 use i860::Config;
 use kernel::{Bench, Output, Strip, frame, native, strips, triangles, triangles_of};
 use pxpl5_geometry::kernel::{Kernel, KernelList, KernelSurface, Schedule};
-use pxpl5_geometry::{Culling, Triangle, Viewport};
+use pxpl5_geometry::{Triangle, ViewTransform, Viewport};
+use pxpl5_sim::SplitMix64;
 use pxpl5_wire::FieldParity;
 
 /// Small, middling and large triangles, among them ones outside the guard band.
@@ -38,23 +39,20 @@ fn assert_same_words(schedule: Schedule, surface: KernelSurface, viewport: Viewp
 }
 
 fn assert_same_words_of(input: &[Triangle], schedule: Schedule, surface: KernelSurface, viewport: Viewport) {
-    let (expected, flattened) = native(surface, viewport, Culling::None, input);
-    assert_eq!(flattened, 0, "the kernels do not flatten planes");
     let kernel = Kernel::for_picture(schedule, surface, &viewport, true).expect("frames and fields have kernels");
+    let (expected, stats) = native(kernel, &kernel::view(), viewport, input);
+    assert!(stats.clipped > 0 && 3 * expected.commands.len() > input.len(), "{stats:?}");
     let mut bench = Bench::new(kernel, viewport, Config::functional(), input);
     bench.run();
-    let found = bench.output();
-    assert!(!expected.clipped.is_empty() && 3 * expected.commands.len() > input.len(), "{}", expected.commands.len());
-    assert_same_output(&found, &expected, kernel);
+    assert_same_output(&bench.output(), &expected, kernel);
 }
 
 fn assert_same_output(found: &Output, expected: &Output, kernel: Kernel) {
-    assert_eq!(found.clipped, expected.clipped);
-    assert_eq!(found.commands.len(), expected.commands.len());
     for (n, (f, e)) in found.commands.iter().zip(&expected.commands).enumerate() {
         assert_eq!(f, e, "command {n} of {kernel:?}");
         assert_eq!(found.regions[n], expected.regions[n], "regions of command {n} of {kernel:?}");
     }
+    assert_eq!(found.commands.len(), expected.commands.len());
 }
 
 /// Strips of 1 to 100 triangles, some longer than a batch, small to large; and one about the near and the far plane.
@@ -65,13 +63,11 @@ fn strips_of_all_sizes() -> Vec<Strip> {
 
 fn assert_same_words_of_strips(schedule: Schedule, surface: KernelSurface, viewport: Viewport) {
     let input = strips_of_all_sizes();
-    let (alone, places) = triangles_of(&input);
-    let (mut expected, flattened) = native(surface, viewport, Culling::None, &alone);
-    assert_eq!(flattened, 0, "the kernels do not flatten planes");
-    expected.clipped.iter_mut().for_each(|number| *number = places[*number]);
-    assert!(!expected.clipped.is_empty() && 2 * expected.commands.len() > alone.len(), "{}", expected.commands.len());
+    let alone = triangles_of(&input);
     let kernel = Kernel::for_picture(schedule, surface, &viewport, true).expect("frames and fields have kernels");
     let kernel = Kernel { list: KernelList::Strips, ..kernel };
+    let (expected, stats) = native(kernel, &kernel::view(), viewport, &alone);
+    assert!(stats.clipped > 0 && 2 * expected.commands.len() > alone.len(), "{stats:?}");
     let mut bench = Bench::of_strips(kernel, viewport, Config::functional(), &input);
     bench.run();
     assert_same_output(&bench.output(), &expected, kernel);
@@ -110,24 +106,106 @@ fn the_kernels_of_strips_give_the_native_words_and_bins() {
     }
 }
 
-/// About half of the triangles face away; those that reach beyond the guard band are the clipper's, whichever way they face.
+/// About half of the triangles face away, pieces of clipped ones among them.
 #[test]
 fn kernels_that_cull_give_the_native_words_and_bins() {
     let input = mixture();
     for schedule in [Schedule::Straight, Schedule::Compiled, Schedule::Dual] {
         for surface in [KernelSurface::Gouraud, KernelSurface::Phong] {
             for viewport in PICTURES {
-                let (expected, _) = native(surface, viewport, Culling::Back, &input);
-                let (all, _) = native(surface, viewport, Culling::None, &input);
+                let all = Kernel::for_picture(schedule, surface, &viewport, true).expect("frames and fields");
+                let kernel = Kernel { culls: true, ..all };
+                let [expected, all] = [kernel, all].map(|kernel| native(kernel, &kernel::view(), viewport, &input).0);
                 let share = expected.commands.len() as f64 / all.commands.len() as f64;
                 assert!((0.4..0.6).contains(&share), "{share}");
-                let kernel = Kernel::for_picture(schedule, surface, &viewport, true).expect("frames and fields");
-                let kernel = Kernel { culls: true, ..kernel };
                 let mut bench = Bench::new(kernel, viewport, Config::functional(), &input);
                 bench.run();
                 assert_same_output(&bench.output(), &expected, kernel);
             }
         }
+    }
+}
+
+/// Triangles all around the eye, from far outside to across several planes at once, some with a corner on a plane of the guard band as
+/// nearly as singles can say; seen through matrices that mirror and others.
+fn around_the_eye(seed: u64, mirrored: bool) -> (ViewTransform, Vec<Triangle>) {
+    let mut all = triangles(1000, 1.0, seed);
+    let mut numbers = SplitMix64::new(seed);
+    let mut view = kernel::view();
+    if mirrored {
+        view.model_view *= Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0));
+    }
+    let to_world = (view.projection * view.model_view).inverse();
+    for (n, triangle) in all.iter_mut().enumerate() {
+        // Sizes over four powers of ten, mostly before the eye.
+        let eye = view.model_view.inverse().transform_point3(Vec3::ZERO);
+        let ahead = view.model_view.inverse().transform_vector3(Vec3::new(numbers.unit() - 0.5, 0.0, -1.0));
+        let size = 10.0_f32.powf(4.0 * numbers.unit() - 1.0);
+        let centre = eye + ahead * numbers.unit() * 30.0;
+        triangle.positions = triangle.positions.map(|p| centre + (p - triangle.positions[0] * 0.5) * size);
+        if n % 3 == 0 {
+            // 4,095 px from the middle of pixel 0, in each direction of a picture of 640 x 480.
+            let w = 0.5 + 30.0 * numbers.unit();
+            let [x, y] = [(4095.0 - 320.0) / 320.0, (4095.0 - 240.0) / 240.0];
+            let sign = if numbers.unit() < 0.5 { -1.0 } else { 1.0 };
+            let [cx, cy] = if numbers.unit() < 0.5 { [sign * x, 0.3] } else { [0.3, sign * y] };
+            let nudge = 1.0 + (numbers.unit() - 0.5) * 1e-6;
+            let clip = Vec4::new(cx * w * nudge, cy * w * nudge, 0.9 * w, w);
+            let world = to_world * clip;
+            triangle.positions[n / 3 % 3] = world.truncate() / world.w;
+        }
+        if n % 4 == 1 {
+            // Seen nearly edge-on: slivers, whose planes are steep.
+            let [a, b, _] = triangle.positions.map(|p| p - eye);
+            triangle.positions[2] = eye + a * (2.0 * numbers.unit() - 0.5) + b * numbers.unit();
+        }
+    }
+    // Steep planes of what is not clipped are the kernels' affair, which do not flatten them.
+    let kernel = frame(Schedule::Dual);
+    all.retain(|triangle| {
+        let (_, stats) = native(kernel, &view, Viewport::FRAME, std::slice::from_ref(triangle));
+        stats.clipped > 0 || stats.flattened_planes == 0
+    });
+    (view, all)
+}
+
+#[test]
+fn the_clipper_gives_the_native_words_and_bins_of_triangles_all_around_the_eye() {
+    let mut flattened = 0;
+    for (seed, schedule) in (20..).zip([Schedule::Straight, Schedule::Compiled, Schedule::Dual]) {
+        for mirrored in [false, true] {
+            let (view, input) = around_the_eye(seed, mirrored);
+            for surface in [KernelSurface::Gouraud, KernelSurface::Phong] {
+                for (viewport, culls) in PICTURES.into_iter().flat_map(|picture| [(picture, false), (picture, true)]) {
+                    let kernel = Kernel::for_picture(schedule, surface, &viewport, true).expect("frames and fields");
+                    let kernel = Kernel { culls, ..kernel };
+                    let (expected, stats) = native(kernel, &view, viewport, &input);
+                    assert!(stats.clipped > 200 && stats.outside > 100 && stats.screen_triangles > 100, "{stats:?}");
+                    flattened += stats.flattened_planes;
+                    let mut bench = Bench::in_view(kernel, &view, viewport, &input);
+                    bench.run();
+                    assert_same_output(&bench.output(), &expected, kernel);
+                }
+            }
+        }
+    }
+    assert!(flattened > 0, "steep planes are among them");
+}
+
+/// Corners that are no numbers, or larger than clip coordinates may be: nothing is drawn.
+#[test]
+fn triangles_that_cannot_be_represented_are_left_out() {
+    let mut input = triangles(30, 0.12, 1);
+    for (n, value) in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 2e30, -3e38].into_iter().enumerate() {
+        input[3 * n].positions[n % 3].x = value;
+        input[3 * n + 1].positions[n % 3].z = value;
+    }
+    for schedule in [Schedule::Straight, Schedule::Compiled, Schedule::Dual] {
+        let (expected, stats) = native(frame(schedule), &kernel::view(), Viewport::FRAME, &input);
+        assert_eq!(stats.not_finite, 10);
+        let mut bench = Bench::new(frame(schedule), Viewport::FRAME, Config::functional(), &input);
+        bench.run();
+        assert_same_output(&bench.output(), &expected, frame(schedule));
     }
 }
 

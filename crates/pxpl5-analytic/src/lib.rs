@@ -26,7 +26,7 @@ mod slats;
 
 pub use load::Load;
 pub use rendering_control::{StereoModel, StereoTimes, stereo_loads};
-pub use slats::{FieldTimes, SlatsModel};
+pub use slats::{FieldTimes, PerTriangle, SlatsModel};
 
 use pxpl5_framebuffer::{FrameBufferConfig, Video};
 use pxpl5_machine::{ConfigError, MachineConfig};

@@ -16,16 +16,18 @@ pub struct Load {
     pub triangles: f64,
     /// Spheres held by all GPs together.
     pub spheres: f64,
+    /// Of the triangles, those that the clipper cuts.
+    pub clipped: f64,
     /// Triangles and spheres in the bin of each region.
     pub bins: Vec<[f64; 2]>,
 }
 
 impl Load {
-    /// Triangles that every region gets.
+    /// Triangles that every region gets, none of them cut by the clipper.
     #[must_use]
     pub fn full_screen(triangles: u32, regions: usize) -> Self {
         let triangles = f64::from(triangles);
-        Self { triangles, spheres: 0.0, bins: vec![[triangles, 0.0]; regions] }
+        Self { triangles, spheres: 0.0, clipped: 0.0, bins: vec![[triangles, 0.0]; regions] }
     }
 
     /// Entries of all bins.
@@ -75,6 +77,7 @@ impl Load {
         Self {
             triangles: f64::from(held.triangles),
             spheres: f64::from(held.spheres),
+            clipped: pass.stats().clipped as f64,
             bins: regions.map(|region| bin(pass.counts(region))).collect(),
         }
     }

@@ -243,8 +243,8 @@ impl StereoModel {
     fn transform_ns(&self, load: &Load) -> f64 {
         let triangles = self.largest_share(load.triangles);
         let spheres = self.largest_share(load.spheres);
-        let entries = self.entries(load);
-        TransformCost { passes: 1.0, triangles, spheres, entries, ..TransformCost::default() }.ns(&self.gp)
+        let clipped = load.clipped * triangles / load.triangles.max(1.0);
+        TransformCost { passes: 1.0, triangles, spheres, clipped, entries: self.entries(load) }.ns(&self.gp)
     }
 
     /// Primitives that the slave with the most of them holds.

@@ -58,6 +58,15 @@ pub struct FieldTimes {
     pub in_time: bool,
 }
 
+/// What a triangle is for one eye, in the mean.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PerTriangle {
+    /// Entries in bins.
+    pub entries: f64,
+    /// Part of the triangles that the clipper cuts, 0 to 1.
+    pub clipped: f64,
+}
+
 impl SlatsModel {
     /// Reduces a machine; the program's code is applied first.
     ///
@@ -105,22 +114,22 @@ impl SlatsModel {
 
     /// A field in the steady state: renderers begin with the bottom regions of the field before.
     #[must_use]
-    pub fn field(&self, triangles: f64, entries_per_triangle: f64) -> FieldTimes {
-        let [times] = fields_at_once([self], triangles, entries_per_triangle);
+    pub fn field(&self, triangles: f64, each: PerTriangle) -> FieldTimes {
+        let [times] = fields_at_once([self], triangles, each);
         times
     }
 
     /// The same of many machines, in their order: exactly what [`field`](Self::field) gives of each. Eight after another that have as
     /// many boards and channels and the same program go through it together, which is faster.
     #[must_use]
-    pub fn fields(models: &[Self], triangles: f64, entries_per_triangle: f64) -> Vec<FieldTimes> {
+    pub fn fields(models: &[Self], triangles: f64, each: PerTriangle) -> Vec<FieldTimes> {
         let mut all = Vec::with_capacity(models.len());
         for some in models.chunks(TOGETHER) {
             match <[&Self; TOGETHER]>::try_from(some.iter().collect::<Vec<_>>()) {
                 Ok(some) if some.iter().all(|model| model.structure() == some[0].structure()) => {
-                    all.extend(fields_together(some, triangles, entries_per_triangle));
+                    all.extend(fields_together(some, triangles, each));
                 }
-                _ => all.extend(some.iter().map(|model| model.field(triangles, entries_per_triangle))),
+                _ => all.extend(some.iter().map(|model| model.field(triangles, each))),
             }
         }
         all
@@ -197,11 +206,11 @@ impl SlatsModel {
         queues
     }
 
-    /// TRANSFORM of a clump of so many triangles for both eyes, each of which makes so many entries in bins.
-    fn clump_ns(&self, triangles: f64, entries_per_triangle: f64) -> f64 {
+    /// TRANSFORM of a clump of so many triangles for both eyes.
+    fn clump_ns(&self, triangles: f64, each: PerTriangle) -> f64 {
         let both_eyes = 2.0 * triangles;
-        let entries = both_eyes * entries_per_triangle;
-        TransformCost { triangles: both_eyes, entries, ..TransformCost::default() }.ns(&self.gp)
+        let [entries, clipped] = [each.entries, each.clipped].map(|n| both_eyes * n);
+        TransformCost { triangles: both_eyes, entries, clipped, ..TransformCost::default() }.ns(&self.gp)
     }
 
     /// What a message of a clump holds: select, and clear in the first one, then `count` triangles.
@@ -217,8 +226,8 @@ const TOGETHER: usize = 8;
 
 /// As wide as the processor is.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn fields_together(models: [&SlatsModel; TOGETHER], triangles: f64, entries: f64) -> [FieldTimes; TOGETHER] {
-    fields_at_once(models, triangles, entries)
+fn fields_together(models: [&SlatsModel; TOGETHER], triangles: f64, each: PerTriangle) -> [FieldTimes; TOGETHER] {
+    fields_at_once(models, triangles, each)
 }
 
 /// Which regions each renderer copies before the retrace, all of them without a split copy, and which after it.
@@ -229,14 +238,14 @@ struct Layouts {
 
 /// Fields of machines of the same structure.
 #[inline(always)]
-fn fields_at_once<const N: usize>(models: [&SlatsModel; N], triangles: f64, entries: f64) -> [FieldTimes; N] {
+fn fields_at_once<const N: usize>(models: [&SlatsModel; N], triangles: f64, each: PerTriangle) -> [FieldTimes; N] {
     let layouts = Layouts {
         top: models[0].layout(|region| !models[0].split || region < REGIONS / 2),
         bottom: models[0].layout(|region| region >= REGIONS / 2),
     };
     let before = models.map(|model| model.bottom_of_the_field_before(&layouts));
     let mut arrays = std::array::from_fn(|renderer| Array::busy_until(Times::each(|i| before[i][renderer])));
-    let rendered = render(models, &mut arrays, triangles, entries);
+    let rendered = render(models, &mut arrays, triangles, each);
     std::array::from_fn(|i| models[i].copies(&layouts, rendered.0[i], |renderer| arrays[renderer].free.0[i]))
 }
 
@@ -246,7 +255,7 @@ fn render<const N: usize>(
     models: [&SlatsModel; N],
     arrays: &mut [Array<N>; MOST_RENDERERS],
     triangles: f64,
-    entries: f64,
+    each: PerTriangle,
 ) -> Times<N> {
     let share = triangles / models[0].gps as f64;
     let clumps = (share / CLUMP as f64).ceil().max(1.0) as usize;
@@ -257,9 +266,9 @@ fn render<const N: usize>(
     for clump in 0..clumps {
         let count = (share - (clump * CLUMP) as f64).min(CLUMP as f64);
         // The one clump buffer is written again when all renderers have begun with what was in it.
-        cpu = cpu.later(chain.draining) + Times::each(|i| models[i].clump_ns(count, entries));
+        cpu = cpu.later(chain.draining) + Times::each(|i| models[i].clump_ns(count, each));
         cpu = cpu.later(chain.accepted) + message;
-        send(models, arrays, &mut chain, cpu, count * entries / 10.0, clump == 0);
+        send(models, arrays, &mut chain, cpu, count * each.entries / 10.0, clump == 0);
     }
     chain.accepted
 }
@@ -379,16 +388,17 @@ fn steady_field(experiment: &Experiment) -> Result<(SlatsModel, FieldTimes), Exp
     let model = SlatsModel::new(experiment.config(), pipeline)?;
     let scene = experiment.scene();
     let triangles = (scene.triangles().len() + scene.spheres().len()) as f64;
-    let entries = match pipeline.binning {
-        RegionBinning::All => 10.0,
-        RegionBinning::Touched => {
-            let viewport = Viewport::field(FieldParity::Even);
-            let loads = Load::of_views(experiment, viewport, RegionBinning::Touched, &[0])?;
-            let per_eye = loads.iter().map(Load::entries).sum::<f64>() / loads.len() as f64;
-            per_eye / triangles.max(1.0)
+    let binned = pipeline.binning == RegionBinning::Touched;
+    let mut each = PerTriangle { entries: 10.0, clipped: 0.0 };
+    if binned || model.gp.guard_ns > 0 {
+        let loads = Load::of_views(experiment, Viewport::field(FieldParity::Even), pipeline.binning, &[0])?;
+        let all = triangles.max(1.0) * loads.len() as f64;
+        each.clipped = loads.iter().map(|load| load.clipped).sum::<f64>() / all;
+        if binned {
+            each.entries = loads.iter().map(Load::entries).sum::<f64>() / all;
         }
-    };
-    let times = model.field(triangles, entries);
+    }
+    let times = model.field(triangles, each);
     Ok((model, times))
 }
 
@@ -425,6 +435,7 @@ mod tests {
         let mut config = MachineConfig { n_gps: gps, n_renderers: renderers, ..MachineConfig::slats() };
         let [triangle_ns, message_ns, fifo_words, word_ns, hop_ns] = numbers;
         config.gp.triangle_ns = triangle_ns;
+        config.gp.guard_ns = 3 * triangle_ns;
         config.gp.message_ns = message_ns;
         config.renderer.fifo_words = fifo_words;
         config.ring.word_ns = word_ns;
@@ -449,11 +460,13 @@ mod tests {
             split: bool,
             triangles in 1.0f64..400.0,
             entries in 1.0f64..12.0,
+            clipped in 0.0f64..1.0,
         ) {
             let of = |(i, numbers): (usize, &[u64; 5])| model(gps, renderers, *numbers, split != (i == other));
             let models: Vec<SlatsModel> = all.iter().enumerate().map(of).collect();
-            let alone: Vec<FieldTimes> = models.iter().map(|model| model.field(triangles, entries)).collect();
-            prop_assert_eq!(SlatsModel::fields(&models, triangles, entries), alone);
+            let each = PerTriangle { entries, clipped };
+            let alone: Vec<FieldTimes> = models.iter().map(|model| model.field(triangles, each)).collect();
+            prop_assert_eq!(SlatsModel::fields(&models, triangles, each), alone);
         }
     }
 }

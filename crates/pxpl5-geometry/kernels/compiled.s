@@ -4,101 +4,18 @@
 //
 // The arithmetic and its order are those of the native transform and set-up.
 
-// ---- stack frame
+// ---- stack frame, further up as in setup_scalar.s
 SAVE   = 0        // return address
-BOX    = 8        // low x, high x, low y, high y
-FIRST  = 24       // the corners in clockwise order, over a call of bins
-SECOND = 28
-THIRD  = 32
-DX1    = 40       // corner 0 to 1 and 0 to 2, single
-DY1    = 44
-DX2    = 48
-DY2    = 52
-PERPIX = 56       // 16 / twice the area
-TOX    = 64       // corner 0 to the pixel of reference, in pixels
-TOY    = 72
-REFX   = 80       // pixel of reference, double
-REFY   = 88
-CORNERS = 96      // of each corner:
-C_X    = 0        // place, snapped, single
-C_Y    = 4
-C_DEPTH = 8       // values that planes go through, double
-C_SURFACE = 16
-C_AWAY = 40       // how far the normal turns away from the eye, single
-C_BYTES = 48
 
-        .macro  edgeword k, n, to
-        ld.l    8+16*\k+4*\n(r18), \to
+        .macro  firstcorner to
+        adds    CORNERS, r2, \to
+        .endm
+        .macro  secondcorner to
+        adds    C_BYTES, r7, \to
         .endm
 
-// f12 = 1 / f8 to double precision: seed and three Newton steps
-        .macro  reciprocal
-        fld.d   P_TWO(r20), f10
-        frcp.dd f8, f12
-        .rept   3
-        fmul.dd f8, f12, f14
-        fsub.dd f10, f14, f14
-        fmul.dd f12, f14, f12
-        .endr
-        .endm
-
-// ---- the least and the greatest of three coordinates, as integers
-        .macro  extent a, b, c, to
-        fmov.ss \a, f16
-        fmov.ss \a, f17
-        pfgt.ss f16, \b, f0
-        bnc     p\@
-        fmov.ss \b, f16
-p\@:    pfgt.ss f16, \c, f0
-        bnc     q\@
-        fmov.ss \c, f16
-q\@:    pfgt.ss \b, f17, f0
-        bnc     r\@
-        fmov.ss \b, f17
-r\@:    pfgt.ss \c, f17, f0
-        bnc     s\@
-        fmov.ss \c, f17
-s\@:    ftrunc.sd f16, f18
-        fxfr    f18, r10
-        ftrunc.sd f17, f18
-        fxfr    f18, r11
-        st.l    r10, \to(r2)
-        st.l    r11, \to+4(r2)
-        .endm
-
-// 0 to `most`
-        .macro  clamped r, most
-        subs    r0, \r, r0
-        bc      low\@                       // r > 0
-        mov     r0, \r
-low\@:  subs    \most, \r, r0
-        bnc     high\@
-        mov     \most, \r
-high\@: nop
-        .endm
-
-// pixel of reference along one axis, the middle of the box within the picture, and how far the corner's coordinate is from its centre
-        .macro  reference box, at, most, to, distance
-        ld.l    \box(r2), r10
-        ld.l    \box+4(r2), r11
-        clamped r10, \most
-        clamped r11, \most
-        adds    r10, r11, r10
-        shra    5, r10, r10
-        xorh    0x8000, r10, r11            // to a double
-        ixfr    r11, f8
-        orh     0x4330, r0, r11
-        ixfr    r11, f9
-        fld.d   P_BIAS31(r20), f10
-        fld.d   P_EIGHT(r20), f12
-        fsub.dd f8, f10, f14
-        fmov.sd \at, f10
-        fld.d   P_SIXTEENTH(r20), f16
-        fst.d   f14, \to(r2)
-        fsub.dd f12, f10, f12
-        fmul.dd f12, f16, f12
-        fadd.dd f14, f12, f12
-        fst.d   f12, \distance(r2)
+// Planes of triangles that are not clipped are taken as they come.
+        .macro  steep
         .endm
 
         .align  32
@@ -114,109 +31,7 @@ each:   call    corner
         adds    VERTEX_BYTES, r5, r5
         btne    r0, r4, each
         surfaces
-        // orientation
-        adds    CORNERS, r2, r7
-        fld.d   C_X(r7), f8
-        adds    C_BYTES, r7, r8
-        fld.d   C_X(r8), f10
-        adds    C_BYTES, r8, r9
-        fld.d   C_X(r9), f12
-        fsub.ss f10, f8, f16                // dx, dy to corner 1, to corner 2
-        fsub.ss f11, f9, f17
-        fsub.ss f12, f8, f18
-        fsub.ss f13, f9, f19
-        fmul.sd f16, f19, f20
-        fmul.sd f17, f18, f22
-        fsub.dd f20, f22, f20
-        pfeq.dd f20, f0, f0
-        bc      done                        // nothing to draw
-        facing_float f21, done
-        pfgt.dd f0, f20, f0
-        bnc     oriented
-        fmov.ss f16, f24                    // make it clockwise
-        fmov.ss f18, f16
-        fmov.ss f24, f18
-        fmov.ss f17, f24
-        fmov.ss f19, f17
-        fmov.ss f24, f19
-        fsub.dd f0, f20, f20
-        mov     r8, r10
-        mov     r9, r8
-        mov     r10, r9
-oriented: fst.l f16, DX1(r2)
-        fst.l   f17, DY1(r2)
-        fst.l   f18, DX2(r2)
-        fst.l   f19, DY2(r2)
-        fst.d   f20, PERPIX(r2)
-        st.l    r7, FIRST(r2)
-        st.l    r8, SECOND(r2)
-        st.l    r9, THIRD(r2)
-        // edges
-        mov     r7, r10
-        mov     r8, r11
-        call    edge
-        adds    8, r18, r12
-        mov     r8, r10
-        mov     r9, r11
-        call    edge
-        adds    24, r18, r12
-        mov     r9, r10
-        mov     r7, r11
-        call    edge
-        adds    40, r18, r12
-        // box
-        fld.d   C_X(r7), f8
-        fld.d   C_X(r8), f10
-        fld.d   C_X(r9), f12
-        extent  f8, f10, f12, BOX
-        extent  f9, f11, f13, BOX+8
-        call    bins
-        nop
-        bte     r0, r22, done               // no region
-        // what all planes share
-        ld.l    FIRST(r2), r7
-        ld.l    SECOND(r2), r8
-        fld.d   C_X(r7), f24
-        ld.l    THIRD(r2), r9
-        reference BOX, f24, 10239, REFX, TOX
-        reference BOX+8, f25, 7679, REFY, TOY
-        fld.d   PERPIX(r2), f8
-        reciprocal
-        fld.d   P_SIXTEEN(r20), f8
-        fmul.dd f8, f12, f12
-        fst.d   f12, PERPIX(r2)
-        adds    C_DEPTH, r0, r10
-        call    plane
-        adds    56, r18, r11
-        adds    C_SURFACE, r0, r10
-        call    plane
-        adds    76, r18, r11
-        adds    C_SURFACE+8, r0, r10
-        call    plane
-        adds    92, r18, r11
-        adds    C_SURFACE+16, r0, r10
-        call    plane
-        adds    108, r18, r11
-        // heads
-        ld.l    P_HEADS(r20), r10
-        ld.l    P_HEADS+4(r20), r11
-        st.l    r10, 0(r18)
-        ld.l    P_HEADS+8(r20), r10
-        st.l    r11, 4(r18)
-        st.l    r11, 20(r18)
-        st.l    r11, 36(r18)
-        ld.l    P_HEADS+12(r20), r11
-        st.l    r10, 52(r18)
-        ld.l    P_HEADS+16(r20), r10
-        st.l    r11, 68(r18)
-        ld.l    P_HEADS+20(r20), r11
-        st.l    r10, 72(r18)
-        ld.l    P_HEADS+24(r20), r10
-        st.l    r11, 88(r18)
-        st.l    r10, 104(r18)
-        finish
-        restate
-        adds    COMMAND_BYTES, r18, r18
+        set_up  done
 done:   adds    -1, r17, r17
         adds    LIST_STEP, r16, r16
         btne    r0, r17, next
@@ -224,96 +39,18 @@ done:   adds    -1, r17, r17
         nop
         bri     r1
         nop
-clip:   st.l    r16, 0(r21)                 // not wholly inside the guard band
+clip:   ld.l    P_CLIPPER(r20), r6          // not wholly inside the guard band
+        nop
+        calli   r6
+        nop
         br      done
-        adds    4, r21, r21
+        nop
 
 // ---- corner: vertex at r5 to the structure at r6, and r6 to the next; r7 is 0 if it is outside of the guard band
 
-// clip coordinate k: ((c0 x + c1 y) + c2 z) + t with c0 c1 in f8 f9, and those of the next row there
-        .macro  clipped k, to
-        fmul.ss f8, f16, \to
-        fld.l   P_ROWS+16*\k+8(r20), f10
-        fmul.ss f9, f17, f12
-        fld.l   P_ROWS+16*\k+12(r20), f11
-        fld.l   P_ROWS+16*\k+16(r20), f8
-        fadd.ss \to, f12, \to
-        fld.l   P_ROWS+16*\k+20(r20), f9
-        fmul.ss f10, f18, f12
-        fadd.ss \to, f12, \to
-        fadd.ss \to, f11, \to
-        .endm
-
-// to `beyond` unless a <= b
-        .macro  within a, b
-        pfle.ss \a, \b, f0
-        bc      beyond
-        .endm
-
-corner: fld.l   0(r5), f16
-        fld.l   P_ORIGIN(r20), f8
-        fld.l   4(r5), f17
-        fld.l   P_ORIGIN+4(r20), f9
-        fsub.ss f16, f8, f16                // relative to the eye
-        fld.l   8(r5), f18
-        fld.l   P_ORIGIN+8(r20), f10
-        fsub.ss f17, f9, f17
-        fld.l   P_ROWS(r20), f8
-        fld.l   P_ROWS+4(r20), f9
-        fsub.ss f18, f10, f18
-        clipped 0, f20
-        clipped 1, f21
-        clipped 2, f22
-        clipped 3, f23
-        fld.l   P_GUARD(r20), f8
-        fld.l   P_GUARD+4(r20), f9
-        fld.l   P_GUARD+8(r20), f10
-        fmul.ss f8, f23, f8
-        fld.l   P_GUARD+12(r20), f11
-        fmul.ss f9, f23, f9
-        within f20, f8
-        fsub.ss f0, f20, f12
-        within f12, f8
-        within f21, f9
-        fsub.ss f0, f21, f12
-        within f12, f9
-        within f0, f22
-        within f22, f23
-        within f10, f23
-        within f23, f11
-        fld.l   P_TWO_S(r20), f10           // 1 / w: seed and two Newton steps
-        fld.l   P_SCREEN(r20), f14
-        frcp.ss f23, f11
-        fld.l   P_SCREEN+4(r20), f15
-        fmul.ss f23, f11, f12
-        fld.l   P_SCREEN+8(r20), f24
-        fsub.ss f10, f12, f12
-        fld.l   P_SCREEN+12(r20), f25
-        fmul.ss f11, f12, f11
-        fld.l   P_ROUND_S(r20), f26
-        fmul.ss f23, f11, f12
-        fld.l   P_DEPTH_SCALE(r20), f27
-        fsub.ss f10, f12, f12
-        fld.d   P_DEPTH(r20), f28
-        fmul.ss f11, f12, f11
-        fmul.ss f20, f11, f20               // snapped
-        fmul.ss f20, f14, f20
-        fadd.ss f20, f24, f20
-        fsub.ss f20, f26, f20
-        fst.l   f20, C_X(r6)
-        fmul.ss f21, f11, f21
-        fmul.ss f21, f15, f21
-        fadd.ss f21, f25, f21
-        fsub.ss f21, f26, f21
-        fst.l   f21, C_Y(r6)
-        fmul.ss f11, f27, f12               // depth, at most far
-        fmul.sd f22, f12, f12
-        pfgt.dd f12, f28, f0
-        bnc     nearer
-        fmov.dd f28, f12
-nearer: fld.d   P_DEPTH_BIAS(r20), f14
-        fld.d   P_ROUND(r20), f10
-        fadd.dd f12, f14, f12
+corner: projected
+        guarded
+        placed
         fld.l   NORMAL(r5), f20
         fsub.dd f12, f10, f12
         fld.l   NORMAL+4(r5), f21
@@ -331,94 +68,3 @@ nearer: fld.d   P_DEPTH_BIAS(r20), f14
 beyond: bri    r1
         mov     r0, r7
 
-// ---- edge from the corner at r10 to that at r11, to the words at r12: a = -dy, b = dx,
-// c = floor((dx (8 - y) - dy (8 - x) - tie) / 16)
-edge:   fld.d   C_X(r10), f8
-        fld.d   C_X(r11), f10
-        orh     0x4100, r0, r13             // 8.0
-        ixfr    r13, f12
-        fsub.ss f10, f8, f16                // dx
-        fsub.ss f11, f9, f17                // dy
-        fsub.ss f12, f8, f18
-        fsub.ss f12, f9, f19
-        fmul.sd f16, f19, f20
-        fmul.sd f17, f18, f22
-        fsub.dd f20, f22, f20
-        ftrunc.sd f16, f22
-        fxfr    f22, r13
-        ftrunc.sd f17, f22
-        fxfr    f22, r14
-        st.l    r13, 4(r12)
-        subs    r0, r14, r14
-        st.l    r14, 0(r12)
-        pfgt.ss f0, f17, f0                 // a top or a left edge?
-        bc      owned
-        pfeq.ss f17, f0, f0
-        bnc     foreign
-        pfgt.ss f16, f0, f0
-        bnc     foreign
-owned:  br      tied
-        fld.d   P_TIE_IN(r20), f10
-foreign: fld.d  P_TIE_OUT(r20), f10
-tied:   fld.d   P_SIXTEENTH(r20), f12
-        fadd.dd f20, f10, f20
-        fld.d   P_ROUND(r20), f14
-        fmul.dd f20, f12, f20
-        fadd.dd f20, f14, f20
-        fxfr    f20, r13
-        bri     r1
-        st.l    r13, 8(r12)
-
-// ---- plane through the values at r10 of the corners r7, r8 and r9, to the words at r11
-plane:  adds    r10, r7, r12
-        fld.d   0(r12), f16
-        adds    r10, r8, r12
-        fld.d   0(r12), f18
-        adds    r10, r9, r12
-        fld.d   0(r12), f20
-        fld.l   DY2(r2), f8
-        fsub.dd f18, f16, f18
-        fmov.sd f8, f10
-        fld.l   DY1(r2), f9
-        fsub.dd f20, f16, f20
-        fmov.sd f9, f12
-        fmul.dd f18, f10, f22
-        fld.l   DX1(r2), f8
-        fmul.dd f20, f12, f24
-        fld.l   DX2(r2), f9
-        fsub.dd f22, f24, f22
-        fld.d   PERPIX(r2), f14
-        fmul.dd f22, f14, f22               // slope along x
-        fmov.sd f8, f10
-        fmov.sd f9, f12
-        fmul.dd f20, f10, f24
-        fmul.dd f18, f12, f26
-        fld.d   P_ROUND(r20), f28
-        fsub.dd f24, f26, f24
-        fld.d   TOX(r2), f18
-        fmul.dd f24, f14, f24               // slope along y
-        fld.d   TOY(r2), f20
-        fadd.dd f22, f28, f10
-        fmul.dd f22, f18, f18
-        fxfr    f10, r12
-        fadd.dd f24, f28, f12
-        st.l    r12, 0(r11)
-        fxfr    f12, r13
-        fadd.dd f16, f18, f16
-        fmul.dd f24, f20, f20
-        st.l    r13, 4(r11)
-        fld.d   REFX(r2), f22
-        fadd.dd f16, f20, f16               // value at the pixel of reference
-        fld.d   REFY(r2), f24
-        fsub.dd f10, f28, f10
-        fsub.dd f12, f28, f12
-        fmul.dd f10, f22, f10
-        fmul.dd f12, f24, f12
-        fadd.dd f16, f28, f16
-        fadd.dd f10, f12, f10
-        fxfr    f16, r12
-        fadd.dd f10, f28, f10
-        fxfr    f10, r13
-        subs    r12, r13, r12
-        bri     r1
-        st.l    r12, 8(r11)

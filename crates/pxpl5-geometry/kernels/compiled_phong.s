@@ -1,8 +1,5 @@
 // Normals at the corners of the compiled kernel.
 
-// A command: enable; three edges; depth compared, depth loaded again; normal x, y, z; the object's colour.
-COMMAND_BYTES = 128
-
 // on the whole turned away? P_SIDES or the place behind it in r8
         .macro  surfaces
         fld.l   CORNERS+C_AWAY(r2), f8
@@ -21,14 +18,6 @@ normals: call   normal
         adds    -1, r4, r4
         adds    VERTEX_BYTES, r5, r5
         btne    r0, r4, normals
-        .endm
-
-// The colour of the triangle's first corner, and its instruction head
-        .macro  finish
-        ld.l    P_HEADS+28(r20), r10
-        ld.l    COLOUR(r16), r11
-        st.l    r10, 120(r18)
-        st.l    r11, 124(r18)
         .endm
 
 // ---- normal: vertex at r5 to the values of the structure at r6, and r6 to the next; the side at r8

@@ -1,1 +1,2 @@
-doubted = ld.l R_DOUBT(r3)
+        // corners in doubt did not come here
+doubted = or r0, r0

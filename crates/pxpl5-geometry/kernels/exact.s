@@ -1,4 +1,4 @@
-// Clip coordinates of a corner and the tests of the guard band, one scalar operation after another.
+// Clip coordinates of a corner and the tests of the guard band in straight code.
 
 // clip coordinate `to` of corner n: ((c0 x + c1 y) + c2 z) + t with x y z in f16 f17 f18
         .macro  row n, k

@@ -51,3 +51,7 @@ BATCH_TRIANGLES = 76            // of 78 corners
         st.l    r0, R_DOUBT(r4)
         st.l    r0, R_DOUBT(r5)
         .endm
+
+// Vertices in doubt are found at the end of the loop: three more words to ask for would cost more than they save.
+        .macro  doubtfulpairs
+        .endm

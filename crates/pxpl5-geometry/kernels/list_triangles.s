@@ -32,3 +32,15 @@ BATCH_TRIANGLES = 26
         .macro  decided
         st.l    r0, R_DOUBT(r3)
         .endm
+
+// the same in pairs, at the beginning of the second loop: what is in doubt does not go through it first
+        .macro  doubtfulpairs
+        d.fnop
+            ld.l    R_DOUBT(r3), r8
+        d.fnop
+            nop
+        d.fnop
+            shr     31, r8, r8
+        d.fnop
+            btne    r0, r8, slow
+        .endm

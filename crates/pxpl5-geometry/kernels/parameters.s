@@ -1,8 +1,8 @@
 // Addresses that all triangle kernels share.
 //
 // Registers on entry: r16 first triangle, r17 number of triangles (at least 1), r18 where command words go,
-// r19 table of bins, r20 parameter block, r21 list of triangles left to the clipper, r2 stack.
-// On return: r18 behind the last command, r21 behind the last entry of the list.
+// r19 table of bins, r20 parameter block, r2 stack: a kernel's frame lies above, the clipper's below.
+// On return: r18 behind the last command.
 
 // A triangle of the display list: three corners of 32 bytes, each position x, y, z (single), colour (0x00RRGGBB),
 // normal x, y, z (single), unused.
@@ -24,7 +24,8 @@ SURFACE_WORD   = 8
 
 // Parameter block, singles: rows x, y, z, w of the transform as c0 c1 c2 t, then the rest.
 P_ROWS      = 0
-P_ORIGIN    = 64          // eye x, y, z, (unused)
+P_ORIGIN    = 64          // eye x, y, z
+P_ZERO      = 76          // 0.0
 P_GUARD     = 80          // guard band x, y; least w; greatest w
 P_SCREEN    = 96          // scale x, y; centre x, y (subpixels) and 1.5 * 2^23
 P_TWO_S     = 112         // 2.0
@@ -71,3 +72,5 @@ P_SIXTEENTH_S = 460       // single: 1 / 16
 P_ROUND52_S = 464         // single: 1.5 * 2^52
 P_TWO18     = 468         // single: 2^18, more than any distance in subpixels within the guard band
 P_CULL      = 472         // words: the area's high word, exclusive-or the first, and the second, is negative where it is not drawn
+P_CLIPPER   = 480         // address of the clipper
+P_THIRD     = 488         // double: 1 / 3

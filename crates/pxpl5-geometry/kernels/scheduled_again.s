@@ -20,3 +20,4 @@ again:  d.fnop
             adds    2*RECORD, r3, r5
 triangles:
         passover
+        doubtfulpairs

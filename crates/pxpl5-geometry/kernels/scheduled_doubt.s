@@ -1,17 +1,3 @@
-// the tests of the native code, to `clip` if one fails
-exact:  corner  0
-        corner  1
-        corner  2
-        inside  0
-        inside  1
-        inside  2
-        bri     r1
-        nop
-
-clip:   st.l    r16, 0(r21)
-        br      drop
-        adds    4, r21, r21
-
 // inside after all: no depth beyond the far plane, and once more through the set-up
         .macro  nofarther r
         ld.l    R_DEPTH(\r), r7
@@ -25,8 +11,11 @@ clip:   st.l    r16, 0(r21)
 near\@: nop
         .endm
 
-doubt:  call    exact
+doubt:  ld.l    P_CLIPPER(r20), r7
         nop
+        calli   r7
+        nop
+        btne    r0, r22, drop
         nofarther r3
         nofarther r4
         nofarther r5

@@ -11,7 +11,6 @@ SAVE    = 0         // return address
 LEFT    = 4         // triangles left in the batch, while others use its register
 BOX     = 40        // low x, high x, low y, high y
 SCRATCH = 64        // 16 bytes for each corner
-CLIP    = SCRATCH   // clip coordinates, for the exact tests
 RECORDS = 512
 
         .macro  edgeword k, n, to

@@ -44,8 +44,15 @@ slow:   fnop
         or      r8, r10, r8
         subs    r8, r0, r0
         bnc     accepted
-        call    exact
+        ld.l    P_CLIPPER(r20), r7
         nop
+        calli   r7
+        nop
+        btne    r0, r22, drop
+        ld.l    BOX(r2), r24
+        ld.l    BOX+4(r2), r25
+        ld.l    BOX+8(r2), r26
+        ld.l    BOX+12(r2), r27
 accepted: ld.l  AREA_WORD+4(r2), r22
         nop
         shl     1, r22, r22

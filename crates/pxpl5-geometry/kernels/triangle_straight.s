@@ -410,6 +410,9 @@ done:   adds    LIST_STEP, r16, r16
         nop
         bri     r1
         nop
-clip:   st.l    r16, 0(r21)                 // not wholly inside the guard band
+clip:   ld.l    P_CLIPPER(r20), r6          // not wholly inside the guard band
+        nop
+        calli   r6
+        nop
         br      done
-        adds    4, r21, r21
+        nop

@@ -1,13 +1,17 @@
 //! The same computation as code of the graphics processor: i860 assembly, and the memory that it works on.
 //!
 //! A [`Kernel`] takes Gouraud or Phong triangles from the display list to the words of renderer commands and to bins:
-//! transform, guard band, light or normals, snapping, planes, the restatement for a field, regions. Triangles that are
-//! not wholly inside the guard band it leaves to a clipper, which has no kernel; it does not flatten steep planes.
+//! transform, guard band, light or normals, snapping, planes, the restatement for a field, regions. It calls the clipper, a
+//! program of its own, for triangles that are not wholly inside the guard band. Of steep planes only those of pieces are
+//! flattened.
 //!
 //! ```text
 //!   display list (96 bytes a triangle, --+
 //!     or strips: 32 bytes a vertex)      |
-//!   parameter block ---------------------+--> kernel --> command words, bins, list for the clipper
+//!   parameter block ---------------------+--> kernel --> command words, bins
+//!                                               | ^
+//!                                               v |
+//!                                             clipper -> the same for pieces
 //! ```
 //!
 //! The computation is that of the native code, so that the words are the same bit for bit: 1 / w by a seed and two Newton steps in
@@ -80,7 +84,7 @@ pub const TRIANGLE_WORDS: usize = 24;
 pub const VERTEX_WORDS: usize = 8;
 
 /// Words of the parameter block.
-pub const PARAMETER_WORDS: usize = 120;
+pub const PARAMETER_WORDS: usize = 128;
 
 /// The constants of single precision whose bits the kernels know: 1.5 * 2^23 and 2^23.
 const ROUND_SINGLE: f32 = 12_582_912.0;
@@ -108,14 +112,12 @@ impl Kernel {
     /// `start`.
     #[must_use]
     pub fn source(&self) -> String {
-        let picture = if self.field { include_str!("../kernels/field.s") } else { include_str!("../kernels/frame.s") };
-        let bins = if self.binned { include_str!("../kernels/bins.s") } else { include_str!("../kernels/unbinned.s") };
+        let bins = self.bins();
         let list = match self.list {
             KernelList::Triangles => include_str!("../kernels/list_triangles.s"),
             KernelList::Strips => include_str!("../kernels/list_strips.s"),
         };
-        let cull = if self.culls { include_str!("../kernels/cull.s") } else { include_str!("../kernels/cull_none.s") };
-        let common = [include_str!("../kernels/parameters.s"), list, picture, cull, include_str!("../kernels/exact.s")];
+        let common = [include_str!("../kernels/parameters.s"), list, self.picture(), self.cull()];
         let bins_of_frames =
             if self.binned && !self.field { include_str!("../kernels/bins_scheduled.s") } else { bins };
         let triangle = match self.schedule {
@@ -129,20 +131,75 @@ impl Kernel {
         [common.as_slice(), &triangle].concat().join("\n")
     }
 
+    /// The source of the clipper that goes with it; its entry is the label `clipper`, whose address goes into
+    /// [the parameter block](Self::parameters). It is the same whatever the schedule.
+    #[must_use]
+    pub fn clipper_source(&self) -> String {
+        let (finish, extras) = match self.surface {
+            KernelSurface::Gouraud => {
+                (include_str!("../kernels/finish_gouraud.s"), include_str!("../kernels/clip_gouraud.s"))
+            }
+            KernelSurface::Phong => {
+                (include_str!("../kernels/finish_phong.s"), include_str!("../kernels/clip_phong.s"))
+            }
+        };
+        [
+            include_str!("../kernels/parameters.s"),
+            self.picture(),
+            self.cull(),
+            include_str!("../kernels/setup_scalar.s"),
+            include_str!("../kernels/intensity.s"),
+            finish,
+            extras,
+            include_str!("../kernels/clipper.s"),
+            include_str!("../kernels/functions_scalar.s"),
+            self.bins(),
+        ]
+        .join("\n")
+    }
+
+    const fn picture(&self) -> &'static str {
+        if self.field { include_str!("../kernels/field.s") } else { include_str!("../kernels/frame.s") }
+    }
+
+    const fn bins(&self) -> &'static str {
+        if self.binned { include_str!("../kernels/bins.s") } else { include_str!("../kernels/unbinned.s") }
+    }
+
+    const fn cull(&self) -> &'static str {
+        if self.culls { include_str!("../kernels/cull.s") } else { include_str!("../kernels/cull_none.s") }
+    }
+
     fn straight(&self) -> Vec<&'static str> {
         let surface = match self.surface {
             KernelSurface::Gouraud => include_str!("../kernels/gouraud.s"),
             KernelSurface::Phong => include_str!("../kernels/phong.s"),
         };
-        vec![include_str!("../kernels/surface.s"), surface, include_str!("../kernels/triangle_straight.s")]
+        vec![
+            include_str!("../kernels/exact.s"),
+            include_str!("../kernels/surface.s"),
+            surface,
+            include_str!("../kernels/triangle_straight.s"),
+        ]
     }
 
     fn compiled(&self) -> Vec<&'static str> {
-        let surface = match self.surface {
-            KernelSurface::Gouraud => include_str!("../kernels/compiled_gouraud.s"),
-            KernelSurface::Phong => include_str!("../kernels/compiled_phong.s"),
+        let (finish, surface) = match self.surface {
+            KernelSurface::Gouraud => {
+                (include_str!("../kernels/finish_gouraud.s"), include_str!("../kernels/compiled_gouraud.s"))
+            }
+            KernelSurface::Phong => {
+                (include_str!("../kernels/finish_phong.s"), include_str!("../kernels/compiled_phong.s"))
+            }
         };
-        vec![surface, include_str!("../kernels/compiled.s")]
+        vec![
+            include_str!("../kernels/setup_scalar.s"),
+            include_str!("../kernels/intensity.s"),
+            finish,
+            surface,
+            include_str!("../kernels/compiled.s"),
+            include_str!("../kernels/functions_scalar.s"),
+        ]
     }
 
     fn dual(&self) -> Vec<&'static str> {
@@ -281,9 +338,15 @@ impl Kernel {
         }
     }
 
-    /// The parameter block for a view.
+    /// The parameter block for a view; `clipper` is the address at which the clipper begins.
     #[must_use]
-    pub fn parameters(&self, transform: &Transform, light: &Light, heads: &Heads) -> [Word; PARAMETER_WORDS] {
+    pub fn parameters(
+        &self,
+        transform: &Transform,
+        light: &Light,
+        heads: &Heads,
+        clipper: Word,
+    ) -> [Word; PARAMETER_WORDS] {
         let mut words = ParameterWords([0; PARAMETER_WORDS]);
         let clip = transform.to_clip.rows();
         let normals = transform.normals.rows.map(normal_row);
@@ -309,6 +372,8 @@ impl Kernel {
         words.doubles(440, &[16.0, -16.0]);
         words.singles(456, &[screen::DEPTH_SCALE, 1.0 / 16.0, ROUND_DOUBLE as f32, TWO_18]);
         words.integers(472, &culled(transform.dropped));
+        words.integers(480, &[clipper]);
+        words.doubles(488, &[1.0 / 3.0]);
         self.sides().iter().zip([392, 416]).for_each(|((unit, less), at)| {
             words.doubles(at, &[*unit]);
             words.singles(at + 8, &[*unit as f32]);
@@ -377,6 +442,13 @@ const fn culled(dropped: Option<Turn>) -> [Word; 2] {
         Some(Turn::Clockwise) => [SIGN, SIGN],
         Some(Turn::Counterclockwise) => [0, SIGN],
     }
+}
+
+/// The source of what a processor does before the triangles of a pass: the labels `edit`, `reset` and `place` (kernels/place.s), of
+/// which the last one fills in what [`Kernel::parameters`] takes from a view and a light.
+#[must_use]
+pub fn place_source() -> String {
+    [include_str!("../kernels/parameters.s"), include_str!("../kernels/place.s")].join("\n")
 }
 
 /// A row of the matrix of normals in units of the command's normal.

@@ -62,6 +62,13 @@ pub(crate) fn reciprocal(w: f32) -> f32 {
     better * (2.0 - w * better)
 }
 
+/// The reciprocal of a number that is not 0, formed in the same way with three Newton steps in double precision.
+pub(crate) fn reciprocal_double(value: f64) -> f64 {
+    const CUT: u64 = !((1 << (52 - 8)) - 1);
+    let seed = f64::from_bits((1.0 / value).to_bits() & CUT);
+    (0..3).fold(seed, |near, _| near * (2.0 - value * near))
+}
+
 /// What the reciprocal of w is multiplied by for depths: the range of depths, rounded to a single.
 pub(crate) const DEPTH_SCALE: f32 = (DEPTH_FAR - DEPTH_NEAR) as f32;
 

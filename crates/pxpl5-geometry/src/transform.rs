@@ -125,11 +125,13 @@ impl ToScreen {
     /// snapped as everywhere, a cut in double precision.
     fn snap_corner<const N: usize>(&self, Corner { clip, cut, .. }: &Corner<N>) -> Option<Snapped> {
         let limit = f64::from(screen::GUARD_PIXELS * SUBPIXELS);
-        let inverse = 1.0 / clip[3];
+        if clip[3] < f64::from(clip::MIN_W) {
+            return None;
+        }
+        let inverse = screen::reciprocal_double(clip[3]);
         let x = (clip[0] * inverse) * f64::from(self.scale[0]) + f64::from(self.centre[0]);
         let y = (clip[1] * inverse) * f64::from(self.scale[1]) + f64::from(self.centre[1]);
-        let fits = x.abs() <= limit && y.abs() <= limit && clip[3] >= f64::from(clip::MIN_W);
-        if !fits {
+        if x.abs() > limit || y.abs() > limit {
             return None;
         }
         if !cut {

@@ -15,7 +15,7 @@ parameters::parameter_table! {
         triangle_ns: 21_700, "ns", Derived, 18000..=32000 in 0..=MAX, "870 clocks at 40 MHz for optimised PPHIGS; 1M/32 GPs gives 32 us as design figure";
         /// CPU time of one entry in a bin.
         bin_entry_ns: 1_000, "ns", Assumed, 500..=2000 in 0..=MAX, "a pointer store and a count, partly out of cache";
-        /// CPU time besides to find that a triangle is not wholly inside the guard band, and to leave it to the clipper.
+        /// CPU time besides of a triangle that the clipper cuts.
         guard_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "part of the time of a triangle in what was published; times of code count it by itself";
         /// CPU time of one sphere and eye.
         sphere_ns: 21_700, "ns", Assumed, 10000..=32000 in 0..=MAX, "one centre to transform instead of three vertices, but a conic to set up; taken as a triangle";
@@ -44,25 +44,49 @@ impl GpTiming {
 }
 
 // Times of primitives that follow from i860 code (derived from code): means over the three application scenes as
-// `pxpl5_lab::code_times` measures them; its test holds these constants to the code. Spheres and what is left to the clipper have no
-// code, and take the time of a triangle.
+// `pxpl5_lab::code_times` measures them; its test holds these constants to the code. Spheres have no code, and take the time of a
+// triangle; neither has the software of messages.
 impl GpTiming {
     /// This table with the times of the scheduled code for Phong triangles of a frame, in bins: PPHIGS.
     #[must_use]
     pub const fn of_scheduled_phong(self) -> Self {
-        Self { triangle_ns: 15_740, sphere_ns: 15_740, guard_ns: 31_795, bin_entry_ns: 2_294, ..self }
+        Self {
+            triangle_ns: 16_088,
+            sphere_ns: 16_088,
+            guard_ns: 210_694,
+            bin_entry_ns: 1_914,
+            edit_ns: 4_117,
+            pass_ns: 113_883,
+            ..self
+        }
     }
 
     /// This table with the times of the compiled code for Gouraud triangles of a field, thirty in a clump: Slats.
     #[must_use]
     pub const fn of_compiled_gouraud(self) -> Self {
-        Self { triangle_ns: 53_987, sphere_ns: 53_987, guard_ns: 7_805, bin_entry_ns: 0, ..self }
+        Self {
+            triangle_ns: 53_963,
+            sphere_ns: 53_963,
+            guard_ns: 131_546,
+            bin_entry_ns: 0,
+            edit_ns: 4_117,
+            pass_ns: 202_410,
+            ..self
+        }
     }
 
     /// The same of the scheduled code.
     #[must_use]
     pub const fn of_scheduled_gouraud(self) -> Self {
-        Self { triangle_ns: 20_037, sphere_ns: 20_037, guard_ns: 32_558, bin_entry_ns: 0, ..self }
+        Self {
+            triangle_ns: 20_295,
+            sphere_ns: 20_295,
+            guard_ns: 224_398,
+            bin_entry_ns: 0,
+            edit_ns: 4_117,
+            pass_ns: 208_558,
+            ..self
+        }
     }
 }
 

@@ -1,19 +1,20 @@
 //! Times of primitives that follow from i860 code, for the timing table: what a pass over the application scenes takes on a board.
 //!
 //! ```text
-//!   clocks of a pass = triangle * (inside the guard band) + guard * (left to the clipper) + entry * (entries of bins)
+//!   clocks of a pass = triangle * (triangles) + guard * (of these, cut by the clipper) + entry * (entries of bins)
 //! ```
 //!
 //! `guard` comes from triangles that cover the screen and reach beyond the guard band, the others from the three application scenes: a share
 //! of each, seen along its own head motion; the first pass only fills the caches. `entry` is the slope over all passes by least squares,
-//! `triangle` the mean of the scenes' means.
+//! `triangle` the mean of the scenes' means. Each is found from what the others leave of the time, in turn until they stay.
 
-use pphigs::{DisplayList, Pass, Picture, RegionBinning, Shading, Share};
+use glam::Mat4;
+use pphigs::{DisplayList, Editing, FrameView, ModelEdit, Pass, Picture, RegionBinning, Shading, Share};
 use pxpl5_geometry::Viewport;
-use pxpl5_gp::{CodeVersion, Processor, ProcessorFault};
+use pxpl5_gp::{CodeVersion, GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_machine::MachineConfig;
 use pxpl5_renderer::Layout;
-use pxpl5_run::{ExperimentError, display_list, views};
+use pxpl5_run::{ExperimentError, Views, display_list, views};
 use pxpl5_scene::{Hmd, HmdConfig, builtin};
 use pxpl5_sim::Time;
 use pxpl5_wire::{FieldParity, NodeId, ViewNumber};
@@ -33,6 +34,9 @@ const VIEW_PERIOD_PS: u64 = 500_000_000_000;
 const CLUMP: usize = 30;
 const CLUMPS: usize = 20;
 
+/// Edits of a message by which their time is measured: several, of matrices that lie one behind the other.
+const EDITS: u32 = 16;
+
 /// A board's memory (published TR94).
 const MEMORY: u64 = 8 << 20;
 
@@ -48,17 +52,24 @@ pub enum CodeUse {
 /// Times of primitives in nanoseconds, as the code gives them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CodeTimes {
-    /// A triangle wholly inside the guard band: mean of the scenes' means.
+    /// A triangle that is not cut: mean of the scenes' means.
     pub triangle_ns: f64,
     /// The least and the greatest scene's mean.
     pub triangle_range_ns: [f64; 2],
     /// An entry in a bin.
     pub entry_ns: f64,
-    /// A triangle that is left to the clipper.
+    /// A triangle that the clipper cuts, besides: its cuts, and all pieces but one.
     pub guard_ns: f64,
+    /// The beginning of a pass over one structure, as most scenes have it: mean of the scenes' means by structure.
+    pub pass_ns: f64,
+    /// An edit among others.
+    pub edit_ns: f64,
 }
 
-/// One pass: triangles inside the guard band, triangles left to the clipper, entries, nanoseconds.
+/// Rounds after which the times stay as they are: each takes over a small part of the last one's error.
+const ROUNDS: usize = 30;
+
+/// One pass: triangles that are not cut, triangles that are, entries, nanoseconds.
 type Sample = [f64; 4];
 
 impl CodeUse {
@@ -84,37 +95,42 @@ impl CodeUse {
 ///
 /// [`ExperimentError::Scene`] when a scene is not found or the code does not come to its end.
 pub fn code_times(version: CodeVersion, of: CodeUse) -> Result<CodeTimes, ExperimentError> {
-    let outside = samples(version, of, "full-screen:30", 1)?;
-    let guard_ns = guard(&outside);
+    let cut = samples(version, of, "full-screen:30", 1)?;
     let scenes: Vec<Vec<Sample>> =
         SCENES.iter().map(|scene| samples(version, of, scene, BOARDS)).collect::<Result<_, _>>()?;
-    let without_guard = |[inside, outside, entries, ns]: Sample| [inside, entries, ns - guard_ns * outside];
-    let all: Vec<[f64; 3]> = scenes.iter().flatten().copied().map(without_guard).collect();
-    let entry_ns = if of == CodeUse::Pphigs { slope_of_entries(&all) } else { 0.0 };
-    let means = scenes.iter().map(|samples| {
-        let rows = samples.iter().copied().map(without_guard);
-        let [triangles, ns] =
-            rows.fold([0.0; 2], |sum, [inside, entries, ns]| [sum[0] + inside, sum[1] + ns - entry_ns * entries]);
-        ns / triangles
-    });
-    let means: Vec<f64> = means.collect();
-    let range = [means.iter().copied().fold(f64::INFINITY, f64::min), means.iter().copied().fold(0.0, f64::max)];
-    Ok(CodeTimes {
-        triangle_ns: means.iter().sum::<f64>() / means.len() as f64,
-        triangle_range_ns: range,
-        entry_ns,
-        guard_ns,
-    })
+    let begun: Vec<f64> = SCENES.iter().map(|scene| beginning_ns(version, of, scene)).collect::<Result<_, _>>()?;
+    let pass_ns = begun.iter().sum::<f64>() / begun.len() as f64;
+    let edit_ns = edit_ns(version)?;
+    let range = [0.0; 2];
+    let mut times =
+        CodeTimes { triangle_ns: 0.0, triangle_range_ns: range, entry_ns: 0.0, guard_ns: 0.0, pass_ns, edit_ns };
+    for _ in 0..ROUNDS {
+        times.improve(of, &cut, &scenes);
+    }
+    Ok(times)
 }
 
-/// Least squares of ns = a inside + b outside over the screen-filling triangles; b.
-fn guard(samples: &[Sample]) -> f64 {
-    solve(samples.iter().map(|[inside, outside, _, ns]| ([*outside, *inside], *ns)))
-}
-
-/// Least squares of ns = a inside + b entries; b.
-fn slope_of_entries(rows: &[[f64; 3]]) -> f64 {
-    solve(rows.iter().map(|[inside, entries, ns]| ([*entries, *inside], *ns)))
+impl CodeTimes {
+    /// Finds each from what the others leave of the time.
+    fn improve(&mut self, of: CodeUse, cut: &[Sample], scenes: &[Vec<Sample>]) {
+        let of_clipper = self.triangle_ns + self.guard_ns;
+        let uncut = |sample: &Sample| [sample[0], sample[2], sample[3] - of_clipper * sample[1]];
+        if of == CodeUse::Pphigs {
+            self.entry_ns = solve(scenes.iter().flatten().map(uncut).map(|[uncut, n, ns]| ([n, uncut], ns)));
+        }
+        let entry_ns = self.entry_ns;
+        let mean = |samples: &Vec<Sample>| {
+            let rows = samples.iter().map(uncut);
+            let [n, ns] = rows.fold([0.0; 2], |sum, [uncut, n, ns]| [sum[0] + uncut, sum[1] + ns - entry_ns * n]);
+            ns / n
+        };
+        let means: Vec<f64> = scenes.iter().map(mean).collect();
+        self.triangle_ns = means.iter().sum::<f64>() / means.len() as f64;
+        self.triangle_range_ns =
+            [means.iter().copied().fold(f64::INFINITY, f64::min), means.iter().copied().fold(0.0, f64::max)];
+        let without_entries = |[uncut, cut, n, ns]: &Sample| ([*cut, *uncut], ns - entry_ns * n);
+        self.guard_ns = solve(cut.iter().map(without_entries)) - self.triangle_ns;
+    }
 }
 
 /// The factor of the first of two unknowns by least squares; where the second never occurs, of the first alone.
@@ -129,33 +145,91 @@ fn solve(rows: impl Iterator<Item = ([f64; 2], f64)>) -> f64 {
     if bb == 0.0 { ay / aa } else { (ay * bb - by * ab) / (aa * bb - ab * ab) }
 }
 
+/// A scene on a board, and its views.
+struct Rig {
+    share: Share,
+    views: Views,
+    processor: Processor,
+}
+
+fn fault(error: ProcessorFault) -> ExperimentError {
+    ExperimentError::Scene(error.to_string())
+}
+
+impl Rig {
+    fn new(version: CodeVersion, scene: &str, boards: usize) -> Result<Self, ExperimentError> {
+        let scene = Arc::new(builtin(scene).map_err(|error| ExperimentError::Scene(error.to_string()))?);
+        let list: Arc<DisplayList> = Arc::new(display_list(&scene).map_err(ExperimentError::Scene)?);
+        let hmd = Hmd::new(HmdConfig::unc()).map_err(|error| ExperimentError::Scene(error.to_string()))?;
+        let (views, _) = views(&scene, 1, hmd, 2);
+        let share = Share::new(list, 0, boards);
+        let mut processor = Processor::new(NodeId(1), MEMORY, version, MachineConfig::small_hmd().i860);
+        share.install(&mut processor).map_err(fault)?;
+        Ok(Self { share, views, processor })
+    }
+
+    fn view(&self, number: u64) -> FrameView {
+        (self.views)(ViewNumber(number), Time(number * VIEW_PERIOD_PS))
+    }
+}
+
 fn samples(version: CodeVersion, of: CodeUse, scene: &str, boards: usize) -> Result<Vec<Sample>, ExperimentError> {
-    let scene = Arc::new(builtin(scene).map_err(|error| ExperimentError::Scene(error.to_string()))?);
-    let list: Arc<DisplayList> = Arc::new(display_list(&scene).map_err(ExperimentError::Scene)?);
-    let hmd = Hmd::new(HmdConfig::unc()).map_err(|error| ExperimentError::Scene(error.to_string()))?;
-    let (views, _) = views(&scene, 1, hmd, 2);
-    let share = Share::new(list, 0, boards);
-    let fault = |error: ProcessorFault| ExperimentError::Scene(error.to_string());
-    let mut processor = Processor::new(NodeId(1), MEMORY, version, MachineConfig::small_hmd().i860);
-    share.install(&mut processor).map_err(fault)?;
+    let mut rig = Rig::new(version, scene, boards)?;
     let mut samples = Vec::new();
-    let parts = of.parts(&share);
+    let parts = of.parts(&rig.share);
     for number in 0..VIEWS {
-        let view = views(ViewNumber(number), Time(number * VIEW_PERIOD_PS));
+        let view = rig.view(number);
         for (part, eye) in parts.iter().flat_map(|part| [(part, 0), (part, 1)]) {
             let pass = part.transform(&view, eye, of.picture());
-            samples.extend(sample(&pass, &mut processor, eye as u8).map_err(fault)?);
+            samples.extend(sample(&pass, &mut rig.processor, eye as u8).map_err(fault)?);
         }
     }
     samples.remove(0);
     Ok(samples)
 }
 
+/// Mean time in which a pass begins, by structure: of each eye, or of both where one follows the other.
+fn beginning_ns(version: CodeVersion, of: CodeUse, scene: &str) -> Result<f64, ExperimentError> {
+    let eyes: &[&[usize]] = match of {
+        CodeUse::Pphigs => &[&[0], &[1]],
+        CodeUse::Slats => &[&[0, 1]],
+    };
+    let mut rig = Rig::new(version, scene, BOARDS)?;
+    let mut all_ns = 0.0;
+    for number in 0..VIEWS {
+        let view = rig.view(number);
+        for eyes in eyes {
+            let beginning = rig.share.beginning(&view, eyes, of.picture());
+            // The triangles of the pass before have taken the caches.
+            eyes.iter().try_for_each(|eye| {
+                let pass = rig.share.transform(&view, *eye, of.picture());
+                sample(&pass, &mut rig.processor, *eye as u8).map(|_| ()).map_err(fault)
+            })?;
+            let span = beginning.by_code(&GpTiming::PAPERS, &mut rig.processor).map_err(fault)?;
+            all_ns += span.0 as f64 / 1e3;
+        }
+    }
+    let structures = rig.share.list().structures.len().max(1);
+    Ok(all_ns / (VIEWS * eyes.len() as u64) as f64 / structures as f64)
+}
+
+/// Time of an edit: of one more in a message.
+fn edit_ns(version: CodeVersion) -> Result<f64, ExperimentError> {
+    let mut processor = Processor::new(NodeId(1), MEMORY, version, MachineConfig::small_hmd().i860);
+    let mut ns = |count: u32| {
+        let edits = (0..count).map(|structure| ModelEdit { structure, model: Mat4::IDENTITY }).collect();
+        let view = FrameView { number: ViewNumber::FIRST, eyes: Vec::new(), edits };
+        Editing(&view).by_code(&GpTiming::PAPERS, &mut processor).map(|span| span.0 as f64 / 1e3).map_err(fault)
+    };
+    let [one, more] = [ns(1)?, ns(1 + EDITS)?];
+    Ok((more - one) / f64::from(EDITS))
+}
+
 fn sample(pass: &Pass, processor: &mut Processor, context: u8) -> Result<Option<Sample>, ProcessorFault> {
     let Some(made) = pass.run_code(processor, context)? else { return Ok(None) };
-    let outside = made.left_to_clipper();
-    let inside = u64::from(pass.transformed().triangles) - outside;
-    Ok(Some([inside as f64, outside as f64, made.entries() as f64, made.span.0 as f64 / 1e3]))
+    let cut = pass.stats().clipped;
+    let uncut = u64::from(pass.transformed().triangles) - cut;
+    Ok(Some([uncut as f64, cut as f64, made.entries() as f64, made.span.0 as f64 / 1e3]))
 }
 
 #[cfg(test)]

@@ -264,7 +264,7 @@ mod tests {
             let phases = [Phase::Arrive, Phase::Work, Phase::Observe];
             let mut queue = EventQueue::new();
             let mut plain = Plain::default();
-            let mut follow = |queue: &mut EventQueue<usize>, plain: &mut Plain, now: u64, some: &[Follow]| {
+            let follow = |queue: &mut EventQueue<usize>, plain: &mut Plain, now: u64, some: &[Follow]| {
                 for (later, phase) in some {
                     queue.schedule(Time(now + later), phases[usize::from(*phase)], plain.scheduled);
                     plain.schedule(now + later, *phase);

@@ -4,9 +4,10 @@ use crate::config::RenderingControlConfig;
 use crate::master::copy_order;
 use crate::protocol::{StageOrder, Token};
 use crate::rules::EyeDrawing;
-use pphigs::{BIN_ENTRY_BYTES, FrameView, PROGRAM_BYTES, Pass, RegionEnvelope, Share, Transforming, region_messages};
+use pphigs::{
+    BIN_ENTRY_BYTES, Editing, FrameView, PROGRAM_BYTES, Pass, RegionEnvelope, Share, Transforming, region_messages,
+};
 use pxpl5_gp::{Account, Fault, Gp, Priority, Stage};
-use pxpl5_sim::Span;
 use pxpl5_wire::{Body, CommandList, PictureNumber, RegionId};
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -81,7 +82,7 @@ async fn transform_program(
     gp.reserve(Account::DisplayList, share.bytes(), None)?;
     gp.install(|processor| share.install(processor))?;
     for frame in PictureNumber::FIRST.onwards() {
-        let view = edit(&gp, &config, &state, frame).await;
+        let view = edit(&gp, &config, &state, frame).await?;
         for eye in 0..config.eyes() {
             let drawing = config.first_of(frame).after(eye);
             gp.until("leave to TRANSFORM", || (state.borrow().next_transform > drawing).then_some(())).await;
@@ -92,14 +93,19 @@ async fn transform_program(
 }
 
 /// EDIT: applies the edits of a frame and tells the master.
-async fn edit(gp: &Gp, config: &RenderingControlConfig, state: &SharedSlaveState, frame: PictureNumber) -> FrameView {
+async fn edit(
+    gp: &Gp,
+    config: &RenderingControlConfig,
+    state: &SharedSlaveState,
+    frame: PictureNumber,
+) -> Result<FrameView, Fault> {
     gp.until("leave to EDIT", || (state.borrow().next_edit > frame).then_some(())).await;
     let view = gp.until("SEND of the frame", || state.borrow_mut().views.pop_front()).await;
     gp.begin(Stage::Edit, frame, None);
-    gp.spend(Span::from_ns(gp.timing().edit_ns) * view.edits.len() as u64).await;
+    gp.work(&Editing(&view)).await?;
     gp.end(Stage::Edit, frame, None);
     tell_master(gp, config, &StageOrder::Edited(frame)).await;
-    view
+    Ok(view)
 }
 
 /// TRANSFORM: makes commands of all held primitives and puts them into bins, when there is room for them.

@@ -4,8 +4,7 @@ use crate::bind::{Binding, BoundRegion};
 use crate::config::SlatsConfig;
 use crate::schedule::CopySchedule;
 use pphigs::{
-    FrameView, PROGRAM_BYTES, Pass, Picture, RegionEnvelope, Share, TransformCost, Transforming, ViewWordsError,
-    copy_message, region_messages,
+    FrameView, PROGRAM_BYTES, Pass, RegionEnvelope, Share, Transforming, ViewWordsError, copy_message, region_messages,
 };
 use pxpl5_gp::{Account, Fault, Gp, Priority, Stage, Ticket};
 use pxpl5_wire::{
@@ -236,7 +235,6 @@ impl SlatsProcessor {
         let number = PictureNumber::drawn_for(field);
         self.gp.begin_view(Stage::Sample, number, view.number);
         self.gp.begin(Stage::Transform, number, None);
-        self.gp.spend(TransformCost::PASS.span(&self.gp.timing())).await;
         let picture = self.config.picture(FieldParity::of_field(field));
         let mut clumps: Vec<_> = self.share.clumps(CLUMP).collect();
         if clumps.is_empty() {
@@ -245,7 +243,8 @@ impl SlatsProcessor {
         }
         let last = clumps.len() - 1;
         for (i, clump) in clumps.iter().enumerate() {
-            let passes = self.transform(clump, view, picture).await?;
+            let passes = Eye::BOTH.map(|eye| clump.transform(view, eye.index(), picture));
+            self.gp.work(&Transforming { passes: &passes, context: 0, begins: i == 0 }).await?;
             self.gp.clump_buffer_free().await;
             if i == 0 {
                 self.gp.begin(Stage::Render, number, None);
@@ -258,13 +257,6 @@ impl SlatsProcessor {
         }
         self.gp.end(Stage::Transform, number, None);
         Ok(())
-    }
-
-    /// One pass over a clump for both eyes.
-    async fn transform(&self, clump: &Share, view: &FrameView, picture: Picture) -> Result<[Arc<Pass>; 2], Fault> {
-        let passes = Eye::BOTH.map(|eye| clump.transform(view, eye.index(), picture));
-        self.gp.work(&Transforming { passes: &passes, context: 0, begins: false }).await?;
-        Ok(passes)
     }
 
     /// Sends a clump to all its regions as one chain of messages.

@@ -40,7 +40,7 @@ pub struct Program {
     pub symbols: BTreeMap<String, u32>,
     /// Labels only, by address.
     pub labels: Vec<(String, u32)>,
-    /// Source line of every instruction, by address.
+    /// Source line of every instruction in its own source, by address.
     pub lines: Vec<(u32, usize)>,
 }
 
@@ -56,6 +56,32 @@ impl Program {
     pub fn symbol(&self, name: &str) -> Option<u32> {
         self.symbols.get(name).copied()
     }
+}
+
+/// Assembles sources that know nothing of each other's names, each behind the last one at a multiple of 32 bytes, and gives them as one
+/// program. A label that several have is that of the first.
+///
+/// # Errors
+/// As [`assemble`], of the first source with faults.
+///
+/// ```
+/// let program = i860::link(0x1000, &[("one.s", "start: bri r1\n nop"), ("two.s", "start: nop\nother: bri r1\n nop")]).unwrap();
+/// assert_eq!([program.symbol("start"), program.symbol("other")], [Some(0x1000), Some(0x1024)]);
+/// assert_eq!(program.words().len(), 8 + 3);
+/// ```
+pub fn link(base: u32, sources: &[(&str, &str)]) -> Result<Program, AssemblyErrors> {
+    let empty = Program { base, bytes: Vec::new(), symbols: BTreeMap::new(), labels: Vec::new(), lines: Vec::new() };
+    sources.iter().try_fold(empty, |mut all, (file, source)| {
+        all.bytes.resize(all.bytes.len().next_multiple_of(32), 0);
+        let next = assemble(file, base + all.bytes.len() as u32, source)?;
+        all.bytes.extend(next.bytes);
+        next.symbols.into_iter().for_each(|(name, value)| {
+            all.symbols.entry(name).or_insert(value);
+        });
+        all.labels.extend(next.labels);
+        all.lines.extend(next.lines);
+        Ok(all)
+    })
 }
 
 /// A little-endian word of up to four bytes, the missing ones zero.

@@ -4,7 +4,7 @@
 #![allow(dead_code, reason = "the test and the example each use a part")]
 
 use glam::{Mat4, Vec3};
-use i860::{Config, Cpu, Profile, Program, Ram, RunEnd, assemble, linear};
+use i860::{Config, Cpu, Profile, Program, Ram, RunEnd, linear, link};
 use pxpl5_geometry::kernel::{Heads, Kernel, KernelList, KernelSurface, Schedule, display_list_words, vertex_words};
 use pxpl5_geometry::{Culling, Light, SetupStats, Transform, Triangle, ViewTransform, Viewport};
 use pxpl5_renderer::{Command, Layout};
@@ -16,10 +16,9 @@ pub(crate) const MEMORY: usize = 8 << 20;
 const CODE: u32 = 0x1000;
 const PARAMETERS: u32 = 0x1_0000;
 const BIN_TABLE: u32 = 0x1_0200;
-const STACK: u32 = 0x1_0400;
+const STACK: u32 = 0x1_1400;
 const TRIANGLES: u32 = 0x2_0000;
 const COMMANDS: u32 = 0x20_0000;
-const CLIP_LIST: u32 = 0x50_0000;
 const BINS: u32 = 0x60_0000;
 const BIN_BYTES: u32 = 0x1_8000;
 const RETURN: u32 = 0x0800;
@@ -30,10 +29,11 @@ pub(crate) const fn frame(schedule: Schedule) -> Kernel {
     Kernel { schedule, surface: KernelSurface::Gouraud, list, field: false, binned: true, culls: false }
 }
 
-/// The kernel, assembled with its own options.
+/// The kernel and its clipper, assembled.
 pub(crate) fn program(kernel: Kernel) -> Program {
     let source = linear::schedule(&kernel.source()).unwrap_or_else(|e| panic!("{e}"));
-    assemble("kernel", CODE, &source).unwrap_or_else(|e| panic!("{e}"))
+    let sources = [("kernel", source.as_str()), ("clipper", &kernel.clipper_source())];
+    link(CODE, &sources).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// A view over a frame of 640 x 480.
@@ -124,17 +124,9 @@ pub(crate) fn strips(lengths: &[usize], size: f32, seed: u64) -> Vec<Strip> {
     lengths.iter().map(strip).collect()
 }
 
-/// All triangles of strips, each with corners of its own, and for each the number of its first vertex in the display list.
-pub(crate) fn triangles_of(strips: &[Strip]) -> (Vec<Triangle>, Vec<usize>) {
-    let triangles = strips.iter().flat_map(Strip::triangles).collect();
-    let mut first = 0;
-    let mut places = Vec::new();
-    for strip in strips {
-        let vertices = strip.positions.len();
-        places.extend(first..first + vertices - 2);
-        first += vertices;
-    }
-    (triangles, places)
+/// All triangles of strips, each with corners of its own.
+pub(crate) fn triangles_of(strips: &[Strip]) -> Vec<Triangle> {
+    strips.iter().flat_map(Strip::triangles).collect()
 }
 
 /// What a kernel left in memory.
@@ -144,49 +136,46 @@ pub(crate) struct Output {
     pub(crate) commands: Vec<Vec<u32>>,
     /// Regions of each command, by rising number.
     pub(crate) regions: Vec<Vec<u16>>,
-    /// Numbers of the triangles left to the clipper; of strips, those of their first vertices.
-    pub(crate) clipped: Vec<usize>,
 }
 
-/// What native code makes of the triangles: the commands of those wholly inside the guard band, their regions, and
-/// the numbers of the rest; and the number of planes flattened, which the kernels do not do.
+/// What native code makes of the triangles in a view: the commands of all pieces and their regions; and its counts.
 pub(crate) fn native(
-    surface: KernelSurface,
+    kernel: Kernel,
+    view: &ViewTransform,
     viewport: Viewport,
-    culling: Culling,
     triangles: &[Triangle],
-) -> (Output, u64) {
-    let transform = Transform::new(&view(), viewport, culling).expect("finite");
+) -> (Output, SetupStats) {
+    let transform = Transform::new(view, viewport, culling(kernel)).expect("finite");
     let light = light();
     let mut stats = SetupStats::default();
-    let mut output = Output { commands: Vec::new(), regions: Vec::new(), clipped: Vec::new() };
-    for (n, triangle) in triangles.iter().enumerate() {
-        let before = (stats.clipped, stats.outside, stats.not_finite);
+    let mut flattened = SetupStats::default();
+    let mut output = Output { commands: Vec::new(), regions: Vec::new() };
+    for triangle in triangles {
         let mut found = Vec::new();
-        match surface {
+        match kernel.surface {
             KernelSurface::Gouraud => transform.gouraud(triangle, &light, &mut stats, |screen| {
-                let t = screen.gouraud(&viewport, &mut SetupStats::default());
+                let t = screen.gouraud(&viewport, &mut flattened);
                 let command = pxpl5_renderer::TriangleCommand { edges: t.edges, depth: t.z, colour: t.rgb };
                 found.push((Command::Triangle(command), screen.outline));
             }),
             KernelSurface::Phong => transform.phong(triangle, &mut stats, |screen| {
-                let t = screen.phong(&viewport, &mut SetupStats::default());
+                let t = screen.phong(&viewport, &mut flattened);
                 let colour = t.colour.iter().fold(0, |word, byte| word << 8 | u32::from(*byte));
                 let command =
                     pxpl5_renderer::PhongTriangleCommand { edges: t.edges, depth: t.z, normal: t.normal, colour };
                 found.push((Command::PhongTriangle(command), screen.outline));
             }),
         }
-        if before != (stats.clipped, stats.outside, stats.not_finite) {
-            output.clipped.push(n);
-            continue;
-        }
         for (command, outline) in found {
             output.commands.push(words(&command));
             output.regions.push(outline.regions.iter().map(|r| r.0).collect());
         }
     }
-    (output, stats.flattened_planes)
+    (output, SetupStats { flattened_planes: flattened.flattened_planes, ..stats })
+}
+
+fn culling(kernel: Kernel) -> Culling {
+    if kernel.culls { Culling::Back } else { Culling::None }
 }
 
 fn words(command: &Command) -> Vec<u32> {
@@ -223,22 +212,35 @@ impl Bench {
     /// A processor with kernel, tables and triangles in its memory, ready to be called.
     pub(crate) fn new(kernel: Kernel, viewport: Viewport, config: Config, triangles: &[Triangle]) -> Bench {
         let data: Vec<u32> = triangles.iter().flat_map(display_list_words).collect();
-        Bench::over(kernel, viewport, config, &data, triangles.len())
+        Bench::over(kernel, &view(), viewport, config, &data, triangles.len())
+    }
+
+    /// The same in another view than that of the reports.
+    pub(crate) fn in_view(kernel: Kernel, view: &ViewTransform, viewport: Viewport, triangles: &[Triangle]) -> Bench {
+        let data: Vec<u32> = triangles.iter().flat_map(display_list_words).collect();
+        Bench::over(kernel, view, viewport, Config::functional(), &data, triangles.len())
     }
 
     /// The same for the kernel of strips.
     pub(crate) fn of_strips(kernel: Kernel, viewport: Viewport, config: Config, strips: &[Strip]) -> Bench {
         let data: Vec<u32> = strips.iter().flat_map(Strip::words).collect();
-        Bench::over(kernel, viewport, config, &data, data.len() / 8)
+        Bench::over(kernel, &view(), viewport, config, &data, data.len() / 8)
     }
 
-    fn over(kernel: Kernel, viewport: Viewport, config: Config, data: &[u32], count: usize) -> Bench {
+    fn over(
+        kernel: Kernel,
+        view: &ViewTransform,
+        viewport: Viewport,
+        config: Config,
+        data: &[u32],
+        count: usize,
+    ) -> Bench {
         let mut ram = Ram::new(0, MEMORY);
         let program = program(kernel);
         ram.load(CODE, &program.bytes).expect("fits");
-        let culling = if kernel.culls { Culling::Back } else { Culling::None };
-        let transform = Transform::new(&view(), viewport, culling).expect("finite");
-        let parameters = kernel.parameters(&transform, &light(), &heads(kernel.surface));
+        let transform = Transform::new(view, viewport, culling(kernel)).expect("finite");
+        let clipper = program.symbol("clipper").expect("clipper");
+        let parameters = kernel.parameters(&transform, &light(), &heads(kernel.surface), clipper);
         ram.load_words(PARAMETERS, &parameters).expect("fits");
         assert!(4 * data.len() < (COMMANDS - TRIANGLES) as usize);
         ram.load_words(TRIANGLES, data).expect("fits");
@@ -250,29 +252,28 @@ impl Bench {
         Bench { cpu: Cpu::new(config), program, ram, count: count as u32, step, command_bytes, regions }
     }
 
-    fn call(&mut self, first: u32, count: u32, commands: u32, clip_list: u32) {
+    fn call(&mut self, first: u32, count: u32, commands: u32) {
         let state = &mut self.cpu.state;
         state.pc = self.program.symbol("start").expect("start");
         (state.r[1], state.r[2]) = (RETURN, STACK);
         (state.r[16], state.r[17], state.r[18]) = (first, count, commands);
-        (state.r[19], state.r[20], state.r[21]) = (BIN_TABLE, PARAMETERS, clip_list);
-        let outcome = self.cpu.run(&mut self.ram, Some(RETURN), 20_000 * u64::from(count) + 1000);
+        (state.r[19], state.r[20]) = (BIN_TABLE, PARAMETERS);
+        let outcome = self.cpu.run(&mut self.ram, Some(RETURN), 100_000 * u64::from(count) + 1000);
         assert_eq!(outcome, RunEnd::Stopped, "pc {:#x}", self.cpu.state.pc);
     }
 
     /// Runs the kernel over all triangles in one call.
     pub(crate) fn run(&mut self) {
-        self.call(TRIANGLES, self.count, COMMANDS, CLIP_LIST);
+        self.call(TRIANGLES, self.count, COMMANDS);
     }
 
     /// Runs the kernel over all triangles, with empty caches before each.
     pub(crate) fn run_cold(&mut self) {
         let mut commands = COMMANDS;
-        let mut clip_list = CLIP_LIST;
         for n in 0..self.count {
             self.cpu.empty_caches();
-            self.call(TRIANGLES + self.step * n, 1, commands, clip_list);
-            (commands, clip_list) = (self.cpu.state.r[18], self.cpu.state.r[21]);
+            self.call(TRIANGLES + self.step * n, 1, commands);
+            commands = self.cpu.state.r[18];
         }
     }
 
@@ -294,12 +295,6 @@ impl Bench {
                 by_command.entry((command - COMMANDS) / self.command_bytes).or_default().push(n);
             }
         }
-        let list = (self.cpu.state.r[21] - CLIP_LIST) as usize / 4;
-        let clipped = self.ram.words(CLIP_LIST, list).expect("inside");
-        Output {
-            commands,
-            regions: by_command.into_values().collect(),
-            clipped: clipped.iter().map(|at| ((at - TRIANGLES) / self.step) as usize).collect(),
-        }
+        Output { commands, regions: by_command.into_values().collect() }
     }
 }

@@ -55,7 +55,9 @@ fn of_code(text: &mut String, rows: &[FigureRow], of_code: &[FigureRow]) {
     let _ = write!(
         text,
         "\nMean error of the free checks: {:.1} % with the table, {:.1} % with the code (a figure without value counts 100 %: with the\n\
-         code a Slats of 1994 has no time for the 100 triangles of figures 9 and 9b, and no field is ever in time).\n\
+         code a Slats of 1994 has no time for the 100 triangles of figures 9 and 9b, and no field is ever in time). Most moved are\n\
+         the limits of Slats: nearly all triangles that cover the screen reach beyond the guard band here, and the clipper takes several\n\
+         times as long to cut one and set its pieces up as a small triangle takes. How the papers' triangles ended is not printed.\n\
          The published and fitted table stays the default: two of its three times are what the papers' limits of triangles say\n\
          of their own code, whose source nobody has; ours is other code for the same processor, under rules of freezing and memory\n\
          that are assumed in part. What it shows is how far a program of that time explains the figures without a fit.\n",

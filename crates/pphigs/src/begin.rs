@@ -1,0 +1,127 @@
+//! What comes before the triangles of a pass as work of a board: edits of the display list, and its structures put in their places.
+//!
+//! Both are code in the manner of a compiler (`pxpl5_geometry::kernel::place_source`), the same for every version of the kernels. What
+//! a view decides of a structure's parameter block it computes in front of the pass; the block that a kernel then finds is written
+//! from outside, equal in every word (tests/begin.rs).
+
+use crate::cost::TransformCost;
+use crate::layout::{BIN_TABLE, CODE, DISPLAY_LIST, MESSAGE, MODELS, PARAMETERS, STACK};
+use crate::list::{DisplayList, Share};
+use crate::picture::{Picture, RegionBinning};
+use crate::placed::PlacedStructure;
+use crate::placing::place_once;
+use crate::view::FrameView;
+use glam::Mat4;
+use i860::Program;
+use pxpl5_geometry::Culling;
+use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
+use pxpl5_sim::Span;
+use pxpl5_wire::Word;
+use std::sync::{Arc, LazyLock};
+
+/// Structures whose matrices there is room for, before the display list.
+const MOST_STRUCTURES: u32 = (DISPLAY_LIST - MODELS) / MATRIX_BYTES;
+const MATRIX_BYTES: u32 = 64;
+/// Words of an edit: the structure's number and its matrix.
+const EDIT_WORDS: u32 = 17;
+
+/// Instructions after which the code is taken to be endless: many times what it needs.
+const BUDGET: u64 = 20_000;
+
+/// EDIT of a view.
+#[derive(Clone, Copy, Debug)]
+pub struct Editing<'a>(pub &'a FrameView);
+
+impl Work for Editing<'_> {
+    fn by_table(&self, timing: &GpTiming) -> Span {
+        Span::from_ns(timing.edit_ns) * self.0.edits.len() as u64
+    }
+
+    fn by_code(&self, _: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
+        let edits = &self.0.edits;
+        // Those of structures that are not there change nothing.
+        let words = edits.iter().filter(|edit| edit.structure < MOST_STRUCTURES).flat_map(|edit| {
+            let matrix = edit.model.to_cols_array().map(f32::to_bits);
+            std::iter::once(edit.structure).chain(matrix)
+        });
+        let words: Vec<Word> = words.collect();
+        processor.write(MESSAGE, &words)?;
+        let count = words.len() as u32 / EDIT_WORDS;
+        let registers = [(16, MESSAGE), (17, count), (18, MODELS)];
+        processor.call(&PROGRAM, "edit", &registers, BUDGET * u64::from(count + 1))
+    }
+}
+
+/// The beginning of a pass over the display list, for one eye or for both.
+#[derive(Clone, Debug)]
+pub struct Beginning {
+    list: Arc<DisplayList>,
+    eyes: Vec<Arc<[PlacedStructure]>>,
+    /// Bins that are reset for each eye; none where there are no bins.
+    bins: u32,
+}
+
+impl Share {
+    /// The beginning of a pass for some eyes of a view.
+    #[must_use]
+    pub fn beginning(&self, view: &FrameView, eyes: &[usize], picture: Picture) -> Beginning {
+        let eyes = eyes.iter().map(|eye| place_once(&self.list, view, *eye, picture.viewport)).collect();
+        Beginning::new(&self.list, eyes, picture)
+    }
+}
+
+impl Beginning {
+    pub(crate) fn new(list: &Arc<DisplayList>, eyes: Vec<Arc<[PlacedStructure]>>, picture: Picture) -> Self {
+        let bins = match picture.binning {
+            RegionBinning::Touched => picture.viewport.grid().regions(),
+            RegionBinning::All => 0,
+        };
+        Self { list: Arc::clone(list), eyes, bins }
+    }
+}
+
+impl Work for Beginning {
+    fn by_table(&self, timing: &GpTiming) -> Span {
+        TransformCost::PASS.span(timing)
+    }
+
+    fn by_code(&self, _: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
+        let mut span = Span::ZERO;
+        for placed in &self.eyes {
+            if self.bins > 0 {
+                // Where bins begin: what a kernel finds depends on how full they become, and is written before it is called.
+                let registers = [(16, MESSAGE), (17, self.bins), (19, BIN_TABLE)];
+                span += processor.call(&PROGRAM, "reset", &registers, BUDGET)?;
+            }
+            for place in placed.iter().filter(|place| place.transform.is_some()) {
+                span += place.run_code(&self.list, processor)?;
+            }
+        }
+        Ok(span)
+    }
+}
+
+impl PlacedStructure {
+    /// Computes the view's part of the parameter block on a board, and gives the time that it takes.
+    ///
+    /// # Errors
+    ///
+    /// [`ProcessorFault`] when the code does not come to its end, or the board has no room for it.
+    pub fn run_code(&self, list: &DisplayList, processor: &mut Processor) -> Result<Span, ProcessorFault> {
+        let matrices = self.matrices.iter().flat_map(Mat4::to_cols_array);
+        let [x, y, z] = list.towards_light.to_array();
+        let words: Vec<Word> = matrices.chain([x, y, z, list.ambient, list.diffuse]).map(f32::to_bits).collect();
+        processor.write(MESSAGE, &words)?;
+        let [to_eye, model, projection, light] = [0, 1, 2, 3].map(|n| MESSAGE + n * MATRIX_BYTES);
+        let culls = Word::from(self.structure.culling != Culling::None);
+        let data = [(16, to_eye), (17, model), (18, projection), (19, light)];
+        let registers = [data.as_slice(), &[(2, STACK), (20, PARAMETERS), (21, culls)]].concat();
+        processor.call(&PROGRAM, "place", &registers, BUDGET)
+    }
+}
+
+static PROGRAM: LazyLock<Arc<Program>> =
+    LazyLock::new(|| match i860::assemble("place", CODE, &pxpl5_geometry::kernel::place_source()) {
+        Ok(program) => Arc::new(program),
+        Err(errors) => unreachable!("it is assembled by the tests: {errors}"),
+    });

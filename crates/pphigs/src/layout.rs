@@ -1,0 +1,22 @@
+//! Where code and data lie in a board's memory.
+//!
+//! ```text
+//!   0          1 MB                            ...                 8 MB
+//!   | code, parameters, | display list | commands, bins   ...  | commands, bins |
+//!   | table of bins, stack             | of context 0          |  of context 1  |
+//! ```
+
+/// Where the code begins; below are a processor's vectors.
+pub(crate) const CODE: u32 = 0x1000;
+/// A kernel's parameter block.
+pub(crate) const PARAMETERS: u32 = 0x1_0000;
+/// Where a kernel finds the end of each bin, and leaves it.
+pub(crate) const BIN_TABLE: u32 = 0x1_0200;
+/// A kernel's stack frame, and the clipper's below.
+pub(crate) const STACK: u32 = 0x1_1400;
+/// The display list lies behind the first megabyte, which is the program's.
+pub(crate) const DISPLAY_LIST: u32 = 1 << 20;
+/// Where a message of the host lies: matrices, edits.
+pub(crate) const MESSAGE: u32 = 0x1_4000;
+/// Model matrices by structure.
+pub(crate) const MODELS: u32 = 0x1_6000;

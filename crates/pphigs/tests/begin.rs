@@ -1,0 +1,157 @@
+//! The beginning of a pass and edits as i860 code: the same parameter blocks and matrices as the native firmware's.
+
+use glam::{Mat4, Quat, Vec3};
+use pphigs::{
+    DisplayList, DisplayStructure, Editing, EyeView, FrameView, ModelEdit, ModelFrame, Picture, PlacedStructure,
+    RegionBinning, Shading, Share, place_all,
+};
+use pxpl5_geometry::kernel::{Kernel, KernelSurface, PARAMETER_WORDS, Schedule};
+use pxpl5_geometry::{Culling, Viewport};
+use pxpl5_gp::{CodeVersion, GpTiming, Processor, Work};
+use pxpl5_renderer::Layout;
+use pxpl5_sim::SplitMix64;
+use pxpl5_wire::{FieldParity, NodeId, ViewNumber, Word};
+use std::sync::Arc;
+
+const PARAMETERS: u32 = 0x1_0000;
+const MODELS: u32 = 0x1_6000;
+
+fn board() -> Processor {
+    Processor::new(NodeId(1), 2 << 20, CodeVersion::Compiled, i860::Config::cycle())
+}
+
+struct Numbers(SplitMix64);
+
+impl Numbers {
+    /// -1 to 1.
+    fn next(&mut self) -> f32 {
+        2.0 * self.0.unit() - 1.0
+    }
+
+    fn vector(&mut self, size: f32) -> Vec3 {
+        Vec3::new(self.next(), self.next(), self.next()) * size
+    }
+
+    fn rigid(&mut self) -> Mat4 {
+        let turn = Quat::from_scaled_axis(self.vector(3.0));
+        Mat4::from_rotation_translation(turn, self.vector(20.0))
+    }
+
+    /// Turned, moved, as large as before up to a factor, one in three mirrored.
+    fn model(&mut self, n: usize) -> Mat4 {
+        let size = 10.0_f32.powf(self.next());
+        let mirror = if n.is_multiple_of(3) { -1.0 } else { 1.0 };
+        self.rigid() * Mat4::from_scale(Vec3::new(mirror * size, size, size))
+    }
+
+    fn projection(&mut self, n: usize) -> Mat4 {
+        if n % 5 == 4 {
+            return Mat4::orthographic_rh(-3.0 + self.next(), 4.0, -2.0, 2.0 + self.next(), 0.1, 60.0);
+        }
+        let lens = Mat4::perspective_rh(1.2 + 0.5 * self.next(), 4.0 / 3.0, 0.1, 60.0);
+        let mut beside = lens;
+        beside.z_axis.x = 0.2 * self.next();
+        beside
+    }
+}
+
+fn list(culling: Culling, light: Vec3) -> DisplayList {
+    let structure = |frame| DisplayStructure { triangles: 0..0, spheres: 0..0, frame, culling };
+    DisplayList {
+        structures: vec![structure(ModelFrame::World), structure(ModelFrame::Head)],
+        towards_light: light.normalize(),
+        ambient: 0.3,
+        diffuse: 0.6,
+        ..DisplayList::default()
+    }
+}
+
+fn view(numbers: &mut Numbers, n: usize) -> FrameView {
+    let eye =
+        EyeView { world_to_eye: numbers.rigid(), head_to_eye: numbers.rigid(), projection: numbers.projection(n) };
+    let edits = (0..2).map(|structure| ModelEdit { structure, model: numbers.model(n + structure as usize) });
+    // One in seven has a structure that was never edited.
+    FrameView { number: ViewNumber::FIRST, eyes: vec![eye], edits: edits.skip(usize::from(n % 7 == 6)).collect() }
+}
+
+fn native(kernel: Kernel, place: &PlacedStructure) -> [Word; PARAMETER_WORDS] {
+    let transform = place.transform.as_ref().expect("finite matrices");
+    kernel.parameters(transform, &place.light, &[0; 8], 0)
+}
+
+#[test]
+fn the_code_fills_parameter_blocks_as_the_native_firmware_does() {
+    let mut numbers = Numbers(SplitMix64::new(31));
+    let mut processor = board();
+    for n in 0..3000 {
+        let culls = n % 2 == 1;
+        let list = list(if culls { Culling::Back } else { Culling::None }, numbers.vector(1.0));
+        let view = view(&mut numbers, n);
+        let viewport = Viewport::FRAME;
+        let kernel = Kernel::for_picture(Schedule::Compiled, KernelSurface::Phong, &viewport, true).expect("a frame");
+        let kernel = Kernel { culls, ..kernel };
+        for place in place_all(&list, &view, 0, viewport) {
+            let expected = native(kernel, &place);
+            // What a view decides is spoilt first.
+            let mut spoilt = expected;
+            [0..19, 68..71, 72..75, 76..79, 80..83, 84..86, 118..120]
+                .into_iter()
+                .flatten()
+                .for_each(|at| spoilt[at] = 0xAAAA_AAAA);
+            processor.write(PARAMETERS, &spoilt).expect("in memory");
+            place.run_code(&list, &mut processor).expect("it returns");
+            let found = processor.read(PARAMETERS, PARAMETER_WORDS).expect("in memory");
+            for (at, (f, e)) in found.iter().zip(expected).enumerate() {
+                assert_eq!(*f, e, "view {n}, word {at}: {} for {}", f32::from_bits(*f), f32::from_bits(e));
+            }
+        }
+    }
+}
+
+#[test]
+fn edits_replace_the_matrices_of_their_structures_and_no_others() {
+    let mut numbers = Numbers(SplitMix64::new(32));
+    let mut processor = board();
+    let mut models = vec![[0; 16]; 40];
+    for count in [0, 1, 2, 17] {
+        let edits: Vec<_> =
+            (0..count).map(|n| ModelEdit { structure: (7 * n + count) as u32 % 40, model: numbers.model(n) }).collect();
+        edits.iter().for_each(|edit| models[edit.structure as usize] = edit.model.to_cols_array().map(f32::to_bits));
+        let view = FrameView { number: ViewNumber::FIRST, eyes: Vec::new(), edits };
+        let span = Editing(&view).by_code(&GpTiming::PAPERS, &mut processor).expect("it returns");
+        assert!(span > pxpl5_sim::Span::ZERO);
+        assert!(processor.read(MODELS, 40 * 16).expect("in memory") == models.concat(), "{count} edits");
+    }
+}
+
+/// A structure's number that no table has room for is left out, whatever its size.
+#[test]
+fn edits_of_structures_that_are_not_there_change_nothing() {
+    let edits = vec![ModelEdit { structure: u32::MAX, model: Mat4::IDENTITY }];
+    let view = FrameView { number: ViewNumber::FIRST, eyes: Vec::new(), edits };
+    let mut processor = board();
+    Editing(&view).by_code(&GpTiming::PAPERS, &mut processor).expect("it returns");
+    assert!(processor.read(MODELS, 1 << 10).expect("in memory").iter().all(|word| *word == 0));
+}
+
+/// Without structures a pass begins with its bins alone.
+#[test]
+fn bins_are_reset_to_where_they_begin() {
+    const MESSAGE: u32 = 0x1_4000;
+    const BIN_TABLE: u32 = 0x1_0200;
+    let mut numbers = SplitMix64::new(33);
+    let heads: Vec<Word> = (0..40).map(|_| numbers.bits() as Word).collect();
+    let share = Share::new(Arc::new(DisplayList::default()), 0, 1);
+    let view = view(&mut Numbers(SplitMix64::new(34)), 0);
+    for (viewport, bins) in [(Viewport::FRAME, 20), (Viewport::field(FieldParity::Odd), 10)] {
+        let mut processor = board();
+        processor.write(MESSAGE, &heads).expect("in memory");
+        let layout = Layout::rendering_control_phong();
+        let binning = RegionBinning::Touched;
+        let picture = Picture { viewport, shading: Shading::Phong, binning, layout, pixels: false };
+        share.beginning(&view, &[0], picture).by_code(&GpTiming::PAPERS, &mut processor).expect("it returns");
+        let table = processor.read(BIN_TABLE, 40).expect("in memory");
+        assert_eq!(table[..bins], heads[..bins]);
+        assert!(table[bins..].iter().all(|word| *word == 0), "{bins} bins");
+    }
+}

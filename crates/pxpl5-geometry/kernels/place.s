@@ -1,0 +1,384 @@
+// The beginning of a pass and what the host changes in the display list, as a good compiler of about 1990 would give plain functions in
+// C (compiled_rules.md). Matrices are singles, column after column, as the host sends them; sums are formed in double precision, in
+// the order of the native code, and rounded once. Divisions are Newton steps in double precision.
+//
+//   edit   r16 edits of a message, each the number of a structure and its model matrix, r17 their number, r18 model matrices by structure
+//   reset  r16 where each bin begins, r17 number of bins, r19 table of bins
+//   place  r16 matrix to the eye, r17 model matrix, r18 projection, r19 light (towards it, x y z; part in shadow; part added), r20
+//          parameter block, r21 not 0 if triangles that face away are not drawn, r2 stack: what depends on the view of a structure,
+//          whose matrix to the eye has an inverse
+
+MATRIX_BYTES = 64
+
+// ---- stack frame
+SAVE    = 0
+VECTOR  = 16       // four doubles
+PRODUCT = 48       // four doubles
+EYE     = 80       // the model-view matrix, singles
+ROWS    = 144      // columns of rows x y z to the eye, doubles: 32 bytes a column
+CROSS   = 240      // y x z, z x x, x x y of the columns, doubles
+ORIGIN  = 312      // of the eye, doubles
+FRAME   = 352
+
+edit:   bte     r0, r17, edited
+each:   ld.l    0(r16), r8
+        adds    4, r16, r16
+        shl     6, r8, r8
+        adds    r18, r8, r9
+        mov     16, r10
+word:   ld.l    0(r16), r11
+        adds    -1, r10, r10
+        adds    4, r16, r16
+        st.l    r11, 0(r9)
+        adds    4, r9, r9
+        btne    r0, r10, word
+        adds    -1, r17, r17
+        btne    r0, r17, each
+edited: bri     r1
+        nop
+
+reset:  ld.l    0(r16), r8
+        adds    -1, r17, r17
+        adds    4, r16, r16
+        st.l    r8, 0(r19)
+        adds    4, r19, r19
+        btne    r0, r17, reset
+        bri     r1
+        nop
+
+// f12 = 1 / f8 to double precision: seed and three Newton steps
+        .macro  reciprocal
+        orh     0x4000, r0, r8              // 2.0
+        ixfr    r0, f10
+        ixfr    r8, f11
+        frcp.dd f8, f12
+        .rept   3
+        fmul.dd f8, f12, f14
+        fsub.dd f10, f14, f14
+        fmul.dd f12, f14, f12
+        .endr
+        .endm
+
+// ---- product of the matrix at r5 and the vector at VECTOR, to PRODUCT
+times:  mov     r5, r8
+        adds    PRODUCT, r2, r9
+        mov     4, r10
+        fld.d   VECTOR(r2), f20
+        fld.d   VECTOR+8(r2), f22
+        fld.d   VECTOR+16(r2), f24
+        fld.d   VECTOR+24(r2), f26
+row:    fld.l   0(r8), f8
+        fld.l   16(r8), f9
+        fmov.sd f8, f12
+        fld.l   32(r8), f10
+        fmov.sd f9, f14
+        fld.l   48(r8), f11
+        fmul.dd f12, f20, f12
+        fmov.sd f10, f16
+        fmul.dd f14, f22, f14
+        fmov.sd f11, f18
+        fmul.dd f16, f24, f16
+        fadd.dd f12, f14, f12
+        fmul.dd f18, f26, f18
+        adds    4, r8, r8
+        fadd.dd f12, f16, f12
+        adds    -1, r10, r10
+        fadd.dd f12, f18, f12
+        fst.d   f12, 0(r9)
+        adds    8, r9, r9
+        btne    r0, r10, row
+        bri     r1
+        nop
+
+// a column of four singles at r6 to VECTOR
+        .macro  widened k
+        fld.l   4*\k(r6), f8
+        fmov.sd f8, f10
+        fst.d   f10, VECTOR+8*\k(r2)
+        .endm
+
+// a double at `from` of the frame, rounded, to `to`
+        .macro  narrowed from, to
+        fld.d   \from(r2), f8
+        fmov.ds f8, f10
+        fst.l   f10, \to
+        .endm
+
+// one coordinate of a cross product: a b - c d of the model-view matrix
+        .macro  minor a, b, c, d, to
+        fld.l   EYE+\a(r2), f8
+        fld.l   EYE+\b(r2), f9
+        fmul.sd f8, f9, f12
+        fld.l   EYE+\c(r2), f8
+        fld.l   EYE+\d(r2), f9
+        fmul.sd f8, f9, f14
+        fsub.dd f12, f14, f12
+        fst.d   f12, \to(r2)
+        .endm
+
+// cross product of columns p and q
+        .macro  crossed p, q, to
+        minor   \p+4, \q+8, \p+8, \q+4, \to
+        minor   \p+8, \q, \p, \q+8, \to+8
+        minor   \p, \q+4, \p+4, \q, \to+16
+        .endm
+
+// f12 = dot product of doubles at `a` of the frame and singles at `b` of the frame, single after single
+        .macro  dotted a, b
+        fld.l   \b(r2), f8
+        fld.d   \a(r2), f10
+        fmov.sd f8, f12
+        fmul.dd f12, f10, f12
+        fld.l   \b+4(r2), f8
+        fld.d   \a+8(r2), f10
+        fmov.sd f8, f14
+        fmul.dd f14, f10, f14
+        fadd.dd f12, f14, f12
+        fld.l   \b+8(r2), f8
+        fld.d   \a+16(r2), f10
+        fmov.sd f8, f14
+        fmul.dd f14, f10, f14
+        fadd.dd f12, f14, f12
+        .endm
+
+// coordinate k of the eye's place
+        .macro  solved k
+        dotted  CROSS+24*\k, EYE+48
+        fsub.dd f0, f12, f12
+        fmul.dd f12, f28, f12
+        fmov.ds f12, f8
+        fst.l   f8, P_ORIGIN+4*\k(r20)
+        fmov.sd f8, f10
+        fst.d   f10, ORIGIN+8*\k(r2)
+        .endm
+
+// f12 = a b + c d + e f of doubles in the frame, in this order
+        .macro  three a, b, c, d, e, f
+        fld.d   \a(r2), f8
+        fld.d   \b(r2), f10
+        fmul.dd f8, f10, f12
+        fld.d   \c(r2), f8
+        fld.d   \d(r2), f10
+        fmul.dd f8, f10, f14
+        fadd.dd f12, f14, f12
+        fld.d   \e(r2), f8
+        fld.d   \f(r2), f10
+        fmul.dd f8, f10, f14
+        fadd.dd f12, f14, f12
+        .endm
+
+// the greater of f16 and the square of row k to the eye, to f16
+        .macro  longer k
+        three   ROWS+8*\k, ROWS+8*\k, ROWS+32+8*\k, ROWS+32+8*\k, ROWS+64+8*\k, ROWS+64+8*\k
+        pfgt.dd f12, f16, f0
+        bnc     shorter\@
+        fmov.dd f12, f16
+shorter\@:
+        .endm
+
+        .align  32
+place:  adds    -FRAME, r2, r2
+        st.l    r1, SAVE(r2)
+        // model-view matrix
+        mov     r16, r5
+        mov     r17, r6
+        adds    EYE, r2, r7
+        mov     4, r4
+column: widened 0
+        widened 1
+        widened 2
+        widened 3
+        call    times
+        nop
+        narrowed PRODUCT, 0(r7)
+        narrowed PRODUCT+8, 4(r7)
+        narrowed PRODUCT+16, 8(r7)
+        narrowed PRODUCT+24, 12(r7)
+        adds    16, r6, r6
+        adds    -1, r4, r4
+        adds    16, r7, r7
+        btne    r0, r4, column
+        // the eye's place: what the matrix takes to the origin
+        crossed 16, 32, CROSS
+        crossed 32, 0, CROSS+24
+        crossed 0, 16, CROSS+48
+        dotted  CROSS, EYE
+        fmov.dd f12, f8
+        reciprocal
+        fmov.dd f12, f28
+        solved  0
+        solved  1
+        solved  2
+        // the axes and the eye's place to the eye, and on to the picture
+        mov     r0, r4
+axis:   fst.d   f0, VECTOR(r2)
+        fst.d   f0, VECTOR+8(r2)
+        fst.d   f0, VECTOR+16(r2)
+        fst.d   f0, VECTOR+24(r2)
+        shl     3, r4, r7
+        adds    r2, r7, r7
+        orh     0x3FF0, r0, r8              // 1.0
+        st.l    r8, VECTOR+4(r7)
+        mov     3, r8
+        btne    r8, r4, along
+        fld.d   ORIGIN(r2), f8
+        fst.d   f8, VECTOR(r2)
+        fld.d   ORIGIN+8(r2), f8
+        fst.d   f8, VECTOR+8(r2)
+        fld.d   ORIGIN+16(r2), f8
+        fst.d   f8, VECTOR+16(r2)
+along:  call    times
+        adds    EYE, r2, r5
+        fld.d   PRODUCT(r2), f8
+        fld.d   PRODUCT+8(r2), f10
+        fld.d   PRODUCT+16(r2), f12
+        fld.d   PRODUCT+24(r2), f14
+        fst.d   f8, VECTOR(r2)
+        fst.d   f10, VECTOR+8(r2)
+        fst.d   f12, VECTOR+16(r2)
+        fst.d   f14, VECTOR+24(r2)
+        shl     5, r4, r7
+        mov     3, r8
+        bte     r8, r4, onward
+        adds    r2, r7, r7
+        fmov.ds f8, f16
+        fmov.sd f16, f18
+        fst.d   f18, ROWS(r7)
+        fmov.ds f10, f16
+        fmov.sd f16, f18
+        fst.d   f18, ROWS+8(r7)
+        fmov.ds f12, f16
+        fmov.sd f16, f18
+        fst.d   f18, ROWS+16(r7)
+onward: call    times
+        mov     r18, r5
+        shl     2, r4, r7
+        adds    r20, r7, r7
+        narrowed PRODUCT, P_ROWS(r7)
+        narrowed PRODUCT+8, P_ROWS+16(r7)
+        narrowed PRODUCT+16, P_ROWS+32(r7)
+        narrowed PRODUCT+24, P_ROWS+48(r7)
+        adds    1, r4, r4
+        btne    4, r4, axis
+        // normals: the rows to the eye by the length of the longest
+        fmov.dd f0, f16
+        longer  0
+        longer  1
+        longer  2
+        orh     0x3FE0, r0, r8              // 0.5
+        ixfr    r0, f20
+        ixfr    r8, f21
+        orh     0x3FF8, r0, r8              // 1.5
+        ixfr    r0, f22
+        ixfr    r8, f23
+        fmul.dd f16, f20, f20
+        frsqr.dd f16, f18
+        .rept   3
+        fmul.dd f18, f18, f8
+        fmul.dd f20, f8, f8
+        fsub.dd f22, f8, f8
+        fmul.dd f18, f8, f18
+        .endr
+        orh     0x4680, r0, r8              // 2^14
+        ixfr    r8, f9
+        mov     r0, r4
+        // row after row, and back into its place, unit for the light
+unit:   shl     3, r4, r7
+        adds    r2, r7, r7
+        shl     4, r4, r9
+        adds    r20, r9, r9
+        mov     3, r10
+cell:   fld.d   ROWS(r7), f12
+        adds    -1, r10, r10
+        fmul.dd f12, f18, f12
+        fmov.ds f12, f10
+        fmov.sd f10, f12
+        fmul.ss f10, f9, f10
+        fst.d   f12, ROWS(r7)
+        fst.l   f10, P_EYE(r9)
+        adds    32, r7, r7
+        adds    4, r9, r9
+        btne    r0, r10, cell
+        adds    1, r4, r4
+        btne    3, r4, unit
+        // the light: to the eye, and from there as the normals see it
+        fld.l   0(r19), f20
+        fld.l   4(r19), f21
+        fld.l   8(r19), f22
+        mov     r16, r7
+        adds    VECTOR, r2, r9
+        mov     3, r4
+turn:   fld.l   0(r7), f8
+        fld.l   16(r7), f9
+        fmul.ss f8, f20, f8
+        fld.l   32(r7), f10
+        fmul.ss f9, f21, f9
+        fadd.ss f8, f9, f8
+        fmul.ss f10, f22, f10
+        adds    4, r7, r7
+        fadd.ss f8, f10, f8
+        fmov.sd f8, f10
+        fst.d   f10, 0(r9)
+        adds    8, r9, r9
+        adds    -1, r4, r4
+        btne    r0, r4, turn
+        three   ROWS, VECTOR, ROWS+8, VECTOR+8, ROWS+16, VECTOR+16
+        fmov.ds f12, f8
+        fst.l   f8, P_LIGHT(r20)
+        three   ROWS+32, VECTOR, ROWS+40, VECTOR+8, ROWS+48, VECTOR+16
+        fmov.ds f12, f8
+        fst.l   f8, P_LIGHT+4(r20)
+        three   ROWS+64, VECTOR, ROWS+72, VECTOR+8, ROWS+80, VECTOR+16
+        fmov.ds f12, f8
+        fst.l   f8, P_LIGHT+8(r20)
+        ld.l    12(r19), r8
+        ld.l    16(r19), r9
+        st.l    r8, P_AMBIENT(r20)
+        st.l    r9, P_DIFFUSE(r20)
+        // which way triangles face that are not drawn: the sign of the determinant of rows x, y and w
+        st.l    r0, P_CULL(r20)
+        st.l    r0, P_CULL+4(r20)
+        bte     r0, r21, placed
+        orh     0x8000, r0, r9
+        st.l    r9, P_CULL+4(r20)
+        call    sign
+        adds    P_ROWS+48, r20, r7
+        btne    r0, r11, signed
+        call    sign                        // of a parallel projection x, y and depth
+        adds    P_ROWS+32, r20, r7
+signed: subs    r0, r11, r0
+        bc      placed                      // mirrored: the determinant is greater than 0
+        st.l    r9, P_CULL(r20)
+placed: ld.l    SAVE(r2), r1
+        nop
+        bri     r1
+        adds    FRAME, r2, r2
+
+// ---- r11 less than, equal to or greater than 0 as the determinant of rows x, y and that at r7
+        .macro  part a, b, c
+        fld.l   P_ROWS+\a(r20), f8
+        fld.l   P_ROWS+16+\b(r20), f9
+        fmul.sd f8, f9, f12
+        fld.l   P_ROWS+\b(r20), f8
+        fld.l   P_ROWS+16+\a(r20), f9
+        fmul.sd f8, f9, f14
+        fsub.dd f12, f14, f12
+        fld.l   \c(r7), f8
+        fmov.sd f8, f14
+        fmul.dd f12, f14, f12
+        fadd.dd f16, f12, f16
+        .endm
+
+sign:   fmov.dd f0, f16
+        part    4, 8, 0
+        part    8, 0, 4
+        part    0, 4, 8
+        mov     r0, r11
+        pfgt.dd f0, f16, f0
+        bnc     notless
+        mov     -1, r11
+notless: pfgt.dd f16, f0, f0
+        bnc     notgreater
+        mov     1, r11
+notgreater: bri r1
+        nop
