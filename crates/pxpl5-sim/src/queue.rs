@@ -32,7 +32,7 @@ impl Keyed for Due {
 
 const PHASE_SHIFT: u32 = 62;
 
-/// Above the keys of all work of an instant, below those of what observes it.
+/// Above the keys of all work of an instant; the first of those of what observes it.
 const fn work_key(now: Time) -> u128 {
     (now.0 as u128) << 64 | ((Phase::Observe as u64) << PHASE_SHIFT) as u128
 }
@@ -110,7 +110,7 @@ impl<E> EventQueue<E> {
     /// Whether the next event is of those scheduled for work at once: arrivals of the instant, and work that was scheduled before it
     /// began, come before them.
     fn is_soon(&self) -> bool {
-        !self.soon.is_empty() && self.first().is_none_or(|first| first.key() > work_key(self.now))
+        !self.soon.is_empty() && self.first().is_none_or(|first| first.key() >= work_key(self.now))
     }
 
     fn keep(&mut self, event: E) -> u32 {
