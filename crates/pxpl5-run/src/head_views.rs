@@ -49,7 +49,7 @@ struct Newest {
 pub(crate) struct Follower<'a> {
     reports: Arc<[TrackerReport]>,
     /// Of a head that moves while the run goes on: the same reports, each made when it has arrived.
-    as_it_moves: Option<Reports<Arc<dyn Motion + Send + Sync>>>,
+    as_it_moves: Option<Box<Reports<Arc<dyn Motion + Send + Sync>>>>,
     next: usize,
     predictor: Box<dyn Predictor + 'a>,
     newest: Newest,
@@ -63,13 +63,13 @@ impl<'a> Follower<'a> {
     /// Of a head; its motion may become known while the run goes on.
     fn of_head(head: &Head, reports: Arc<[TrackerReport]>) -> Follower<'static> {
         let follower = Follower::new(reports, head.build_predictor());
-        Follower { as_it_moves: head.reports_as_it_moves(), ..follower }
+        Follower { as_it_moves: head.reports_as_it_moves().map(Box::new), ..follower }
     }
 
     /// Takes what had arrived by `known`; asked for earlier times it does not forget.
     fn follow(&mut self, known: Time) {
         while let Some(report) = self.reports.get(self.next).filter(|report| report.arrives_ps <= known.0) {
-            let made = self.as_it_moves.as_mut().and_then(Iterator::next);
+            let made = self.as_it_moves.as_deref_mut().and_then(Iterator::next);
             let report = made.as_ref().unwrap_or(report);
             let accepted = self.predictor.counts().accepted;
             self.predictor.observe(report);
