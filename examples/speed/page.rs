@@ -5,7 +5,6 @@ use crate::timing::Fallible;
 use std::fmt::Write;
 use std::path::Path;
 use std::process::Command;
-use std::time::SystemTime;
 
 /// A number with three digits.
 pub(crate) fn digits(number: f64) -> String {
@@ -82,21 +81,16 @@ fn machine() -> String {
 }
 
 fn compiler() -> String {
-    let version = Command::new("rustc").arg("--version").output();
-    version.map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned()).unwrap_or_default()
+    said_by("rustc", "--version")
 }
 
-/// Today, UTC (Hinnant's algorithm for the civil date of a day).
+/// Today, UTC.
 fn date() -> String {
-    let seconds = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |since| since.as_secs());
-    let days = seconds / 86_400 + 719_468;
-    let era = days / 146_097;
-    let of_era = days % 146_097;
-    let year = (of_era - of_era / 1_460 + of_era / 36_524 - of_era / 146_096) / 365;
-    let of_year = of_era - (365 * year + year / 4 - year / 100);
-    let month = (5 * of_year + 2) / 153;
-    let day = of_year - (153 * month + 2) / 5 + 1;
-    let civil_month = if month < 10 { month + 3 } else { month - 9 };
-    let civil_year = year + era * 400 + u64::from(civil_month <= 2);
-    format!("{civil_year}-{civil_month:02}-{day:02}")
+    said_by("date", "-u +%F")
+}
+
+/// What a command prints, or nothing where it is not there.
+fn said_by(command: &str, arguments: &str) -> String {
+    let output = Command::new(command).args(arguments.split(' ')).output();
+    output.map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned()).unwrap_or_default()
 }

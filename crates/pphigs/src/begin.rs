@@ -10,7 +10,7 @@ use crate::list::{DisplayList, Share};
 use crate::picture::{Picture, RegionBinning};
 use crate::placed::PlacedStructure;
 use crate::placing::place_once;
-use crate::view::FrameView;
+use crate::view::{FrameView, MAX_EDITS};
 use glam::Mat4;
 use i860::Program;
 use pxpl5_geometry::Culling;
@@ -25,6 +25,9 @@ const MATRIX_BYTES: u32 = 64;
 /// Words of an edit: the structure's number and its matrix.
 const EDIT_WORDS: u32 = 17;
 
+const _: () =
+    assert!(MESSAGE + MAX_EDITS as u32 * 4 * EDIT_WORDS <= MODELS, "what a message holds lies before the matrices");
+
 /// Instructions after which the code is taken to be endless: many times what it needs.
 const BUDGET: u64 = 20_000;
 
@@ -38,17 +41,21 @@ impl Work for Editing<'_> {
     }
 
     fn by_code(&self, _: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
-        let edits = &self.0.edits;
         // Those of structures that are not there change nothing.
-        let words = edits.iter().filter(|edit| edit.structure < MOST_STRUCTURES).flat_map(|edit| {
-            let matrix = edit.model.to_cols_array().map(f32::to_bits);
-            std::iter::once(edit.structure).chain(matrix)
-        });
-        let words: Vec<Word> = words.collect();
-        processor.write(MESSAGE, &words)?;
-        let count = words.len() as u32 / EDIT_WORDS;
-        let registers = [(16, MESSAGE), (17, count), (18, MODELS)];
-        processor.call(&PROGRAM, "edit", &registers, BUDGET * u64::from(count + 1))
+        let known: Vec<_> = self.0.edits.iter().filter(|edit| edit.structure < MOST_STRUCTURES).collect();
+        let mut span = Span::ZERO;
+        // As many as a message holds, however many there are; a view without edits is looked at too.
+        for edits in known.chunks(MAX_EDITS).chain(known.is_empty().then_some([].as_slice())) {
+            let words = edits.iter().flat_map(|edit| {
+                let matrix = edit.model.to_cols_array().map(f32::to_bits);
+                std::iter::once(edit.structure).chain(matrix)
+            });
+            processor.write(MESSAGE, &words.collect::<Vec<Word>>())?;
+            let count = edits.len() as u32;
+            let registers = [(16, MESSAGE), (17, count), (18, MODELS)];
+            span += processor.call(&PROGRAM, "edit", &registers, BUDGET * u64::from(count + 1))?;
+        }
+        Ok(span)
     }
 }
 

@@ -113,7 +113,8 @@ fn edits_replace_the_matrices_of_their_structures_and_no_others() {
     let mut numbers = Numbers(SplitMix64::new(32));
     let mut processor = board();
     let mut models = vec![[0; 16]; 40];
-    for count in [0, 1, 2, 17] {
+    // More than fit into one message, and far more than there is room for.
+    for count in [0, 1, 2, 17, 54, 55, 200, 500] {
         let edits: Vec<_> =
             (0..count).map(|n| ModelEdit { structure: (7 * n + count) as u32 % 40, model: numbers.model(n) }).collect();
         edits.iter().for_each(|edit| models[edit.structure as usize] = edit.model.to_cols_array().map(f32::to_bits));

@@ -231,25 +231,17 @@ impl GpBoard {
         }
     }
 
-    /// Polls the programs until nothing moves: each again when another has come on since it was polled. By itself it cannot.
     fn poll_until_quiet(&mut self) {
         let mut task_context = TaskContext::from_waker(Waker::noop());
-        let mut seen = [None; Priority::ALL.len()];
         loop {
-            let Self { shared, tasks, fault, .. } = self;
-            let mut polled = false;
-            tasks.retain_mut(|task| {
-                let seen = &mut seen[task.priority as usize];
-                {
-                    let shared = shared.borrow();
-                    if *seen == Some(shared.progress) || shared.is_at_work(task.priority) {
-                        return true;
-                    }
+            let before = self.shared.borrow().progress;
+            let fault = &mut self.fault;
+            let shared = &self.shared;
+            self.tasks.retain_mut(|task| {
+                if shared.borrow().is_at_work(task.priority) {
+                    return true;
                 }
-                polled = true;
-                let result = task.firmware.as_mut().poll(&mut task_context);
-                *seen = Some(shared.borrow().progress);
-                match result {
+                match task.firmware.as_mut().poll(&mut task_context) {
                     Poll::Pending => true,
                     Poll::Ready(result) => {
                         *fault = fault.take().or(result.err());
@@ -257,7 +249,7 @@ impl GpBoard {
                     }
                 }
             });
-            if !polled {
+            if self.shared.borrow().progress == before {
                 return;
             }
         }

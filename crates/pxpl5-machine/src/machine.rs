@@ -465,7 +465,8 @@ impl Machine {
         let mut answer = None;
         let sends = (0..).zip(context.drain_outputs()).filter_map(|(order, (time, output))| match output {
             RendererOutput::Accept { last_word_at } => {
-                answer = Some((time, last_word_at));
+                let before = answer.replace((time, last_word_at));
+                debug_assert!(before.is_none(), "one message at a time is on its way into a FIFO");
                 None
             }
             RendererOutput::Send { message, ticket, hold } => {

@@ -152,7 +152,7 @@ impl Renderer {
                 self.fifo.take(EqualCommands { words_each: message.words, count: 1, span_each: Some(Span::ZERO) });
             }
         }
-        let progress = self.fifo.message(begins, []);
+        let progress = self.fifo.message(begins);
         self.report(progress, context);
     }
 

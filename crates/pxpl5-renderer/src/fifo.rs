@@ -61,12 +61,17 @@ impl Departures {
         self.all.reserve(room);
     }
 
-    /// From the one on that made room for a word, which is not less than the last one asked for.
-    fn from(&mut self, word: u64) -> &[(u64, Time)] {
-        while self.all.get(self.first + 1).is_some_and(|next| next.0 <= word) {
+    /// When the words from `first` to `last` have all entered, of which none comes in before `soonest`: each has waited for room, and
+    /// those behind it besides for their own time on the channel. `first` is not less than the last one asked for.
+    #[inline]
+    fn entered(&mut self, first: u64, last: u64, soonest: Time, word: Span) -> Time {
+        while self.all.get(self.first + 1).is_some_and(|next| next.0 <= first) {
             self.first += 1;
         }
-        &self.all[self.first..]
+        let rooms = self.all[self.first..].iter().take_while(|room| room.0 <= last);
+        rooms.fold(soonest, |complete, (made_room_for, left_at)| {
+            complete.max(*left_at + word * (last - (*made_room_for).max(first) + 1))
+        })
     }
 }
 
@@ -154,16 +159,15 @@ impl InputFifo {
         }
     }
 
-    /// Commands of the message that is told next.
+    /// Commands of the [message](Self::message) that is told next, in order.
     pub(crate) fn take(&mut self, work: EqualCommands) {
         self.in_transit.push_back(work);
     }
 
-    /// A message begins to arrive: its first word is on the channel from `begins` on. `work` are its commands behind those that were
-    /// [taken](Self::take).
-    pub(crate) fn message(&mut self, begins: Time, work: impl IntoIterator<Item = EqualCommands>) -> Progress {
+    /// A message begins to arrive, with the commands that were [taken](Self::take) since the last: its first word is on the channel
+    /// from `begins` on.
+    pub(crate) fn message(&mut self, begins: Time) -> Progress {
         self.last_word_at = self.last_word_at.max(begins);
-        self.in_transit.extend(work);
         self.transit_known = false;
         self.advance()
     }
@@ -252,24 +256,14 @@ impl InputFifo {
         let mut words_in = self.words_in;
         let mut complete = self.last_word_at;
         self.left.forget(work.count as usize);
-        // Places among all departures: what is pushed in the loop is found in it.
-        let Departures { all, first } = &mut self.left;
         for _ in 0..work.count {
             let last = words_in + words - 1;
             complete += on_channel;
             if last >= self.depth {
-                while all.get(*first + 1).is_some_and(|next| next.0 <= words_in) {
-                    *first += 1;
-                }
-                for (made_room_for, left_at) in &all[*first..] {
-                    if *made_room_for > last {
-                        break;
-                    }
-                    complete = complete.max(*left_at + self.word * (last - (*made_room_for).max(words_in) + 1));
-                }
+                complete = self.left.entered(words_in, last, complete, self.word);
             }
             let start = free_at.max(complete);
-            all.push((words_in + self.depth, start));
+            self.left.all.push((words_in + self.depth, start));
             words_in += words;
             free_at = start + span;
         }
@@ -284,20 +278,11 @@ impl InputFifo {
     fn arrival(&mut self, words: u32) -> Option<Time> {
         let first = self.words_in;
         let last = self.words_in + u64::from(words) - 1;
-        let mut complete = self.last_word_at + self.word * u64::from(words);
+        let complete = self.last_word_at + self.word * u64::from(words);
         if last < self.depth {
             return Some(complete);
         }
-        if last - self.depth >= self.words_left {
-            return None;
-        }
-        for (made_room_for, left_at) in self.left.from(first) {
-            if *made_room_for > last {
-                break;
-            }
-            complete = complete.max(*left_at + self.word * (last - (*made_room_for).max(first) + 1));
-        }
-        Some(complete)
+        (last - self.depth < self.words_left).then(|| self.left.entered(first, last, complete, self.word))
     }
 
     /// Starts what can start; the time at which a blocking command starts, if one does.
@@ -376,6 +361,11 @@ mod tests {
         }
     }
 
+    fn message(fifo: &mut InputFifo, begins: Time, work: impl IntoIterator<Item = EqualCommands>) -> Progress {
+        work.into_iter().for_each(|work| fifo.take(work));
+        fifo.message(begins)
+    }
+
     fn work(commands: &[(u32, u64)]) -> Vec<EqualCommands> {
         commands
             .iter()
@@ -399,7 +389,7 @@ mod tests {
             let mut begins = Time::ZERO;
             for (gap_ns, commands) in messages {
                 begins = begins.max(literal.last_word_at) + Span::from_ns(gap_ns);
-                let accepted = fifo.message(begins, work(&commands)).accepted;
+                let accepted = message(&mut fifo, begins, work(&commands)).accepted;
                 prop_assert_eq!(accepted, Some(literal.message(begins, &commands).0));
                 prop_assert_eq!(fifo.free_at, Some(literal.free_at));
             }
@@ -411,8 +401,8 @@ mod tests {
             let mut singles = InputFifo::new(448, WORD);
             let run = EqualCommands { words_each: words, count, span_each: Some(Span::from_ns(ns)) };
             let single = EqualCommands { count: 1, ..run };
-            let a = runs.message(Time(7), [run]);
-            let b = singles.message(Time(7), vec![single; count as usize]);
+            let a = message(&mut runs, Time(7), [run]);
+            let b = message(&mut singles, Time(7), vec![single; count as usize]);
             prop_assert_eq!(a, b);
         }
     }
@@ -422,13 +412,13 @@ mod tests {
         let mut fifo = InputFifo::new(100, WORD);
         let copy = EqualCommands { words_each: 10, count: 1, span_each: None };
         let triangle = EqualCommands { words_each: 30, count: 1, span_each: Some(Span::from_ns(6_675)) };
-        let first = fifo.message(Time::ZERO, [copy]);
+        let first = message(&mut fifo, Time::ZERO, [copy]);
         assert_eq!(first, Progress { accepted: Some(Time(500_000)), blocks: Some(Time(500_000)) });
         // The copy's words left when it started, so three triangles (90 words) enter.
-        let second = fifo.message(Time(500_000), [EqualCommands { count: 3, ..triangle }]);
+        let second = message(&mut fifo, Time(500_000), [EqualCommands { count: 3, ..triangle }]);
         assert_eq!(second.accepted, Some(Time(500_000 + 90 * 50_000)));
         // Twenty words of the next have no room before the copy has ended.
-        assert_eq!(fifo.message(Time(5_000_000), [triangle]).accepted, None);
+        assert_eq!(message(&mut fifo, Time(5_000_000), [triangle]).accepted, None);
         let resumed = fifo.resume(Time(80_000_000));
         assert_eq!(resumed.accepted, Some(Time(80_000_000 + 20 * 50_000)));
     }
@@ -440,7 +430,7 @@ mod tests {
         // floor((869 - 448) / 29) = 14 at 1.45 + 14 x 6.675 us; it is word 15 of those that wait for it (421 - 406).
         let mut fifo = InputFifo::new(448, WORD);
         let clump = EqualCommands { words_each: 29, count: 30, span_each: Some(Span::from_ns(6_675)) };
-        let accepted = fifo.message(Time::ZERO, [clump]).accepted;
+        let accepted = message(&mut fifo, Time::ZERO, [clump]).accepted;
         assert_eq!(accepted, Some(Time(1_450_000 + 14 * 6_675_000 + 16 * 50_000)));
     }
 }
