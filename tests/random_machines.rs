@@ -169,7 +169,7 @@ fn assert_every_region_arrives_once(outcome: &Outcome, told: &str) {
 fn assert_no_shown_buffer_is_written(outcome: &Outcome, told: &str) {
     let observation = outcome.record().observation();
     for (surface, _) in outcome.record().surfaces() {
-        let swaps: Vec<Time> = observation.swaps_of(surface).map(|tick| outcome.record().tick(tick)).collect();
+        let swaps: Vec<Time> = observation.swaps_of(surface).map(|swap| outcome.record().tick(swap.tick)).collect();
         let arrivals = observation.arrivals.iter().filter(|arrival| arrival.surface == surface);
         let written = arrivals.map(|arrival| {
             let before = |instant: Time| swaps.iter().filter(|swap| **swap < instant).count();

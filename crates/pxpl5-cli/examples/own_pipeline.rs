@@ -123,7 +123,7 @@ impl Pipeline for OneAtATime {
     }
 
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
-        let shown = record.observation().swap_ticks(1);
+        let shown = record.observation().frames(1).into_values();
         let begun = record.observation().marks.iter().filter(|mark| mark.stage == Stage::Sample);
         let times = begun.zip(shown).map(|(mark, tick)| PictureTimes {
             picture: mark.picture,

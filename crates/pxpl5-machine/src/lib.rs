@@ -28,7 +28,7 @@ pub use board::{Board, Happening};
 pub use config::{ConfigError, FirmwareTable, MachineConfig, NamedTable, Parameter};
 pub use host_line::HostLine;
 pub use machine::{DEADLOCK_TICKS, Machine};
-pub use observation::{Arrival, LateRegion, Observation, StageSpan, Swap};
+pub use observation::{Arrival, LateRegion, Observation, Shown, StageSpan, Swap};
 pub use pixels::{PixelWorker, SameThread};
 pub use ports::Ports;
 pub use preset::{PRESETS, Preset};

@@ -16,7 +16,7 @@ use crate::config::{ConfigError, MachineConfig};
 use crate::event::Event;
 use crate::facts::{facts, facts_of, facts_of_line};
 use crate::host_line::HostLine;
-use crate::observation::{Arrival, Swap};
+use crate::observation::{Arrival, Observation, Swap};
 use crate::pixels::PixelWorker;
 use crate::ports::Ports;
 use crate::record::Record;
@@ -38,10 +38,8 @@ pub struct Machine {
     /// The host, then the graphics processors: all boards that run programs, by their port.
     processors: Vec<GpBoard>,
     contexts: Contexts,
-    /// Swaps of each surface so far.
-    swaps: Vec<u64>,
-    /// Updates that were shown of what is behind each port, where a surface has several.
-    updates: BTreeMap<NodeId, u64>,
+    /// Swaps of what is behind each port so far.
+    swaps: BTreeMap<NodeId, u64>,
     /// What the host says to the first display past the ring.
     host_lines: Vec<Box<dyn HostLine>>,
     pixels: Option<Box<dyn PixelWorker>>,
@@ -95,7 +93,7 @@ impl Machine {
         let displays = displays.collect::<Result<Vec<_>, _>>()?;
         Ok(Self {
             processors: [host].into_iter().chain(gps).collect(),
-            swaps: vec![0; displays.iter().map(|display| display.surfaces().len()).sum()],
+            swaps: BTreeMap::new(),
             record: Record {
                 config: config.clone(),
                 renderers: ports.renderers.iter().map(renderer).collect(),
@@ -108,7 +106,6 @@ impl Machine {
             },
             queue: EventQueue::new(),
             contexts: Contexts::default(),
-            updates: BTreeMap::new(),
             host_lines: Vec::new(),
             pixels: None,
             every_edge: false,
@@ -481,7 +478,7 @@ impl Machine {
     }
 
     fn display_event(&mut self, now: Time, display: usize, event: DisplayEvent) {
-        let Self { record, contexts: Contexts { display: context, .. }, queue, swaps, updates, .. } = self;
+        let Self { record, contexts: Contexts { display: context, .. }, queue, swaps, .. } = self;
         let first_surface = record.first_surface(display);
         record.displays[display].handle(event, context.at(now));
         schedule_own(queue, context, |event| Event::Display(display, event));
@@ -494,22 +491,15 @@ impl Machine {
                     record.observation.arrivals.push(Arrival { surface, target, first_part_at, last_part_at });
                 }
                 DisplayOutput::Swapped { surface, buffer, tick } => {
-                    let from = record.ports.displays[display][surface];
+                    let port = record.ports.displays[display][surface];
                     let surface = SurfaceId((first_surface + surface) as u16);
                     record.hash.record(time, &[6, u64::from(surface.0), u64::from(buffer), tick.0]);
-                    record.observation.swaps.push(Swap { surface, port: from, tick });
-                    swaps[surface.index()] += 1;
-                    let status = GpEvent::Status { from, value: swaps[surface.index()] };
-                    queue.schedule(time, Phase::Arrive, Event::Gp(1, status));
+                    note_swap(&mut record.observation, queue, swaps, (time, surface, port, tick));
                 }
                 DisplayOutput::Updated { surface, port, buffer, tick } => {
                     let surface = SurfaceId((first_surface + surface) as u16);
                     record.hash.record(time, &[7, u64::from(port.0), u64::from(buffer), tick.0]);
-                    record.observation.swaps.push(Swap { surface, port, tick });
-                    let updates = updates.entry(port).or_default();
-                    *updates += 1;
-                    let status = GpEvent::Status { from: port, value: *updates };
-                    queue.schedule(time, Phase::Arrive, Event::Gp(1, status));
+                    note_swap(&mut record.observation, queue, swaps, (time, surface, port, tick));
                 }
             }
         }
@@ -574,4 +564,18 @@ fn compute_pixels(worker: &mut Option<Box<dyn PixelWorker>>, body: &Body) {
     {
         worker.compute(&pixels.image);
     }
+}
+
+/// Notes that a surface, or a part of it behind a port of its own, shows its other buffer from a tick on, and tells the master.
+fn note_swap(
+    observation: &mut Observation,
+    queue: &mut EventQueue<Event>,
+    swaps: &mut BTreeMap<NodeId, u64>,
+    (time, surface, port, tick): (Time, SurfaceId, NodeId, PeriodNumber),
+) {
+    let so_far = swaps.entry(port).or_default();
+    observation.swaps.push(Swap { surface, port, number: *so_far, tick });
+    *so_far += 1;
+    let status = GpEvent::Status { from: port, value: *so_far };
+    queue.schedule(time, Phase::Arrive, Event::Gp(1, status));
 }

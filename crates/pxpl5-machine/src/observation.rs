@@ -34,8 +34,21 @@ pub struct Swap {
     pub surface: SurfaceId,
     /// The port of the ring that fills it, or that part of it which swapped.
     pub port: NodeId,
+    /// How many swaps of that port came before it.
+    pub number: u64,
     /// The period from whose begin on it does.
     pub tick: PeriodNumber,
+}
+
+/// A picture, or a part of it, that a double-buffered port has shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shown {
+    /// Which.
+    pub picture: PictureNumber,
+    /// When the last message of its first region had arrived.
+    pub first_region_at: Time,
+    /// The swap from which on it is shown.
+    pub at: Time,
 }
 
 /// Everything that was observed, in order of time as far as it was handled.
@@ -56,10 +69,10 @@ pub struct Observation {
 /// What is known of records that were given up so that a long run has room: see [`Machine::forget_before`](crate::Machine::forget_before).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Forgotten {
-    /// Marks and arrivals before this instant are gone.
+    /// Marks, arrivals and swaps before this instant are gone, but the last swap of each port, which says what is shown.
     pub before: Time,
-    /// As many swaps of every surface that swaps are gone: frames, where all of a frame's surfaces are swapped.
-    pub frames: u64,
+    /// The first swap of all.
+    pub first_swap: Option<PeriodNumber>,
     /// Most regions that were there of one picture when records were given up.
     pub most_regions: u32,
 }
@@ -111,15 +124,23 @@ impl Observation {
         spans.into_values().collect()
     }
 
-    /// The ticks at which frame after frame was swapped in on all of the first `surfaces` surfaces, from the first that was not
-    /// given up.
+    /// The frames that were swapped in on all of the first `surfaces` surfaces, by how many came before, and the ticks at which they
+    /// were; those that were not given up.
     #[must_use]
-    pub fn swap_ticks(&self, surfaces: usize) -> Vec<PeriodNumber> {
-        let mut ticks: Vec<PeriodNumber> = self.swaps_of(SurfaceId(0)).collect();
+    pub fn frames(&self, surfaces: usize) -> BTreeMap<u64, PeriodNumber> {
+        let of = |surface| self.swaps_of(surface).map(|swap| (swap.number, swap.tick));
+        let mut frames: BTreeMap<u64, PeriodNumber> = of(SurfaceId(0)).collect();
         for surface in (1..surfaces as u16).map(SurfaceId) {
-            ticks = ticks.into_iter().zip(self.swaps_of(surface)).map(|(a, b)| a.max(b)).collect();
+            let ticks: BTreeMap<u64, PeriodNumber> = of(surface).collect();
+            frames = frames.into_iter().filter_map(|(n, tick)| Some((n, tick.max(*ticks.get(&n)?)))).collect();
         }
-        ticks
+        frames
+    }
+
+    /// The period from which on anything at all was shown.
+    #[must_use]
+    pub fn first_swap(&self) -> Option<PeriodNumber> {
+        self.forgotten.first_swap.or_else(|| self.swaps.iter().map(|swap| swap.tick).min())
     }
 
     /// Most regions that have arrived of one picture, in the whole run.
@@ -144,24 +165,21 @@ impl Observation {
         }
         self.marks.retain(|mark| mark.time >= instant);
         self.arrivals.retain(|arrival| arrival.last_part_at >= instant);
-        let mut swapped: BTreeMap<SurfaceId, u64> = BTreeMap::new();
-        self.swaps
-            .iter()
-            .for_each(|swap| *swapped.entry(swap.surface).or_default() += u64::from(tick(swap.tick) < instant));
-        let gone = swapped.values().copied().min().unwrap_or_default();
-        swapped.values_mut().for_each(|left| *left = gone);
-        self.swaps.retain(|swap| {
-            let left = swapped.get_mut(&swap.surface).filter(|left| **left > 0);
-            left.map(|left| *left -= 1).is_none()
-        });
+        let first_swap = self.first_swap();
+        let mut last: BTreeMap<NodeId, u64> = BTreeMap::new();
+        let is_old = |swap: &Swap| tick(swap.tick) < instant;
+        for swap in self.swaps.iter().filter(|swap| is_old(swap)) {
+            last.entry(swap.port).and_modify(|last| *last = swap.number.max(*last)).or_insert(swap.number);
+        }
+        self.swaps.retain(|swap| !is_old(swap) || last[&swap.port] == swap.number);
         self.marks.shrink_to(2 * self.marks.len());
         self.arrivals.shrink_to(2 * self.arrivals.len());
-        self.forgotten = Forgotten { before: instant, frames: self.forgotten.frames + gone, most_regions };
+        self.forgotten = Forgotten { before: instant, first_swap, most_regions };
     }
 
-    /// The ticks at which a surface was swapped, of swaps that are held.
-    pub fn swaps_of(&self, surface: SurfaceId) -> impl Iterator<Item = PeriodNumber> {
-        self.swaps.iter().filter(move |swap| swap.surface == surface).map(|swap| swap.tick)
+    /// The swaps of a surface that are held, in order.
+    pub fn swaps_of(&self, surface: SurfaceId) -> impl Iterator<Item = &Swap> {
+        self.swaps.iter().filter(move |swap| swap.surface == surface)
     }
 }
 
@@ -176,4 +194,48 @@ pub struct LateRegion {
     pub region: u16,
     /// How much later than its deadline it was complete, picoseconds.
     pub lateness: Span,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const EYES: [SurfaceId; 2] = [SurfaceId(0), SurfaceId(1)];
+
+    /// Two eyes that swap every second period, the second one period later.
+    fn stereo() -> Observation {
+        let swap = |number: u64| {
+            EYES.map(|surface| {
+                let tick = PeriodNumber(2 * number + u64::from(surface.0));
+                Swap { surface, port: NodeId(10 + surface.0), number, tick }
+            })
+        };
+        Observation { swaps: (0..20).flat_map(swap).collect(), ..Observation::default() }
+    }
+
+    fn tick(period: PeriodNumber) -> Time {
+        Time(100 * period.0)
+    }
+
+    #[test]
+    fn frames_keep_their_numbers_when_those_before_are_given_up() {
+        let mut observation = stereo();
+        let all = observation.frames(2);
+        assert!(all.iter().all(|(number, tick)| tick.0 == 2 * number + 1) && all.len() == 20);
+        // Between the swaps of frame 7's eyes: the first eye's swap is the last before the instant, and kept.
+        observation.forget_before(Time(1_450), tick);
+        let left = observation.frames(2);
+        assert_eq!(left, all.into_iter().filter(|(number, _)| *number >= 7).collect());
+        assert_eq!(observation.first_swap(), Some(PeriodNumber(0)));
+        observation.forget_before(Time(1_900), tick);
+        assert_eq!(observation.first_swap(), Some(PeriodNumber(0)), "it stays known");
+    }
+
+    #[test]
+    fn what_is_shown_stays_known_however_long_ago_it_was_swapped_in() {
+        let mut observation = stereo();
+        observation.forget_before(Time(1_000_000), tick);
+        let left: Vec<(SurfaceId, u64)> = observation.swaps.iter().map(|swap| (swap.surface, swap.number)).collect();
+        assert_eq!(left, EYES.map(|surface| (surface, 19)));
+    }
 }

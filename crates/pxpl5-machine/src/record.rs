@@ -1,13 +1,13 @@
 //! What is known of a machine: the state of its boards and everything observed.
 
 use crate::config::MachineConfig;
-use crate::observation::{Observation, StageSpan};
+use crate::observation::{Observation, Shown, StageSpan};
 use crate::ports::Ports;
 use pxpl5_display::{Display, Surface};
 use pxpl5_renderer::Renderer;
 use pxpl5_ring::Ring;
 use pxpl5_sim::{Span, Time, TraceHash};
-use pxpl5_wire::{MAX_MESSAGE_WORDS, PeriodNumber, SurfaceId};
+use pxpl5_wire::{MAX_MESSAGE_WORDS, NodeId, PeriodNumber, PictureNumber, SurfaceId};
 use std::any::Any;
 
 /// The boards of a machine without the programs that ran on it, and everything observed: plain data, which may be sent to
@@ -98,6 +98,29 @@ impl Record {
     #[must_use]
     pub fn stages(&self) -> Vec<StageSpan> {
         self.observation.stages(self.message_span())
+    }
+
+    /// What a double-buffered port has shown, swap after swap: the picture of which the last region had come before the swap, as far as
+    /// both are held. No region of the next comes before the buffer is free.
+    #[must_use]
+    pub fn shown_by(&self, port: NodeId) -> Vec<Shown> {
+        let arrivals = self.observation.arrivals.iter().filter(|arrival| arrival.target.frame_buffer == port);
+        let arrivals = arrivals.map(|arrival| (arrival.last_part_at, arrival.target.picture));
+        let mut arrivals: Vec<(Time, PictureNumber)> = arrivals.collect();
+        arrivals.sort_unstable();
+        let mut arrivals = arrivals.into_iter().peekable();
+        let mut newest: Option<(PictureNumber, Time)> = None;
+        let swaps = self.observation.swaps.iter().filter(|swap| swap.port == port);
+        let shown = swaps.filter_map(|swap| {
+            let at = self.tick(swap.tick);
+            while let Some((arrived_at, picture)) = arrivals.next_if(|arrival| arrival.0 <= at) {
+                if newest.is_none_or(|newest| newest.0 != picture) {
+                    newest = Some((picture, arrived_at));
+                }
+            }
+            newest.take().map(|(picture, first_region_at)| Shown { picture, first_region_at, at })
+        });
+        shown.collect()
     }
 
     /// How long the longest message occupies a channel.

@@ -9,8 +9,8 @@ use pxpl5_wire::{CopyTarget, Lines, PeriodNumber, PictureNumber, RegionGrid, Reg
 #[derive(Debug)]
 pub(crate) struct Screen {
     cuts: Vec<Cut>,
-    /// Ticks from which on the other buffer is shown.
-    swaps: Vec<PeriodNumber>,
+    /// Ticks from which on the other buffer is shown, and how many swaps came before each.
+    swaps: Vec<(PeriodNumber, u64)>,
 }
 
 /// All that came for one buffer in one cut, by region, in order of arrival.
@@ -54,14 +54,15 @@ impl Screen {
                 region.push((arrival.last_part_at, target.picture));
             }
         }
-        let swaps = observation.swaps_of(SurfaceId(0)).collect();
+        let swaps = observation.swaps_of(SurfaceId(0)).map(|swap| (swap.tick, swap.number)).collect();
         Self { cuts, swaps }
     }
 
     /// What a pixel of a field shows when the beam is there; `None` before anything came.
     pub(crate) fn shown(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Option<CopyTarget> {
         // Buffer 0 is shown first, and every swap shows the other one.
-        let buffer = (self.swaps.partition_point(|swap| *swap <= field) % 2) as u8;
+        let before = self.swaps.partition_point(|swap| swap.0 <= field);
+        let buffer = self.swaps[..before].last().map_or(0, |swap| ((swap.1 + 1) % 2) as u8);
         let newest = self.cuts.iter().filter(|cut| cut.of.buffer == buffer).filter_map(|cut| cut.newest(x, y, at));
         newest.max_by_key(|newest| newest.0).map(|newest| newest.1)
     }

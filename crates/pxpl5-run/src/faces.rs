@@ -48,11 +48,15 @@ impl FaceHistory {
     }
 }
 
-/// The updates of a memory are shown in their order, each by a swap.
+/// The updates of a memory are shown in their order, each by a swap; those of the swaps that are held.
 fn shown(record: &Record, notes: &[FaceNote], memory: usize, port: NodeId) -> Vec<ShownMemory> {
+    let of_memory: Vec<&FaceNote> = notes.iter().filter(|note| note.memory == memory).collect();
     let swaps = record.observation().swaps.iter().filter(|swap| swap.port == port);
-    let of_memory = notes.iter().filter(|note| note.memory == memory);
-    of_memory.zip(swaps).map(|(note, swap)| ShownMemory { note: note.clone(), from: swap.tick }).collect()
+    let shown = swaps.filter_map(|swap| {
+        let note = of_memory.get(usize::try_from(swap.number).ok()?)?;
+        Some(ShownMemory { note: (*note).clone(), from: swap.tick })
+    });
+    shown.collect()
 }
 
 pub(crate) fn display(record: &Record) -> Option<&AddressRecalculationPipeline> {

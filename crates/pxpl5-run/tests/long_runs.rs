@@ -3,7 +3,8 @@
 
 use pxpl5_machine::{LateRegion, MachineConfig};
 use pxpl5_run::{
-    Experiment, Frameless, Jitp, Keep, Outcome, Pipeline, Pixels, RenderingControl, Samples, Slats, Viewpoint,
+    Experiment, FacePipeline, FacePolicy, FaceSource, Frameless, Jitp, Keep, Outcome, Pipeline, Pixels,
+    RenderingControl, Samples, Slats, Viewpoint,
 };
 use pxpl5_scene::Scene;
 use std::sync::Arc;
@@ -17,8 +18,13 @@ fn experiment(machine: MachineConfig, pipeline: impl Pipeline, scene: Scene, fie
     Experiment::with(machine, Arc::new(pipeline), Arc::new(scene)).fields(fields).pixels(Pixels::Off)
 }
 
+fn faces(name: &'static str, policy: FacePolicy, source: FaceSource, fields: u64) -> (&'static str, Experiment) {
+    let pipeline = FacePipeline { source, ..FacePipeline::new(policy) };
+    (name, experiment(MachineConfig::small_hmd(), pipeline, scene("gallery", 0), fields))
+}
+
 /// Long enough that records are given up several times.
-fn experiments() -> [(&'static str, Experiment); 6] {
+fn experiments() -> [(&'static str, Experiment); 9] {
     let small = MachineConfig::small_hmd;
     let slats = MachineConfig::slats;
     [
@@ -28,6 +34,9 @@ fn experiments() -> [(&'static str, Experiment); 6] {
         ("slats with too much", experiment(slats(), Slats::split(), scene("mig", 250), 2_500)),
         ("frameless", experiment(small(), Frameless::new(), scene("full-screen:4", 0), 150)),
         ("jitp", experiment(small(), Jitp::new(Viewpoint::Strip, true), scene("full-screen:4", 0), 400)),
+        faces("all faces", FacePolicy::Full, FaceSource::PixelPlanes, 1_600),
+        faces("faces by priority", FacePolicy::Objects, FaceSource::PixelPlanes, 1_600),
+        faces("faces by priority, drawn at once", FacePolicy::Objects, FaceSource::Ideal, 1_600),
     ]
 }
 

@@ -5,7 +5,6 @@ use pxpl5_machine::Record;
 use pxpl5_run::SoFar;
 use pxpl5_sim::Time;
 use pxpl5_wire::{NodeId, PictureNumber, SurfaceId};
-use std::collections::BTreeSet;
 
 /// A port by its name.
 pub(crate) struct DisplayPort {
@@ -50,12 +49,8 @@ fn has_more_ports(display: &dyn Display) -> bool {
 
 /// What a port showed: its pictures in the order in which they were begun, each from a swap to the next.
 pub(crate) fn shown(run: &SoFar<'_>, node: NodeId) -> Vec<PortShown> {
-    let observation = run.observation();
-    let arrivals = observation.arrivals.iter().filter(|arrival| arrival.target.frame_buffer == node);
-    let pictures: BTreeSet<PictureNumber> = arrivals.map(|arrival| arrival.target.picture).collect();
-    let swaps = observation.swaps.iter().filter(|swap| swap.port == node).map(|swap| run.record().tick(swap.tick));
-    let begins: Vec<Time> = swaps.collect();
-    let ends = begins.iter().skip(1).copied().chain([run.end()]);
-    let all = pictures.into_iter().zip(begins.iter().zip(ends));
-    all.map(|(picture, (begin, end))| PortShown { picture, begin: *begin, end }).collect()
+    let shown = run.record().shown_by(node);
+    let ends = shown.iter().skip(1).map(|next| next.at).chain([run.end()]);
+    let all = shown.iter().zip(ends);
+    all.map(|(shown, end)| PortShown { picture: shown.picture, begin: shown.at, end }).collect()
 }

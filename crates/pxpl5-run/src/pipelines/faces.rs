@@ -19,13 +19,12 @@ use pphigs::{DisplayList, Picture, RecentViews, RegionBinning, Shading};
 use priority_rendering::{Falloff, PriorityError, PriorityTiming};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::Priority;
-use pxpl5_machine::{ConfigError, HostLine, Machine, MachineConfig, Record};
+use pxpl5_machine::{ConfigError, HostLine, Machine, MachineConfig, Record, Shown};
 use pxpl5_renderer::Layout;
 use pxpl5_scene::{HmdConfig, Scene};
 use pxpl5_sim::Time;
-use pxpl5_wire::{Body, CopyContent, Lines, NodeId, PictureNumber, REGION_SIZE, RegionGrid, ViewNumber};
+use pxpl5_wire::{Body, CopyContent, Lines, PictureNumber, REGION_SIZE, RegionGrid, ViewNumber};
 use std::any::Any;
-use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 
@@ -303,20 +302,20 @@ impl Pipeline for FacePipeline {
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         let Some(port) = record.ports().display().first() else { return Vec::new() };
         let stages = record.stages();
-        let swaps = record.observation().swaps.iter().filter(|swap| swap.port == *port);
-        let updates = updates_of(record, *port).into_iter().zip(swaps.map(|swap| record.tick(swap.tick)));
-        let shown = updates.filter(|(_, at)| *at < end);
+        let shown = record.shown_by(*port).into_iter().filter(|shown| shown.at < end);
         match self.source {
-            FaceSource::PixelPlanes => {
-                shown.filter_map(|((picture, _), at)| swapped_in(&stages, picture, at)).collect()
-            }
-            FaceSource::Ideal => shown.map(|((picture, drawn), at)| drawn_at_once(picture, drawn, at)).collect(),
+            FaceSource::PixelPlanes => shown.filter_map(|shown| swapped_in(&stages, shown.picture, shown.at)).collect(),
+            FaceSource::Ideal => shown.map(drawn_at_once).collect(),
         }
+    }
+
+    fn can_forget(&self) -> bool {
+        true
     }
 
     /// From the first swap of any memory on, one in each field, with the orientation that was latched.
     fn turned_periods(&self, record: &Record, end: Time) -> u64 {
-        let first = record.observation().swaps.iter().map(|swap| swap.tick).min();
+        let first = record.observation().first_swap();
         let after = record.display().period_at(end);
         first.map_or(0, |first| after.since(first.min(after)))
     }
@@ -380,27 +379,18 @@ impl FacePipeline {
 }
 
 /// Times of an update that was drawn in no time.
-const fn drawn_at_once(picture: PictureNumber, drawn: Time, shown_at: Time) -> PictureTimes {
+const fn drawn_at_once(shown: Shown) -> PictureTimes {
+    let drawn = shown.first_region_at;
     PictureTimes {
-        picture,
-        view: ViewNumber::taken_for(picture),
+        picture: shown.picture,
+        view: ViewNumber::taken_for(shown.picture),
         sampled_at: Some(drawn),
         transform_at: drawn,
         copied_at: Some(drawn),
-        shown_at,
+        shown_at: shown.at,
         end: PictureEnd::Shown,
     }
 }
 
 /// Views that slaves ask for at a time: six faces of two updates.
 const VIEWS_AT_A_TIME: usize = 12;
-
-/// The updates that a port got, in order, and when the last message of the first region came: every update has a region at least.
-fn updates_of(record: &Record, port: NodeId) -> Vec<(PictureNumber, Time)> {
-    let arrivals = record.observation().arrivals.iter().filter(|arrival| arrival.target.frame_buffer == port);
-    let mut first = BTreeMap::new();
-    for arrival in arrivals {
-        first.entry(arrival.target.picture).or_insert(arrival.last_part_at);
-    }
-    first.into_iter().collect()
-}

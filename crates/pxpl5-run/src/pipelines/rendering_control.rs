@@ -151,16 +151,10 @@ impl Pipeline for RenderingControl {
 
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         let stages = record.stages();
-        let observation = record.observation();
-        let shown = observation.swap_ticks(self.eyes());
-        let shown = shown.iter().map(|tick| record.tick(*tick));
-        PictureNumber::FIRST
-            .after(observation.forgotten.frames)
-            .onwards()
-            .zip(shown)
-            .filter(|(_, shown_at)| *shown_at < end)
-            .filter_map(|(frame, at)| swapped_in(&stages, frame, at))
-            .collect()
+        let frames = record.observation().frames(self.eyes()).into_iter();
+        let shown = frames.map(|(number, tick)| (PictureNumber::FIRST.after(number), record.tick(tick)));
+        let shown = shown.filter(|(_, shown_at)| *shown_at < end);
+        shown.filter_map(|(frame, at)| swapped_in(&stages, frame, at)).collect()
     }
 
     fn can_forget(&self) -> bool {

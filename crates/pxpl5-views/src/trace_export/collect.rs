@@ -121,7 +121,8 @@ impl Trace {
         let slices = arrivals.map(|arrival| region_slice(arrival, message));
         self.track(group, "COPY", Events::Slices(apart(slices)));
         let Some(display) = display_of(record, surface) else { return };
-        let swaps = outcome.observation().swaps_of(surface).map(|tick| (display.tick(tick), "swap".to_owned()));
+        let swaps = outcome.observation().swaps_of(surface);
+        let swaps = swaps.map(|swap| (display.tick(swap.tick), "swap".to_owned()));
         self.track(group, "swaps", Events::Instants(swaps.collect()));
     }
 
