@@ -9,7 +9,7 @@ use crate::placing::place_once;
 use crate::view::FrameView;
 use pxpl5_geometry::{Light, RegionMask, SetupStats, Touch, Transform};
 use pxpl5_wire::RegionId;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A screen triangle of a bin: what its commands are made from.
 #[derive(Clone, Copy, Debug)]
@@ -20,31 +20,169 @@ pub(crate) struct BinEntry {
     pub(crate) piece: Option<u8>,
 }
 
-/// Room that a bin begins with, once something is in it: small steps would be many in a large scene.
-const FIRST_ENTRIES: usize = 64;
-
 /// What touches one region, by rising numbers in the display list.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Bin {
     pub(crate) triangles: Vec<BinEntry>,
     pub(crate) spheres: Vec<u32>,
 }
 
 /// Bins of one eye: for each region the screen primitives that touch it.
+///
+/// Times need their numbers alone. What is in them is found again, from the regions touched, when somebody first asks.
 #[derive(Debug)]
 pub struct Pass {
+    walk: Walk,
+    found: Found,
+    stats: SetupStats,
+    /// By region.
+    bins: OnceLock<Vec<Bin>>,
+    /// Makes the words of triangles; `None` where nobody wants pixels.
+    encoder: Option<Encoder>,
+}
+
+/// What binning goes through.
+#[derive(Debug)]
+struct Walk {
     share: Share,
     placed: Arc<[PlacedStructure]>,
     picture: Picture,
-    counts: Vec<PrimitiveCounts>,
     all_regions: RegionMask,
-    /// By region; empty without pixels.
-    bins: Vec<Bin>,
-    screen_counts: PrimitiveCounts,
-    stats: SetupStats,
-    /// Makes the words of triangles; `None` where nobody wants pixels.
-    encoder: Option<Encoder>,
+    /// Structures whose primitives are taken, by their place in the display list; `None` for all.
+    chosen: Option<Box<[bool]>>,
+}
+
+/// Who takes what binning finds, in the order of the display list, structure by structure.
+trait Take {
+    /// A triangle that touches one region alone.
+    fn triangle_in(&mut self, region: RegionId, triangle: u32);
+
+    /// What is left of a triangle, or a piece of it, and the bins that get it.
+    fn piece(&mut self, receivers: RegionMask, entry: BinEntry);
+
+    /// A sphere.
+    fn sphere(&mut self, regions: RegionMask, number: u32);
+}
+
+/// Numbers of what was found.
+#[derive(Debug)]
+struct Found {
+    counts: Vec<PrimitiveCounts>,
+    on_screen: PrimitiveCounts,
+    /// Triangles and spheres that are in some bin; of chosen structures only.
     touching: Option<[Vec<u32>; 2]>,
+}
+
+impl Found {
+    fn in_region(&mut self, region: RegionId) -> &mut PrimitiveCounts {
+        &mut self.counts[usize::from(region.0)]
+    }
+
+    /// A triangle (kind 0) or sphere (1) is in some bin.
+    #[inline(always)]
+    fn note_touching(&mut self, kind: usize, number: u32) {
+        if let Some(touching) = &mut self.touching {
+            touching[kind].push(number);
+        }
+    }
+}
+
+impl Take for Found {
+    #[inline(always)]
+    fn triangle_in(&mut self, region: RegionId, triangle: u32) {
+        self.in_region(region).triangles += 1;
+        self.on_screen.triangles += 1;
+        self.note_touching(0, triangle);
+    }
+
+    fn piece(&mut self, receivers: RegionMask, entry: BinEntry) {
+        receivers.iter().for_each(|region| self.in_region(region).triangles += 1);
+        self.on_screen.triangles += 1;
+        if entry.piece == Some(0) {
+            self.note_touching(0, entry.triangle);
+        }
+    }
+
+    fn sphere(&mut self, regions: RegionMask, number: u32) {
+        regions.iter().for_each(|region| self.in_region(region).spheres += 1);
+        self.on_screen.spheres += 1;
+        self.note_touching(1, number);
+    }
+}
+
+impl Take for Vec<Bin> {
+    #[inline(always)]
+    fn triangle_in(&mut self, region: RegionId, triangle: u32) {
+        self[usize::from(region.0)].triangles.push(BinEntry { triangle, piece: Some(0) });
+    }
+
+    fn piece(&mut self, receivers: RegionMask, entry: BinEntry) {
+        receivers.iter().for_each(|region| self[usize::from(region.0)].triangles.push(entry));
+    }
+
+    fn sphere(&mut self, regions: RegionMask, number: u32) {
+        regions.iter().for_each(|region| self[usize::from(region.0)].spheres.push(number));
+    }
+}
+
+impl Walk {
+    fn go(&self, take: &mut impl Take) -> SetupStats {
+        let mut stats = SetupStats::default();
+        let is_chosen = |structure: usize| self.chosen.as_ref().is_none_or(|all| all.get(structure) == Some(&true));
+        for (_, place) in self.placed.iter().enumerate().filter(|(structure, _)| is_chosen(*structure)) {
+            let Some(transform) = &place.transform else { continue };
+            self.triangles(place, transform, take, &mut stats);
+            for number in self.share.held_spheres(&place.structure.spheres) {
+                if let Some(sphere) = transform.sphere(&self.share.list.spheres[number], &mut stats) {
+                    take.sphere(sphere.regions, number as u32);
+                }
+            }
+        }
+        stats
+    }
+
+    fn triangles(&self, place: &PlacedStructure, transform: &Transform, take: &mut impl Take, stats: &mut SetupStats) {
+        let list = &self.share.list;
+        let first = place.structure.triangles.start;
+        let touched = place.touched(list, transform);
+        let mut in_one_region = 0;
+        for number in self.share.held_triangles(&place.structure.triangles) {
+            let touch = touched.get(number - first);
+            let triangle = number as u32;
+            if let (Touch::Region(region), RegionBinning::Touched) = (touch, self.picture.binning) {
+                in_one_region += 1;
+                take.triangle_in(region, triangle);
+                continue;
+            }
+            let mut pieces = 0;
+            let mut put = |mask| {
+                take.piece(self.receivers(mask), BinEntry { triangle, piece: Some(pieces) });
+                pieces += 1;
+            };
+            match touch {
+                Touch::NeedsClipping => transform.bin(&list.corners(number), stats, put),
+                whole => {
+                    stats.triangles += 1;
+                    if let Some(mask) = whole.count(stats) {
+                        put(mask);
+                    }
+                }
+            }
+            if pieces == 0 && self.picture.binning == RegionBinning::All {
+                take.piece(self.all_regions, BinEntry { triangle, piece: None });
+            }
+        }
+        // Most triangles by far, counted together.
+        stats.triangles += in_one_region;
+        stats.screen_triangles += in_one_region;
+    }
+
+    fn receivers(&self, mask: RegionMask) -> RegionMask {
+        match self.picture.binning {
+            RegionBinning::Touched => mask,
+            RegionBinning::All => self.all_regions,
+        }
+    }
 }
 
 impl Share {
@@ -63,162 +201,60 @@ impl Share {
 
 impl Pass {
     fn new(share: Share, view: &FrameView, eye: usize, picture: Picture, chosen: Option<&[bool]>) -> Self {
-        let regions = picture.viewport.grid().regions() as usize;
+        let regions = picture.viewport.grid().regions();
         let placed = place_once(&share.list, view, eye, picture.viewport);
-        let bins = if picture.pixels { vec![Bin::default(); regions] } else { Vec::new() };
-        let mut pass = Self {
-            share,
-            placed,
-            picture,
-            counts: vec![PrimitiveCounts::default(); regions],
-            all_regions: (0..regions as u16)
-                .map(|i| RegionMask::only(RegionId(i)))
-                .fold(RegionMask::EMPTY, RegionMask::union),
-            bins,
-            screen_counts: PrimitiveCounts::default(),
-            stats: SetupStats::default(),
-            encoder: picture.pixels.then(|| Encoder::for_picture(&picture)).flatten(),
+        let all = (0..regions as u16).map(|region| RegionMask::only(RegionId(region)));
+        let all_regions = all.fold(RegionMask::EMPTY, RegionMask::union);
+        let walk = Walk { share, placed, picture, all_regions, chosen: chosen.map(Box::from) };
+        let mut found = Found {
+            counts: vec![PrimitiveCounts::default(); regions as usize],
+            on_screen: PrimitiveCounts::default(),
             touching: chosen.map(|_| Default::default()),
         };
-        pass.binitize(chosen);
-        pass
+        let stats = walk.go(&mut found);
+        let encoder = picture.pixels.then(|| Encoder::for_picture(&picture)).flatten();
+        Self { walk, found, stats, bins: OnceLock::new(), encoder }
     }
 
-    fn binitize(&mut self, chosen: Option<&[bool]>) {
-        let mut stats = SetupStats::default();
-        let placed = Arc::clone(&self.placed);
-        let share = self.share.clone();
-        let is_chosen = |structure: usize| chosen.is_none_or(|chosen| chosen.get(structure) == Some(&true));
-        for (_, place) in placed.iter().enumerate().filter(|(structure, _)| is_chosen(*structure)) {
-            let Some(transform) = &place.transform else { continue };
-            self.bin_triangles(place, transform, &share, &mut stats);
-            for number in share.held_spheres(&place.structure.spheres) {
-                if let Some(sphere) = transform.sphere(&share.list.spheres[number], &mut stats) {
-                    self.put_sphere(sphere.regions, number as u32);
-                    self.note_touching(1, number as u32);
-                }
-            }
-        }
-        self.stats = stats;
-    }
-
-    fn bin_triangles(&mut self, place: &PlacedStructure, transform: &Transform, share: &Share, stats: &mut SetupStats) {
-        let first = place.structure.triangles.start;
-        let touched = place.touched(&share.list, transform);
-        let mut in_one_region = 0;
-        for number in share.held_triangles(&place.structure.triangles) {
-            let touch = touched.get(number - first);
-            if let (Touch::Region(region), RegionBinning::Touched) = (touch, self.picture.binning) {
-                in_one_region += 1;
-                self.put_in(region, BinEntry { triangle: number as u32, piece: Some(0) });
-                self.note_touching(0, number as u32);
-                continue;
-            }
-            let triangle = number as u32;
-            let mut pieces = 0;
-            match touch {
-                Touch::NeedsClipping => {
-                    transform.bin(&share.list.corners(number), stats, |mask| {
-                        self.put_piece(mask, triangle, &mut pieces);
-                    });
-                }
-                whole => {
-                    stats.triangles += 1;
-                    if let Some(mask) = whole.count(stats) {
-                        self.put_piece(mask, triangle, &mut pieces);
-                    }
-                }
-            }
-            if pieces > 0 {
-                self.note_touching(0, triangle);
-            }
-            if pieces == 0 && self.picture.binning == RegionBinning::All {
-                self.put_triangle(RegionMask::EMPTY, BinEntry { triangle, piece: None });
-            }
-        }
-        // Most triangles by far, counted together.
-        stats.triangles += u64::from(in_one_region);
-        stats.screen_triangles += u64::from(in_one_region);
-        self.screen_counts.triangles += in_one_region;
-    }
-
-    fn receivers(&self, mask: RegionMask) -> RegionMask {
-        match self.picture.binning {
-            RegionBinning::Touched => mask,
-            RegionBinning::All => self.all_regions,
-        }
-    }
-
-    /// Puts the next piece of a triangle into bins, and counts it.
-    fn put_piece(&mut self, mask: RegionMask, triangle: u32, pieces: &mut u8) {
-        self.put_triangle(mask, BinEntry { triangle, piece: Some(*pieces) });
-        *pieces += 1;
-    }
-
-    fn put_triangle(&mut self, mask: RegionMask, entry: BinEntry) {
-        for region in self.receivers(mask).iter() {
-            self.put_in(region, entry);
-        }
-        self.screen_counts.triangles += 1;
-    }
-
-    /// A triangle (kind 0) or sphere (1) is in some bin.
-    #[inline(always)]
-    fn note_touching(&mut self, kind: usize, number: u32) {
-        if let Some(touching) = &mut self.touching {
-            touching[kind].push(number);
-        }
-    }
-
-    #[inline(always)]
-    fn put_in(&mut self, region: RegionId, entry: BinEntry) {
-        self.counts[usize::from(region.0)].triangles += 1;
-        if let Some(Bin { triangles, .. }) = self.bins.get_mut(usize::from(region.0)) {
-            if triangles.len() == triangles.capacity() {
-                triangles.reserve(triangles.len().max(FIRST_ENTRIES));
-            }
-            triangles.push(entry);
-        }
-    }
-
-    fn put_sphere(&mut self, mask: RegionMask, number: u32) {
-        for region in mask.iter() {
-            self.counts[usize::from(region.0)].spheres += 1;
-            if let Some(bin) = self.bins.get_mut(usize::from(region.0)) {
-                bin.spheres.push(number);
-            }
-        }
-        self.screen_counts.spheres += 1;
+    /// What is in the bins, found again.
+    fn filled(&self) -> Vec<Bin> {
+        let room = |counts: &PrimitiveCounts| Bin {
+            triangles: Vec::with_capacity(counts.triangles as usize),
+            spheres: Vec::with_capacity(counts.spheres as usize),
+        };
+        let mut bins: Vec<Bin> = self.found.counts.iter().map(room).collect();
+        self.walk.go(&mut bins);
+        bins
     }
 
     /// Numbers of entries in a region's bin.
     #[must_use]
     pub fn counts(&self, region: RegionId) -> PrimitiveCounts {
-        self.counts[usize::from(region.0)]
+        self.found.counts[usize::from(region.0)]
     }
 
     /// Primitives on the screen, each counted once.
     #[must_use]
     pub const fn screen_counts(&self) -> PrimitiveCounts {
-        self.screen_counts
+        self.found.on_screen
     }
 
     /// Entries of all bins together.
     #[must_use]
     pub fn entries(&self) -> u64 {
-        self.counts.iter().map(|counts| u64::from(counts.total())).sum()
+        self.found.counts.iter().map(|counts| u64::from(counts.total())).sum()
     }
 
     /// Numbers of primitives transformed, seen or not.
     #[must_use]
     pub fn transformed(&self) -> PrimitiveCounts {
-        self.share.counts()
+        self.walk.share.counts()
     }
 
     /// Triangles and spheres that are in some bin, by rising numbers in the display list; `None` of a pass over all structures.
     #[must_use]
     pub const fn touching(&self) -> Option<&[Vec<u32>; 2]> {
-        self.touching.as_ref()
+        self.found.touching.as_ref()
     }
 
     /// What happened to the primitives.
@@ -230,27 +266,27 @@ impl Pass {
     /// The picture that is made of the view.
     #[must_use]
     pub const fn picture(&self) -> &Picture {
-        &self.picture
+        &self.walk.picture
     }
 
     /// Red, green and blue where nothing is drawn, 0 to 255 each.
     #[must_use]
     pub fn background(&self) -> [u8; 3] {
-        self.share.list.background
+        self.walk.share.list.background
     }
 
     /// The light as the first structure's eye sees it.
     #[must_use]
     pub fn light(&self) -> Option<&Light> {
-        self.placed.first().map(|placed| &placed.light)
+        self.walk.placed.first().map(|placed| &placed.light)
     }
 
     pub(crate) fn placed(&self) -> Arc<[PlacedStructure]> {
-        Arc::clone(&self.placed)
+        Arc::clone(&self.walk.placed)
     }
 
     pub(crate) const fn share(&self) -> &Share {
-        &self.share
+        &self.walk.share
     }
 
     pub(crate) const fn encoder(&self) -> Option<&Encoder> {
@@ -258,12 +294,12 @@ impl Pass {
     }
 
     pub(crate) fn bin(&self, region: RegionId) -> &Bin {
-        &self.bins[usize::from(region.0)]
+        &self.bins.get_or_init(|| self.filled())[usize::from(region.0)]
     }
 
     /// Structures in order, with their transforms.
     pub(crate) fn drawn(&self) -> impl Iterator<Item = (&PlacedStructure, &Transform)> {
-        drawn(&self.placed)
+        drawn(&self.walk.placed)
     }
 }
 
