@@ -31,6 +31,7 @@ pub use slats::{FieldTimes, PerTriangle, SlatsModel};
 use pxpl5_framebuffer::{FrameBufferConfig, Video};
 use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_run::{Experiment, ExperimentError, Pipeline, Registry, Summary};
+use pxpl5_scene::Scene;
 use std::any::Any;
 use std::sync::Arc;
 
@@ -54,23 +55,41 @@ fn pipeline_of<P: Pipeline + Copy>(experiment: &Experiment) -> Result<P, Experim
 /// Fields that an estimate looks at: enough for a steady state, and for some of the views of a head that moves.
 const ESTIMATED_FIELDS: (u64, u64) = (24, 60);
 
-/// The most primitives to which an experiment's scene can be decimated so that.
+/// About the most primitives to which an experiment's scene can be decimated so that all is in time; with them it is.
 /// A head with a tracker is left out: the scene's own motion stands for it.
+///
+/// While it searches, what is already too much is thinned further, not the whole scene each time: what comes out differs a little
+/// from the scene that the whole one is decimated to, of which at last it is asked whether it is in time.
 fn triangles_in_time(
     experiment: &Experiment,
     summary: fn(&Experiment) -> Result<Summary, ExperimentError>,
 ) -> Option<u64> {
     let (least, most) = ESTIMATED_FIELDS;
     let plain = experiment.clone().without_head().fields(experiment.length().clamp(least, most));
+    let is_in_time = |scene: Scene| is_in_time(&summary(&plain.clone().with_scene(scene)).ok()?);
     let whole = Arc::clone(plain.scene());
+    let mut denser = Scene::clone(&whole);
     let mut in_time = 0;
-    let mut too_many = whole.triangles().len() + whole.spheres().len() + 1;
+    let mut too_many = primitives(&whole) + 1;
     while too_many - in_time > 1 {
         let middle = in_time + (too_many - in_time) / 2;
-        let thinned = plain.clone().with_scene(whole.decimated(middle).ok()?);
-        *if is_in_time(&summary(&thinned).ok()?)? { &mut in_time } else { &mut too_many } = middle;
+        let thinned = denser.decimated(middle).ok()?;
+        if is_in_time(thinned.clone())? {
+            in_time = middle;
+        } else {
+            too_many = middle;
+            // It can have fewer, where no edge is left that can go.
+            denser = if primitives(&thinned) == middle { thinned } else { denser };
+        }
+    }
+    while in_time > 0 && !is_in_time(whole.decimated(in_time).ok()?)? {
+        in_time -= in_time.div_ceil(100);
     }
     Some(in_time as u64)
+}
+
+fn primitives(scene: &Scene) -> usize {
+    scene.triangles().len() + scene.spheres().len()
 }
 
 fn is_in_time(summary: &Summary) -> Option<bool> {
