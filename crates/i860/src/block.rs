@@ -87,6 +87,8 @@ fn is_store(op: Op) -> bool {
     matches!(op, Op::StB | Op::StS | Op::StL | Op::Fst | Op::Pst)
 }
 
+const LINE_BYTES: u32 = ChipSizes::PAPERS.line_bytes as u32;
+
 /// No state of an instruction cache.
 const NEVER: u64 = u64::MAX;
 
@@ -100,15 +102,34 @@ pub(crate) struct Block {
     pub(crate) instructions: u64,
     /// Bytes of the units, without the slot.
     bytes: u32,
-    /// Which accesses to data are stores, the first one in bit 0.
-    pub(crate) stores: u64,
-    /// Whether there is nothing in it that goes past the caches, whatever they hold.
-    pub(crate) in_caches_only: bool,
+    /// The units that access data, in order, each once.
+    pub(crate) accessing: Box<[AccessingUnit]>,
+    /// The first unit on each line of the cache.
+    lines: Box<[u8]>,
     /// State of the instruction cache in which all of it was held.
     held_in: u64,
-    /// State of the instruction cache at the last visit.
-    visited_in: u64,
     pub(crate) remembered: BlockMemory,
+}
+
+/// A unit that accesses data.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AccessingUnit {
+    /// Its number in the block.
+    pub(crate) number: u8,
+    pub(crate) is_store: bool,
+    /// Whether it goes past the cache, whatever that holds.
+    pub(crate) leaves_cache: bool,
+}
+
+impl AccessingUnit {
+    fn new((number, op): (u8, Op)) -> Option<AccessingUnit> {
+        let accesses = op <= Op::Pst || op == Op::Flush;
+        accesses.then(|| AccessingUnit {
+            number,
+            is_store: is_store(op),
+            leaves_cache: matches!(op, Op::Pfld | Op::Flush),
+        })
+    }
 }
 
 impl Block {
@@ -134,10 +155,9 @@ impl Block {
             slot,
             instructions: 0,
             bytes: last.next().wrapping_sub(pc),
-            stores: 0,
-            in_caches_only: true,
+            accessing: Box::default(),
+            lines: Box::default(),
             held_in: NEVER,
-            visited_in: NEVER,
             remembered: BlockMemory::default(),
         };
         block.sum_up();
@@ -145,11 +165,12 @@ impl Block {
     }
 
     fn sum_up(&mut self) {
-        let accesses = self.ops().filter(|op| *op <= Op::Pst);
-        self.stores = (0..).zip(accesses).filter(|(_, op)| is_store(*op)).fold(0, |bits, (n, _)| bits | 1 << n);
         self.instructions = self.units_and_slot().map(Unit::instructions).sum();
-        let leaves_caches = self.ops().any(|op| matches!(op, Op::Pfld | Op::Flush));
-        self.in_caches_only = !leaves_caches;
+        self.accessing = (0..).zip(self.ops()).filter_map(AccessingUnit::new).collect();
+        let mut line = None;
+        let lines = (0..).zip(self.units_and_slot());
+        let first = lines.filter(|(_, unit)| line.replace(unit.pc / LINE_BYTES) != Some(unit.pc / LINE_BYTES));
+        self.lines = first.map(|(number, _)| number).collect();
     }
 
     fn units_and_slot(&self) -> impl Iterator<Item = &Unit> {
@@ -176,26 +197,29 @@ impl Block {
         }
     }
 
-    /// Whether the instruction cache is known to hold all of it.
-    ///
-    /// It is not looked up before there is something to remember: code that finds another cache at every visit may not
-    /// fit it.
+    /// A unit by its number; the slot has the one behind the last.
+    #[inline]
+    pub(crate) fn unit(&self, number: usize) -> &Unit {
+        match (self.units.get(number), &self.slot) {
+            (Some(unit), _) | (None, Some(Ok(unit))) => unit,
+            _ => unreachable!("it was executed"),
+        }
+    }
+
+    /// Number of the first unit that is not on the same line of the cache as another one.
+    pub(crate) fn end_of_line(&self, number: usize) -> usize {
+        let next = self.lines.iter().find(|first| usize::from(**first) > number);
+        next.map_or(usize::MAX, |first| usize::from(*first))
+    }
+
+    /// Whether the instruction cache holds all of it.
     #[inline]
     pub(crate) fn is_held(&mut self, cache: &Tags) -> bool {
-        if self.held_in == cache.changes() {
-            return true;
-        }
-        let before = std::mem::replace(&mut self.visited_in, cache.changes());
-        (before == cache.changes() || !self.remembered.is_empty()) && self.look_up(cache)
+        self.held_in == cache.changes() || self.look_up(cache)
     }
 
     fn look_up(&mut self, cache: &Tags) -> bool {
-        let first = self.units[0].pc;
-        let slot = self.slot.iter().flatten();
-        let line = ChipSizes::PAPERS.line_bytes as u32;
-        let bytes = first % line + self.bytes + slot.map(|unit| unit.next().wrapping_sub(unit.pc)).sum::<u32>();
-        let mut lines = (0..bytes.div_ceil(line)).map(|n| (first - first % line).wrapping_add(n * line));
-        let held = lines.all(|address| cache.find(address).is_some());
+        let held = self.lines.iter().all(|first| cache.find(self.unit(usize::from(*first)).pc).is_some());
         if held {
             self.held_in = cache.changes();
         }

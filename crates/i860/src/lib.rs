@@ -116,6 +116,7 @@ mod memory;
 mod mnemonic;
 mod operands;
 mod profile;
+mod runs;
 mod scoreboard;
 mod seed;
 pub mod state;
