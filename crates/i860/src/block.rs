@@ -2,6 +2,7 @@
 
 use crate::bus::Bus;
 use crate::cache::Tags;
+use crate::code_map::CodeMap;
 use crate::decode::decode;
 use crate::decoded::Decoded;
 use crate::execution::Execution;
@@ -25,6 +26,29 @@ pub(crate) struct Unit {
     pub(crate) first: Decoded,
     /// The core half of a pair.
     pub(crate) second: Option<Decoded>,
+    /// Which of them changes anything that a program can see.
+    pub(crate) halves: Halves,
+}
+
+/// Halves that have something to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Halves {
+    Idle,
+    Floating,
+    Core,
+    Both,
+}
+
+impl Halves {
+    fn of(first: &Decoded, second: Option<&Decoded>) -> Halves {
+        let core = second.or((!first.is_floating()).then_some(first));
+        match (first.is_floating() && !first.is_idle(), core.is_some_and(|core| !core.is_idle())) {
+            (false, false) => Halves::Idle,
+            (true, false) => Halves::Floating,
+            (false, true) => Halves::Core,
+            (true, true) => Halves::Both,
+        }
+    }
 }
 
 impl Unit {
@@ -39,7 +63,7 @@ impl Unit {
             (false, _) if first.dual() => Mode::Entering,
             _ => Mode::Single,
         };
-        Ok(Unit { pc, mode, after, first, second: None })
+        Ok(Unit { pc, mode, after, first, second: None, halves: Halves::of(&first, None) })
     }
 
     fn pair<B: Bus>(pc: u32, mode: Mode, code: &mut CodeMap, bus: &mut B) -> Result<Unit, TrapCause> {
@@ -51,13 +75,20 @@ impl Unit {
         if !first.is_floating() || second.is_floating() && second.instruction.op != Op::Fnop {
             return Err(TrapCause::IllegalPair);
         }
-        Ok(Unit { pc, mode, after: mode.after_pair(first.dual()), first, second: Some(second) })
+        let halves = Halves::of(&first, Some(&second));
+        Ok(Unit { pc, mode, after: mode.after_pair(first.dual()), first, second: Some(second), halves })
     }
 
     /// The half that may access memory or branch: that of a pair, or the instruction.
     #[inline]
     pub(crate) fn core(&self) -> &Decoded {
         self.second.as_ref().unwrap_or(&self.first)
+    }
+
+    /// Address of the core half.
+    #[inline]
+    pub(crate) fn core_pc(&self) -> u32 {
+        self.pc.wrapping_add(if self.second.is_some() { 4 } else { 0 })
     }
 
     /// Address of what follows.
@@ -238,52 +269,5 @@ impl Block {
     pub(crate) fn passes(&self, address: u32) -> bool {
         let offset = address.wrapping_sub(self.units[0].pc);
         offset != 0 && offset < self.bytes
-    }
-}
-
-/// Words of code that were decoded, so that a store into them is noticed.
-#[derive(Debug)]
-pub(crate) struct CodeMap {
-    /// Lowest and highest address of them.
-    range: (u32, u32),
-    /// A bit for each word, by its number modulo [`CodeMap::BITS`].
-    words: Box<[u64]>,
-}
-
-impl CodeMap {
-    const BITS: usize = 1 << 14;
-
-    pub(crate) fn new() -> CodeMap {
-        CodeMap { range: (u32::MAX, 0), words: vec![0; CodeMap::BITS / 64].into_boxed_slice() }
-    }
-
-    fn bit(address: u32) -> (usize, u64) {
-        let word = (address >> 2) as usize % CodeMap::BITS;
-        (word / 64, 1 << (word % 64))
-    }
-
-    fn mark(&mut self, pc: u32) {
-        let (at, bit) = CodeMap::bit(pc);
-        self.words[at] |= bit;
-        self.range = (self.range.0.min(pc), self.range.1.max(pc | 3));
-    }
-
-    /// Whether some of `size` bytes may have been decoded.
-    #[inline]
-    pub(crate) fn may_hold(&self, address: u32, size: u32) -> bool {
-        let last = address.wrapping_add(size - 1);
-        last >= self.range.0 && address <= self.range.1 && self.is_marked(address, last)
-    }
-
-    fn is_marked(&self, first: u32, last: u32) -> bool {
-        [first, last].into_iter().any(|address| {
-            let (at, bit) = CodeMap::bit(address);
-            self.words[at] & bit != 0
-        })
-    }
-
-    pub(crate) fn clear(&mut self) {
-        self.words.fill(0);
-        self.range = (u32::MAX, 0);
     }
 }

@@ -20,17 +20,33 @@ use crate::translation::Translation;
 const BUS_BYTES: u32 = ChipSizes::PAPERS.bus_bytes as u32;
 
 /// Addresses of data accesses, in order; at most one for each unit of a block.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Accesses(Vec<u32>);
+#[derive(Clone, Debug)]
+pub(crate) struct Accesses {
+    all: [u32; Accesses::MOST],
+    count: usize,
+}
 
 impl Accesses {
+    /// More than a block has units; a power of two.
+    const MOST: usize = 64;
+
+    pub(crate) fn new() -> Accesses {
+        Accesses { all: [0; Accesses::MOST], count: 0 }
+    }
+
     pub(crate) fn clear(&mut self) {
-        self.0.clear();
+        self.count = 0;
     }
 
     #[inline]
     pub(crate) fn push(&mut self, address: u32) {
-        self.0.push(address);
+        self.all[self.count % Accesses::MOST] = address;
+        self.count += 1;
+    }
+
+    #[inline]
+    fn addresses(&self) -> &[u32] {
+        &self.all[..self.count.min(Accesses::MOST)]
     }
 }
 
@@ -112,14 +128,14 @@ impl Clock {
         } else if self.memo.is_none() || self.translation.is_on() || self.sampler.is_some() {
             self.count(block, execution, accesses, bus);
         } else {
-            self.go(block, execution, &accesses.0, bus);
+            self.go(block, execution, accesses.addresses(), bus);
         }
     }
 
     /// Counts them one unit after the other.
     fn count<B: Bus>(&mut self, block: &Block, execution: Execution, accesses: &Accesses, bus: &B) {
         self.write_board();
-        let mut accesses = accesses.0.iter();
+        let mut accesses = accesses.addresses().iter();
         let last = execution.units + usize::from(execution.slot) - 1;
         block.executed(execution).enumerate().for_each(|(n, unit)| {
             let before = self.common.now;

@@ -82,6 +82,12 @@ impl Decoded {
         self.marks & mark::BRANCH != 0
     }
 
+    /// Whether it changes nothing that a program can see: `fnop`, and shifts into r0 that load no shift count, of which `nop` is one.
+    pub(crate) fn is_idle(&self) -> bool {
+        let Instruction { op, dest, .. } = self.instruction;
+        op == Op::Fnop || dest == 0 && matches!(op, Op::Shl | Op::Shra | Op::Shrd)
+    }
+
     /// The D bit: whether it is issued beside an integer instruction.
     #[inline]
     pub(crate) fn dual(&self) -> bool {

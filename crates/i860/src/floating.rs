@@ -1,11 +1,11 @@
 //! Execution in the floating-point half: adder, multiplier, their pipes, and the dual operations.
 
-use crate::arithmetic::{Operation, convert, multiply_low, narrow, operate, round, to_integer, widen};
+use crate::arithmetic::{Operation, convert, multiply_low, narrow, operate, round, single, to_integer, widen};
 use crate::cpu::Cpu;
-use crate::dual_operation::{MULTIPLIER_ROUTES, ROUTES};
+use crate::dual_operation::{MULTIPLIER_ROUTES, ROUTES, Route, Source};
 use crate::instruction::{Flags, Instruction, Op};
 use crate::operands::{Operands, last_product};
-use crate::state::{PipeStage, fsr, psr};
+use crate::state::{PipeStage, State, fsr, psr};
 
 impl Cpu {
     /// Executes a floating-point or graphics instruction with its operands already read.
@@ -134,6 +134,9 @@ impl Cpu {
         let leaving_product = last_product(&self.state, s);
         let leaving_sum = self.state.adder[2];
         let flush = self.flush_to_zero();
+        if !(s || r || leaving_product.double || leaving_sum.double) {
+            return self.single_dual_operation(i, route, from, [leaving_product, leaving_sum]);
+        }
         let for_adder = self.sources(from, leaving_product, leaving_sum, r);
         let for_multiplier = if s == r { for_adder } else { self.sources(from, leaving_product, leaving_sum, s) };
         let [m1, m2] = route.multiplier.map(|source| for_multiplier[source as usize]);
@@ -150,6 +153,29 @@ impl Cpu {
         }
         self.push_product(product);
         self.push_sum(sum);
+    }
+
+    /// The same where all is in single precision.
+    #[inline]
+    fn single_dual_operation(&mut self, i: &Instruction, route: &Route, from: Operands, leaving: [PipeStage; 2]) {
+        let flush = self.flush_to_zero();
+        let [product, sum] = leaving;
+        let State { kr, ki, t, .. } = self.state;
+        let sources = [kr, ki, t, from.a, from.b, product.bits, sum.bits].map(|bits| f32::from_bits(bits as u32));
+        let of = |source: Source| sources[source as usize];
+        let [m1, m2, a1, a2] = [route.multiplier[0], route.multiplier[1], route.adder[0], route.adder[1]].map(of);
+        let new_product = single(Operation::Multiply, m1, m2, flush);
+        let operation = if i.imm & 16 != 0 { Operation::Subtract } else { Operation::Add };
+        let new_sum = single(operation, a1, a2, flush);
+        self.state.set_f32(i.dest, (if i.has(Flags::PIPELINED) { sum } else { product }).bits as u32);
+        if route.loads_t {
+            self.state.t = product.bits;
+        }
+        if route.loads_k {
+            self.load_constant(i.imm & 4 != 0, from.a);
+        }
+        self.push_product(PipeStage { bits: u64::from(new_product), double: false });
+        self.push_sum(PipeStage { bits: u64::from(new_sum), double: false });
     }
 
     /// The values of all [`Source`]s in the precision of one unit, in the order of the enumeration.

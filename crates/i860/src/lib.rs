@@ -91,6 +91,8 @@ mod block;
 mod bus;
 mod cache;
 mod clock;
+mod code;
+mod code_map;
 mod common;
 mod control;
 mod cpu;

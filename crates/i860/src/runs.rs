@@ -9,6 +9,7 @@ use crate::block::Block;
 use crate::bus::Bus;
 use crate::clock::Clock;
 use crate::execution::Execution;
+use crate::instruction::Instruction;
 use crate::memo::{Memo, Number, RememberedClocks, Run};
 use crate::timing::{FREEZES, Freeze};
 
@@ -99,10 +100,27 @@ impl Clock {
             None => self.learn(block, course, run, bus),
         }
         if let Some(unit) = missing {
-            self.write_board();
             let address = course.accesses[course.accessed];
-            self.access(&block.unit(unit).core().instruction, address, bus);
+            let is_store = block.accessing[course.accessed].is_store;
+            self.go_past(&block.unit(unit).core().instruction, is_store, address, bus);
             course.accessed += 1;
+        }
+    }
+
+    /// Counts an access that goes past the cache.
+    #[inline]
+    fn go_past<B: Bus>(&mut self, i: &Instruction, is_store: bool, address: u32, bus: &B) {
+        if !is_store {
+            self.write_board();
+            return self.access(i, address, bus);
+        }
+        // A store leaves nothing on the scoreboard when it misses: where it need not wait, nothing changes.
+        let before = self.common.now;
+        self.access(i, address, bus);
+        if self.common.now != before
+            && let Some(left) = self.memo.as_mut().and_then(Memo::leave)
+        {
+            self.board.restore(left, before);
         }
     }
 
