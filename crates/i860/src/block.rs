@@ -1,7 +1,7 @@
 //! Straight runs of code, decoded once: from an address to the next branch with its slot.
 
 use crate::bus::Bus;
-use crate::cache::Tags;
+use crate::cache::CacheTags;
 use crate::code_map::CodeMap;
 use crate::decode::decode;
 use crate::decoded::Decoded;
@@ -245,11 +245,11 @@ impl Block {
 
     /// Whether the instruction cache holds all of it.
     #[inline]
-    pub(crate) fn is_held(&mut self, cache: &Tags) -> bool {
+    pub(crate) fn is_held(&mut self, cache: &CacheTags) -> bool {
         self.held_in == cache.changes() || self.look_up(cache)
     }
 
-    fn look_up(&mut self, cache: &Tags) -> bool {
+    fn look_up(&mut self, cache: &CacheTags) -> bool {
         let held = self.lines.iter().all(|first| cache.find(self.unit(usize::from(*first)).pc).is_some());
         if held {
             self.held_in = cache.changes();

@@ -2,7 +2,7 @@
 
 use crate::block::AccessingUnit;
 use crate::bus::Bus;
-use crate::cache::Tags;
+use crate::cache::CacheTags;
 use crate::common::Common;
 use crate::dram::Transfer;
 use crate::store_pipe::StorePipe;
@@ -13,11 +13,11 @@ const BUS_BYTES: u32 = ChipSizes::PAPERS.bus_bytes as u32;
 const BEATS: u32 = ChipSizes::PAPERS.line_bytes as u32 / BUS_BYTES;
 
 #[derive(Clone, Debug)]
-pub(crate) struct DataCache(Tags);
+pub(crate) struct DataCache(CacheTags);
 
 impl DataCache {
     pub(crate) fn new() -> DataCache {
-        DataCache(Tags::of_cache(ChipSizes::PAPERS.data_cache_bytes))
+        DataCache(CacheTags::of_cache(ChipSizes::PAPERS.data_cache_bytes))
     }
 
     pub(crate) fn clear(&mut self) {
@@ -44,7 +44,10 @@ impl DataCache {
             if number >= limit {
                 break;
             }
-            let Some(at) = self.0.find(*address).filter(|_| !unit.leaves_cache) else { return (held, Some(number)) };
+            if unit.leaves_cache {
+                return (held, Some(number));
+            }
+            let Some(at) = self.0.find(*address) else { return (held, Some(number)) };
             if unit.is_store {
                 self.0.mark_dirty(at);
             }

@@ -2,7 +2,7 @@
 
 use crate::block::Block;
 use crate::bus::Bus;
-use crate::cache::Tags;
+use crate::cache::CacheTags;
 use crate::common::Common;
 use crate::memo::Filling;
 use crate::timing::{ChipSizes, Freeze};
@@ -16,7 +16,7 @@ const BEATS: u32 = LINE_BYTES / ChipSizes::PAPERS.bus_bytes as u32;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Fetch {
-    cache: Tags,
+    cache: CacheTags,
     /// Number of the line of the last fetch.
     line: u32,
     /// Clocks at which its transfers arrive, by place in the line.
@@ -27,7 +27,7 @@ pub(crate) struct Fetch {
 
 impl Fetch {
     pub(crate) fn new() -> Fetch {
-        let cache = Tags::of_cache(ChipSizes::PAPERS.instruction_cache_bytes);
+        let cache = CacheTags::of_cache(ChipSizes::PAPERS.instruction_cache_bytes);
         Fetch { cache, line: NO_LINE, arrivals: [0; BEATS as usize], first: 0 }
     }
 

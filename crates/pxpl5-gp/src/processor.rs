@@ -110,7 +110,7 @@ const LINK: usize = 1;
 /// No call is remembered for a later one, because none repeats. Of those of a still head 96 % have the code, arguments and
 /// parameters of an earlier one (188 of Slats with 110 triangles, 2,800 of Rendering Control with the aircraft, 48 fields
 /// each), of those of a moving head none; but not one finds the same lines in the caches, whose replacement is
-/// pseudo-random, to say nothing of the phase of the memory's refresh. Blocks of instructions do repeat: see
+/// pseudo-random, to say nothing of the phase of the memory's refresh. Runs of instructions do repeat: see
 /// [`i860::Config::memoise`].
 pub struct Processor {
     gp: NodeId,
