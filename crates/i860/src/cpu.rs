@@ -290,7 +290,7 @@ impl Cpu {
             Halves::Idle => Ok(Flow::Next),
             Halves::Floating => {
                 let operands = read_operands(&self.state, &unit.first);
-                self.floating(&unit.first.instruction, operands);
+                self.floating(&unit.first, operands);
                 Ok(Flow::Next)
             }
             Halves::Core => {
@@ -307,7 +307,7 @@ impl Cpu {
         self.next_mode = unit.after;
         let operands = read_operands(&self.state, &unit.first);
         let flow = self.core(unit.core(), unit.core_pc(), bus)?;
-        self.floating(&unit.first.instruction, operands);
+        self.floating(&unit.first, operands);
         Ok(flow)
     }
 
