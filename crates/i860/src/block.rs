@@ -35,18 +35,24 @@ pub(crate) struct Unit {
 pub(crate) enum Halves {
     Idle,
     Floating,
+    /// A core half that neither accesses memory nor branches.
+    Integer,
     Core,
-    Both,
+    FloatingAndInteger,
+    FloatingAndCore,
 }
 
 impl Halves {
     fn of(first: &Decoded, second: Option<&Decoded>) -> Halves {
         let core = second.or((!first.is_floating()).then_some(first));
+        let is_integer = core.is_some_and(|core| core.instruction.op >= Op::Addu);
         match (first.is_floating() && !first.is_idle(), core.is_some_and(|core| !core.is_idle())) {
             (false, false) => Halves::Idle,
             (true, false) => Halves::Floating,
+            (false, true) if is_integer => Halves::Integer,
             (false, true) => Halves::Core,
-            (true, true) => Halves::Both,
+            (true, true) if is_integer => Halves::FloatingAndInteger,
+            (true, true) => Halves::FloatingAndCore,
         }
     }
 }

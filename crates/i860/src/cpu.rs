@@ -287,23 +287,30 @@ impl Cpu {
     #[inline(always)]
     fn unit<B: Bus>(&mut self, unit: &Unit, bus: &mut B) -> Result<Flow, TrapCause> {
         match unit.halves {
-            Halves::Idle => Ok(Flow::Next),
+            Halves::Idle => {}
+            Halves::Integer => self.integer(&unit.core().instruction),
+            Halves::Core => {
+                self.next_mode = unit.after;
+                return self.core(unit.core(), unit.core_pc(), bus);
+            }
             Halves::Floating => {
                 let operands = read_operands(&self.state, &unit.first);
                 self.floating(&unit.first, operands);
-                Ok(Flow::Next)
             }
-            Halves::Core => {
-                self.next_mode = unit.after;
-                self.core(unit.core(), unit.core_pc(), bus)
+            Halves::FloatingAndInteger => {
+                // Both halves read before either writes.
+                let operands = read_operands(&self.state, &unit.first);
+                self.integer(&unit.core().instruction);
+                self.floating(&unit.first, operands);
             }
-            Halves::Both => self.both(unit, bus),
+            Halves::FloatingAndCore => return self.pair(unit, bus),
         }
+        Ok(Flow::Next)
     }
 
     /// Both halves read before either writes, and the core half goes first so that its trap leaves no trace.
     #[inline(always)]
-    fn both<B: Bus>(&mut self, unit: &Unit, bus: &mut B) -> Result<Flow, TrapCause> {
+    fn pair<B: Bus>(&mut self, unit: &Unit, bus: &mut B) -> Result<Flow, TrapCause> {
         self.next_mode = unit.after;
         let operands = read_operands(&self.state, &unit.first);
         let flow = self.core(unit.core(), unit.core_pc(), bus)?;

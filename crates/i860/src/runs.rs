@@ -79,7 +79,7 @@ impl Clock {
     #[inline]
     fn next_run<B: Bus>(&mut self, block: &mut Block, course: &mut Course<'_>, entry: Number, whole: bool, bus: &B) {
         let number = course.at / PLACES;
-        let is_unfetched = course.at % PLACES == 0;
+        let is_unfetched = course.at.is_multiple_of(PLACES);
         let pc = block.unit(number).pc;
         if !whole && is_unfetched && self.fetch.misses(pc) {
             return self.miss(block, course, bus);
