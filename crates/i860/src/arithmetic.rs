@@ -38,7 +38,7 @@ fn nan64(a: f64, b: f64) -> u64 {
 }
 
 #[inline]
-fn single(operation: Operation, a: f32, b: f32, flush: bool) -> u32 {
+pub(crate) fn single(operation: Operation, a: f32, b: f32, flush: bool) -> u32 {
     let result = match operation {
         Operation::Add => a + b,
         Operation::Subtract => a - b,

@@ -1,7 +1,8 @@
 //! Straight runs of code, decoded once: from an address to the next branch with its slot.
 
 use crate::bus::Bus;
-use crate::cache::Tags;
+use crate::cache::CacheTags;
+use crate::code_map::CodeMap;
 use crate::decode::decode;
 use crate::decoded::Decoded;
 use crate::execution::Execution;
@@ -25,6 +26,35 @@ pub(crate) struct Unit {
     pub(crate) first: Decoded,
     /// The core half of a pair.
     pub(crate) second: Option<Decoded>,
+    /// Which of them changes anything that a program can see.
+    pub(crate) halves: Halves,
+}
+
+/// Halves that have something to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Halves {
+    Idle,
+    Floating,
+    /// A core half that neither accesses memory nor branches.
+    Integer,
+    Core,
+    FloatingAndInteger,
+    FloatingAndCore,
+}
+
+impl Halves {
+    fn of(first: &Decoded, second: Option<&Decoded>) -> Halves {
+        let core = second.or((!first.is_floating()).then_some(first));
+        let is_integer = core.is_some_and(|core| core.instruction.op >= Op::Addu);
+        match (first.is_floating() && !first.is_idle(), core.is_some_and(|core| !core.is_idle())) {
+            (false, false) => Halves::Idle,
+            (true, false) => Halves::Floating,
+            (false, true) if is_integer => Halves::Integer,
+            (false, true) => Halves::Core,
+            (true, true) if is_integer => Halves::FloatingAndInteger,
+            (true, true) => Halves::FloatingAndCore,
+        }
+    }
 }
 
 impl Unit {
@@ -39,7 +69,7 @@ impl Unit {
             (false, _) if first.dual() => Mode::Entering,
             _ => Mode::Single,
         };
-        Ok(Unit { pc, mode, after, first, second: None })
+        Ok(Unit { pc, mode, after, first, second: None, halves: Halves::of(&first, None) })
     }
 
     fn pair<B: Bus>(pc: u32, mode: Mode, code: &mut CodeMap, bus: &mut B) -> Result<Unit, TrapCause> {
@@ -51,13 +81,20 @@ impl Unit {
         if !first.is_floating() || second.is_floating() && second.instruction.op != Op::Fnop {
             return Err(TrapCause::IllegalPair);
         }
-        Ok(Unit { pc, mode, after: mode.after_pair(first.dual()), first, second: Some(second) })
+        let halves = Halves::of(&first, Some(&second));
+        Ok(Unit { pc, mode, after: mode.after_pair(first.dual()), first, second: Some(second), halves })
     }
 
     /// The half that may access memory or branch: that of a pair, or the instruction.
     #[inline]
     pub(crate) fn core(&self) -> &Decoded {
         self.second.as_ref().unwrap_or(&self.first)
+    }
+
+    /// Address of the core half.
+    #[inline]
+    pub(crate) fn core_pc(&self) -> u32 {
+        self.pc.wrapping_add(if self.second.is_some() { 4 } else { 0 })
     }
 
     /// Address of what follows.
@@ -87,6 +124,8 @@ fn is_store(op: Op) -> bool {
     matches!(op, Op::StB | Op::StS | Op::StL | Op::Fst | Op::Pst)
 }
 
+const LINE_BYTES: u32 = ChipSizes::PAPERS.line_bytes as u32;
+
 /// No state of an instruction cache.
 const NEVER: u64 = u64::MAX;
 
@@ -100,15 +139,34 @@ pub(crate) struct Block {
     pub(crate) instructions: u64,
     /// Bytes of the units, without the slot.
     bytes: u32,
-    /// Which accesses to data are stores, the first one in bit 0.
-    pub(crate) stores: u64,
-    /// Whether there is nothing in it that goes past the caches, whatever they hold.
-    pub(crate) in_caches_only: bool,
+    /// The units that access data, in order, each once.
+    pub(crate) accessing: Box<[AccessingUnit]>,
+    /// The first unit on each line of the cache.
+    lines: Box<[u8]>,
     /// State of the instruction cache in which all of it was held.
     held_in: u64,
-    /// State of the instruction cache at the last visit.
-    visited_in: u64,
     pub(crate) remembered: BlockMemory,
+}
+
+/// A unit that accesses data.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AccessingUnit {
+    /// Its number in the block.
+    pub(crate) number: u8,
+    pub(crate) is_store: bool,
+    /// Whether it goes past the cache, whatever that holds.
+    pub(crate) leaves_cache: bool,
+}
+
+impl AccessingUnit {
+    fn new((number, op): (u8, Op)) -> Option<AccessingUnit> {
+        let accesses = op <= Op::Pst || op == Op::Flush;
+        accesses.then(|| AccessingUnit {
+            number,
+            is_store: is_store(op),
+            leaves_cache: matches!(op, Op::Pfld | Op::Flush),
+        })
+    }
 }
 
 impl Block {
@@ -134,10 +192,9 @@ impl Block {
             slot,
             instructions: 0,
             bytes: last.next().wrapping_sub(pc),
-            stores: 0,
-            in_caches_only: true,
+            accessing: Box::default(),
+            lines: Box::default(),
             held_in: NEVER,
-            visited_in: NEVER,
             remembered: BlockMemory::default(),
         };
         block.sum_up();
@@ -145,11 +202,12 @@ impl Block {
     }
 
     fn sum_up(&mut self) {
-        let accesses = self.ops().filter(|op| *op <= Op::Pst);
-        self.stores = (0..).zip(accesses).filter(|(_, op)| is_store(*op)).fold(0, |bits, (n, _)| bits | 1 << n);
         self.instructions = self.units_and_slot().map(Unit::instructions).sum();
-        let leaves_caches = self.ops().any(|op| matches!(op, Op::Pfld | Op::Flush));
-        self.in_caches_only = !leaves_caches;
+        self.accessing = (0..).zip(self.ops()).filter_map(AccessingUnit::new).collect();
+        let mut line = None;
+        let lines = (0..).zip(self.units_and_slot());
+        let first = lines.filter(|(_, unit)| line.replace(unit.pc / LINE_BYTES) != Some(unit.pc / LINE_BYTES));
+        self.lines = first.map(|(number, _)| number).collect();
     }
 
     fn units_and_slot(&self) -> impl Iterator<Item = &Unit> {
@@ -176,26 +234,29 @@ impl Block {
         }
     }
 
-    /// Whether the instruction cache is known to hold all of it.
-    ///
-    /// It is not looked up before there is something to remember: code that finds another cache at every visit may not
-    /// fit it.
+    /// A unit by its number; the slot has the one behind the last.
     #[inline]
-    pub(crate) fn is_held(&mut self, cache: &Tags) -> bool {
-        if self.held_in == cache.changes() {
-            return true;
+    pub(crate) fn unit(&self, number: usize) -> &Unit {
+        match (self.units.get(number), &self.slot) {
+            (Some(unit), _) | (None, Some(Ok(unit))) => unit,
+            _ => unreachable!("it was executed"),
         }
-        let before = std::mem::replace(&mut self.visited_in, cache.changes());
-        (before == cache.changes() || !self.remembered.is_empty()) && self.look_up(cache)
     }
 
-    fn look_up(&mut self, cache: &Tags) -> bool {
-        let first = self.units[0].pc;
-        let slot = self.slot.iter().flatten();
-        let line = ChipSizes::PAPERS.line_bytes as u32;
-        let bytes = first % line + self.bytes + slot.map(|unit| unit.next().wrapping_sub(unit.pc)).sum::<u32>();
-        let mut lines = (0..bytes.div_ceil(line)).map(|n| (first - first % line).wrapping_add(n * line));
-        let held = lines.all(|address| cache.find(address).is_some());
+    /// Number of the first unit that is not on the same line of the cache as another one.
+    pub(crate) fn end_of_line(&self, number: usize) -> usize {
+        let next = self.lines.iter().find(|first| usize::from(**first) > number);
+        next.map_or(usize::MAX, |first| usize::from(*first))
+    }
+
+    /// Whether the instruction cache holds all of it.
+    #[inline]
+    pub(crate) fn is_held(&mut self, cache: &CacheTags) -> bool {
+        self.held_in == cache.changes() || self.look_up(cache)
+    }
+
+    fn look_up(&mut self, cache: &CacheTags) -> bool {
+        let held = self.lines.iter().all(|first| cache.find(self.unit(usize::from(*first)).pc).is_some());
         if held {
             self.held_in = cache.changes();
         }
@@ -214,52 +275,5 @@ impl Block {
     pub(crate) fn passes(&self, address: u32) -> bool {
         let offset = address.wrapping_sub(self.units[0].pc);
         offset != 0 && offset < self.bytes
-    }
-}
-
-/// Words of code that were decoded, so that a store into them is noticed.
-#[derive(Debug)]
-pub(crate) struct CodeMap {
-    /// Lowest and highest address of them.
-    range: (u32, u32),
-    /// A bit for each word, by its number modulo [`CodeMap::BITS`].
-    words: Box<[u64]>,
-}
-
-impl CodeMap {
-    const BITS: usize = 1 << 14;
-
-    pub(crate) fn new() -> CodeMap {
-        CodeMap { range: (u32::MAX, 0), words: vec![0; CodeMap::BITS / 64].into_boxed_slice() }
-    }
-
-    fn bit(address: u32) -> (usize, u64) {
-        let word = (address >> 2) as usize % CodeMap::BITS;
-        (word / 64, 1 << (word % 64))
-    }
-
-    fn mark(&mut self, pc: u32) {
-        let (at, bit) = CodeMap::bit(pc);
-        self.words[at] |= bit;
-        self.range = (self.range.0.min(pc), self.range.1.max(pc | 3));
-    }
-
-    /// Whether some of `size` bytes may have been decoded.
-    #[inline]
-    pub(crate) fn may_hold(&self, address: u32, size: u32) -> bool {
-        let last = address.wrapping_add(size - 1);
-        last >= self.range.0 && address <= self.range.1 && self.is_marked(address, last)
-    }
-
-    fn is_marked(&self, first: u32, last: u32) -> bool {
-        [first, last].into_iter().any(|address| {
-            let (at, bit) = CodeMap::bit(address);
-            self.words[at] & bit != 0
-        })
-    }
-
-    pub(crate) fn clear(&mut self) {
-        self.words.fill(0);
-        self.range = (u32::MAX, 0);
     }
 }

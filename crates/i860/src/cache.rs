@@ -2,35 +2,46 @@
 
 use crate::timing::ChipSizes;
 
-/// A set-associative tag array with pseudo-random replacement.
+/// A tag array of so many ways with pseudo-random replacement.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Tags {
-    /// Line number + 1, 0 for empty; the ways of a set are neighbours.
-    tags: Vec<u32>,
-    dirty: Vec<bool>,
+pub(crate) struct Tags<const WAYS: usize> {
+    /// Line number + 1, 0 for empty.
+    sets: Vec<[u32; WAYS]>,
+    dirty: Vec<[bool; WAYS]>,
     line_shift: u32,
     set_mask: u32,
-    ways: u32,
     /// Fills and clears so far: while it stays, so does what is held.
     changes: u64,
 }
 
-impl Tags {
-    pub(crate) fn new(entries: u32, line_bytes: u32, ways: u32) -> Tags {
+/// The tags of a cache.
+pub(crate) type CacheTags = Tags<{ ChipSizes::PAPERS.cache_ways as usize }>;
+
+/// Where a line is held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Place {
+    set: usize,
+    way: usize,
+}
+
+impl CacheTags {
+    /// Those of a cache of this many bytes.
+    pub(crate) fn of_cache(bytes: u64) -> CacheTags {
+        let line_bytes = ChipSizes::PAPERS.line_bytes;
+        Tags::new((bytes / line_bytes) as u32, line_bytes as u32)
+    }
+}
+
+impl<const WAYS: usize> Tags<WAYS> {
+    pub(crate) fn new(entries: u32, line_bytes: u32) -> Tags<WAYS> {
+        let sets = entries as usize / WAYS;
         Tags {
-            tags: vec![0; entries as usize],
-            dirty: vec![false; entries as usize],
+            sets: vec![[0; WAYS]; sets],
+            dirty: vec![[false; WAYS]; sets],
             line_shift: line_bytes.trailing_zeros(),
-            set_mask: entries / ways - 1,
-            ways,
+            set_mask: sets as u32 - 1,
             changes: 0,
         }
-    }
-
-    /// Those of a cache of this many bytes.
-    pub(crate) fn of_cache(bytes: u64) -> Tags {
-        let ChipSizes { line_bytes, cache_ways, .. } = ChipSizes::PAPERS;
-        Tags::new((bytes / line_bytes) as u32, line_bytes as u32, cache_ways as u32)
     }
 
     #[inline]
@@ -38,46 +49,42 @@ impl Tags {
         self.changes
     }
 
-    fn first_way(&self, line: u32) -> usize {
-        ((line & self.set_mask) * self.ways) as usize
-    }
-
     /// The place of an address, if it is held.
     #[inline]
-    pub(crate) fn find(&self, address: u32) -> Option<usize> {
+    pub(crate) fn find(&self, address: u32) -> Option<Place> {
         let line = address >> self.line_shift;
-        let first = self.first_way(line);
-        (first..first + self.ways as usize).find(|at| self.tags[*at] == line + 1)
+        let set = (line & self.set_mask) as usize;
+        let ways = &self.sets[set];
+        (0..WAYS).find(|way| ways[*way] == line + 1).map(|way| Place { set, way })
     }
 
     #[inline]
-    pub(crate) fn mark_dirty(&mut self, at: usize) {
-        self.dirty[at] = true;
+    pub(crate) fn mark_dirty(&mut self, at: Place) {
+        self.dirty[at.set][at.way] = true;
     }
 
     /// Takes an address in; an empty way first, else the way chosen by `random`. Gives the address of a dirty
     /// line that had to leave.
     pub(crate) fn fill(&mut self, address: u32, random: u32) -> Option<u32> {
         let line = address >> self.line_shift;
-        let first = self.first_way(line);
-        let empty = (first..first + self.ways as usize).find(|at| self.tags[*at] == 0);
+        let set = (line & self.set_mask) as usize;
         self.changes += 1;
-        let at = empty.unwrap_or(first + (random % self.ways) as usize);
-        let victim = self.dirty[at].then(|| (self.tags[at] - 1) << self.line_shift);
-        self.tags[at] = line + 1;
-        self.dirty[at] = false;
-        victim
+        let ways = &mut self.sets[set];
+        let way = ways.iter().position(|tag| *tag == 0).unwrap_or(random as usize % WAYS);
+        let was_dirty = std::mem::take(&mut self.dirty[set][way]);
+        let left = std::mem::replace(&mut ways[way], line + 1);
+        was_dirty.then(|| (left - 1) << self.line_shift)
     }
 
     /// Makes a held line clean; tells whether it was dirty.
     pub(crate) fn clean(&mut self, address: u32) -> bool {
-        self.find(address).is_some_and(|at| std::mem::take(&mut self.dirty[at]))
+        self.find(address).is_some_and(|at| std::mem::take(&mut self.dirty[at.set][at.way]))
     }
 
     pub(crate) fn clear(&mut self) {
         self.changes += 1;
-        self.tags.fill(0);
-        self.dirty.fill(false);
+        self.sets.fill([0; WAYS]);
+        self.dirty.fill([false; WAYS]);
     }
 }
 
@@ -103,7 +110,7 @@ mod tests {
 
     #[test]
     fn two_ways_hold_two_lines_of_a_set_and_a_third_drives_one_out() {
-        let mut tags = Tags::new(256, 32, 2);
+        let mut tags = Tags::<2>::new(256, 32);
         let a = 0x1000;
         let b = 0x2000;
         let c = 0x3000;
@@ -115,7 +122,7 @@ mod tests {
 
     #[test]
     fn a_dirty_line_that_leaves_gives_its_address_once() {
-        let mut tags = Tags::new(2, 32, 2);
+        let mut tags = Tags::<2>::new(2, 32);
         tags.fill(0x40, 0);
         let at = tags.find(0x40).expect("just filled");
         tags.mark_dirty(at);

@@ -10,27 +10,43 @@ use crate::execution::Execution;
 use crate::fetch::Fetch;
 use crate::instruction::{Instruction, Op};
 use crate::load_pipe::LoadPipe;
-use crate::memo::{Memo, RememberedClocks};
+use crate::memo::Memo;
 use crate::profile::{AddressProfile, Profile};
 use crate::scoreboard::{NO_WAIT, Scoreboard};
 use crate::store_pipe::StorePipe;
-use crate::timing::{ChipSizes, Config, FREEZES, Freeze};
+use crate::timing::{ChipSizes, Config, Freeze};
 use crate::translation::Translation;
 
 const BUS_BYTES: u32 = ChipSizes::PAPERS.bus_bytes as u32;
 
 /// Addresses of data accesses, in order; at most one for each unit of a block.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Accesses(Vec<u32>);
+#[derive(Clone, Debug)]
+pub(crate) struct Accesses {
+    all: [u32; Accesses::MOST],
+    count: usize,
+}
 
 impl Accesses {
+    /// More than a block has units; a power of two.
+    const MOST: usize = 64;
+
+    pub(crate) fn new() -> Accesses {
+        Accesses { all: [0; Accesses::MOST], count: 0 }
+    }
+
     pub(crate) fn clear(&mut self) {
-        self.0.clear();
+        self.count = 0;
     }
 
     #[inline]
     pub(crate) fn push(&mut self, address: u32) {
-        self.0.push(address);
+        self.all[self.count % Accesses::MOST] = address;
+        self.count += 1;
+    }
+
+    #[inline]
+    fn addresses(&self) -> &[u32] {
+        &self.all[..self.count.min(Accesses::MOST)]
     }
 }
 
@@ -38,15 +54,15 @@ impl Accesses {
 pub(crate) struct Clock {
     on: bool,
     pub(crate) sampler: Option<AddressProfile>,
-    common: Common,
-    board: Scoreboard,
-    fetch: Fetch,
+    pub(crate) common: Common,
+    pub(crate) board: Scoreboard,
+    pub(crate) fetch: Fetch,
     translation: Translation,
-    data: DataCache,
+    pub(crate) data: DataCache,
     stores: StorePipe,
     loads: LoadPipe,
     /// Blocks whose clocks were counted before; `None` without memoisation.
-    memo: Option<Memo>,
+    pub(crate) memo: Option<Memo>,
 }
 
 impl Clock {
@@ -109,112 +125,70 @@ impl Clock {
     pub(crate) fn pass<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &Accesses, bus: &B) {
         if !self.on {
             self.common.profile.instructions += block.instructions_of(execution);
-        } else if let Some(entry) = self.entry(block, accesses) {
-            match block.remembered.find(entry, execution) {
-                Some(clocks) => self.repeat(clocks),
-                None => self.learn(block, entry, execution, accesses, bus),
-            }
-        } else {
+        } else if self.memo.is_none() || self.translation.is_on() || self.sampler.is_some() {
             self.count(block, execution, accesses, bus);
+        } else {
+            self.go(block, execution, accesses.addresses(), bus);
         }
     }
 
     /// Counts them one unit after the other.
     fn count<B: Bus>(&mut self, block: &Block, execution: Execution, accesses: &Accesses, bus: &B) {
-        if let Some(left) = self.memo.as_mut().and_then(Memo::leave) {
-            self.board.restore(left, self.common.now);
-        }
-        let mut accesses = accesses.0.iter();
+        self.write_board();
+        let mut accesses = accesses.addresses().iter();
         let last = execution.units + usize::from(execution.slot) - 1;
         block.executed(execution).enumerate().for_each(|(n, unit)| {
-            self.common.profile.instructions += unit.instructions();
-            self.unit(unit, execution.taken, execution.trapped && n == last, &mut accesses, bus);
-        });
-    }
-
-    /// The number of the scoreboard when nothing else but it decides the clocks of what a block has executed: all its
-    /// instructions and data are in the caches, and nothing of the rest is under way.
-    #[inline]
-    fn entry(&mut self, block: &mut Block, accesses: &Accesses) -> Option<u32> {
-        let memo = self.memo.as_mut()?;
-        let apart = self.common.is_filling() || self.translation.is_on() || self.sampler.is_some();
-        if apart || !block.in_caches_only {
-            return None;
-        }
-        if self.common.costs.applies(Freeze::InstructionMiss) && !self.fetch.holds(block) {
-            return None;
-        }
-        if !self.data.holds_all(&accesses.0, block.stores) {
-            return None;
-        }
-        memo.number(&self.board, self.common.now)
-    }
-
-    #[inline]
-    fn repeat(&mut self, remembered: &RememberedClocks) {
-        self.common.now += remembered.clocks;
-        self.common.profile.instructions += remembered.instructions;
-        for (why, clocks) in &remembered.frozen {
-            self.common.profile.frozen[*why as usize] += clocks;
-        }
-        self.fetch.continue_in(remembered.line);
-        if let Some(memo) = &mut self.memo {
-            memo.follow(remembered);
-        }
-    }
-
-    #[cold]
-    fn learn<B: Bus>(&mut self, block: &mut Block, entry: u32, execution: Execution, accesses: &Accesses, bus: &B) {
-        let began = self.common.now;
-        let before = self.common.profile.clone();
-        self.count(block, execution, accesses, bus);
-        let Some(exit) = self.memo.as_mut().and_then(|memo| memo.number(&self.board, self.common.now)) else { return };
-        let profile = &self.common.profile;
-        let causes = FREEZES.iter().map(|row| (row.id, profile.frozen_by(row.id) - before.frozen_by(row.id)));
-        block.remembered.add(RememberedClocks {
-            entry,
-            execution,
-            exit,
-            clocks: self.common.now - began,
-            instructions: profile.instructions - before.instructions,
-            frozen: causes.filter(|(_, clocks)| *clocks != 0).collect(),
-            line: self.fetch.line(),
+            let before = self.common.now;
+            self.fetch(unit, bus);
+            self.issue(unit);
+            if !(execution.trapped && n == last) {
+                self.end(unit, execution.taken, &mut accesses, bus);
+                self.retire(unit);
+                if let Some(sampler) = &mut self.sampler {
+                    sampler.add(unit.pc, self.common.now - before);
+                }
+            }
         });
     }
 
     // ---- units
 
-    #[inline(always)]
-    fn unit<B: Bus>(
-        &mut self,
-        unit: &Unit,
-        taken: bool,
-        trapped: bool,
-        accesses: &mut std::slice::Iter<'_, u32>,
-        bus: &B,
-    ) {
-        let before = self.common.now;
+    #[inline]
+    pub(crate) fn fetch<B: Bus>(&mut self, unit: &Unit, bus: &B) {
+        self.common.profile.instructions += unit.instructions();
         self.fetch.fetch(unit.pc, &mut self.translation, &mut self.common, bus);
+    }
+
+    #[inline]
+    pub(crate) fn issue(&mut self, unit: &Unit) {
         match &unit.second {
-            None => self.issue(&unit.first),
+            None => self.issue_single(&unit.first),
             Some(core) => self.issue_pair(&unit.first, core),
         }
-        if trapped {
-            return;
-        }
+    }
+
+    /// What a unit costs for its access or for how it ends.
+    #[inline]
+    pub(crate) fn end<B: Bus>(&mut self, unit: &Unit, taken: bool, accesses: &mut std::slice::Iter<'_, u32>, bus: &B) {
         let core = unit.core();
         if core.is_told() {
-            match core.is_branch() {
-                true => self.end_of_branch(core.instruction.op, taken),
-                false => self.access(&core.instruction, accesses, bus),
+            match core.instruction.op {
+                op if core.is_branch() => self.end_of_branch(op, taken),
+                Op::StC => self.common.charge(Freeze::ControlStore),
+                _ => {
+                    if let Some(address) = accesses.next() {
+                        self.access(&core.instruction, *address, bus);
+                    }
+                }
             }
         }
+    }
+
+    #[inline]
+    pub(crate) fn retire(&mut self, unit: &Unit) {
         self.board.retire(&unit.first, self.common.now);
         if let Some(core) = &unit.second {
             self.board.retire(core, self.common.now);
-        }
-        if let Some(sampler) = &mut self.sampler {
-            sampler.add(unit.pc, self.common.now - before);
         }
     }
 
@@ -230,7 +204,7 @@ impl Clock {
 
     /// Issues one instruction after its freezes.
     #[inline]
-    fn issue(&mut self, d: &Decoded) {
+    fn issue_single(&mut self, d: &Decoded) {
         if self.board.may_wait(d) {
             let wait = self.board.wait(d, self.common.now);
             self.common.freeze_until(wait.until, wait.why);
@@ -257,11 +231,7 @@ impl Clock {
     // ---- data accesses
 
     #[inline]
-    fn access<B: Bus>(&mut self, i: &Instruction, accesses: &mut std::slice::Iter<'_, u32>, bus: &B) {
-        if i.op == Op::StC {
-            return self.common.charge(Freeze::ControlStore);
-        }
-        let Some(address) = accesses.next().copied() else { return };
+    pub(crate) fn access<B: Bus>(&mut self, i: &Instruction, address: u32, bus: &B) {
         match i.op {
             Op::LdB | Op::LdS | Op::LdL => self.load_integer(address, i.dest, bus),
             Op::Fld => self.load_floating(address, i.size, bus),

@@ -1,9 +1,9 @@
 //! The processor: fetch, pairing, delay slots, traps, and the run loop.
 
-use crate::block::{Block, CodeMap, Unit};
+use crate::block::{Block, Halves, Unit};
 use crate::bus::Bus;
 use crate::clock::{Accesses, Clock};
-use crate::decoded::Decoded;
+use crate::code::Code;
 use crate::execution::Execution;
 use crate::flow::Flow;
 use crate::operands::read_operands;
@@ -13,13 +13,7 @@ use crate::state::{Mode, State, TRAP_VECTOR, psr};
 use crate::timing::Config;
 use crate::trap::{RunEnd, Trap, TrapCause};
 use std::fmt;
-
-/// Entries of the table of blocks (a host matter, not the part's instruction cache).
-const BLOCKS: usize = 1 << 14;
-
-fn place(pc: u32) -> usize {
-    (pc >> 2) as usize % BLOCKS
-}
+use std::ops::Range;
 
 /// An i860 XR with its caches and clock; memory is passed in with every run.
 pub struct Cpu {
@@ -37,8 +31,9 @@ pub struct Cpu {
     pub(crate) directory_base: Option<u32>,
     /// Whether blocks may differ from the code in memory.
     pub(crate) code_changed: bool,
-    pub(crate) code: CodeMap,
-    blocks: Box<[Option<Box<Block>>]>,
+    pub(crate) code: Code,
+    /// Code that is not in memory at present, by the number that [`Cpu::exchange_code`] was told.
+    shelf: Vec<(usize, Code)>,
     config: Config,
 }
 
@@ -58,11 +53,11 @@ impl Cpu {
             seeds: config.seeds,
             next_mode: Mode::Single,
             mode_after_slot: None,
-            accesses: Accesses::default(),
+            accesses: Accesses::new(),
             directory_base: None,
             code_changed: false,
-            code: CodeMap::new(),
-            blocks: vec![None; BLOCKS].into_boxed_slice(),
+            code: Code::new(),
+            shelf: Vec::new(),
             config,
         }
     }
@@ -82,6 +77,7 @@ impl Cpu {
         self.next_mode = Mode::Single;
         self.mode_after_slot = None;
         self.invalidate_code();
+        self.shelf.clear();
     }
 
     /// Clocks since reset (0 without timing).
@@ -132,8 +128,22 @@ impl Cpu {
     /// Forgets all decoded instructions, which are read ahead up to the next branch. Needed after something other than
     /// this processor wrote to code; its own stores are seen at once (the part would need a flush and dirbase.ITI).
     pub fn invalidate_code(&mut self) {
-        self.blocks.fill(None);
         self.code.clear();
+        self.code_changed = false;
+    }
+
+    /// Instead of [`Cpu::invalidate_code`] where several programs take turns in memory: from now on the one that the caller knows by
+    /// the number `next` is there, as it was each time before. The one that was there, with its number and the addresses that it
+    /// takes, is set aside as long as it is still as it was loaded; `None` where it is not. No clock changes.
+    pub fn exchange_code(&mut self, previous: Option<(usize, Range<u32>)>, next: usize) {
+        let known = self.shelf.iter().position(|(number, _)| *number == next);
+        let fetched = known.map_or_else(Code::new, |at| self.shelf.swap_remove(at).1);
+        let code = std::mem::replace(&mut self.code, fetched);
+        if let Some((number, extent)) = previous
+            && code.is_as_loaded(&extent)
+        {
+            self.shelf.push((number, code));
+        }
         self.code_changed = false;
     }
 
@@ -166,9 +176,9 @@ impl Cpu {
     fn advance<B: Bus>(&mut self, bus: &mut B, stop: Option<u32>, most: u64) -> Result<(), Trap> {
         let pc = self.state.pc;
         let mode = self.state.mode;
-        let mut block = match self.blocks[place(pc)].take() {
-            Some(block) if block.begins(pc, mode) => block,
-            _ => match Block::read(pc, mode, &mut self.code, bus) {
+        let mut block = match self.code.take(pc, mode) {
+            Some(block) => block,
+            None => match Block::read(pc, mode, &mut self.code.words, bus) {
                 Ok(block) => Box::new(block),
                 Err(cause) => return Err(self.take_trap(cause)),
             },
@@ -179,7 +189,7 @@ impl Cpu {
         if let Some(value) = self.directory_base.take() {
             self.obey_directory_base(value);
         }
-        self.blocks[place(pc)] = Some(block);
+        self.code.put(pc, block);
         if self.code_changed {
             self.invalidate_code();
         }
@@ -192,9 +202,15 @@ impl Cpu {
         self.accesses.clear();
         let mut done = 0;
         let mut flow = Ok(Flow::Next);
-        while done < most && flow == Ok(Flow::Next) && !self.code_changed {
-            flow = self.unit(&block.units[done], bus);
+        for unit in &block.units[..most] {
             done += 1;
+            match self.unit(unit, bus) {
+                Ok(Flow::Next) if !self.code_changed => {}
+                end => {
+                    flow = end;
+                    break;
+                }
+            }
         }
         let mut execution = Execution { units: done, slot: false, taken: false, trapped: flow.is_err() };
         let end = match flow {
@@ -270,24 +286,35 @@ impl Cpu {
 
     #[inline(always)]
     fn unit<B: Bus>(&mut self, unit: &Unit, bus: &mut B) -> Result<Flow, TrapCause> {
-        self.next_mode = unit.after;
-        match &unit.second {
-            Some(core) => self.pair(unit, core, bus),
-            None if unit.first.is_floating() => {
-                let operands = read_operands(&self.state, &unit.first);
-                self.floating(&unit.first.instruction, operands);
-                Ok(Flow::Next)
+        match unit.halves {
+            Halves::Idle => {}
+            Halves::Integer => self.integer(&unit.core().instruction),
+            Halves::Core => {
+                self.next_mode = unit.after;
+                return self.core(unit.core(), unit.core_pc(), bus);
             }
-            None => self.core(&unit.first, unit.pc, bus),
+            Halves::Floating => {
+                let operands = read_operands(&self.state, &unit.first);
+                self.floating(&unit.first, operands);
+            }
+            Halves::FloatingAndInteger => {
+                // Both halves read before either writes.
+                let operands = read_operands(&self.state, &unit.first);
+                self.integer(&unit.core().instruction);
+                self.floating(&unit.first, operands);
+            }
+            Halves::FloatingAndCore => return self.pair(unit, bus),
         }
+        Ok(Flow::Next)
     }
 
-    /// A pair: both halves read before either writes, and the core half goes first so that its trap leaves no trace.
+    /// Both halves read before either writes, and the core half goes first so that its trap leaves no trace.
     #[inline(always)]
-    fn pair<B: Bus>(&mut self, unit: &Unit, core: &Decoded, bus: &mut B) -> Result<Flow, TrapCause> {
+    fn pair<B: Bus>(&mut self, unit: &Unit, bus: &mut B) -> Result<Flow, TrapCause> {
+        self.next_mode = unit.after;
         let operands = read_operands(&self.state, &unit.first);
-        let flow = if core.is_floating() { Flow::Next } else { self.core(core, unit.pc.wrapping_add(4), bus)? };
-        self.floating(&unit.first.instruction, operands);
+        let flow = self.core(unit.core(), unit.core_pc(), bus)?;
+        self.floating(&unit.first, operands);
         Ok(flow)
     }
 

@@ -1,7 +1,8 @@
 //! The data cache: which lines are held and which are dirty; fills, and write-backs of what must leave.
 
+use crate::block::AccessingUnit;
 use crate::bus::Bus;
-use crate::cache::Tags;
+use crate::cache::CacheTags;
 use crate::common::Common;
 use crate::dram::Transfer;
 use crate::store_pipe::StorePipe;
@@ -12,11 +13,11 @@ const BUS_BYTES: u32 = ChipSizes::PAPERS.bus_bytes as u32;
 const BEATS: u32 = ChipSizes::PAPERS.line_bytes as u32 / BUS_BYTES;
 
 #[derive(Clone, Debug)]
-pub(crate) struct DataCache(Tags);
+pub(crate) struct DataCache(CacheTags);
 
 impl DataCache {
     pub(crate) fn new() -> DataCache {
-        DataCache(Tags::of_cache(ChipSizes::PAPERS.data_cache_bytes))
+        DataCache(CacheTags::of_cache(ChipSizes::PAPERS.data_cache_bytes))
     }
 
     pub(crate) fn clear(&mut self) {
@@ -28,17 +29,31 @@ impl DataCache {
         self.0.find(address).is_some()
     }
 
-    /// Whether all data of a block are held. Those found before the first that is not become dirty where they are stored
-    /// to (a bit of `stores` each), as they do when they are counted.
+    /// How many accesses of units before number `limit` find their lines before the first that does not, and the number of that one's
+    /// unit. Those lines become dirty where they are stored to, as when they are counted.
     #[inline]
-    pub(crate) fn holds_all(&mut self, addresses: &[u32], stores: u64) -> bool {
-        for (n, address) in addresses.iter().enumerate() {
-            let Some(at) = self.0.find(*address) else { return false };
-            if stores >> n & 1 != 0 {
+    pub(crate) fn held(
+        &mut self,
+        addresses: &[u32],
+        accessing: &[AccessingUnit],
+        limit: usize,
+    ) -> (usize, Option<usize>) {
+        let mut held = 0;
+        for (address, unit) in addresses.iter().zip(accessing) {
+            let number = usize::from(unit.number);
+            if number >= limit {
+                break;
+            }
+            if unit.leaves_cache {
+                return (held, Some(number));
+            }
+            let Some(at) = self.0.find(*address) else { return (held, Some(number)) };
+            if unit.is_store {
                 self.0.mark_dirty(at);
             }
+            held += 1;
         }
-        true
+        (held, None)
     }
 
     /// Stores into a line if it is held, and tells whether it is.

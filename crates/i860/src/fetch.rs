@@ -2,8 +2,9 @@
 
 use crate::block::Block;
 use crate::bus::Bus;
-use crate::cache::Tags;
+use crate::cache::CacheTags;
 use crate::common::Common;
+use crate::memo::Filling;
 use crate::timing::{ChipSizes, Freeze};
 use crate::translation::Translation;
 
@@ -15,17 +16,19 @@ const BEATS: u32 = LINE_BYTES / ChipSizes::PAPERS.bus_bytes as u32;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Fetch {
-    cache: Tags,
+    cache: CacheTags,
     /// Number of the line of the last fetch.
     line: u32,
     /// Clocks at which its transfers arrive, by place in the line.
     arrivals: [u64; BEATS as usize],
+    /// Place in the line of the first of them.
+    first: u8,
 }
 
 impl Fetch {
     pub(crate) fn new() -> Fetch {
-        let cache = Tags::of_cache(ChipSizes::PAPERS.instruction_cache_bytes);
-        Fetch { cache, line: NO_LINE, arrivals: [0; BEATS as usize] }
+        let cache = CacheTags::of_cache(ChipSizes::PAPERS.instruction_cache_bytes);
+        Fetch { cache, line: NO_LINE, arrivals: [0; BEATS as usize], first: 0 }
     }
 
     /// Number of the line of the last fetch, for what continues there.
@@ -40,7 +43,26 @@ impl Fetch {
         self.line = line;
     }
 
-    /// Whether all of a block is known to be in the cache.
+    /// Whether the last fetch was from the line of `pc`.
+    #[inline]
+    pub(crate) fn is_in_line(&self, pc: u32) -> bool {
+        pc / LINE_BYTES == self.line
+    }
+
+    /// Whether a fetch from `pc` goes to the bus.
+    #[inline]
+    pub(crate) fn misses(&self, pc: u32) -> bool {
+        !self.is_in_line(pc) && self.cache.find(pc).is_none()
+    }
+
+    /// What is still to come of a line.
+    #[inline]
+    pub(crate) fn filling(&self, common: &Common) -> Filling {
+        let clocks = common.instruction_fill_end.saturating_sub(common.now);
+        Filling { clocks, first: if clocks == 0 { 0 } else { self.first } }
+    }
+
+    /// Whether all of a block is in the cache.
     #[inline]
     pub(crate) fn holds(&self, block: &mut Block) -> bool {
         block.is_held(&self.cache)
@@ -98,6 +120,7 @@ impl Fetch {
         for beat in 0..BEATS {
             self.arrivals[((pc / 8 + beat) % BEATS) as usize] = line.arrival(beat);
         }
+        self.first = (pc / 8 % BEATS) as u8;
         common.instruction_fill_end = line.last;
         common.await_instruction(line.first);
     }

@@ -1,17 +1,22 @@
 //! Execution in the floating-point half: adder, multiplier, their pipes, and the dual operations.
 
-use crate::arithmetic::{Operation, convert, multiply_low, narrow, operate, round, to_integer, widen};
+use crate::arithmetic::{Operation, convert, multiply_low, narrow, operate, round, single, to_integer, widen};
 use crate::cpu::Cpu;
-use crate::dual_operation::{MULTIPLIER_ROUTES, ROUTES};
+use crate::decoded::Decoded;
+use crate::dual_operation::{MULTIPLIER_ROUTES, ROUTES, Route, Source};
 use crate::instruction::{Flags, Instruction, Op};
 use crate::operands::{Operands, last_product};
-use crate::state::{PipeStage, fsr, psr};
+use crate::state::{PipeStage, State, fsr, psr};
 
 impl Cpu {
     /// Executes a floating-point or graphics instruction with its operands already read.
     #[inline(always)]
-    pub(crate) fn floating(&mut self, i: &Instruction, from: Operands) {
+    pub(crate) fn floating(&mut self, d: &Decoded, from: Operands) {
+        let i = &d.instruction;
         match i.op {
+            Op::Fmul if d.is_single() => self.single(Operation::Multiply, i, from),
+            Op::Fadd if d.is_single() => self.single(Operation::Add, i, from),
+            Op::Fsub if d.is_single() => self.single(Operation::Subtract, i, from),
             Op::Fnop => {}
             Op::DualOp => self.dual_operation(i, from),
             Op::Fmul => self.multiply(i, from),
@@ -29,6 +34,22 @@ impl Cpu {
     #[inline]
     fn flush_to_zero(&self) -> bool {
         self.state.fsr & fsr::FZ != 0
+    }
+
+    /// An operation on singles.
+    #[inline(always)]
+    fn single(&mut self, operation: Operation, i: &Instruction, Operands { a, b }: Operands) {
+        let bits = single(operation, f32::from_bits(a as u32), f32::from_bits(b as u32), self.flush_to_zero());
+        let State { multiplier, adder, .. } = &mut self.state;
+        let pipe = if operation == Operation::Multiply { multiplier } else { adder };
+        if i.has(Flags::PIPELINED) {
+            let leaving = pipe[2];
+            push(pipe, PipeStage { bits: u64::from(bits), double: false });
+            self.state.set_f(i.dest, leaving);
+        } else {
+            lose(pipe);
+            self.state.set_f32(i.dest, bits);
+        }
     }
 
     #[inline]
@@ -52,14 +73,12 @@ impl Cpu {
 
     #[inline]
     fn push_product(&mut self, product: PipeStage) {
-        let pipe = &mut self.state.multiplier;
-        *pipe = [product, pipe[0], pipe[1]];
+        push(&mut self.state.multiplier, product);
     }
 
     #[inline]
     fn push_sum(&mut self, sum: PipeStage) {
-        let pipe = &mut self.state.adder;
-        *pipe = [sum, pipe[0], pipe[1]];
+        push(&mut self.state.adder, sum);
     }
 
     /// A result of the adder goes to its register, or into the pipe while the oldest one leaves.
@@ -134,6 +153,9 @@ impl Cpu {
         let leaving_product = last_product(&self.state, s);
         let leaving_sum = self.state.adder[2];
         let flush = self.flush_to_zero();
+        if !(s || r || leaving_product.double || leaving_sum.double) {
+            return self.single_dual_operation(i, route, from, [leaving_product, leaving_sum]);
+        }
         let for_adder = self.sources(from, leaving_product, leaving_sum, r);
         let for_multiplier = if s == r { for_adder } else { self.sources(from, leaving_product, leaving_sum, s) };
         let [m1, m2] = route.multiplier.map(|source| for_multiplier[source as usize]);
@@ -150,6 +172,29 @@ impl Cpu {
         }
         self.push_product(product);
         self.push_sum(sum);
+    }
+
+    /// The same where all is in single precision.
+    #[inline]
+    fn single_dual_operation(&mut self, i: &Instruction, route: &Route, from: Operands, leaving: [PipeStage; 2]) {
+        let flush = self.flush_to_zero();
+        let [product, sum] = leaving;
+        let State { kr, ki, t, .. } = self.state;
+        let sources = [kr, ki, t, from.a, from.b, product.bits, sum.bits].map(|bits| f32::from_bits(bits as u32));
+        let of = |source: Source| sources[source as usize];
+        let [m1, m2, a1, a2] = [route.multiplier[0], route.multiplier[1], route.adder[0], route.adder[1]].map(of);
+        let new_product = single(Operation::Multiply, m1, m2, flush);
+        let operation = if i.imm & 16 != 0 { Operation::Subtract } else { Operation::Add };
+        let new_sum = single(operation, a1, a2, flush);
+        self.state.set_f32(i.dest, (if i.has(Flags::PIPELINED) { sum } else { product }).bits as u32);
+        if route.loads_t {
+            self.state.t = product.bits;
+        }
+        if route.loads_k {
+            self.load_constant(i.imm & 4 != 0, from.a);
+        }
+        self.push_product(PipeStage { bits: u64::from(new_product), double: false });
+        self.push_sum(PipeStage { bits: u64::from(new_sum), double: false });
     }
 
     /// The values of all [`Source`]s in the precision of one unit, in the order of the enumeration.
@@ -176,6 +221,13 @@ impl Cpu {
 
 /// No number, in both precisions: what the part leaves undefined should be seen.
 const LOST: u64 = 0x7FF8_0000_7FC0_0000;
+
+/// A result goes into a pipe, whose last one has left.
+#[inline(always)]
+fn push(pipe: &mut [PipeStage; 3], result: PipeStage) {
+    pipe.copy_within(..2, 1);
+    pipe[0] = result;
+}
 
 /// A scalar operation goes through the pipe of its unit, and what was there is lost.
 #[inline(always)]

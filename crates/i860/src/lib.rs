@@ -56,13 +56,15 @@
 //! # Speed
 //!
 //! Code is decoded once and executed block by block, from an address to the next branch and its slot; the clock is told of
-//! each block afterwards. Where a block finds all its instructions and data in the caches, bus, queues and replacement are
-//! left alone, so that its clocks follow from the waits left by earlier instructions and from how it ended: they are
-//! remembered, as FastSim does (Schnarr and Larus, ASPLOS 1998). The rest is counted unit by unit. Both give the same
-//! state, clocks and profile after every run (tests/memo.rs: random programs; crates/pphigs/tests/memo.rs: the triangle
-//! kernels with every row switched);
-//! [`Config::memoise`] chooses. It takes over all of a loop in cache, and nothing of code larger than the cache; what it is
-//! worth for the triangle kernels, crates/pphigs/benches measures.
+//! each block afterwards. A run of units that finds all its instructions and data in the caches leaves bus, queues and
+//! replacement alone, so that its clocks follow from the waits left by earlier instructions, from what is still to come of an
+//! instruction line and from how it ended: they are remembered, as FastSim does (Schnarr and Larus, ASPLOS 1998). A block is one
+//! such run, or several with accesses past the caches between them; these are counted, so are units behind a wait of more than
+//! 15 clocks. Blocks that are not all in the instruction cache are taken apart at its lines too. Counting everything gives the same
+//! state, clocks and profile after every run (tests/memo.rs: random programs, also larger than the caches; crates/pphigs/tests/memo.rs:
+//! the triangle kernels with every row switched);
+//! [`Config::memoise`] chooses. What it is worth for the triangle kernels, crates/pphigs/benches measures. Programs that take turns
+//! in memory stay decoded, with what they remember ([`Cpu::exchange_code`]).
 //! Clocks by address ([`Cpu::watch`]) and translation on are always counted.
 //!
 //! # Conformance
@@ -91,6 +93,8 @@ mod block;
 mod bus;
 mod cache;
 mod clock;
+mod code;
+mod code_map;
 mod common;
 mod control;
 mod cpu;
@@ -116,6 +120,7 @@ mod memory;
 mod mnemonic;
 mod operands;
 mod profile;
+mod runs;
 mod scoreboard;
 mod seed;
 pub mod state;

@@ -34,7 +34,7 @@ impl Cpu {
     #[inline]
     fn write<B: Bus>(&mut self, bus: &mut B, address: u32, size: u32, value: u64) -> Result<(), TrapCause> {
         bus.write(address, size, value).map_err(|_| TrapCause::DataAccess { address })?;
-        self.code_changed |= self.code.may_hold(address, size);
+        self.code_changed |= self.code.words.may_hold(address, size);
         Ok(())
     }
 

@@ -16,6 +16,9 @@ pub(crate) struct Operands {
 #[inline(always)]
 pub(crate) fn read_operands(state: &State, d: &Decoded) -> Operands {
     let i = &d.instruction;
+    if d.is_single() {
+        return Operands { a: u64::from(state.f32_bits(i.src1)), b: u64::from(state.f32_bits(i.src2)) };
+    }
     let (first, second) = d.source_widths();
     if d.may_bypass() {
         return read_through(state, i, first, second);

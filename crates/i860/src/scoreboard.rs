@@ -3,7 +3,7 @@
 use crate::decoded::{Decoded, arm, float_mask, hazard};
 use crate::freeze::Costs;
 use crate::instruction::{Flags, Instruction, Op};
-use crate::timing::{Config, Freeze};
+use crate::timing::{Config, FREEZES, Freeze};
 
 /// Matches no source, not even that of an instruction without one.
 const NO_RESULT: u8 = 0xFE;
@@ -21,27 +21,49 @@ pub(crate) const NO_WAIT: Wait = Wait { until: 0, why: Freeze::LoadUse };
 const HAZARDS: u8 = 64;
 const LAST_RESULT: u8 = HAZARDS + hazard::COUNT as u8;
 
-/// A wait as seen from a clock.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+/// A wait as seen from a clock, in 16 bits: its place in the upper seven, the clocks left, its cause in the lower five.
 struct Left {
     place: u8,
     clocks: u8,
     why: Freeze,
 }
 
+impl Left {
+    const BITS: u32 = 16;
+    const CAUSE_BITS: u32 = 5;
+    const CLOCK_BITS: u32 = 4;
+
+    fn packed(&self) -> u128 {
+        let place = u128::from(self.place) << (Left::CLOCK_BITS + Left::CAUSE_BITS);
+        place | u128::from(self.clocks) << Left::CAUSE_BITS | self.why as u128
+    }
+
+    fn unpacked(bits: u128) -> Left {
+        let low = |bits: u128, n: u32| (bits & ((1 << n) - 1)) as u8;
+        Left {
+            place: low(bits >> (Left::CLOCK_BITS + Left::CAUSE_BITS), 7),
+            clocks: low(bits >> Left::CAUSE_BITS, Left::CLOCK_BITS),
+            why: FREEZES[usize::from(low(bits, Left::CAUSE_BITS))].id,
+        }
+    }
+}
+
 /// Most waits of a [`Leftover`].
-const MOST_WAITS: usize = 8;
+const MOST_WAITS: u32 = u128::BITS / Left::BITS;
 
 /// A scoreboard as seen from a clock: what is over by then is left out.
 ///
 /// Two scoreboards with the same leftover impose the same waits on all instructions to come.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Leftover {
-    waits: [Option<Left>; MOST_WAITS],
-    last_result: u8,
-    scalar_double: bool,
+    /// The waits in the order of their places, the first one lowest; zero behind the last.
+    waits: u128,
     graphics_result: u64,
     stored: u64,
+    last_result: u8,
+    scalar_double: bool,
+    /// What belongs to it without being on the scoreboard.
+    beside: [u8; 2],
 }
 
 #[derive(Clone, Debug)]
@@ -60,6 +82,8 @@ pub(crate) struct Scoreboard {
     scalar_double: bool,
     graphics_result: u64,
     stored: u64,
+    /// No wait ends later than this.
+    latest: u64,
 }
 
 /// The numbers of the bits that are set.
@@ -85,32 +109,33 @@ impl Scoreboard {
             scalar_double: false,
             graphics_result: 0,
             stored: 0,
+            latest: 0,
         }
     }
 
-    /// What is left at `now`; `None` when there is much, or something takes more than `most` clocks from then.
-    pub(crate) fn leftover(&self, now: u64, most: u8) -> Option<Leftover> {
-        let mut left = Leftover {
-            waits: [None; MOST_WAITS],
-            last_result: NO_RESULT,
-            scalar_double: false,
-            graphics_result: 0,
-            stored: 0,
-        };
-        let mut free = left.waits.iter_mut();
-        let mut add = |place: u8, wait: Wait| -> Option<bool> {
-            if wait.until <= now {
-                return Some(false);
+    /// What is left at `now`, with what belongs to it besides; `None` when there is much, or something takes more than `most`
+    /// clocks from then.
+    pub(crate) fn leftover(&self, now: u64, most: u8, beside: [u8; 2]) -> Option<Leftover> {
+        if self.latest > now + u64::from(most) {
+            return None;
+        }
+        let mut left =
+            Leftover { waits: 0, last_result: NO_RESULT, scalar_double: false, graphics_result: 0, stored: 0, beside };
+        let mut count = 0;
+        let mut add = |place: u8, wait: Wait| {
+            let is_left = wait.until > now;
+            if is_left && count < MOST_WAITS {
+                let wait = Left { place, clocks: (wait.until - now) as u8, why: wait.why };
+                left.waits |= wait.packed() << (count * Left::BITS);
             }
-            let clocks = u8::try_from(wait.until - now).ok().filter(|clocks| *clocks <= most)?;
-            *free.next()? = Some(Left { place, clocks, why: wait.why });
-            Some(true)
+            count += u32::from(is_left);
+            is_left
         };
         for n in bits(self.pending) {
-            add(n, self.ready[usize::from(n)])?;
+            add(n, self.ready[usize::from(n)]);
         }
         for n in bits(u64::from(self.armed)) {
-            let is_left = add(HAZARDS + n, self.hazards[usize::from(n)])?;
+            let is_left = add(HAZARDS + n, self.hazards[usize::from(n)]);
             match 1u16 << n {
                 hazard::SCALAR if is_left => left.scalar_double = self.scalar_double,
                 hazard::GRAPHICS if is_left => left.graphics_result = self.graphics_result,
@@ -118,23 +143,28 @@ impl Scoreboard {
                 _ => {}
             }
         }
-        if add(LAST_RESULT, Wait { until: self.last_result_until, why: Freeze::MultiplierFirstSource })? {
+        if add(LAST_RESULT, Wait { until: self.last_result_until, why: Freeze::MultiplierFirstSource }) {
             left.last_result = self.last_result;
         }
-        Some(left)
+        (count <= MOST_WAITS).then_some(left)
     }
 
     /// Makes this the scoreboard that leaves `left` at `now`.
     pub(crate) fn restore(&mut self, left: &Leftover, now: u64) {
         self.pending = 0;
         self.armed = 0;
+        self.latest = 0;
         self.last_result_until = 0;
         self.last_result = left.last_result;
         self.scalar_double = left.scalar_double;
         self.graphics_result = left.graphics_result;
         self.stored = left.stored;
-        for Left { place, clocks, why } in left.waits.into_iter().flatten() {
+        let mut waits = left.waits;
+        while waits != 0 {
+            let Left { place, clocks, why } = Left::unpacked(waits);
+            waits >>= Left::BITS;
             let wait = Wait { until: now + u64::from(clocks), why };
+            self.latest = self.latest.max(wait.until);
             match place {
                 LAST_RESULT => self.last_result_until = wait.until,
                 n if n < HAZARDS => {
@@ -250,6 +280,7 @@ impl Scoreboard {
     fn note_result(&mut self, i: &Instruction, now: u64) {
         self.last_result = if i.has(Flags::RESULT_DOUBLE) { i.dest & 30 } else { i.dest };
         self.last_result_until = now + self.costs.clocks(Freeze::MultiplierFirstSource);
+        self.latest = self.latest.max(self.last_result_until);
     }
 
     fn arm(&mut self, d: &Decoded, now: u64) {
@@ -276,12 +307,14 @@ impl Scoreboard {
     #[inline]
     pub(crate) fn set_hazard_until(&mut self, bit: u16, until: u64, why: Freeze) {
         self.armed |= bit;
+        self.latest = self.latest.max(until);
         self.hazards[bit.trailing_zeros() as usize] = Wait { until, why };
     }
 
     pub(crate) fn set_ready(&mut self, mask: u64, until: u64, why: Freeze) {
         let mut bits = mask & !(1 | 3 << 32);
         self.pending |= bits;
+        self.latest = self.latest.max(until);
         while bits != 0 {
             self.ready[bits.trailing_zeros() as usize] = Wait { until, why };
             bits &= bits - 1;

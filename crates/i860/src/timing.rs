@@ -150,7 +150,7 @@ pub struct Config {
     pub seeds: crate::SeedTable,
     /// Start of the pseudo-random sequence of the cache replacement.
     pub replacement_seed: u16,
-    /// Whether blocks that repeat with all they need in the caches take the clocks that were counted before instead of being
+    /// Whether runs of code that repeat with all they need in the caches take the clocks that were counted before instead of being
     /// counted again, as FastSim does (Schnarr and Larus, 1998). Changes the host's time only; on by default, being faster.
     pub memoise: bool,
 }

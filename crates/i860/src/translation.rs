@@ -5,18 +5,19 @@ use crate::common::Common;
 use crate::timing::{ChipSizes, Freeze};
 
 const PAGE_BYTES: u32 = ChipSizes::PAPERS.page_bytes as u32;
+/// Translations of a set.
+const WAYS: usize = ChipSizes::PAPERS.tlb_ways as usize;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Translation {
     /// Address of the page directory while translation is on.
     directory: Option<u32>,
-    tlb: Tags,
+    tlb: Tags<WAYS>,
 }
 
 impl Translation {
     pub(crate) fn new() -> Translation {
-        let ChipSizes { tlb_entries, tlb_ways, .. } = ChipSizes::PAPERS;
-        Translation { directory: None, tlb: Tags::new(tlb_entries as u32, PAGE_BYTES, tlb_ways as u32) }
+        Translation { directory: None, tlb: Tags::new(ChipSizes::PAPERS.tlb_entries as u32, PAGE_BYTES) }
     }
 
     #[inline]

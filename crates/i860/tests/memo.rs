@@ -1,8 +1,9 @@
 //! Memoising the clocks of code that repeats changes nothing but the host's time. The same of the triangle kernels:
 //! crates/pphigs/tests/memo.rs.
 
-use i860::timing::{FREEZES, Freeze, FreezeRules};
+use i860::timing::{DramTiming, FREEZES, Freeze, FreezeRules};
 use i860::{AddressProfile, Config, Cpu, Ram, RunEnd, assemble, decode};
+use parameters::ParameterTable;
 use proptest::prelude::*;
 
 const CODE: u32 = 0x1000;
@@ -102,6 +103,104 @@ proptest! {
     }
 }
 
+/// Bytes of a way of the instruction cache: lines so far apart are of the same set.
+const WAY: usize = 0x800;
+
+/// Pieces of code that drive each other out of the instruction cache, each with a branch to another one at its end.
+fn pieces() -> impl Strategy<Value = Vec<u32>> {
+    let piece = (prop::collection::vec(likely_word(), 0..24), any::<prop::sample::Index>());
+    prop::collection::vec(piece, 3..7).prop_map(|pieces| {
+        let count = pieces.len();
+        let mut all = vec![0; count * WAY / 4];
+        for (n, (words, next)) in pieces.into_iter().enumerate() {
+            let begin = n * WAY / 4;
+            let branch = begin + words.len();
+            all[begin..branch].copy_from_slice(&words);
+            let by = (next.index(count) * WAY / 4) as i32 - (branch as i32 + 1);
+            all[branch] = 0x1A << 26 | by as u32 & 0x03FF_FFFF;
+            all[branch + 1] = 0xA000_0000;
+        }
+        all
+    })
+}
+
+/// Registers r4 to r7 into more data than their cache holds, or into the code itself.
+fn far_registers() -> impl Strategy<Value = [u32; 32]> {
+    let data = (0u32..0x400).prop_map(|n| 0x8000 + 16 * n);
+    let code = (0u32..0x180).prop_map(|n| CODE + 16 * n);
+    let bases = prop::array::uniform4(prop_oneof![9 => data, 1 => code]);
+    (registers(), bases).prop_map(|(mut all, bases)| {
+        all[4..8].copy_from_slice(&bases);
+        all
+    })
+}
+
+/// Memories of all kinds, some so quick that nothing is waited for.
+fn memories() -> impl Strategy<Value = DramTiming> {
+    let reads = (0u64..12, 0u64..16, 0u64..5);
+    let writes = (0u64..5, 0u64..14);
+    let stolen = prop::sample::select(vec![(0u64, 0u64), (50, 8), (625, 8)]);
+    (reads, writes, stolen, prop::sample::select(vec![64u64, 4096])).prop_map(|(reads, writes, stolen, page_bytes)| {
+        let (first_hit, first_miss, next) = reads;
+        let (write_hit, write_miss) = writes;
+        let (refresh_interval, refresh_clocks) = stolen;
+        let new = DramTiming { first_hit, first_miss, next, write_hit, write_miss, page_bytes, ..DramTiming::PAPERS };
+        DramTiming { refresh_interval, refresh_clocks, ..new }
+    })
+}
+
+/// Rules of which one row has so many clocks that it is felt wherever it applies.
+fn slow_rules() -> impl Strategy<Value = FreezeRules> {
+    (rules(), 0..FREEZES.len(), 0u64..40).prop_map(|(mut rules, row, clocks)| {
+        rules.clocks.set(FREEZES[row].clocks.name, clocks.into()).expect("the table has all rows");
+        rules
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 1_000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn code_and_data_larger_than_their_caches_take_the_same_clocks(
+        words in pieces(),
+        registers in far_registers(),
+        freezes in prop_oneof![2 => Just(FreezeRules::all()), 1 => slow_rules()],
+        dram in prop_oneof![1 => Just(DramTiming::PAPERS), 1 => memories()],
+        replacement_seed in any::<u16>(),
+        runs in prop::collection::vec((prop_oneof![1 => Just(0u64), 3 => 100u64..800], far_registers()), 10..30),
+    ) {
+        let config = Config { freezes, dram, replacement_seed, ..Config::cycle() };
+        let mut twins = Twins::new(config, &words, &registers);
+        for (instructions, registers) in runs {
+            for (cpu, _) in &mut twins.0 {
+                cpu.state.r[4..8].copy_from_slice(&registers[4..8]);
+            }
+            twins.go(instructions)?;
+        }
+        let [(_, memoised), (_, counted)] = &twins.0;
+        prop_assert!(memoised == counted, "memory");
+    }
+}
+
+/// Code of three times the instruction cache, with stores that miss the data cache, begun again and again.
+#[test]
+fn code_that_does_not_fit_the_caches_is_mostly_repeated() {
+    let body = "adds 1, r6, r6\n fadd.ss f8, f9, f10\n st.l r6, 0(r4)\n adds 32, r4, r4\n".repeat(768);
+    let source = format!("{body}\nend: nop");
+    let program = assemble("long.s", CODE, &source).unwrap_or_else(|e| panic!("{e}"));
+    let mut ram = Ram::new(0, 1 << 18);
+    ram.load(CODE, &program.bytes).expect("fits");
+    let mut cpu = Cpu::at(Config::cycle(), CODE);
+    for _ in 0..20 {
+        cpu.state.pc = CODE;
+        cpu.state.r[4] = 0x2_0000;
+        assert_eq!(cpu.run(&mut ram, program.symbol("end"), 10_000), RunEnd::Stopped);
+    }
+    assert!(cpu.profile().instruction_misses > 20 * 200, "it does not fit");
+    let (repeated, all) = (cpu.repeated_instructions(), cpu.instructions());
+    assert!(10 * repeated > 8 * all, "{repeated} of {all}");
+}
+
 /// Eight instructions in two lines of the cache.
 const LOOP: &str = "
         mov     100, r5
@@ -142,6 +241,32 @@ fn a_profile_by_address_accounts_for_the_same_clocks() {
     assert_eq!(watched.profile(), plain.profile());
     let by_address: u64 = (0..16).map(|n| watched.watched().expect("watched").at(CODE + 4 * n).0).sum();
     assert_eq!(by_address, plain.clocks());
+}
+
+/// Programs that take turns at the same addresses, their code exchanged or forgotten: the same state at the same clock.
+#[test]
+fn programs_that_take_turns_are_decoded_once_and_take_the_same_clocks() {
+    let sources = [LOOP.to_owned(), LOOP.replace("adds    -1, r5, r5", "adds    -2, r5, r5")];
+    let programs = sources.map(|source| assemble("loop.s", CODE, &source).unwrap_or_else(|e| panic!("{e}")));
+    let take_turns = |exchange: bool| {
+        let mut ram = Ram::new(0, MEMORY);
+        let mut cpu = Cpu::new(Config::cycle());
+        for turn in 0..20 {
+            let program = &programs[turn % 2];
+            ram.load(CODE, &program.bytes).expect("fits");
+            match exchange {
+                true => cpu.exchange_code((turn > 0).then(|| ((turn + 1) % 2, CODE..CODE + 0x40)), turn % 2),
+                false => cpu.invalidate_code(),
+            }
+            cpu.state.pc = CODE;
+            cpu.state.r[4] = 0x4000;
+            assert_eq!(cpu.run(&mut ram, program.symbol("end"), 10_000), RunEnd::Stopped);
+        }
+        (cpu.state.clone(), cpu.profile(), cpu.repeated_instructions())
+    };
+    let (exchanged, forgotten) = (take_turns(true), take_turns(false));
+    assert_eq!((&exchanged.0, &exchanged.1), (&forgotten.0, &forgotten.1));
+    assert!(exchanged.2 > forgotten.2, "what was remembered is used again");
 }
 
 /// Misses of the instruction cache and of the data cache.

@@ -91,6 +91,11 @@ pub enum ProcessorFault {
 /// Where a called program returns to; nothing is there.
 const RETURN: u32 = 0x0800;
 
+/// The addresses that a program takes.
+fn extent(program: &Program) -> Range<u32> {
+    program.base..program.base.saturating_add(program.bytes.len() as u32)
+}
+
 /// Bytes of a line of the data cache, to which the output of a bin context is aligned.
 const LINE: u32 = i860::timing::ChipSizes::PAPERS.line_bytes as u32;
 
@@ -105,7 +110,7 @@ const LINK: usize = 1;
 /// No call is remembered for a later one, because none repeats. Of those of a still head 96 % have the code, arguments and
 /// parameters of an earlier one (188 of Slats with 110 triangles, 2,800 of Rendering Control with the aircraft, 48 fields
 /// each), of those of a moving head none; but not one finds the same lines in the caches, whose replacement is
-/// pseudo-random, to say nothing of the phase of the memory's refresh. Blocks of instructions do repeat: see
+/// pseudo-random, to say nothing of the phase of the memory's refresh. Runs of instructions do repeat: see
 /// [`i860::Config::memoise`].
 pub struct Processor {
     gp: NodeId,
@@ -115,6 +120,8 @@ pub struct Processor {
     cpu: Cpu,
     ram: Ram,
     loaded: Option<Arc<Program>>,
+    /// All that were ever loaded.
+    programs: Vec<Arc<Program>>,
     /// Places of the output of both bin contexts.
     outputs: [Option<Range<u32>>; 2],
     /// Addresses whose execution somebody wants to see, and what was seen since he last looked.
@@ -162,6 +169,7 @@ impl Processor {
             cpu: Cpu::new(core),
             ram,
             loaded: None,
+            programs: Vec::new(),
             outputs: [None, None],
             breakpoints: BTreeSet::new(),
             hits: Vec::new(),
@@ -321,10 +329,29 @@ impl Processor {
         if self.loaded.as_ref().is_some_and(|loaded| Arc::ptr_eq(loaded, program)) {
             return Ok(());
         }
-        self.write(program.base, &program.words())?;
-        self.cpu.invalidate_code();
+        let previous = self.loaded.take().filter(|previous| self.holds(previous));
+        let previous = previous.map(|previous| (self.number(&previous), extent(&previous)));
+        let unmapped = self.unmapped(program.base, program.bytes.len() / 4);
+        self.ram.load(program.base, &program.bytes).map_err(|_| unmapped)?;
+        let next = self.number(program);
+        self.cpu.exchange_code(previous, next);
         self.loaded = Some(Arc::clone(program));
         Ok(())
+    }
+
+    /// Whether memory holds a program as it was loaded.
+    fn holds(&self, program: &Program) -> bool {
+        let Range { start, end } = extent(program);
+        self.ram.bytes().get(start as usize..end as usize) == Some(program.bytes.as_slice())
+    }
+
+    /// The number by which the core knows a program.
+    fn number(&mut self, program: &Arc<Program>) -> usize {
+        let known = self.programs.iter().position(|known| Arc::ptr_eq(known, program));
+        known.unwrap_or_else(|| {
+            self.programs.push(Arc::clone(program));
+            self.programs.len() - 1
+        })
     }
 }
 
@@ -368,6 +395,26 @@ mod tests {
         let forever = program("start: br start\n nop");
         let error = processor().call(&forever, "start", &[], 1_000).expect_err("endless");
         assert!(matches!(error, ProcessorFault::Endless { gp: NodeId(3), budget: 1_000, .. }), "{error}");
+    }
+
+    #[test]
+    fn a_program_that_changed_itself_is_as_new_when_it_is_loaded_again() {
+        let mut processor = processor();
+        // Stores the word of `other` over that of `here`, which it executes afterwards.
+        let changing = program(
+            "start: orh 0, r0, r18\n or 0x1018, r18, r18\n ld.l 0(r18), r19\n bri r1\n adds 1, r17, r17\n nop\n\
+             other: adds 5, r17, r17\n change: orh 0, r0, r18\n or 0x1010, r18, r18\n st.l r19, 0(r18)\n bri r1\n nop",
+        );
+        let other = program("start: adds r16, r16, r17\n bri r1\n nop");
+        for _ in 0..3 {
+            processor.call(&changing, "start", &[(17, 10)], 20).expect("it returns");
+            assert_eq!(processor.register(17), 11, "as it was loaded");
+            processor.call(&changing, "change", &[], 20).expect("it returns");
+            processor.call(&changing, "start", &[(17, 10)], 20).expect("it returns");
+            assert_eq!(processor.register(17), 15, "as it changed itself");
+            processor.call(&other, "start", &[(16, 21)], 10).expect("it returns");
+            assert_eq!(processor.register(17), 42);
+        }
     }
 
     #[test]

@@ -1,0 +1,199 @@
+//! The clock of a block, run by run: units whose instructions and data are in the caches take clocks that were counted before, and
+//! what goes past the caches between them is counted.
+//!
+//! A place in a block is three times the number of a unit, plus 1 once that is fetched and 2 once it has issued. A run ends before
+//! an access that goes past the data cache (at a place of the last kind, behind which the next one begins with what the access has
+//! left), before a line that the instruction cache does not hold, or with what was executed of the block.
+
+use crate::block::Block;
+use crate::bus::Bus;
+use crate::clock::Clock;
+use crate::execution::Execution;
+use crate::instruction::Instruction;
+use crate::memo::{Memo, Number, RememberedClocks, Run};
+use crate::timing::{FREEZES, Freeze};
+
+/// Places of a unit.
+const PLACES: usize = 3;
+const FETCHED: usize = 1;
+const ISSUED: usize = 2;
+
+/// What was executed of a block, and how far its clocks are counted.
+struct Course<'a> {
+    execution: Execution,
+    /// Number of units executed.
+    units: usize,
+    /// Number of the last unit of the block.
+    last: usize,
+    /// All accesses, and how many of them are counted.
+    accesses: &'a [u32],
+    accessed: usize,
+    /// The place that was reached.
+    at: usize,
+}
+
+impl Course<'_> {
+    /// How a run to a place went, as far as it can go in more than one way.
+    #[inline]
+    fn flags(&self, to: usize, continues: bool) -> [bool; 3] {
+        let ends = to == PLACES * self.units || to > PLACES * self.last;
+        [ends && self.execution.taken, ends && self.execution.trapped, continues]
+    }
+}
+
+impl Clock {
+    /// Counts the clocks of what a block has executed, from one access past the caches to the next.
+    #[inline]
+    pub(crate) fn go<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &[u32], bus: &B) {
+        let units = execution.units + usize::from(execution.slot);
+        let last = block.units.len() - 1;
+        let mut course = Course { execution, units, last, accesses, accessed: 0, at: 0 };
+        let whole = !self.common.costs.applies(Freeze::InstructionMiss) || self.fetch.holds(block);
+        while course.at < PLACES * units {
+            match self.number() {
+                Some(entry) => self.next_run(block, &mut course, entry, whole, bus),
+                None => {
+                    let to = (course.at / PLACES + 1) * PLACES;
+                    self.advance(block, &mut course, to, bus);
+                }
+            }
+        }
+    }
+
+    /// The number of the scoreboard, if it has or gets one.
+    #[inline]
+    fn number(&mut self) -> Option<Number> {
+        let memo = self.memo.as_mut()?;
+        memo.present().or_else(|| memo.number_of(&self.board, self.common.now, self.fetch.filling(&self.common)))
+    }
+
+    /// Brings the scoreboard up to date.
+    #[inline]
+    pub(crate) fn write_board(&mut self) {
+        if let Some(left) = self.memo.as_mut().and_then(Memo::leave) {
+            self.board.restore(left, self.common.now);
+        }
+    }
+
+    /// Goes to the end of the present run, and past what ends it.
+    #[inline]
+    fn next_run<B: Bus>(&mut self, block: &mut Block, course: &mut Course<'_>, entry: Number, whole: bool, bus: &B) {
+        let number = course.at / PLACES;
+        let is_unfetched = course.at.is_multiple_of(PLACES);
+        let pc = block.unit(number).pc;
+        if !whole && is_unfetched && self.fetch.misses(pc) {
+            return self.miss(block, course, bus);
+        }
+        let limit = if whole { course.units } else { block.end_of_line(number).min(course.units) };
+        let addresses = &course.accesses[course.accessed..];
+        let accessing = block.accessing.get(course.accessed..).unwrap_or_default();
+        let (held, missing) = self.data.held(addresses, accessing, limit);
+        let to = missing.map_or(PLACES * limit, |unit| PLACES * unit + ISSUED);
+        let continues = entry.is_filling() && is_unfetched && self.fetch.is_in_line(pc);
+        let run = Run { entry, to: to as u16, flags: course.flags(to, continues) };
+        match block.remembered.find(course.at, run) {
+            Some(clocks) => {
+                self.repeat(clocks);
+                course.accessed += held;
+                course.at = to;
+            }
+            None => self.learn(block, course, run, bus),
+        }
+        if let Some(unit) = missing {
+            let address = course.accesses[course.accessed];
+            let is_store = block.accessing[course.accessed].is_store;
+            self.go_past(&block.unit(unit).core().instruction, is_store, address, bus);
+            course.accessed += 1;
+        }
+    }
+
+    /// Counts an access that goes past the cache.
+    #[inline]
+    fn go_past<B: Bus>(&mut self, i: &Instruction, is_store: bool, address: u32, bus: &B) {
+        if !is_store {
+            self.write_board();
+            return self.access(i, address, bus);
+        }
+        // A store leaves nothing on the scoreboard when it misses: where it need not wait, nothing changes.
+        let before = self.common.now;
+        self.access(i, address, bus);
+        if self.common.now != before
+            && let Some(left) = self.memo.as_mut().and_then(Memo::leave)
+        {
+            self.board.restore(left, before);
+        }
+    }
+
+    /// Fetches from a line that the cache does not hold.
+    fn miss<B: Bus>(&mut self, block: &Block, course: &mut Course<'_>, bus: &B) {
+        self.write_board();
+        let unit = block.unit(course.at / PLACES);
+        self.fetch(unit, bus);
+        course.at += FETCHED;
+        if !self.fetch.is_in_line(unit.pc) {
+            // No line is held of what may not be cached.
+            let to = (course.at / PLACES + 1) * PLACES;
+            self.advance(block, course, to, bus);
+        }
+    }
+
+    /// Counts to a place. Where it begins behind the issue of a unit, that one's access is counted.
+    fn advance<B: Bus>(&mut self, block: &Block, course: &mut Course<'_>, to: usize, bus: &B) {
+        self.write_board();
+        let from = course.at;
+        let mut accesses = course.accesses[course.accessed..].iter();
+        while course.at < to {
+            let number = course.at / PLACES;
+            let unit = block.unit(number);
+            match course.at % PLACES {
+                0 => self.fetch(unit, bus),
+                FETCHED => self.issue(unit),
+                _ if course.execution.trapped && number + 1 == course.units => {}
+                _ => {
+                    if course.at != from {
+                        self.end(unit, course.execution.taken, &mut accesses, bus);
+                    }
+                    self.retire(unit);
+                }
+            }
+            course.at += 1;
+        }
+        course.accessed = course.accesses.len() - accesses.len();
+    }
+
+    #[inline]
+    fn repeat(&mut self, remembered: &RememberedClocks) {
+        self.common.now += u64::from(remembered.clocks);
+        self.common.profile.instructions += u64::from(remembered.instructions);
+        for (why, clocks) in &remembered.frozen {
+            self.common.profile.frozen[*why as usize] += u64::from(*clocks);
+        }
+        self.fetch.continue_in(remembered.line);
+        if let Some(memo) = &mut self.memo {
+            memo.follow(remembered);
+        }
+    }
+
+    /// Counts a run and remembers it.
+    #[cold]
+    fn learn<B: Bus>(&mut self, block: &mut Block, course: &mut Course<'_>, run: Run, bus: &B) {
+        let from = course.at;
+        let began = self.common.now;
+        let before = self.common.profile.clone();
+        self.advance(block, course, usize::from(run.to), bus);
+        let Some(exit) = self.number() else { return };
+        let profile = &self.common.profile;
+        let causes = FREEZES.iter().map(|row| (row.id, (profile.frozen_by(row.id) - before.frozen_by(row.id)) as u32));
+        block.remembered.add(
+            from,
+            RememberedClocks {
+                run,
+                exit,
+                clocks: (self.common.now - began) as u32,
+                instructions: (profile.instructions - before.instructions) as u32,
+                frozen: causes.filter(|(_, clocks)| *clocks != 0).collect(),
+                line: self.fetch.line(),
+            },
+        );
+    }
+}
