@@ -1,12 +1,14 @@
 //! Times of primitives that follow from i860 code, for the timing table: what a pass over the application scenes takes on a board.
 //!
 //! ```text
-//!   clocks of a pass = triangle * (triangles) + guard * (of these, cut by the clipper) + entry * (entries of bins)
+//!   clocks of triangles in a pass = triangle * (triangles) + guard * (of these, cut by the clipper) + entry * (their entries of bins)
+//!   clocks of spheres             = sphere * (spheres) + entry * (their entries of bins)
 //! ```
 //!
 //! `guard` comes from triangles that cover the screen and reach beyond the guard band, the others from the three application scenes: a share
 //! of each, seen along its own head motion; the first pass only fills the caches. `entry` is the slope over all passes by least squares,
-//! `triangle` the mean of the scenes' means. Each is found from what the others leave of the time, in turn until they stay.
+//! `triangle` the mean of the scenes' means. Each is found from what the others leave of the time, in turn until they stay. `sphere` is
+//! what entries leave of the spheres' time, the mean of the means of those of the three scenes that have spheres.
 
 use glam::Mat4;
 use pphigs::{DisplayList, Editing, FrameView, ModelEdit, Pass, Picture, RegionBinning, Shading, Share};
@@ -17,7 +19,7 @@ use pxpl5_renderer::Layout;
 use pxpl5_run::{ExperimentError, Views, display_list, views};
 use pxpl5_scene::{Hmd, HmdConfig, builtin};
 use pxpl5_sim::Time;
-use pxpl5_wire::{FieldParity, NodeId, ViewNumber};
+use pxpl5_wire::{FieldParity, NodeId, RegionId, ViewNumber};
 use std::sync::Arc;
 
 /// The application scenes of TR94.
@@ -56,6 +58,8 @@ pub struct CodeTimes {
     pub triangle_ns: f64,
     /// The least and the greatest scene's mean.
     pub triangle_range_ns: [f64; 2],
+    /// A sphere: mean of the scenes' means.
+    pub sphere_ns: f64,
     /// An entry in a bin.
     pub entry_ns: f64,
     /// A triangle that the clipper cuts, besides: its cuts, and all pieces but one.
@@ -69,8 +73,11 @@ pub struct CodeTimes {
 /// Rounds after which the times stay as they are: each takes over a small part of the last one's error.
 const ROUNDS: usize = 30;
 
-/// One pass: triangles that are not cut, triangles that are, entries, nanoseconds.
+/// One pass: triangles that are not cut, triangles that are, their entries, nanoseconds.
 type Sample = [f64; 4];
+
+/// The same of spheres: spheres, their entries, nanoseconds.
+type SphereSample = [f64; 3];
 
 impl CodeUse {
     fn picture(self) -> Picture {
@@ -95,18 +102,28 @@ impl CodeUse {
 ///
 /// [`ExperimentError::Scene`] when a scene is not found or the code does not come to its end.
 pub fn code_times(version: CodeVersion, of: CodeUse) -> Result<CodeTimes, ExperimentError> {
-    let cut = samples(version, of, "full-screen:30", 1)?;
-    let scenes: Vec<Vec<Sample>> =
+    let (cut, _) = samples(version, of, "full-screen:30", 1)?.into_iter().unzip::<_, _, Vec<_>, Vec<_>>();
+    let scenes: Vec<Vec<(Sample, SphereSample)>> =
         SCENES.iter().map(|scene| samples(version, of, scene, BOARDS)).collect::<Result<_, _>>()?;
+    let (scenes, of_spheres): (Vec<Vec<Sample>>, Vec<Vec<SphereSample>>) =
+        scenes.into_iter().map(|scene| scene.into_iter().unzip()).unzip();
     let begun: Vec<f64> = SCENES.iter().map(|scene| beginning_ns(version, of, scene)).collect::<Result<_, _>>()?;
     let pass_ns = begun.iter().sum::<f64>() / begun.len() as f64;
     let edit_ns = edit_ns(version)?;
     let range = [0.0; 2];
-    let mut times =
-        CodeTimes { triangle_ns: 0.0, triangle_range_ns: range, entry_ns: 0.0, guard_ns: 0.0, pass_ns, edit_ns };
+    let mut times = CodeTimes {
+        triangle_ns: 0.0,
+        triangle_range_ns: range,
+        sphere_ns: 0.0,
+        entry_ns: 0.0,
+        guard_ns: 0.0,
+        pass_ns,
+        edit_ns,
+    };
     for _ in 0..ROUNDS {
         times.improve(of, &cut, &scenes);
     }
+    times.sphere_ns = times.sphere(&of_spheres);
     Ok(times)
 }
 
@@ -130,6 +147,17 @@ impl CodeTimes {
             [means.iter().copied().fold(f64::INFINITY, f64::min), means.iter().copied().fold(0.0, f64::max)];
         let without_entries = |[uncut, cut, n, ns]: &Sample| ([*cut, *uncut], ns - entry_ns * n);
         self.guard_ns = solve(cut.iter().map(without_entries)) - self.triangle_ns;
+    }
+
+    /// What entries leave of the time of a sphere; scenes without spheres say nothing.
+    fn sphere(&self, scenes: &[Vec<SphereSample>]) -> f64 {
+        let sums = scenes.iter().map(|samples| {
+            samples.iter().fold([0.0; 2], |[n, ns], [spheres, entries, of_spheres]| {
+                [n + spheres, ns + of_spheres - self.entry_ns * entries]
+            })
+        });
+        let means: Vec<f64> = sums.filter(|[n, _]| *n > 0.0).map(|[n, ns]| ns / n).collect();
+        means.iter().sum::<f64>() / means.len().max(1) as f64
     }
 }
 
@@ -173,7 +201,12 @@ impl Rig {
     }
 }
 
-fn samples(version: CodeVersion, of: CodeUse, scene: &str, boards: usize) -> Result<Vec<Sample>, ExperimentError> {
+fn samples(
+    version: CodeVersion,
+    of: CodeUse,
+    scene: &str,
+    boards: usize,
+) -> Result<Vec<(Sample, SphereSample)>, ExperimentError> {
     let mut rig = Rig::new(version, scene, boards)?;
     let mut samples = Vec::new();
     let parts = of.parts(&rig.share);
@@ -225,16 +258,40 @@ fn edit_ns(version: CodeVersion) -> Result<f64, ExperimentError> {
     Ok((more - one) / f64::from(EDITS))
 }
 
-fn sample(pass: &Pass, processor: &mut Processor, context: u8) -> Result<Option<Sample>, ProcessorFault> {
+fn sample(
+    pass: &Pass,
+    processor: &mut Processor,
+    context: u8,
+) -> Result<Option<(Sample, SphereSample)>, ProcessorFault> {
     let Some(made) = pass.run_code(processor, context)? else { return Ok(None) };
     let cut = pass.stats().clipped;
     let uncut = u64::from(pass.transformed().triangles) - cut;
-    Ok(Some([uncut as f64, cut as f64, made.entries() as f64, made.span.0 as f64 / 1e3]))
+    let regions = pass.picture().viewport.grid().regions() as u16;
+    let of_spheres: u32 = (0..regions).map(|region| pass.counts(RegionId(region)).spheres).sum();
+    let entries = made.entries() - u64::from(of_spheres);
+    let triangles_ns = (made.span.0 - made.of_spheres.0) as f64 / 1e3;
+    let spheres = [pass.transformed().spheres.into(), of_spheres.into(), made.of_spheres.0 as f64 / 1e3];
+    Ok(Some(([uncut as f64, cut as f64, entries as f64, triangles_ns], spheres)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_sphere_takes_what_its_entries_leave() {
+        let times = CodeTimes {
+            triangle_ns: 0.0,
+            triangle_range_ns: [0.0; 2],
+            sphere_ns: 0.0,
+            entry_ns: 3.0,
+            guard_ns: 0.0,
+            pass_ns: 0.0,
+            edit_ns: 0.0,
+        };
+        let scenes = [vec![[2.0, 4.0, 112.0], [3.0, 1.0, 153.0]], vec![[0.0; 3]], vec![[1.0, 0.0, 60.0]]];
+        assert_eq!(times.sphere(&scenes), 55.0);
+    }
 
     #[test]
     fn two_unknowns_are_found_from_exact_rows() {
