@@ -8,7 +8,8 @@
 //! `guard` comes from triangles that cover the screen and reach beyond the guard band, the others from the three application scenes: a share
 //! of each, seen along its own head motion; the first pass only fills the caches. `entry` is the slope over all passes by least squares,
 //! `triangle` the mean of the scenes' means. Each is found from what the others leave of the time, in turn until they stay. `sphere` is
-//! what entries leave of the spheres' time, the mean of the means of those of the three scenes that have spheres.
+//! what entries leave of the spheres' time, the mean of the means of those of the three scenes that have spheres. Triangles are measured
+//! without the spheres of their scene, whose code takes the instruction cache.
 
 use glam::Mat4;
 use pphigs::{DisplayList, Editing, FrameView, ModelEdit, Pass, Picture, RegionBinning, Shading, Share};
@@ -102,11 +103,11 @@ impl CodeUse {
 ///
 /// [`ExperimentError::Scene`] when a scene is not found or the code does not come to its end.
 pub fn code_times(version: CodeVersion, of: CodeUse) -> Result<CodeTimes, ExperimentError> {
-    let (cut, _) = samples(version, of, "full-screen:30", 1)?.into_iter().unzip::<_, _, Vec<_>, Vec<_>>();
-    let scenes: Vec<Vec<(Sample, SphereSample)>> =
+    let cut = samples(version, of, "full-screen:30", 1)?;
+    let scenes: Vec<Vec<Sample>> =
         SCENES.iter().map(|scene| samples(version, of, scene, BOARDS)).collect::<Result<_, _>>()?;
-    let (scenes, of_spheres): (Vec<Vec<Sample>>, Vec<Vec<SphereSample>>) =
-        scenes.into_iter().map(|scene| scene.into_iter().unzip()).unzip();
+    let of_spheres: Vec<Vec<SphereSample>> =
+        SCENES.iter().map(|scene| sphere_samples(version, of, scene)).collect::<Result<_, _>>()?;
     let begun: Vec<f64> = SCENES.iter().map(|scene| beginning_ns(version, of, scene)).collect::<Result<_, _>>()?;
     let pass_ns = begun.iter().sum::<f64>() / begun.len() as f64;
     let edit_ns = edit_ns(version)?;
@@ -186,8 +187,26 @@ fn fault(error: ProcessorFault) -> ExperimentError {
 
 impl Rig {
     fn new(version: CodeVersion, scene: &str, boards: usize) -> Result<Self, ExperimentError> {
+        Self::of_list(version, scene, boards, |list| list)
+    }
+
+    /// The same without spheres.
+    fn of_triangles(version: CodeVersion, scene: &str, boards: usize) -> Result<Self, ExperimentError> {
+        Self::of_list(version, scene, boards, |mut list| {
+            list.spheres.clear();
+            list.structures.iter_mut().for_each(|structure| structure.spheres = 0..0);
+            list
+        })
+    }
+
+    fn of_list(
+        version: CodeVersion,
+        scene: &str,
+        boards: usize,
+        part: impl Fn(DisplayList) -> DisplayList,
+    ) -> Result<Self, ExperimentError> {
         let scene = Arc::new(builtin(scene).map_err(|error| ExperimentError::Scene(error.to_string()))?);
-        let list: Arc<DisplayList> = Arc::new(display_list(&scene).map_err(ExperimentError::Scene)?);
+        let list = Arc::new(part(display_list(&scene).map_err(ExperimentError::Scene)?));
         let hmd = Hmd::new(HmdConfig::unc()).map_err(|error| ExperimentError::Scene(error.to_string()))?;
         let (views, _) = views(&scene, 1, hmd, 2);
         let share = Share::new(list, 0, boards);
@@ -201,13 +220,22 @@ impl Rig {
     }
 }
 
-fn samples(
-    version: CodeVersion,
+fn samples(version: CodeVersion, of: CodeUse, scene: &str, boards: usize) -> Result<Vec<Sample>, ExperimentError> {
+    measured(of, Rig::of_triangles(version, scene, boards)?, sample)
+}
+
+/// None of scenes without spheres.
+fn sphere_samples(version: CodeVersion, of: CodeUse, scene: &str) -> Result<Vec<SphereSample>, ExperimentError> {
+    let rig = Rig::new(version, scene, BOARDS)?;
+    if rig.share.counts().spheres == 0 { Ok(Vec::new()) } else { measured(of, rig, sphere_sample) }
+}
+
+/// All passes but the first.
+fn measured<S>(
     of: CodeUse,
-    scene: &str,
-    boards: usize,
-) -> Result<Vec<(Sample, SphereSample)>, ExperimentError> {
-    let mut rig = Rig::new(version, scene, boards)?;
+    mut rig: Rig,
+    sample: impl Fn(&Pass, &mut Processor, u8) -> Result<Option<S>, ProcessorFault>,
+) -> Result<Vec<S>, ExperimentError> {
     let mut samples = Vec::new();
     let parts = of.parts(&rig.share);
     for number in 0..VIEWS {
@@ -258,20 +286,18 @@ fn edit_ns(version: CodeVersion) -> Result<f64, ExperimentError> {
     Ok((more - one) / f64::from(EDITS))
 }
 
-fn sample(
-    pass: &Pass,
-    processor: &mut Processor,
-    context: u8,
-) -> Result<Option<(Sample, SphereSample)>, ProcessorFault> {
+fn sample(pass: &Pass, processor: &mut Processor, context: u8) -> Result<Option<Sample>, ProcessorFault> {
     let Some(made) = pass.run_code(processor, context)? else { return Ok(None) };
     let cut = pass.stats().clipped;
     let uncut = u64::from(pass.transformed().triangles) - cut;
+    Ok(Some([uncut as f64, cut as f64, made.entries() as f64, made.span.0 as f64 / 1e3]))
+}
+
+fn sphere_sample(pass: &Pass, processor: &mut Processor, context: u8) -> Result<Option<SphereSample>, ProcessorFault> {
+    let Some(made) = pass.run_code(processor, context)? else { return Ok(None) };
     let regions = pass.picture().viewport.grid().regions() as u16;
-    let of_spheres: u32 = (0..regions).map(|region| pass.counts(RegionId(region)).spheres).sum();
-    let entries = made.entries() - u64::from(of_spheres);
-    let triangles_ns = (made.span.0 - made.of_spheres.0) as f64 / 1e3;
-    let spheres = [pass.transformed().spheres.into(), of_spheres.into(), made.of_spheres.0 as f64 / 1e3];
-    Ok(Some(([uncut as f64, cut as f64, entries as f64, triangles_ns], spheres)))
+    let entries: u32 = (0..regions).map(|region| pass.counts(RegionId(region)).spheres).sum();
+    Ok(Some([pass.transformed().spheres.into(), entries.into(), made.of_spheres.0 as f64 / 1e3]))
 }
 
 #[cfg(test)]
