@@ -75,8 +75,9 @@ impl Share {
 impl Beginning {
     pub(crate) fn new(list: &Arc<DisplayList>, eyes: Vec<Arc<[PlacedStructure]>>, picture: Picture) -> Self {
         let bins = match picture.binning {
-            RegionBinning::Touched => picture.viewport.grid().regions(),
-            RegionBinning::All => 0,
+            // Spheres have bins always.
+            RegionBinning::All if list.spheres.is_empty() => 0,
+            RegionBinning::All | RegionBinning::Touched => picture.viewport.grid().regions(),
         };
         Self { list: Arc::clone(list), eyes, bins }
     }

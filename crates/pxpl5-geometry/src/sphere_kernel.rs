@@ -59,7 +59,9 @@ impl SphereKernel {
             include_str!("../kernels/reciprocal_root.s"),
             include_str!("../kernels/insert.s"),
             surface,
+            include_str!("../kernels/sphere_macros.s"),
             include_str!("../kernels/sphere.s"),
+            include_str!("../kernels/sphere_functions.s"),
         ]
         .join("\n")
     }

@@ -69,7 +69,7 @@ impl GpTiming {
             guard_ns: 131_546,
             bin_entry_ns: 0,
             edit_ns: 4_117,
-            pass_ns: 226_369,
+            pass_ns: 227_882,
             ..self
         }
     }
@@ -83,7 +83,7 @@ impl GpTiming {
             guard_ns: 224_398,
             bin_entry_ns: 0,
             edit_ns: 4_117,
-            pass_ns: 231_432,
+            pass_ns: 233_093,
             ..self
         }
     }
