@@ -6,10 +6,7 @@
 //!   | table of bins, stack             | of context 0          |  of context 1  |
 //! ```
 
-/// Where a processor's vectors end.
-#[cfg(test)]
-pub(crate) const VECTORS: u32 = 0x1000;
-/// Where the code of triangles begins, with its clipper.
+/// Where the code of triangles begins, with its clipper; below are a processor's vectors.
 pub(crate) const CODE: u32 = 0x1000;
 /// Where the code of edits and of a pass's beginning begins.
 pub(crate) const BEGIN_CODE: u32 = 0xC000;
