@@ -12,7 +12,10 @@
 //! `Q = r^2 - |p - c|^2` and depth is a constant less a multiple of its root.
 //!
 //! **Not drawn, but counted:** spheres that the near plane cuts (one quadratic cannot show the hole, and this holds
-//! the eye inside a sphere too) and spheres whose picture reaches beyond the far plane.
+//! the eye inside a sphere too) and spheres whose picture reaches beyond the far plane. Spheres without a size have no picture
+//! and count as outside.
+//!
+//! There is no division and no root but by Newton steps, as an i860 takes them: [`crate::sphere_kernel`] is the same as code.
 
 use crate::bin::Range;
 use crate::conic::{Conic, Ellipse};
