@@ -14,6 +14,7 @@ use pxpl5::lab::code_times::{CodeUse, code_times};
 use pxpl5::limit::{LimitQuery, test_scene};
 use pxpl5::{CodeVersion, Experiment, Level, MachineConfig, PictureNumber, Pixels, Slats, TestScene};
 use pxpl5_geometry::kernel::{Kernel, KernelList, KernelSurface, Schedule};
+use pxpl5_geometry::sphere_kernel::SphereKernel;
 use pxpl5_geometry::{Triangle, Viewport};
 use pxpl5_gp::{GpTiming, Stage};
 
@@ -430,6 +431,7 @@ fn table_of_code() -> Result<(), Box<dyn std::error::Error>> {
         "triangle, us",
         "scenes, us",
         "cut by the clipper, besides, us",
+        "sphere, us",
         "entry in a bin, us",
         "beginning of a pass, us",
         "edit, us",
@@ -448,6 +450,7 @@ fn table_of_code() -> Result<(), Box<dyn std::error::Error>> {
             us(times.triangle_ns),
             format!("{least} to {greatest}"),
             us(times.guard_ns),
+            us(times.sphere_ns),
             us(times.entry_ns),
             us(times.pass_ns),
             us(times.edit_ns),
@@ -469,6 +472,11 @@ fn sizes() {
     let at = |label: &str| program.symbol(label).expect("label");
     let end = at("clipper");
     row(&["clipper".into(), (program.base + program.bytes.len() as u32 - end).to_string()]);
+    for (surface, name) in [(KernelSurface::Gouraud, "spheres, Gouraud"), (KernelSurface::Phong, "spheres, Phong")] {
+        let source = SphereKernel { surface, field: false }.source();
+        let program = i860::assemble("sphere", 0, &source).expect("the tests assemble it");
+        row(&[name.into(), program.bytes.len().to_string()]);
+    }
     row(&["dual, loop over corners".into(), (at("again") - at("corners")).to_string()]);
     row(&["dual, loop over commands".into(), (at("finished") - at("again")).to_string()]);
     row(&["dual, out of the loops".into(), (end - at("finished")).to_string()]);
@@ -490,8 +498,9 @@ instruction cache. All give the words of the native code bit for bit (crates/pph
 Triangles that are not wholly inside the guard band go to the clipper, which is the same code for all: functions, loops and scalar
 floating point by the rules of the compiled kernel.
 
-Edits and the beginning of a pass (bins reset, matrices of each structure multiplied and turned round, light) are code in the same
-manner. Not in code: spheres, and the software of messages and tokens, which take the table's times. What the ring's interface does of
+Spheres (centre and radius to the eye, near and far plane, conic, bounding box, regions, fixed point, planes: kernels/sphere.s), edits
+and the beginning of a pass (bins reset, matrices of each structure multiplied and turned round, light) are code in the same
+manner. Not in code: the software of messages and tokens, which takes the table's time. What the ring's interface does of
 a message (its DMA, its FIFOs) is no code at any level: it is simulated word by word. So a figure of the whole program is expected to
 be larger than these.
 

@@ -5,7 +5,7 @@
 //! from outside, equal in every word (tests/begin.rs).
 
 use crate::cost::TransformCost;
-use crate::layout::{BIN_TABLE, CODE, DISPLAY_LIST, MESSAGE, MODELS, PARAMETERS, STACK};
+use crate::layout::{BEGIN_CODE, BIN_TABLE, DISPLAY_LIST, MESSAGE, MODELS, PARAMETERS, SPHERE_PARAMETERS, STACK};
 use crate::list::{DisplayList, Share};
 use crate::picture::{Picture, RegionBinning};
 use crate::placed::PlacedStructure;
@@ -14,6 +14,8 @@ use crate::view::{FrameView, MAX_EDITS};
 use glam::Mat4;
 use i860::Program;
 use pxpl5_geometry::Culling;
+use pxpl5_geometry::kernel::KernelSurface;
+use pxpl5_geometry::sphere_kernel::{SPHERE_VIEW_WORDS, SphereKernel};
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_sim::Span;
 use pxpl5_wire::Word;
@@ -80,8 +82,9 @@ impl Share {
 impl Beginning {
     pub(crate) fn new(list: &Arc<DisplayList>, eyes: Vec<Arc<[PlacedStructure]>>, picture: Picture) -> Self {
         let bins = match picture.binning {
-            RegionBinning::Touched => picture.viewport.grid().regions(),
-            RegionBinning::All => 0,
+            // Spheres have bins always.
+            RegionBinning::All if list.spheres.is_empty() => 0,
+            RegionBinning::All | RegionBinning::Touched => picture.viewport.grid().regions(),
         };
         Self { list: Arc::clone(list), eyes, bins }
     }
@@ -121,14 +124,38 @@ impl PlacedStructure {
         processor.write(MESSAGE, &words)?;
         let [to_eye, model, projection, light] = [0, 1, 2, 3].map(|n| MESSAGE + n * MATRIX_BYTES);
         let culls = Word::from(self.structure.culling != Culling::None);
+        let spheres = self.prepare_spheres(processor)?;
         let data = [(16, to_eye), (17, model), (18, projection), (19, light)];
-        let registers = [data.as_slice(), &[(2, STACK), (20, PARAMETERS), (21, culls)]].concat();
+        let registers = [data.as_slice(), &[(2, STACK), (20, PARAMETERS), (21, culls), (22, spheres)]].concat();
         processor.call(&PROGRAM, "place", &registers, BUDGET)
     }
 }
 
+impl PlacedStructure {
+    /// Puts what is the same in all views into the parameter block of spheres, and gives its address; 0 where no sphere is drawn.
+    fn prepare_spheres(&self, processor: &mut Processor) -> Result<Word, ProcessorFault> {
+        let Some(transform) = self.transform.as_ref().filter(|_| !self.structure.spheres.is_empty()) else {
+            return Ok(0);
+        };
+        // No view depends on the surface.
+        let kernel = SphereKernel::for_picture(KernelSurface::Phong, transform.viewport());
+        let Some(mut block) = kernel.and_then(|kernel| kernel.parameters(transform, &self.light, &[])) else {
+            return Ok(0);
+        };
+        block[..SPHERE_VIEW_WORDS].fill(0);
+        processor.write(SPHERE_PARAMETERS, &block)?;
+        Ok(SPHERE_PARAMETERS)
+    }
+}
+
+/// The program of all this.
+#[cfg(test)]
+pub(crate) fn program() -> Arc<Program> {
+    Arc::clone(&PROGRAM)
+}
+
 static PROGRAM: LazyLock<Arc<Program>> =
-    LazyLock::new(|| match i860::assemble("place", CODE, &pxpl5_geometry::kernel::place_source()) {
+    LazyLock::new(|| match i860::assemble("place", BEGIN_CODE, &pxpl5_geometry::kernel::place_source()) {
         Ok(program) => Arc::new(program),
         Err(errors) => unreachable!("it is assembled by the tests: {errors}"),
     });

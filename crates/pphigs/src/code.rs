@@ -1,36 +1,41 @@
 //! TRANSFORM as work of a board: by the timing table, or as i860 code over the board's memory.
 //!
-//! The code is that of [`pxpl5_geometry::kernel`]; each structure of the display list is one call. What has no code
-//! takes the table's time: spheres and their entries in bins.
+//! The code is that of [`pxpl5_geometry::kernel`] for triangles and of [`pxpl5_geometry::sphere_kernel`] for spheres; each structure of
+//! the display list is one call of either. All triangles come first, so that bins hold commands in the order in which they are sent.
 
 use crate::begin::Beginning;
 use crate::cost::TransformCost;
-use crate::layout::{BIN_TABLE, CODE, DISPLAY_LIST, PARAMETERS, STACK};
+use crate::counts::PrimitiveCounts;
+use crate::layout::{BIN_TABLE, CODE, DISPLAY_LIST, PARAMETERS, SPHERE_CODE, SPHERE_PARAMETERS, STACK};
 use crate::list::Share;
 use crate::pass::Pass;
 use crate::picture::{RegionBinning, Shading};
 use crate::placed::PlacedStructure;
+use crate::structure::DisplayStructure;
 use i860::Program;
 use pxpl5_geometry::kernel::{
     Heads, Kernel, KernelSurface, PARAMETER_WORDS, Schedule, TRIANGLE_WORDS, display_list_words,
 };
+use pxpl5_geometry::sphere_kernel::{SPHERE_WORDS, SphereKernel, sphere_words};
 use pxpl5_geometry::{Culling, Transform};
 use pxpl5_gp::{CodeVersion, GpTiming, Processor, ProcessorFault, Work};
-use pxpl5_renderer::{Command, PhongTriangleCommand, TriangleCommand};
+use pxpl5_renderer::{Command, PhongSphereCommand, PhongTriangleCommand, SphereCommand, TriangleCommand};
 use pxpl5_sim::Span;
 use pxpl5_wire::{RegionId, Word};
 use std::collections::HashMap;
+use std::hash::Hash;
 use std::ops::Range;
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
-/// Bytes of a triangle in it.
+/// Bytes of a triangle in it, and of a sphere behind the triangles.
 const TRIANGLE_BYTES: u32 = 4 * TRIANGLE_WORDS as u32;
+const SPHERE_BYTES: u32 = 4 * SPHERE_WORDS as u32;
 
 /// Pieces that clipping makes of a triangle at most: six planes leave nine corners.
 const MOST_PIECES: u32 = 7;
 
-/// Instructions after which a kernel is taken to be endless: many times what a triangle needs, and its prologue.
-const BUDGET_OF_TRIANGLE: u64 = 100_000;
+/// Instructions after which a kernel is taken to be endless: many times what a primitive needs, and its prologue.
+const BUDGET_OF_PRIMITIVE: u64 = 100_000;
 const BUDGET: u64 = 10_000;
 
 /// The TRANSFORM of a share for one eye, or for both one after the other.
@@ -47,11 +52,15 @@ pub struct Transforming<'a> {
 /// What a kernel left in the memory of a board.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct KernelOutput {
-    /// Simulated time that the kernel took.
+    /// Simulated time that the kernels took.
     pub span: Span,
-    /// Addresses of the commands, one after the other.
+    /// The part of it that spheres took.
+    pub of_spheres: Span,
+    /// Addresses of the commands, one after the other: triangles, then spheres.
     pub commands: Range<u32>,
-    /// Addresses of the bins' entries, which are addresses of commands; none where there are no bins.
+    /// Where the commands of spheres begin.
+    pub spheres: u32,
+    /// Addresses of the bins' entries, which are addresses of commands; none of triangles where there are no bins.
     pub bins: Vec<Range<u32>>,
 }
 
@@ -79,7 +88,7 @@ impl Work for Transforming<'_> {
         };
         for (context, pass) in (self.context..).zip(self.passes) {
             span += match pass.run_code(processor, context % 2)? {
-                Some(output) => output.span + pass.cost_without_code().span(timing),
+                Some(output) => output.span,
                 None => pass.cost().span(timing),
             };
         }
@@ -104,7 +113,21 @@ impl Share {
             let words = display_list_words(&self.list.triangle(number));
             processor.write(DISPLAY_LIST + place * TRIANGLE_BYTES, &words)?;
         }
+        for (place, number) in (0..).zip(self.all_spheres()) {
+            processor
+                .write(self.place_of_spheres() + place * SPHERE_BYTES, &sphere_words(&self.list.spheres[number]))?;
+        }
         Ok(())
+    }
+
+    /// Where the spheres begin in memory.
+    fn place_of_spheres(&self) -> u32 {
+        DISPLAY_LIST + self.all_triangles().len() as u32 * TRIANGLE_BYTES
+    }
+
+    /// Where the display list ends in memory.
+    fn end_of_list(&self) -> u32 {
+        self.place_of_spheres() + self.all_spheres().len() as u32 * SPHERE_BYTES
     }
 }
 
@@ -122,14 +145,7 @@ impl Pass {
         TransformCost { clipped: self.stats().clipped, entries: self.entries(), ..counted }
     }
 
-    /// What the kernel does not do, so that it takes the table's time: spheres.
-    fn cost_without_code(&self) -> TransformCost {
-        let regions = self.picture().viewport.grid().regions() as u16;
-        let entries = (0..regions).map(|region| u64::from(self.counts(RegionId(region)).spheres)).sum();
-        TransformCost { triangles: 0, entries, ..TransformCost::primitives(self.transformed()) }
-    }
-
-    /// Runs the kernel for all triangles on a board that holds the display list, in one of its two bin contexts; `None`
+    /// Runs the kernels for all primitives on a board that holds the display list, in one of its two bin contexts; `None`
     /// for a picture that has no kernel.
     ///
     /// # Errors
@@ -137,12 +153,26 @@ impl Pass {
     /// [`ProcessorFault`] when the code does not come to its end, or its data do not fit.
     pub fn run_code(&self, processor: &mut Processor, context: u8) -> Result<Option<KernelOutput>, ProcessorFault> {
         let Some(kernel) = self.kernel(processor.version()) else { return Ok(None) };
-        let heads = self.heads();
         let places = self.places(processor, kernel, context)?;
         processor.write(BIN_TABLE, &places.bins)?;
+        let (of_triangles, spheres) = self.run_triangles(processor, kernel, places.commands)?;
+        let (of_spheres, end) = self.run_spheres(processor, sphere_kernel(kernel), spheres)?;
+        let tails = processor.read(BIN_TABLE, places.bins.len())?;
+        let bins = places.bins.iter().zip(tails).map(|(head, tail)| *head..tail).collect();
+        let span = of_triangles + of_spheres;
+        Ok(Some(KernelOutput { span, of_spheres, commands: places.commands..end, spheres, bins }))
+    }
+
+    /// Time of the triangles, and where their commands end.
+    fn run_triangles(
+        &self,
+        processor: &mut Processor,
+        kernel: Kernel,
+        mut command: u32,
+    ) -> Result<(Span, u32), ProcessorFault> {
+        let heads = self.heads();
         let mut span = Span::ZERO;
-        let mut command = places.commands;
-        for (place, transform, held) in self.calls() {
+        for (place, transform, held) in self.calls(|structure| &structure.triangles, Share::held_places) {
             let kernel = Kernel { culls: place.structure.culling != Culling::None, ..kernel };
             let program = program(kernel);
             let light = &place.light;
@@ -150,16 +180,35 @@ impl Pass {
             let parameters: [Word; PARAMETER_WORDS] = kernel.parameters(transform, light, &heads, clipper);
             processor.write(PARAMETERS, &parameters)?;
             let first = DISPLAY_LIST + held.start as u32 * TRIANGLE_BYTES;
-            let count = held.len() as u32;
-            let data = [(16, first), (17, count), (18, command)];
-            let fixed = [(2, STACK), (19, BIN_TABLE), (20, PARAMETERS)];
-            let budget = BUDGET + BUDGET_OF_TRIANGLE * u64::from(count);
-            span += processor.call(&program, "start", &[data.as_slice(), &fixed].concat(), budget)?;
+            let call = Call { first, count: held.len() as u32, command, parameters: PARAMETERS };
+            span += processor.call(&program, "start", &call.registers(), call.budget())?;
             command = processor.register(18);
         }
-        let tails = processor.read(BIN_TABLE, places.bins.len())?;
-        let bins = places.bins.iter().zip(tails).map(|(head, tail)| *head..tail).collect();
-        Ok(Some(KernelOutput { span, commands: places.commands..command, bins }))
+        Ok((span, command))
+    }
+
+    /// The same of the spheres.
+    fn run_spheres(
+        &self,
+        processor: &mut Processor,
+        kernel: SphereKernel,
+        mut command: u32,
+    ) -> Result<(Span, u32), ProcessorFault> {
+        let blank = match kernel.surface {
+            KernelSurface::Gouraud => Command::Sphere(SphereCommand::default()),
+            KernelSurface::Phong => Command::PhongSphere(PhongSphereCommand::default()),
+        };
+        let blank = self.encoded(&blank);
+        let mut span = Span::ZERO;
+        for (place, transform, held) in self.calls(|structure| &structure.spheres, Share::held_places_of_spheres) {
+            let Some(parameters) = kernel.parameters(transform, &place.light, &blank) else { continue };
+            processor.write(SPHERE_PARAMETERS, &parameters)?;
+            let first = self.share().place_of_spheres() + held.start as u32 * SPHERE_BYTES;
+            let call = Call { first, count: held.len() as u32, command, parameters: SPHERE_PARAMETERS };
+            span += processor.call(&sphere_program(kernel), "spheres", &call.registers(), call.budget())?;
+            command = processor.register(18);
+        }
+        Ok((span, command))
     }
 
     fn kernel(&self, version: CodeVersion) -> Option<Kernel> {
@@ -185,30 +234,43 @@ impl Pass {
             Shading::Gouraud => Command::Triangle(TriangleCommand::default()),
             Shading::Phong => Command::PhongTriangle(PhongTriangleCommand::default()),
         };
-        let mut words = Vec::new();
-        let encoded = blank.encode(&self.picture().layout, &mut words);
-        debug_assert!(encoded.is_ok(), "{encoded:?}");
+        let words = self.encoded(&blank);
         [0, 1, 13, 17, 18, 22, 26, 30].map(|at| words.get(at).copied().unwrap_or_default())
     }
 
-    /// Structures with their triangles, counted in those that the GP holds.
-    fn calls(&self) -> impl Iterator<Item = (&PlacedStructure, &Transform, Range<usize>)> {
-        self.drawn().filter_map(|(place, transform)| {
-            let held = self.share().held_places(&place.structure.triangles);
-            Some((place, transform, held)).filter(|call| !call.2.is_empty())
-        })
+    fn encoded(&self, command: &Command) -> Vec<Word> {
+        let mut words = Vec::new();
+        let encoded = command.encode(&self.picture().layout, &mut words);
+        debug_assert!(encoded.is_ok(), "{encoded:?}");
+        words
+    }
+
+    /// Structures with their primitives of a kind, counted in those that the GP holds.
+    fn calls(
+        &self,
+        of: impl Fn(&DisplayStructure) -> &Range<usize>,
+        held: impl Fn(&Share, &Range<usize>) -> Range<usize>,
+    ) -> impl Iterator<Item = (&PlacedStructure, &Transform, Range<usize>)> {
+        let held = move |place: &PlacedStructure| held(self.share(), of(&place.structure));
+        let calls = self.drawn().map(move |(place, transform)| (place, transform, held(place)));
+        calls.filter(|call| !call.2.is_empty())
     }
 
     /// Context 0 lies behind the display list, context 1 at the end of memory. The kernel needs a place for a command of
-    /// every triangle, seen or not, for as many as a clipped one may have pieces, and for the one being made, which may be
-    /// dropped: more than the accounts of [`pxpl5_gp::Memory`], which know what will be seen.
+    /// every primitive, seen or not, for as many as a clipped triangle may have pieces, and for the one being made, which may
+    /// be dropped: more than the accounts of [`pxpl5_gp::Memory`], which know what will be seen.
     fn places(&self, processor: &mut Processor, kernel: Kernel, context: u8) -> Result<Places, ProcessorFault> {
         let regions = self.picture().viewport.grid().regions() as u16;
-        let entries: Vec<u32> = (0..regions).map(|region| self.counts(RegionId(region)).triangles).collect();
-        let entries = if self.is_binned() { entries } else { vec![0; entries.len()] };
+        let entries = (0..regions).map(|region| {
+            let counts = self.counts(RegionId(region));
+            if self.is_binned() { counts.total() } else { counts.spheres }
+        });
+        let entries: Vec<u32> = entries.collect();
         let more_pieces = (MOST_PIECES - 1) * self.stats().clipped as u32;
-        let commands = kernel.command_bytes() * (self.transformed().triangles + more_pieces + 1);
-        let list = DISPLAY_LIST + self.share().all_triangles().len() as u32 * TRIANGLE_BYTES;
+        let PrimitiveCounts { triangles, spheres } = self.transformed();
+        let sphere_bytes = 4 * sphere_kernel(kernel).command_words() as u32;
+        let commands = kernel.command_bytes() * (triangles + more_pieces + 1) + sphere_bytes * spheres;
+        let list = self.share().end_of_list();
         let bytes = commands + 4 * entries.iter().sum::<u32>();
         let begin = processor.place_output(context, list, bytes)?;
         let mut next = begin + commands;
@@ -221,11 +283,41 @@ impl Pass {
     }
 }
 
+/// A call of a kernel for some primitives.
+struct Call {
+    first: u32,
+    count: u32,
+    command: u32,
+    parameters: u32,
+}
+
+impl Call {
+    fn registers(&self) -> [(usize, Word); 6] {
+        [(16, self.first), (17, self.count), (18, self.command), (2, STACK), (19, BIN_TABLE), (20, self.parameters)]
+    }
+
+    fn budget(&self) -> u64 {
+        BUDGET + BUDGET_OF_PRIMITIVE * u64::from(self.count)
+    }
+}
+
+/// The spheres' kernel beside one of triangles.
+const fn sphere_kernel(kernel: Kernel) -> SphereKernel {
+    SphereKernel { surface: kernel.surface, field: kernel.field }
+}
+
+/// Programs that were asked for.
+type Programs<K> = LazyLock<Mutex<HashMap<K, Arc<Program>>>>;
+
+fn kept<K: Copy + Eq + Hash>(programs: &Programs<K>, kernel: K, assembled: impl FnOnce(K) -> Program) -> Arc<Program> {
+    let mut programs = programs.lock().unwrap_or_else(PoisonError::into_inner);
+    Arc::clone(programs.entry(kernel).or_insert_with(|| Arc::new(assembled(kernel))))
+}
+
 /// A kernel's program with its clipper, assembled when first asked for.
 fn program(kernel: Kernel) -> Arc<Program> {
-    static PROGRAMS: LazyLock<Mutex<HashMap<Kernel, Arc<Program>>>> = LazyLock::new(Mutex::default);
-    let mut programs = PROGRAMS.lock().unwrap_or_else(PoisonError::into_inner);
-    Arc::clone(programs.entry(kernel).or_insert_with(|| Arc::new(assembled(kernel))))
+    static PROGRAMS: Programs<Kernel> = LazyLock::new(Mutex::default);
+    kept(&PROGRAMS, kernel, assembled)
 }
 
 fn assembled(kernel: Kernel) -> Program {
@@ -236,5 +328,56 @@ fn assembled(kernel: Kernel) -> Program {
     match i860::link(CODE, &[("kernel", &source), ("clipper", &kernel.clipper_source())]) {
         Ok(program) => program,
         Err(errors) => unreachable!("every kernel is assembled by the tests: {errors}"),
+    }
+}
+
+/// The same of a kernel for spheres.
+fn sphere_program(kernel: SphereKernel) -> Arc<Program> {
+    static PROGRAMS: Programs<SphereKernel> = LazyLock::new(Mutex::default);
+    kept(&PROGRAMS, kernel, |kernel| match i860::assemble("sphere", SPHERE_CODE, &kernel.source()) {
+        Ok(program) => program,
+        Err(errors) => unreachable!("every kernel is assembled by the tests: {errors}"),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::begin;
+    use crate::layout::BEGIN_CODE;
+    use pxpl5_geometry::kernel::KernelList;
+
+    const SURFACES: [KernelSurface; 2] = [KernelSurface::Gouraud, KernelSurface::Phong];
+    const BOTH: [bool; 2] = [false, true];
+
+    fn kernels() -> impl Iterator<Item = Kernel> {
+        let schedules = [Schedule::Straight, Schedule::Compiled, Schedule::Dual];
+        let kinds = schedules.into_iter().flat_map(|schedule| SURFACES.map(|surface| (schedule, surface)));
+        let pictures = BOTH.into_iter().flat_map(|field| BOTH.map(|binned| (field, binned)));
+        let pictures: Vec<_> = pictures.flat_map(|(field, binned)| BOTH.map(|culls| (field, binned, culls))).collect();
+        kinds.flat_map(move |(schedule, surface)| {
+            let list = KernelList::Triangles;
+            let kernel = move |(field, binned, culls)| Kernel { schedule, surface, list, field, binned, culls };
+            pictures.clone().into_iter().map(kernel)
+        })
+    }
+
+    fn end(program: &Program) -> u32 {
+        program.base + program.bytes.len() as u32
+    }
+
+    /// A breakpoint in one of them is met in no other.
+    #[test]
+    fn no_two_programs_of_a_board_lie_in_the_same_place() {
+        for kernel in kernels() {
+            let program = program(kernel);
+            assert!(program.base == CODE && end(&program) <= BEGIN_CODE, "{kernel:?} ends at {:#x}", end(&program));
+        }
+        let begin = begin::program();
+        assert!(begin.base == BEGIN_CODE && end(&begin) <= SPHERE_CODE, "{:#x}", end(&begin));
+        for kernel in SURFACES.into_iter().flat_map(|surface| BOTH.map(|field| SphereKernel { surface, field })) {
+            let program = sphere_program(kernel);
+            assert!(program.base == SPHERE_CODE && end(&program) <= PARAMETERS, "{kernel:?}: {:#x}", end(&program));
+        }
     }
 }

@@ -6,12 +6,18 @@
 //!   | table of bins, stack             | of context 0          |  of context 1  |
 //! ```
 
-/// Where the code begins; below are a processor's vectors.
+/// Where the code of triangles begins, with its clipper; below are a processor's vectors.
 pub(crate) const CODE: u32 = 0x1000;
+/// Where the code of edits and of a pass's beginning begins.
+pub(crate) const BEGIN_CODE: u32 = 0xC000;
+/// Where the code of spheres begins.
+pub(crate) const SPHERE_CODE: u32 = 0xE000;
 /// A kernel's parameter block.
 pub(crate) const PARAMETERS: u32 = 0x1_0000;
 /// Where a kernel finds the end of each bin, and leaves it.
 pub(crate) const BIN_TABLE: u32 = 0x1_0200;
+/// The parameter block of spheres.
+pub(crate) const SPHERE_PARAMETERS: u32 = 0x1_0400;
 /// A kernel's stack frame, and the clipper's below.
 pub(crate) const STACK: u32 = 0x1_1400;
 /// The display list lies behind the first megabyte, which is the program's.

@@ -160,9 +160,19 @@ impl Share {
         (self.first..self.list.triangles.len()).step_by(self.step)
     }
 
+    /// The same of spheres.
+    pub(crate) fn all_spheres(&self) -> impl ExactSizeIterator<Item = usize> + use<> {
+        (self.first..self.list.spheres.len()).step_by(self.step)
+    }
+
     /// Places of the held triangles of `of` among all that the GP holds.
     pub(crate) fn held_places(&self, of: &Range<usize>) -> Range<usize> {
         self.places(&self.triangles, of)
+    }
+
+    /// The same of spheres.
+    pub(crate) fn held_places_of_spheres(&self, of: &Range<usize>) -> Range<usize> {
+        self.places(&self.spheres, of)
     }
 
     pub(crate) fn held_triangles(&self, of: &Range<usize>) -> impl ExactSizeIterator<Item = usize> + use<> {

@@ -6,7 +6,8 @@ use pphigs::{
     RegionBinning, Shading, Share, place_all,
 };
 use pxpl5_geometry::kernel::{Kernel, KernelSurface, PARAMETER_WORDS, Schedule};
-use pxpl5_geometry::{Culling, Viewport};
+use pxpl5_geometry::sphere_kernel::{SPHERE_PARAMETER_WORDS, SphereKernel};
+use pxpl5_geometry::{Culling, Viewport, WorldSphere};
 use pxpl5_gp::{CodeVersion, GpTiming, Processor, Work};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::SplitMix64;
@@ -14,6 +15,7 @@ use pxpl5_wire::{FieldParity, NodeId, ViewNumber, Word};
 use std::sync::Arc;
 
 const PARAMETERS: u32 = 0x1_0000;
+const SPHERE_PARAMETERS: u32 = 0x1_0400;
 const MODELS: u32 = 0x1_6000;
 
 fn board() -> Processor {
@@ -56,9 +58,10 @@ impl Numbers {
 }
 
 fn list(culling: Culling, light: Vec3) -> DisplayList {
-    let structure = |frame| DisplayStructure { triangles: 0..0, spheres: 0..0, frame, culling };
+    let structure = |spheres, frame| DisplayStructure { triangles: 0..0, spheres, frame, culling };
     DisplayList {
-        structures: vec![structure(ModelFrame::World), structure(ModelFrame::Head)],
+        spheres: vec![WorldSphere { centre: Vec3::ZERO, radius: 1.0, colour: [0; 3] }],
+        structures: vec![structure(0..1, ModelFrame::World), structure(1..1, ModelFrame::Head)],
         towards_light: light.normalize(),
         ambient: 0.3,
         diffuse: 0.6,
@@ -103,6 +106,33 @@ fn the_code_fills_parameter_blocks_as_the_native_firmware_does() {
             let found = processor.read(PARAMETERS, PARAMETER_WORDS).expect("in memory");
             for (at, (f, e)) in found.iter().zip(expected).enumerate() {
                 assert_eq!(*f, e, "view {n}, word {at}: {} for {}", f32::from_bits(*f), f32::from_bits(e));
+            }
+        }
+    }
+}
+
+/// Of structures that have spheres, whatever they are seen through; others leave the block alone.
+#[test]
+fn the_code_fills_the_parameter_block_of_spheres_as_the_native_firmware_does() {
+    let mut numbers = Numbers(SplitMix64::new(35));
+    let mut processor = board();
+    for n in 0..1000 {
+        let list = list(Culling::None, numbers.vector(1.0));
+        let view = view(&mut numbers, n);
+        let viewport = Viewport::field(FieldParity::Odd);
+        let kernel = SphereKernel::for_picture(KernelSurface::Phong, &viewport).expect("a field");
+        for place in place_all(&list, &view, 0, viewport) {
+            processor.write(SPHERE_PARAMETERS, &[0xAAAA_AAAA; SPHERE_PARAMETER_WORDS]).expect("in memory");
+            place.run_code(&list, &mut processor).expect("it returns");
+            let found = processor.read(SPHERE_PARAMETERS, SPHERE_PARAMETER_WORDS).expect("in memory");
+            if place.structure.spheres.is_empty() {
+                assert!(found.iter().all(|word| *word == 0xAAAA_AAAA), "view {n}");
+                continue;
+            }
+            let transform = place.transform.as_ref().expect("finite");
+            let expected = kernel.parameters(transform, &place.light, &[]).expect("it can show spheres");
+            for (at, (f, e)) in found.iter().zip(expected).enumerate() {
+                assert_eq!(*f, e, "view {n}, word {at}");
             }
         }
     }

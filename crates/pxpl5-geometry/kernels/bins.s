@@ -6,16 +6,6 @@
 // macro edgeword k, n, to loads coefficient n (a, b, c) of edge k.
 // Out: number of regions r22. Changes r5 to r15, r23 to r31, f8 to f13.
 
-        .macro  insert region
-        shl     2, \region, r28
-        ld.l    r28(r19), r29
-        adds    r28, r19, r28
-        adds    1, r22, r22
-        st.l    r18, 0(r29)
-        adds    4, r29, r29
-        st.l    r29, 0(r28)
-        .endm
-
 // f12 low word = product modulo 2^32
         .macro  times a, b, to
         ixfr    \a, f8

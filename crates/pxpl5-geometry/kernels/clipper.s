@@ -103,8 +103,7 @@ clipper: adds   -FRAME, r2, r2
         mov     r16, r5
         adds    VERTICES, r2, r6
         mov     3, r4
-        mov     r0, r24                     // how many are inside
-        mov     -1, r25                     // what all are beyond
+        mov     r0, r24                     // how many are inside the guard band
 vertex: projected
         fst.l   f20, V_CLIP(r6)
         fst.l   f21, V_CLIP+4(r6)
@@ -121,9 +120,21 @@ vertex: projected
         fst.l   f16, V_AWAY(r6)
         guarded
         adds    1, r24, r24
-        br      tested
-        mov     r0, r25
-beyond: ld.l    P_MOST_W(r20), r9
+beyond: adds    -1, r4, r4
+        adds    VERTEX_BYTES, r5, r5
+        adds    V_BYTES, r6, r6
+        btne    r0, r4, vertex
+        mov     3, r7
+        bte     r7, r24, whole
+        // what all corners are beyond, of the sides of what is seen
+        ld.l    P_MOST_W(r20), r9
+        mov     3, r4
+        mov     -1, r25
+        adds    VERTICES, r2, r6
+sides:  fld.l   V_CLIP(r6), f20
+        fld.l   V_CLIP+4(r6), f21
+        fld.l   V_CLIP+8(r6), f22
+        fld.l   V_CLIP+12(r6), f23
         mov     r0, r7
         representable 0
         representable 1
@@ -138,13 +149,10 @@ beyond: ld.l    P_MOST_W(r20), r9
         outcode 16, f0, f22
         outcode 32, f22, f23
         and     r7, r25, r25
-tested: adds    -1, r4, r4
-        adds    VERTEX_BYTES, r5, r5
+        adds    -1, r4, r4
         adds    V_BYTES, r6, r6
-        btne    r0, r4, vertex
-        mov     3, r7
-        bte     r7, r24, whole
-        btne    r0, r25, nothing            // all beyond the same side of what is seen
+        btne    r0, r4, sides
+        btne    r0, r25, nothing            // all beyond the same side
         extras
         // the triangle as a polygon
         adds    VERTICES, r2, r6

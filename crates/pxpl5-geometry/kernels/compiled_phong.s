@@ -2,16 +2,8 @@
 
 // on the whole turned away? P_SIDES or the place behind it in r8
         .macro  surfaces
-        fld.l   CORNERS+C_AWAY(r2), f8
-        fld.l   CORNERS+C_BYTES+C_AWAY(r2), f9
-        fld.l   CORNERS+2*C_BYTES+C_AWAY(r2), f10
-        fadd.ss f8, f9, f8
-        mov     r20, r8
-        fadd.ss f8, f10, f8
-        pfgt.ss f8, f0, f0
-        bnc     facing
-        adds    24, r20, r8
-facing: mov     r16, r5
+        sided   CORNERS+C_AWAY, C_BYTES
+        mov     r16, r5
         adds    CORNERS, r2, r6
         mov     3, r4
 normals: call   normal
@@ -30,16 +22,7 @@ normal: fld.l   NORMAL(r5), f20
         fld.l   P_SIDES+8(r8), f10
         fld.d   P_SIDES+16(r8), f12
         fld.l   P_ROUND_S(r20), f9
-axis:   fld.l   P_EYE(r11), f16
-        fld.l   P_EYE+4(r11), f17
-        fld.l   P_EYE+8(r11), f18
-        adds    -1, r9, r9
-        fmul.ss f16, f20, f16
-        fmul.ss f17, f21, f17
-        fadd.ss f16, f17, f16
-        fmul.ss f18, f22, f18
-        adds    16, r11, r11
-        fadd.ss f16, f18, f16
+axis:   alongaxis
         fadd.ss f16, f9, f16
         fmul.sd f16, f10, f18
         fadd.dd f18, f12, f18

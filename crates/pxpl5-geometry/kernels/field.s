@@ -56,3 +56,17 @@ LAST_OF_REGION = 119
         restated 92
         restated 108
         .endm
+
+// The same of a quadratic: xx xy yy x y 1 of 64 bits in f16 to f26
+        .macro  quadraticrows
+        bte     r0, r5, even
+        fiadd.dd f26, f24, f26
+        fiadd.dd f22, f18, f22
+        fiadd.dd f26, f20, f26
+        fiadd.dd f24, f20, f24
+        fiadd.dd f24, f20, f24
+even:   fiadd.dd f18, f18, f18
+        fiadd.dd f20, f20, f20
+        fiadd.dd f24, f24, f24
+        fiadd.dd f20, f20, f20
+        .endm

@@ -26,3 +26,9 @@ LAST_OF_REGION = 127
 // Expressions over the frame's pixels, restated for the rows of the picture
         .macro  restate
         .endm
+        .macro  restated at
+        .endm
+
+// The same of a quadratic: xx xy yy x y 1 of 64 bits in f16 to f26
+        .macro  quadraticrows
+        .endm

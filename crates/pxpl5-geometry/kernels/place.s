@@ -5,8 +5,9 @@
 //   edit   r16 edits of a message, each the number of a structure and its model matrix, r17 their number, r18 model matrices by structure
 //   reset  r16 where each bin begins, r17 number of bins, r19 table of bins
 //   place  r16 matrix to the eye, r17 model matrix, r18 projection, r19 light (towards it, x y z; part in shadow; part added), r20
-//          parameter block, r21 not 0 if triangles that face away are not drawn, r2 stack: what depends on the view of a structure,
-//          whose matrix to the eye has an inverse
+//          parameter block, r21 not 0 if triangles that face away are not drawn, r22 parameter block of spheres, or 0 where there are
+//          none or the projection cannot show them, r2 stack: what depends on the view of a structure, whose matrix to the eye has an
+//          inverse
 
 MATRIX_BYTES = 64
 
@@ -18,6 +19,7 @@ EYE     = 80       // the model-view matrix, singles
 ROWS    = 144      // columns of rows x y z to the eye, doubles: 32 bytes a column
 CROSS   = 240      // y x z, z x x, x x y of the columns, doubles
 ORIGIN  = 312      // of the eye, doubles
+LINK    = 336      // the return address of `lens`
 FRAME   = 352
 
 edit:   bte     r0, r17, edited
@@ -46,7 +48,7 @@ reset:  ld.l    0(r16), r8
         bri     r1
         nop
 
-// f12 = 1 / f8 to double precision: seed and three Newton steps
+// f12 = 1 / f8 to double precision: as in reciprocal.s, but for the 2, since nothing may be in the parameter block yet
         .macro  reciprocal
         orh     0x4000, r0, r8              // 2.0
         ixfr    r0, f10
@@ -271,14 +273,7 @@ onward: call    times
         orh     0x3FF8, r0, r8              // 1.5
         ixfr    r0, f22
         ixfr    r8, f23
-        fmul.dd f16, f20, f20
-        frsqr.dd f16, f18
-        .rept   3
-        fmul.dd f18, f18, f8
-        fmul.dd f20, f8, f8
-        fsub.dd f22, f8, f8
-        fmul.dd f18, f8, f18
-        .endr
+        reciprocal_root
         orh     0x4680, r0, r8              // 2^14
         ixfr    r8, f9
         mov     r0, r4
@@ -349,10 +344,147 @@ turn:   fld.l   0(r7), f8
 signed: subs    r0, r11, r0
         bc      placed                      // mirrored: the determinant is greater than 0
         st.l    r9, P_CULL(r20)
-placed: ld.l    SAVE(r2), r1
+placed: bte     r0, r22, left
+        call    lens
+        nop
+left:   ld.l    SAVE(r2), r1
         nop
         bri     r1
         adds    FRAME, r2, r2
+
+// ---- what spheres need of the view, to their parameter block r22; the light in eye coordinates is at VECTOR
+
+// row k of the matrix to the eye, without its last cell
+        .macro  eyerow k
+        ld.l    EYE+4*\k(r2), r8
+        ld.l    EYE+16+4*\k(r2), r9
+        ld.l    EYE+32+4*\k(r2), r10
+        st.l    r8, S_ROWS+16*\k(r22)
+        st.l    r9, S_ROWS+16*\k+4(r22)
+        st.l    r10, S_ROWS+16*\k+8(r22)
+        ld.l    P_ORIGIN+4*\k(r20), r8
+        fld.d   VECTOR+8*\k(r2), f8
+        st.l    r8, S_ORIGIN+4*\k(r22)
+        fst.d   f8, S_LIGHT+8*\k(r22)
+        fld.d   ORIGIN+8*\k(r2), f8
+        fst.d   f8, VECTOR+8*\k(r2)
+        .endm
+
+// the greater of f16 and the square of axis k of the matrix to the eye, to f16
+        .macro  wider k
+        fld.l   EYE+16*\k(r2), f8
+        fld.l   EYE+16*\k+4(r2), f9
+        fmul.sd f8, f8, f12
+        fld.l   EYE+16*\k+8(r2), f10
+        fmul.sd f9, f9, f14
+        fadd.dd f12, f14, f12
+        fmul.sd f10, f10, f14
+        fadd.dd f12, f14, f12
+        pfgt.dd f12, f16, f0
+        bnc     thinner\@
+        fmov.dd f12, f16
+thinner\@:
+        .endm
+
+// along axis k of the picture; the projection's scale at `scale`, the middle moved by `shift`
+        .macro  across k, scale, shift
+        fld.l   \scale(r18), f8
+        fld.d   S_HALF_FRAME+8*\k(r22), f10
+        fmov.sd f8, f16
+        fmul.dd f16, f10, f12
+        fst.d   f12, S_RATE+8*\k(r22)
+        fmov.dd f16, f8
+        reciprocal
+        fld.d   S_PER_HALF+8*\k(r22), f8
+        fld.d   S_FIRST+8*\k(r22), f10
+        fmul.dd f12, f8, f8
+        fst.d   f8, S_STEP+8*\k(r22)
+        fadd.dd f10, \shift, f10
+        fmul.dd f10, f12, f10
+        fst.d   f10, S_CORNER+8*\k(r22)
+        .endm
+
+// a cell of the projection as a double
+        .macro  celled at, to
+        fld.l   \at(r18), f8
+        fmov.sd f8, \to
+        .endm
+
+lens:   st.l    r1, LINK(r2)
+        eyerow  0
+        eyerow  1
+        eyerow  2
+        orh     0x3FF0, r0, r8              // 1.0
+        st.l    r0, VECTOR+24(r2)
+        st.l    r8, VECTOR+28(r2)
+        call    times
+        adds    EYE, r2, r5
+        narrowed PRODUCT, S_ROWS+12(r22)
+        narrowed PRODUCT+8, S_ROWS+28(r22)
+        narrowed PRODUCT+16, S_ROWS+44(r22)
+        fld.l   12(r19), f8
+        fld.l   16(r19), f9
+        fmov.sd f8, f10
+        fmov.sd f9, f12
+        fst.d   f10, S_AMBIENT(r22)
+        fst.d   f12, S_DIFFUSE(r22)
+        fmov.dd f0, f16
+        wider   0
+        wider   1
+        wider   2
+        fld.d   S_HALF(r22), f20
+        fld.d   S_THREE_HALVES(r22), f22
+        nop
+        reciprocal_root
+        fmul.dd f16, f18, f16
+        fst.d   f16, S_SCALE(r22)
+        // parallel if w does not depend on z
+        ld.l    44(r18), r8
+        fld.d   S_ONE(r22), f30
+        andnoth 0x8000, r8, r8
+        bte     r0, r8, parallel
+        st.l    r0, S_PARALLEL(r22)
+        celled  32, f2                      // shift along x and y
+        celled  36, f4
+        celled  56, f6                      // slope of depth
+        celled  40, f18
+        fsub.dd f0, f18, f18                // its constant part
+        fst.d   f18, S_NEAR(r22)
+        fst.d   f6, S_NEAR+8(r22)
+        fsub.dd f18, f30, f8
+        fst.d   f8, S_FAR(r22)
+        fst.d   f6, S_FAR+8(r22)
+        br      deep
+        fst.d   f0, S_LEAST(r22)
+parallel: mov   1, r8
+        st.l    r8, S_PARALLEL(r22)
+        celled  48, f2
+        celled  52, f4
+        fsub.dd f0, f2, f2
+        fsub.dd f0, f4, f4
+        celled  40, f6
+        celled  56, f18
+        fsub.dd f0, f6, f8
+        fst.d   f8, S_NEAR(r22)
+        fst.d   f18, S_NEAR+8(r22)
+        fst.d   f8, S_FAR(r22)
+        fsub.dd f18, f30, f8
+        fst.d   f8, S_FAR+8(r22)
+        fld.d   S_PARALLEL_LEAST(r22), f8
+        fst.d   f8, S_LEAST(r22)
+deep:   fld.d   S_RANGE(r22), f8
+        fld.d   S_DEPTH_NEAR(r22), f10
+        fmul.dd f8, f18, f18
+        fmul.dd f8, f6, f6
+        fadd.dd f10, f18, f18
+        fst.d   f18, S_BASE(r22)
+        fst.d   f6, S_REACH(r22)
+        across  0, 0, f2
+        across  1, 20, f4
+        ld.l    LINK(r2), r1
+        nop
+        bri     r1
+        nop
 
 // ---- r11 less than, equal to or greater than 0 as the determinant of rows x, y and that at r7
         .macro  part a, b, c

@@ -27,17 +27,6 @@ C_BYTES = 48
         ld.l    8+16*\k+4*\n(r18), \to
         .endm
 
-// f12 = 1 / f8 to double precision: seed and three Newton steps
-        .macro  reciprocal
-        fld.d   P_TWO(r20), f10
-        frcp.dd f8, f12
-        .rept   3
-        fmul.dd f8, f12, f14
-        fsub.dd f10, f14, f14
-        fmul.dd f12, f14, f12
-        .endr
-        .endm
-
 // ---- the least and the greatest of three coordinates, as integers
         .macro  extent a, b, c, to
         fmov.ss \a, f16

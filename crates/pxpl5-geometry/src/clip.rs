@@ -11,7 +11,7 @@
 //! Cuts are made and kept in double precision until they are on the screen: close to the eye a long edge has small
 //! coordinates that are differences of large ones, and a cut some pixels off would fold the pieces over.
 
-use crate::screen;
+use crate::newton;
 use std::cmp::Ordering;
 
 /// Largest clip coordinate. Larger ones, infinities and NaN are refused, so that no step overflows.
@@ -137,7 +137,7 @@ impl Guard {
         };
         let near = self.distance(plane, from.clip);
         let far = self.distance(plane, to.clip);
-        let t = near * screen::reciprocal_double(near - far);
+        let t = near * newton::reciprocal_double(near - far);
         Corner {
             clip: std::array::from_fn(|i| interpolate(from.clip[i], to.clip[i], t)),
             extra: std::array::from_fn(|i| interpolate(from.extra[i], to.extra[i], t)),

@@ -1,5 +1,6 @@
 //! Conics on the screen: the pictures of spheres, in floating point and in the renderer's fixed point.
 
+use crate::newton::{reciprocal_double, reciprocal_root, root, whole};
 use pxpl5_wire::Quadratic;
 
 /// Bits of a silhouette's value within its regions: one less than the renderer evaluates, sign included.
@@ -45,9 +46,30 @@ fn exponent_above(value: f64) -> i32 {
     ((value.to_bits() >> 52) & 0x7ff) as i32 - 1022
 }
 
-/// The nearest integer, ties up; values beyond 64 bits are limited.
-pub(crate) fn nearest_integer(value: f64) -> i64 {
-    (value + 0.5).floor() as i64
+/// Where an ellipse that is positive inside is greatest, and how large it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Ellipse {
+    /// In the frame's pixels.
+    pub(crate) peak: [f64; 2],
+    /// The greatest value.
+    pub(crate) value: f64,
+    /// Squares of half the width and half the height in pixels.
+    half_squares: [f64; 2],
+}
+
+impl Ellipse {
+    /// One over half the width and half the height.
+    pub(crate) fn per_half_size(&self) -> [f64; 2] {
+        self.half_squares.map(reciprocal_root)
+    }
+
+    /// Least and greatest x and y in the frame's pixels; `None` if it is no ellipse (NaN, overflow, no size).
+    pub(crate) fn bounds(&self) -> Option<[[f64; 2]; 2]> {
+        let [x, y] = self.peak;
+        let [half_x, half_y] = self.half_squares.map(root);
+        let bounds = [[x - half_x, x + half_x], [y - half_y, y + half_y]];
+        bounds.iter().flatten().all(|v| v.is_finite()).then_some(bounds)
+    }
 }
 
 impl Conic {
@@ -87,49 +109,27 @@ impl Conic {
         4.0 * self.xx * self.yy - self.xy * self.xy
     }
 
-    /// From the origin to the greatest value, for an ellipse.
-    fn to_peak(self) -> [f64; 2] {
-        let determinant = self.determinant();
-        [
-            (self.xy * self.y - 2.0 * self.yy * self.x) / determinant,
-            (self.xy * self.x - 2.0 * self.xx * self.y) / determinant,
-        ]
-    }
-
-    /// Where the greatest value is, in the frame's pixels.
-    pub(crate) fn peak(&self) -> [f64; 2] {
-        let [dx, dy] = self.to_peak();
-        [self.origin[0] + dx, self.origin[1] + dy]
-    }
-
-    /// The greatest value of an ellipse that is positive inside.
-    pub(crate) fn peak_value(&self) -> f64 {
-        let [dx, dy] = self.to_peak();
-        self.constant + (self.x * dx + self.y * dy) * 0.5
-    }
-
-    /// Half the width and half the height of the ellipse in pixels.
-    pub(crate) fn half_size(&self) -> [f64; 2] {
-        let scale = -4.0 * self.peak_value() / self.determinant();
-        [(scale * self.yy).sqrt(), (scale * self.xx).sqrt()]
-    }
-
-    /// Least and greatest x and y of the ellipse in the frame's pixels; `None` if it is none (NaN, overflow).
-    pub(crate) fn bounds(&self) -> Option<[[f64; 2]; 2]> {
-        let [x, y] = self.peak();
-        let [half_x, half_y] = self.half_size();
-        let bounds = [[x - half_x, x + half_x], [y - half_y, y + half_y]];
-        bounds.iter().flatten().all(|v| v.is_finite()).then_some(bounds)
+    /// What the conic is as an ellipse.
+    pub(crate) fn ellipse(&self) -> Ellipse {
+        let inverse = reciprocal_double(self.determinant());
+        let dx = (self.xy * self.y - 2.0 * self.yy * self.x) * inverse;
+        let dy = (self.xy * self.x - 2.0 * self.xx * self.y) * inverse;
+        let value = self.constant + (self.x * dx + self.y * dy) * 0.5;
+        let scale = -4.0 * value * inverse;
+        Ellipse {
+            peak: [self.origin[0] + dx, self.origin[1] + dy],
+            value,
+            half_squares: [scale * self.yy, scale * self.xx],
+        }
     }
 
     /// Rounds for evaluation on the frame's pixels of `rectangle` (first and last along x, and along y).
     ///
     /// The values are powers of two times the conic's, as large as fits in 46 bits on the whole rectangle.
     /// Coefficients are rounded around `pixel` and restated exactly for pixel (0, 0), so the error grows from
-    /// there and not from the picture's corner. With the pixel of the peak no small sphere is lost.
-    pub(crate) fn fixed(&self, rectangle: [[i32; 2]; 2], [px, py]: [i32; 2]) -> FixedConic {
+    /// there and not from the picture's corner. With the pixel of the peak, whose value is `peak`, no small sphere is lost.
+    pub(crate) fn fixed(&self, peak: f64, rectangle: [[i32; 2]; 2], [px, py]: [i32; 2]) -> FixedConic {
         let local = self.around([f64::from(px), f64::from(py)]);
-        let peak = self.peak_value();
         let depth_shift = ((exponent_above(peak) + 1).div_euclid(2) - ROOT_BITS).clamp(0, MAX_DEPTH_SHIFT);
         let unshifted = power_of_two(-2 * depth_shift);
         let greatest = self.greatest_on(rectangle).max(peak) * unshifted;
@@ -155,11 +155,8 @@ impl Conic {
 
     /// Coefficients as integers around pixel (px, py), then exactly around pixel (0, 0).
     fn rounded(&self, px: i64, py: i64) -> Quadratic {
-        let xx = nearest_integer(self.xx);
-        let xy = nearest_integer(self.xy);
-        let yy = nearest_integer(self.yy);
-        let x = nearest_integer(self.x);
-        let y = nearest_integer(self.y);
+        let [xx, xy, yy] = [self.xx, self.xy, self.yy].map(whole);
+        let [x, y] = [self.x, self.y].map(whole);
         Quadratic {
             xx,
             xy,
@@ -168,7 +165,7 @@ impl Conic {
             y: y.wrapping_sub(yy.wrapping_mul(2 * py)).wrapping_sub(xy.wrapping_mul(px)),
             one: Quadratic { xx, xy, yy, x: x.wrapping_neg(), y: y.wrapping_neg(), one: 0 }
                 .at(px as i32, py as i32)
-                .wrapping_add(nearest_integer(self.constant)),
+                .wrapping_add(whole(self.constant)),
         }
     }
 }
@@ -198,14 +195,14 @@ mod tests {
             let old = SHIFTED.at(x - 3.25, y + 7.5);
             assert!((old - moved.at(x - 10.0, y - 4.0)).abs() < 1e-9);
         }
-        assert!((moved.peak_value() - SHIFTED.peak_value()).abs() < 1e-9);
+        assert!((moved.ellipse().value - SHIFTED.ellipse().value).abs() < 1e-9);
     }
 
     #[test]
     fn nothing_is_greater_than_the_peak() {
-        let [x, y] = SHIFTED.peak();
+        let Ellipse { peak: [x, y], value, .. } = SHIFTED.ellipse();
         for (dx, dy) in [(0.1, 0.0), (-0.1, 0.05), (0.0, 0.1), (0.0, -0.1)] {
-            assert!(SHIFTED.at(x + dx - 3.25, y + dy + 7.5) < SHIFTED.peak_value());
+            assert!(SHIFTED.at(x + dx - 3.25, y + dy + 7.5) < value);
         }
     }
 

@@ -92,7 +92,7 @@ const TWO_23: f32 = 8_388_608.0;
 /// More than any distance of two corners within the guard band, in subpixels.
 const TWO_18: f32 = 262_144.0;
 /// 1.5 * 2^52, in single precision too.
-const ROUND_DOUBLE: f64 = 6_755_399_441_055_744.0;
+pub(crate) const ROUND_DOUBLE: f64 = 6_755_399_441_055_744.0;
 
 /// Less a biased integer, this word turns the order of integers round.
 const FLIP: Word = 0x9700_0000;
@@ -117,7 +117,8 @@ impl Kernel {
             KernelList::Triangles => include_str!("../kernels/list_triangles.s"),
             KernelList::Strips => include_str!("../kernels/list_strips.s"),
         };
-        let common = [include_str!("../kernels/parameters.s"), list, self.picture(), self.cull()];
+        let insert = include_str!("../kernels/insert.s");
+        let common = [include_str!("../kernels/parameters.s"), list, self.picture(), self.cull(), insert];
         let bins_of_frames =
             if self.binned && !self.field { include_str!("../kernels/bins_scheduled.s") } else { bins };
         let triangle = match self.schedule {
@@ -147,19 +148,22 @@ impl Kernel {
             include_str!("../kernels/parameters.s"),
             self.picture(),
             self.cull(),
+            include_str!("../kernels/reciprocal.s"),
             include_str!("../kernels/setup_scalar.s"),
             include_str!("../kernels/intensity.s"),
             finish,
+            include_str!("../kernels/turned_phong.s"),
             extras,
             include_str!("../kernels/clipper.s"),
             include_str!("../kernels/functions_scalar.s"),
+            include_str!("../kernels/insert.s"),
             self.bins(),
         ]
         .join("\n")
     }
 
     const fn picture(&self) -> &'static str {
-        if self.field { include_str!("../kernels/field.s") } else { include_str!("../kernels/frame.s") }
+        picture(self.field)
     }
 
     const fn bins(&self) -> &'static str {
@@ -179,6 +183,7 @@ impl Kernel {
             include_str!("../kernels/exact.s"),
             include_str!("../kernels/surface.s"),
             surface,
+            include_str!("../kernels/reciprocal.s"),
             include_str!("../kernels/triangle_straight.s"),
         ]
     }
@@ -193,9 +198,11 @@ impl Kernel {
             }
         };
         vec![
+            include_str!("../kernels/reciprocal.s"),
             include_str!("../kernels/setup_scalar.s"),
             include_str!("../kernels/intensity.s"),
             finish,
+            include_str!("../kernels/turned_phong.s"),
             surface,
             include_str!("../kernels/compiled.s"),
             include_str!("../kernels/functions_scalar.s"),
@@ -416,6 +423,10 @@ impl Kernel {
     }
 }
 
+pub(crate) const fn picture(field: bool) -> &'static str {
+    if field { include_str!("../kernels/field.s") } else { include_str!("../kernels/frame.s") }
+}
+
 /// A parameter block in the making; places in bytes, as in kernels/parameters.s.
 struct ParameterWords([Word; PARAMETER_WORDS]);
 
@@ -445,10 +456,16 @@ const fn culled(dropped: Option<Turn>) -> [Word; 2] {
 }
 
 /// The source of what a processor does before the triangles of a pass: the labels `edit`, `reset` and `place` (kernels/place.s), of
-/// which the last one fills in what [`Kernel::parameters`] takes from a view and a light.
+/// which the last one fills in what [`Kernel::parameters`] and [`crate::sphere_kernel`]'s take from a view and a light.
 #[must_use]
 pub fn place_source() -> String {
-    [include_str!("../kernels/parameters.s"), include_str!("../kernels/place.s")].join("\n")
+    [
+        include_str!("../kernels/parameters.s"),
+        include_str!("../kernels/sphere_parameters.s"),
+        include_str!("../kernels/reciprocal_root.s"),
+        include_str!("../kernels/place.s"),
+    ]
+    .join("\n")
 }
 
 /// A row of the matrix of normals in units of the command's normal.
@@ -458,7 +475,7 @@ fn normal_row(row: [f32; 3]) -> [f32; 4] {
 }
 
 /// A double as the i860 holds it in memory: the low half first.
-const fn halves(value: f64) -> [Word; 2] {
+pub(crate) const fn halves(value: f64) -> [Word; 2] {
     [value.to_bits() as Word, (value.to_bits() >> 32) as Word]
 }
 

@@ -1,19 +1,45 @@
 //! The part of a projection that spheres need.
 
+use crate::newton::reciprocal_double;
+use crate::screen::{DEPTH_FAR, DEPTH_NEAR};
 use crate::view::Columns;
 
 /// How eye coordinates become pixels and depths, as far as spheres need it.
+///
+/// Depth is `constant + slope u` between 0 and 1, u = 1/t under perspective, -t under a parallel projection, where t is the distance
+/// along -Z.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lens {
     /// Whether the projection is parallel, so that distance does not shrink.
     pub(crate) parallel: bool,
     /// Eye units per pixel along x and along y (negative: y grows downwards), at distance 1 under perspective.
     pub(crate) step: [f64; 2],
+    /// Pixels per eye unit.
+    pub(crate) rate: [f64; 2],
     /// Eye x and y of the centre of the frame's pixel (0, 0), at distance 1 under perspective.
     pub(crate) corner: [f64; 2],
-    /// Depth is `constant + slope u`, u = 1/t under perspective, -t under a parallel projection.
-    pub(crate) constant: f64,
-    pub(crate) slope: f64,
+    /// Of t and 1: less than 0 before the near plane, greater than 0 behind the far plane. Depth less 0 or less 1, times t under
+    /// perspective.
+    pub(crate) near: [f64; 2],
+    pub(crate) far: [f64; 2],
+    /// What is not farther than this is behind the eye.
+    pub(crate) least: f64,
+    /// Depth in units of the depth expression is `base + reach u`.
+    pub(crate) base: f64,
+    pub(crate) reach: f64,
+}
+
+/// Depths from the near to the far plane in units of the depth expression.
+pub(crate) const DEPTH_RANGE: f64 = (DEPTH_FAR - DEPTH_NEAR) as f64;
+
+/// Where the middle of the frame's first pixel lies in normalised device coordinates.
+pub(crate) fn first_pixel(width: u32, lines: u32) -> [f64; 2] {
+    [1.0 / f64::from(width) - 1.0, 1.0 - 1.0 / f64::from(lines)]
+}
+
+/// What scales of a projection give pixels by: half the width and height of the frame, the latter downwards.
+pub(crate) fn half_frame(width: u32, lines: u32) -> [f64; 2] {
+    [f64::from(width) * 0.5, f64::from(lines) * -0.5]
 }
 
 impl Lens {
@@ -32,22 +58,42 @@ impl Lens {
         } else {
             [projection.cell(0, 2), projection.cell(1, 2), projection.cell(2, 3), -projection.cell(2, 2)]
         };
-        let [half_x, half_y] = [width, lines].map(|n| f64::from(n) * 0.5);
-        let scale_x = projection.cell(0, 0);
-        let scale_y = projection.cell(1, 1);
+        let scale = [projection.cell(0, 0), projection.cell(1, 1)];
+        let inverse = scale.map(reciprocal_double);
+        let half = half_frame(width, lines);
+        let first = first_pixel(width, lines);
         let lens = Self {
             parallel,
-            step: [1.0 / (half_x * scale_x), -1.0 / (half_y * scale_y)],
-            corner: [(0.5 / half_x - 1.0 + shift_x) / scale_x, (1.0 - 0.5 / half_y + shift_y) / scale_y],
-            constant,
-            slope,
+            step: [inverse[0] * (1.0 / half[0]), inverse[1] * (1.0 / half[1])],
+            rate: [scale[0] * half[0], scale[1] * half[1]],
+            corner: [(first[0] + shift_x) * inverse[0], (first[1] + shift_y) * inverse[1]],
+            near: if parallel { [-slope, constant] } else { [constant, slope] },
+            far: if parallel { [-slope, constant - 1.0] } else { [constant - 1.0, slope] },
+            least: if parallel { -f64::MAX } else { 0.0 },
+            base: f64::from(DEPTH_NEAR) + DEPTH_RANGE * constant,
+            reach: DEPTH_RANGE * slope,
         };
-        (scale_x > 0.0 && scale_y > 0.0 && lens.slope < 0.0).then_some(lens)
+        (scale.iter().all(|scale| *scale > 0.0) && slope < 0.0).then_some(lens)
     }
 
-    /// Depth at distance t along -Z.
+    /// Whether distance t along -Z lies before the near plane, or behind the eye.
+    pub(crate) fn is_before_near(&self, t: f64) -> bool {
+        t <= self.least || self.near[0] * t + self.near[1] < 0.0
+    }
+
+    /// Whether distance t, greater than 0 under perspective, lies behind the far plane.
+    pub(crate) fn is_beyond_far(&self, t: f64) -> bool {
+        self.far[0] * t + self.far[1] > 0.0
+    }
+
+    /// Depth at distance t along -Z, in units of the depth expression.
     pub(crate) fn depth(&self, t: f64) -> f64 {
-        let u = if self.parallel { -t } else { 1.0 / t };
-        self.constant + self.slope * u
+        let u = if self.parallel { -t } else { reciprocal_double(t) };
+        self.base + self.reach * u
+    }
+
+    /// Pixel coordinates of an eye position in the plane t = 1 (any plane if parallel).
+    pub(crate) fn pixel(&self, x: f64, y: f64) -> [f64; 2] {
+        [(x - self.corner[0]) * self.rate[0], (y - self.corner[1]) * self.rate[1]]
     }
 }

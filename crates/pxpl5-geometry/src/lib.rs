@@ -72,7 +72,7 @@
 //!
 //! - Colour interpolated with perspective: planes are linear on the screen, as on the machine.
 //! - Spheres that the near or far plane cuts (not drawn, counted) and shadows or specular light on vertices.
-//! - The time all this takes on an i860: [`kernel`] holds the same computation as its code, which others run.
+//! - The time all this takes on an i860: [`kernel`] and [`sphere_kernel`] hold the same computation as its code, which others run.
 //!
 //! # Sources
 //!
@@ -87,11 +87,13 @@ pub mod kernel;
 mod lanes;
 mod lens;
 mod light;
+mod newton;
 mod outline;
 mod plane;
 mod regions;
 mod screen;
 mod sphere;
+pub mod sphere_kernel;
 mod sphere_setup;
 mod stats;
 mod touch;

@@ -52,23 +52,6 @@ pub(crate) fn normal_fixed(component: f32) -> i16 {
     rounded(component * f32::from(NORMAL_UNIT)) as i16
 }
 
-/// The reciprocal of a positive number as an i860 without a divider forms it: a seed of 8 bits of fraction, then two Newton
-/// steps in single precision. Wrong by two of the last place at most.
-#[inline(always)]
-pub(crate) fn reciprocal(w: f32) -> f32 {
-    const CUT: u64 = !((1 << (52 - 8)) - 1);
-    let seed = f64::from_bits((1.0 / f64::from(w)).to_bits() & CUT) as f32;
-    let better = seed * (2.0 - w * seed);
-    better * (2.0 - w * better)
-}
-
-/// The reciprocal of a number that is not 0, formed in the same way with three Newton steps in double precision.
-pub(crate) fn reciprocal_double(value: f64) -> f64 {
-    const CUT: u64 = !((1 << (52 - 8)) - 1);
-    let seed = f64::from_bits((1.0 / value).to_bits() & CUT);
-    (0..3).fold(seed, |near, _| near * (2.0 - value * near))
-}
-
 /// What the reciprocal of w is multiplied by for depths: the range of depths, rounded to a single.
 pub(crate) const DEPTH_SCALE: f32 = (DEPTH_FAR - DEPTH_NEAR) as f32;
 

@@ -12,18 +12,21 @@
 //! `Q = r^2 - |p - c|^2` and depth is a constant less a multiple of its root.
 //!
 //! **Not drawn, but counted:** spheres that the near plane cuts (one quadratic cannot show the hole, and this holds
-//! the eye inside a sphere too) and spheres whose picture reaches beyond the far plane.
+//! the eye inside a sphere too) and spheres whose picture reaches beyond the far plane. Spheres without a size have no picture
+//! and count as outside.
+//!
+//! There is no division and no root but by Newton steps, as an i860 takes them: [`crate::sphere_kernel`] is the same as code.
 
 use crate::bin::Range;
-use crate::conic::Conic;
+use crate::conic::{Conic, Ellipse};
 use crate::lens::Lens;
-use crate::screen::{DEPTH_FAR, DEPTH_NEAR};
+use crate::newton::{reciprocal_double, reciprocal_root, root};
 use crate::transform::Transform;
 use crate::view::{FromWorld, dot};
 use crate::{RegionMask, SetupStats, WorldSphere};
 
 /// Largest eye coordinate and radius of a sphere; the squares of larger ones could overflow.
-const MAX_COORDINATE: f64 = 1e30;
+pub(crate) const MAX_COORDINATE: f64 = 1e30;
 
 /// A sphere on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,6 +38,8 @@ pub struct ScreenSphere {
     /// The picture, with `Q = bulge^2`: how far, in units of the depth expression, the surface stands before its
     /// plane of depth.
     pub(crate) conic: Conic,
+    /// Where it is greatest, and how large it is.
+    pub(crate) ellipse: Ellipse,
     /// Value at the conic's centre and slopes per pixel of the plane of depth.
     pub(crate) depth: [f64; 3],
     /// Depth of the plane that touches the front, in units of the depth expression: nothing is nearer.
@@ -48,7 +53,7 @@ impl ScreenSphere {
     /// frame down.
     #[must_use]
     pub fn meets(&self, across: [i32; 2], lines: [i32; 2]) -> bool {
-        self.conic.bounds().is_some_and(|[x, y]| overlaps(pixels(x), across) && overlaps(pixels(y), lines))
+        self.ellipse.bounds().is_some_and(|[x, y]| overlaps(pixels(x), across) && overlaps(pixels(y), lines))
     }
 }
 
@@ -57,8 +62,8 @@ fn overlaps(range: Range, [first, last]: [i32; 2]) -> bool {
 }
 
 fn unit(v: [f64; 3]) -> [f64; 3] {
-    let length = dot(v, v).sqrt();
-    v.map(|c| c / length)
+    let inverse = reciprocal_root(dot(v, v));
+    v.map(|c| c * inverse)
 }
 
 /// What of `v` is at a right angle to the unit vector `axis`, with length 1.
@@ -85,10 +90,12 @@ impl EyeSphere {
 
     /// Greatest distance t on the silhouette under perspective: the farthest point of the circle of tangents.
     fn farthest_tangent(&self) -> f64 {
-        let square = dot(self.centre, self.centre);
-        let shrink = 1.0 - self.radius * self.radius / square;
-        let tilt = 1.0 - self.centre[2] * self.centre[2] / square;
-        -self.centre[2] * shrink + self.radius * (shrink * tilt.max(0.0)).sqrt()
+        let inverse = reciprocal_double(dot(self.centre, self.centre));
+        let shrink = 1.0 - (self.radius * self.radius) * inverse;
+        let tilt = 1.0 - (self.centre[2] * self.centre[2]) * inverse;
+        let square = shrink * tilt;
+        let beside = if square > 0.0 { self.radius * root(square) } else { 0.0 };
+        -self.centre[2] * shrink + beside
     }
 }
 
@@ -106,18 +113,14 @@ impl Lens {
         if self.is_before_near(front) {
             return if self.is_before_near(back) { Sight::Outside } else { Sight::AcrossNear };
         }
-        if self.depth(front) > 1.0 {
+        if self.is_beyond_far(front) {
             return Sight::Outside;
         }
-        if self.depth(self.deepest(sphere)) > 1.0 {
+        // No tangent is behind the back.
+        if self.is_beyond_far(back) && self.is_beyond_far(self.deepest(sphere)) {
             return Sight::AcrossFar;
         }
         Sight::Visible
-    }
-
-    /// Whether distance t along -Z lies before the near plane, or behind the eye.
-    fn is_before_near(&self, t: f64) -> bool {
-        (!self.parallel && t <= 0.0) || self.depth(t) < 0.0
     }
 
     /// Distance along -Z of the silhouette's deepest point.
@@ -125,21 +128,13 @@ impl Lens {
         if self.parallel { -sphere.centre[2] } else { sphere.farthest_tangent() }
     }
 
-    /// Pixel coordinates of an eye position in the plane t = 1 (any plane if parallel).
-    fn pixel(&self, x: f64, y: f64) -> [f64; 2] {
-        [(x - self.corner[0]) / self.step[0], (y - self.corner[1]) / self.step[1]]
-    }
-
     /// The picture scaled to bulges, and the plane of depth around its centre.
     fn picture(&self, sphere: &EyeSphere) -> (Conic, [f64; 3]) {
-        let range = f64::from(DEPTH_FAR - DEPTH_NEAR);
         let [cx, cy, cz] = sphere.centre;
         let r = sphere.radius;
         let [gx, gy] = self.step;
         let rr = r * r;
-        let base = f64::from(DEPTH_NEAR);
         if self.parallel {
-            let k = range * self.slope;
             let conic = Conic {
                 origin: self.pixel(cx, cy),
                 constant: rr,
@@ -149,11 +144,11 @@ impl Lens {
                 xy: 0.0,
                 yy: -(gy * gy),
             };
-            let depth = base + range * self.depth(-cz);
-            return (conic.scaled(k * k), [depth, 0.0, 0.0]);
+            return (conic.scaled(self.reach * self.reach), [self.base + self.reach * cz, 0.0, 0.0]);
         }
-        let dx = cx / -cz;
-        let dy = cy / -cz;
+        let inverse = reciprocal_double(-cz);
+        let dx = cx * inverse;
+        let dy = cy * inverse;
         let dd = (dx * dx + dy * dy) + 1.0;
         let conic = Conic {
             origin: self.pixel(dx, dy),
@@ -164,10 +159,10 @@ impl Lens {
             xy: 2.0 * gx * gy * cx * cy,
             yy: gy * gy * (rr - (cx * cx + cz * cz)),
         };
-        let k = range * self.slope / (dot(sphere.centre, sphere.centre) - rr);
+        let square = dot(sphere.centre, sphere.centre);
+        let k = self.reach * reciprocal_double(square - rr);
         // At the origin d = -c / c_z, hence d.c = c.c / -c_z.
-        let along = dot(sphere.centre, sphere.centre) / -cz;
-        let depth = (base + range * self.constant) + k * along;
+        let depth = self.base + k * (square * inverse);
         (conic.scaled(k * k), [depth, k * gx * cx, k * gy * cy])
     }
 
@@ -203,7 +198,8 @@ impl Transform {
 
     fn visible(&self, lens: &Lens, eye: &EyeSphere, colour: [u8; 3], stats: &mut SetupStats) -> Option<ScreenSphere> {
         let (conic, depth) = lens.picture(eye);
-        let regions = conic.bounds().map_or(RegionMask::EMPTY, |bounds| {
+        let ellipse = conic.ellipse();
+        let regions = ellipse.bounds().map_or(RegionMask::EMPTY, |bounds| {
             let [x, y] = bounds.map(pixels);
             self.binner.rectangle(x, y)
         });
@@ -212,20 +208,20 @@ impl Transform {
             return None;
         }
         stats.screen_spheres += 1;
-        let range = f64::from(DEPTH_FAR - DEPTH_NEAR);
         Some(ScreenSphere {
             regions,
             colour,
             conic,
+            ellipse,
             depth,
-            front: f64::from(DEPTH_NEAR) + range * lens.depth(-eye.centre[2] - eye.radius),
+            front: lens.depth(-eye.centre[2] - eye.radius),
             axes: lens.axes(eye),
         })
     }
 }
 
 /// Slack around a bounding box in pixels, more than the rounding of the quadratic can move the silhouette.
-const SLACK: f64 = 1.0 / 64.0;
+pub(crate) const SLACK: f64 = 1.0 / 64.0;
 
 /// The pixels whose centres lie in an interval of pixel coordinates (0 is the centre of pixel 0).
 fn pixels([low, high]: [f64; 2]) -> Range {

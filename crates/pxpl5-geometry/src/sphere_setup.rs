@@ -1,6 +1,7 @@
 //! Set-up of spheres: from a conic and a plane to the renderer's operands.
 
 use crate::conic::{self, FixedConic};
+use crate::newton::{reciprocal_root, root, whole};
 use crate::screen::DEPTH_NEAR;
 use crate::sphere::ScreenSphere;
 use crate::{Light, SetupStats, Viewport};
@@ -48,6 +49,9 @@ pub struct PhongSphere {
     pub colour: [u8; 3],
 }
 
+/// Steepest slope of a plane in units of its expression per pixel: what 32 bits hold.
+pub(crate) const MAX_SLOPE: f64 = 2_147_483_648.0;
+
 /// A plane by its value at a point of the frame and its slopes.
 struct Slope {
     origin: [f64; 2],
@@ -56,11 +60,10 @@ struct Slope {
 }
 
 impl Slope {
-    /// In fixed point, most exact at `pixel`; modulo 2^32 like every linear expression. A slope beyond 2^31 is
-    /// limited, the plane counted as flattened.
+    /// In fixed point, most exact at `pixel`; modulo 2^32 like every linear expression. With a slope
+    /// beyond 2^31 it is flat, and counted as flattened.
     fn fixed(&self, pixel: [i32; 2], stats: &mut SetupStats) -> Linear {
-        const LIMIT: f64 = 2_147_483_648.0;
-        if self.slope.iter().any(|s| s.abs() >= LIMIT) {
+        if !self.slope.iter().all(|s| s.abs() < MAX_SLOPE) {
             stats.flattened_planes += 1;
             return Linear::constant(modulo_2_32(self.value));
         }
@@ -74,7 +77,13 @@ impl Slope {
 
 /// The nearest integer's low 32 bits.
 fn modulo_2_32(value: f64) -> i32 {
-    conic::nearest_integer(value) as i32
+    whole(value) as i32
+}
+
+/// A factor of the root as the command holds it; 0 for NaN.
+#[allow(clippy::manual_clamp, reason = "`clamp` would leave a NaN")]
+fn limited(factor: f64) -> i64 {
+    whole(factor.max(0.0).min(511.0))
 }
 
 fn rows(linear: Linear, viewport: &Viewport) -> Linear {
@@ -103,22 +112,16 @@ impl ScreenSphere {
 
     /// Where planes are rounded: the visible part's middle.
     fn middle(&self, rectangle: [[i32; 2]; 2]) -> [i32; 2] {
-        let peak = self.conic.peak();
         std::array::from_fn(|i| {
             let [first, last] = rectangle[i].map(f64::from);
-            (peak[i] + 0.5).floor().clamp(first, last) as i32
+            whole(self.ellipse.peak[i].clamp(first, last)) as i32
         })
-    }
-
-    /// Greatest value of the root, before it is rounded down.
-    fn greatest_root(&self, conic: &FixedConic) -> f64 {
-        self.conic.peak_value().sqrt() * conic::power_of_two(-i32::from(conic.depth_shift))
     }
 
     fn common(&self, viewport: &Viewport, stats: &mut SetupStats) -> (SphereSetup, FixedConic) {
         let rectangle = self.rectangle(viewport);
         let middle = self.middle(rectangle);
-        let conic = self.conic.fixed(rectangle, middle);
+        let conic = self.conic.fixed(self.ellipse.value, rectangle, middle);
         let [value, slope_x, slope_y] = self.depth;
         // Roots are rounded down, so surfaces lie up to a step too deep: half a step nearer, as far as there is room
         // before depth 0, makes that a rounding to the nearest.
@@ -138,8 +141,8 @@ impl ScreenSphere {
 
     /// `scale` times the x (0) or y (1) of a unit normal in the sphere's own axes, plus `value`.
     fn tilt(&self, scale: [f64; 2], value: f64) -> Slope {
-        let [half_x, half_y] = self.conic.half_size();
-        Slope { origin: self.conic.peak(), value, slope: [scale[0] / half_x, -scale[1] / half_y] }
+        let [per_x, per_y] = self.ellipse.per_half_size();
+        Slope { origin: self.ellipse.peak, value, slope: [scale[0] * per_x, -scale[1] * per_y] }
     }
 
     /// Computes the operands for interpolated colour.
@@ -161,10 +164,11 @@ impl ScreenSphere {
             let plane = self.tilt(scale, full * ambient + unit * 0.5);
             rows(plane.fixed(middle, stats), viewport)
         });
-        let steps = self.greatest_root(&conic) * (1.0 / 16.0);
+        // One over the greatest value of the root's upper bits, which lack four.
+        let per_root = reciprocal_root(self.ellipse.value) * conic::power_of_two(i32::from(conic.depth_shift) + 4);
         let root_factor = self.colour.map(|c| {
-            let factor = f64::from(c) * diffuse * towards * 256.0 / steps;
-            (factor + 0.5).clamp(0.0, 511.0) as u16
+            let factor = f64::from(c) * diffuse * towards * 256.0 * per_root;
+            limited(factor) as u16
         });
         GouraudSphere { setup, rgb, root_factor }
     }
@@ -175,7 +179,9 @@ impl ScreenSphere {
         let (setup, conic) = self.common(viewport, stats);
         let middle = self.middle(self.rectangle(viewport));
         let unit = f64::from(1_u32 << format::NORMAL_FRACTION_BITS);
-        let scale = self.greatest_root(&conic) * 0.25 * unit;
+        // The root at the middle, a quarter of which is z.
+        let greatest = root(self.ellipse.value) * conic::power_of_two(-i32::from(conic.depth_shift));
+        let scale = greatest * 0.25 * unit;
         let normal = [[scale, 0.0], [0.0, scale]].map(|scale| {
             let plane = self.tilt(scale, unit * 0.5);
             rows(plane.fixed(middle, stats), viewport)

@@ -4,6 +4,7 @@ use crate::bin::Binner;
 use crate::clip::{self, ClipVertex, Corner, Guard};
 use crate::lens::Lens;
 use crate::light::{ModelLight, NormalRows};
+use crate::newton;
 use crate::outline::{Outline, SUBPIXELS};
 use crate::screen::{self, LitColours, ScreenTriangle, SurfaceNormals};
 use crate::touch::Touch;
@@ -113,7 +114,7 @@ impl ToScreen {
     /// Divides by w and snaps. Only for vertices inside the guard band.
     #[inline(always)]
     pub(crate) fn snap(&self, [x, y, z, w]: [f32; 4]) -> Snapped {
-        let inverse = screen::reciprocal(w);
+        let inverse = newton::reciprocal(w);
         Snapped {
             x: screen::rounded_sum((x * inverse) * self.scale[0], self.centre[0]),
             y: screen::rounded_sum((y * inverse) * self.scale[1], self.centre[1]),
@@ -128,7 +129,7 @@ impl ToScreen {
         if clip[3] < f64::from(clip::MIN_W) {
             return None;
         }
-        let inverse = screen::reciprocal_double(clip[3]);
+        let inverse = newton::reciprocal_double(clip[3]);
         let x = (clip[0] * inverse) * f64::from(self.scale[0]) + f64::from(self.centre[0]);
         let y = (clip[1] * inverse) * f64::from(self.scale[1]) + f64::from(self.centre[1]);
         if x.abs() > limit || y.abs() > limit {

@@ -1,5 +1,6 @@
 //! From world to clip coordinates: the eye's matrices and the picture that they fill.
 
+use crate::newton;
 use crate::regions::RegionMask;
 use glam::{Mat4, Vec3};
 use pxpl5_wire::{Lines, REGION_SIZE, RegionGrid};
@@ -245,13 +246,13 @@ impl FromWorld {
         std::array::from_fn(|i| ((cx[i] * x + cy[i] * y) + cz[i] * z) + ct[i])
     }
 
-    /// The greatest factor by which an axis is stretched.
+    /// The greatest factor by which an axis is stretched; NaN if there is none.
     pub(crate) fn scale(&self) -> f64 {
         let squares = self.columns[..3].iter().map(|&[x, y, z, _]| {
             let axis = [x, y, z].map(f64::from);
             dot(axis, axis)
         });
-        squares.fold(0.0, f64::max).sqrt()
+        newton::root(squares.fold(0.0, f64::max))
     }
 }
 

@@ -210,6 +210,7 @@ fn spheres_behind_around_or_cut_are_counted_each_under_its_own_name() {
     assert_eq!(one(-5.0, -1.0).spheres_not_finite, 1);
     assert_eq!(one(-5.0, f32::INFINITY).spheres_not_finite, 1);
     assert_eq!(one(-5.0, 3.9).screen_spheres, 1);
+    assert_eq!(one(-5.0, 0.0).spheres_outside, 1);
 }
 
 /// Counts of one sphere with its centre on the eye's axis.

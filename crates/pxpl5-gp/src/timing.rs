@@ -44,19 +44,18 @@ impl GpTiming {
 }
 
 // Times of primitives that follow from i860 code (derived from code): means over the three application scenes as
-// `pxpl5_lab::code_times` measures them; its test holds these constants to the code. Spheres have no code, and take the time of a
-// triangle; neither has the software of messages.
+// `pxpl5_lab::code_times` measures them; its test holds these constants to the code. The software of messages has none.
 impl GpTiming {
     /// This table with the times of the scheduled code for Phong triangles of a frame, in bins: PPHIGS.
     #[must_use]
     pub const fn of_scheduled_phong(self) -> Self {
         Self {
             triangle_ns: 16_088,
-            sphere_ns: 16_088,
+            sphere_ns: 48_406,
             guard_ns: 210_694,
             bin_entry_ns: 1_914,
             edit_ns: 4_117,
-            pass_ns: 113_883,
+            pass_ns: 127_721,
             ..self
         }
     }
@@ -66,11 +65,11 @@ impl GpTiming {
     pub const fn of_compiled_gouraud(self) -> Self {
         Self {
             triangle_ns: 53_963,
-            sphere_ns: 53_963,
+            sphere_ns: 77_953,
             guard_ns: 131_546,
             bin_entry_ns: 0,
             edit_ns: 4_117,
-            pass_ns: 202_410,
+            pass_ns: 227_882,
             ..self
         }
     }
@@ -80,11 +79,11 @@ impl GpTiming {
     pub const fn of_scheduled_gouraud(self) -> Self {
         Self {
             triangle_ns: 20_295,
-            sphere_ns: 20_295,
+            sphere_ns: 78_420,
             guard_ns: 224_398,
             bin_entry_ns: 0,
             edit_ns: 4_117,
-            pass_ns: 208_558,
+            pass_ns: 233_093,
             ..self
         }
     }

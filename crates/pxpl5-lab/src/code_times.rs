@@ -1,12 +1,15 @@
 //! Times of primitives that follow from i860 code, for the timing table: what a pass over the application scenes takes on a board.
 //!
 //! ```text
-//!   clocks of a pass = triangle * (triangles) + guard * (of these, cut by the clipper) + entry * (entries of bins)
+//!   clocks of triangles in a pass = triangle * (triangles) + guard * (of these, cut by the clipper) + entry * (their entries of bins)
+//!   clocks of spheres             = sphere * (spheres) + entry * (their entries of bins)
 //! ```
 //!
 //! `guard` comes from triangles that cover the screen and reach beyond the guard band, the others from the three application scenes: a share
 //! of each, seen along its own head motion; the first pass only fills the caches. `entry` is the slope over all passes by least squares,
-//! `triangle` the mean of the scenes' means. Each is found from what the others leave of the time, in turn until they stay.
+//! `triangle` the mean of the scenes' means. Each is found from what the others leave of the time, in turn until they stay. `sphere` is
+//! what entries leave of the spheres' time, the mean of the means of those of the three scenes that have spheres. Triangles are measured
+//! without the spheres of their scene, whose code takes the instruction cache.
 
 use glam::Mat4;
 use pphigs::{DisplayList, Editing, FrameView, ModelEdit, Pass, Picture, RegionBinning, Shading, Share};
@@ -17,7 +20,7 @@ use pxpl5_renderer::Layout;
 use pxpl5_run::{ExperimentError, Views, display_list, views};
 use pxpl5_scene::{Hmd, HmdConfig, builtin};
 use pxpl5_sim::Time;
-use pxpl5_wire::{FieldParity, NodeId, ViewNumber};
+use pxpl5_wire::{FieldParity, NodeId, RegionId, ViewNumber};
 use std::sync::Arc;
 
 /// The application scenes of TR94.
@@ -56,6 +59,8 @@ pub struct CodeTimes {
     pub triangle_ns: f64,
     /// The least and the greatest scene's mean.
     pub triangle_range_ns: [f64; 2],
+    /// A sphere: mean of the scenes' means.
+    pub sphere_ns: f64,
     /// An entry in a bin.
     pub entry_ns: f64,
     /// A triangle that the clipper cuts, besides: its cuts, and all pieces but one.
@@ -69,8 +74,11 @@ pub struct CodeTimes {
 /// Rounds after which the times stay as they are: each takes over a small part of the last one's error.
 const ROUNDS: usize = 30;
 
-/// One pass: triangles that are not cut, triangles that are, entries, nanoseconds.
+/// One pass: triangles that are not cut, triangles that are, their entries, nanoseconds.
 type Sample = [f64; 4];
+
+/// The same of spheres: spheres, their entries, nanoseconds.
+type SphereSample = [f64; 3];
 
 impl CodeUse {
     fn picture(self) -> Picture {
@@ -98,15 +106,25 @@ pub fn code_times(version: CodeVersion, of: CodeUse) -> Result<CodeTimes, Experi
     let cut = samples(version, of, "full-screen:30", 1)?;
     let scenes: Vec<Vec<Sample>> =
         SCENES.iter().map(|scene| samples(version, of, scene, BOARDS)).collect::<Result<_, _>>()?;
+    let of_spheres: Vec<Vec<SphereSample>> =
+        SCENES.iter().map(|scene| sphere_samples(version, of, scene)).collect::<Result<_, _>>()?;
     let begun: Vec<f64> = SCENES.iter().map(|scene| beginning_ns(version, of, scene)).collect::<Result<_, _>>()?;
     let pass_ns = begun.iter().sum::<f64>() / begun.len() as f64;
     let edit_ns = edit_ns(version)?;
     let range = [0.0; 2];
-    let mut times =
-        CodeTimes { triangle_ns: 0.0, triangle_range_ns: range, entry_ns: 0.0, guard_ns: 0.0, pass_ns, edit_ns };
+    let mut times = CodeTimes {
+        triangle_ns: 0.0,
+        triangle_range_ns: range,
+        sphere_ns: 0.0,
+        entry_ns: 0.0,
+        guard_ns: 0.0,
+        pass_ns,
+        edit_ns,
+    };
     for _ in 0..ROUNDS {
         times.improve(of, &cut, &scenes);
     }
+    times.sphere_ns = times.sphere(&of_spheres);
     Ok(times)
 }
 
@@ -130,6 +148,17 @@ impl CodeTimes {
             [means.iter().copied().fold(f64::INFINITY, f64::min), means.iter().copied().fold(0.0, f64::max)];
         let without_entries = |[uncut, cut, n, ns]: &Sample| ([*cut, *uncut], ns - entry_ns * n);
         self.guard_ns = solve(cut.iter().map(without_entries)) - self.triangle_ns;
+    }
+
+    /// What entries leave of the time of a sphere; scenes without spheres say nothing.
+    fn sphere(&self, scenes: &[Vec<SphereSample>]) -> f64 {
+        let sums = scenes.iter().map(|samples| {
+            samples.iter().fold([0.0; 2], |[n, ns], [spheres, entries, of_spheres]| {
+                [n + spheres, ns + of_spheres - self.entry_ns * entries]
+            })
+        });
+        let means: Vec<f64> = sums.filter(|[n, _]| *n > 0.0).map(|[n, ns]| ns / n).collect();
+        means.iter().sum::<f64>() / means.len().max(1) as f64
     }
 }
 
@@ -158,8 +187,26 @@ fn fault(error: ProcessorFault) -> ExperimentError {
 
 impl Rig {
     fn new(version: CodeVersion, scene: &str, boards: usize) -> Result<Self, ExperimentError> {
+        Self::of_list(version, scene, boards, |list| list)
+    }
+
+    /// The same without spheres.
+    fn of_triangles(version: CodeVersion, scene: &str, boards: usize) -> Result<Self, ExperimentError> {
+        Self::of_list(version, scene, boards, |mut list| {
+            list.spheres.clear();
+            list.structures.iter_mut().for_each(|structure| structure.spheres = 0..0);
+            list
+        })
+    }
+
+    fn of_list(
+        version: CodeVersion,
+        scene: &str,
+        boards: usize,
+        part: impl Fn(DisplayList) -> DisplayList,
+    ) -> Result<Self, ExperimentError> {
         let scene = Arc::new(builtin(scene).map_err(|error| ExperimentError::Scene(error.to_string()))?);
-        let list: Arc<DisplayList> = Arc::new(display_list(&scene).map_err(ExperimentError::Scene)?);
+        let list = Arc::new(part(display_list(&scene).map_err(ExperimentError::Scene)?));
         let hmd = Hmd::new(HmdConfig::unc()).map_err(|error| ExperimentError::Scene(error.to_string()))?;
         let (views, _) = views(&scene, 1, hmd, 2);
         let share = Share::new(list, 0, boards);
@@ -174,7 +221,21 @@ impl Rig {
 }
 
 fn samples(version: CodeVersion, of: CodeUse, scene: &str, boards: usize) -> Result<Vec<Sample>, ExperimentError> {
-    let mut rig = Rig::new(version, scene, boards)?;
+    measured(of, Rig::of_triangles(version, scene, boards)?, sample)
+}
+
+/// None of scenes without spheres.
+fn sphere_samples(version: CodeVersion, of: CodeUse, scene: &str) -> Result<Vec<SphereSample>, ExperimentError> {
+    let rig = Rig::new(version, scene, BOARDS)?;
+    if rig.share.counts().spheres == 0 { Ok(Vec::new()) } else { measured(of, rig, sphere_sample) }
+}
+
+/// All passes but the first.
+fn measured<S>(
+    of: CodeUse,
+    mut rig: Rig,
+    sample: impl Fn(&Pass, &mut Processor, u8) -> Result<Option<S>, ProcessorFault>,
+) -> Result<Vec<S>, ExperimentError> {
     let mut samples = Vec::new();
     let parts = of.parts(&rig.share);
     for number in 0..VIEWS {
@@ -232,9 +293,31 @@ fn sample(pass: &Pass, processor: &mut Processor, context: u8) -> Result<Option<
     Ok(Some([uncut as f64, cut as f64, made.entries() as f64, made.span.0 as f64 / 1e3]))
 }
 
+fn sphere_sample(pass: &Pass, processor: &mut Processor, context: u8) -> Result<Option<SphereSample>, ProcessorFault> {
+    let Some(made) = pass.run_code(processor, context)? else { return Ok(None) };
+    let regions = pass.picture().viewport.grid().regions() as u16;
+    let entries: u32 = (0..regions).map(|region| pass.counts(RegionId(region)).spheres).sum();
+    Ok(Some([pass.transformed().spheres.into(), entries.into(), made.of_spheres.0 as f64 / 1e3]))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_sphere_takes_what_its_entries_leave() {
+        let times = CodeTimes {
+            triangle_ns: 0.0,
+            triangle_range_ns: [0.0; 2],
+            sphere_ns: 0.0,
+            entry_ns: 3.0,
+            guard_ns: 0.0,
+            pass_ns: 0.0,
+            edit_ns: 0.0,
+        };
+        let scenes = [vec![[2.0, 4.0, 112.0], [3.0, 1.0, 153.0]], vec![[0.0; 3]], vec![[1.0, 0.0, 60.0]]];
+        assert_eq!(times.sphere(&scenes), 55.0);
+    }
 
     #[test]
     fn two_unknowns_are_found_from_exact_rows() {

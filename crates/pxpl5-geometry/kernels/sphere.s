@@ -1,0 +1,458 @@
+// Spheres from the display list to the words of a command and to bins, as a good compiler of about 1990 would give a plain program in C
+// (compiled_rules.md). The arithmetic and its order are those of the native transform and set-up.
+//
+// A sphere of the display list: centre x, y, z and radius (single), colour (0x00RRGGBB), three words unused.
+//
+// In: r16 first sphere, r17 number of spheres (at least 1), r18 where command words go, r19 table of bins, r20 parameter block, r2 stack.
+// Out: r18 behind the last command.
+
+SPHERE_BYTES = 32
+RADIUS  = 12
+COLOUR  = 16
+P_TWO   = S_TWO
+P_LINE  = S_LINE
+
+// ---- stack frame
+SAVE    = 0        // return address
+CENTRE  = 16       // in eye coordinates, double
+FRONT   = 40       // distance of the nearest point
+ORIGIN  = 48       // of the conic, in pixels
+ONE     = 64       // its coefficients: constant, x, y, xx, xy, yy
+ALONG_X = 72
+ALONG_Y = 80
+XX      = 88
+XY      = 96
+YY      = 104
+DEPTH   = 112      // plane of depth: value, slopes
+PEAK    = 136      // the ellipse: where it is greatest
+PEAK_VALUE = 152
+SQUARES = 160      // of half its width and half its height
+PER     = 176      // one over these halves
+LEFT    = 192      // frame pixels of the touched regions, double
+RIGHT   = 200
+TOP     = 208
+BOTTOM  = 216
+PIXEL   = 224      // where planes are rounded, double
+PIXEL_X = 240      // the same as words, 0 above
+PIXEL_Y = 248
+TOWARDS = 256      // Gouraud: towards the eye; its part along the light
+ACROSS  = 280      // parts of the other axes along the light
+UP      = 288
+PER_ROOT = 296
+
+        .align  32
+spheres: st.l   r1, SAVE(r2)
+        ld.l    P_LINE(r20), r5
+        nop
+        subs    r0, r5, r5                  // all ones in a field that begins with line 1
+next:   fld.l   0(r16), f16
+        fld.l   S_ORIGIN(r20), f8
+        fld.l   4(r16), f17
+        fld.l   S_ORIGIN+4(r20), f9
+        fsub.ss f16, f8, f16
+        fld.l   8(r16), f18
+        fld.l   S_ORIGIN+8(r20), f10
+        fsub.ss f17, f9, f17
+        fsub.ss f18, f10, f18
+        eye     0, f20
+        eye     1, f21
+        eye     2, f22
+        fmov.sd f20, f2
+        fld.l   RADIUS(r16), f8
+        fmov.sd f21, f4
+        fld.d   S_SCALE(r20), f28
+        fmov.sd f22, f6
+        fmov.sd f8, f10
+        fld.d   S_MOST(r20), f12
+        fmul.dd f10, f28, f28               // the radius
+        limited f2
+        limited f4
+        limited f6
+        limited f28
+        pfle.dd f0, f28, f0
+        bc      drop
+        // in sight?
+        fsub.dd f0, f6, f30                 // distance of the middle
+        fld.d   S_LEAST(r20), f8
+        fsub.dd f30, f28, f14               // of the front
+        fld.d   S_NEAR(r20), f10
+        fadd.dd f30, f28, f16               // of the back
+        pfgt.dd f14, f8, f0
+        bnc     drop
+        fmul.dd f10, f14, f10
+        fld.d   S_NEAR+8(r20), f12
+        fadd.dd f10, f12, f10
+        pfgt.dd f0, f10, f0
+        bc      drop
+        fld.d   S_FAR(r20), f20
+        fmul.dd f20, f14, f10
+        fld.d   S_FAR+8(r20), f22
+        fadd.dd f10, f22, f10
+        pfgt.dd f10, f0, f0
+        bc      drop
+        fst.d   f14, FRONT(r2)
+        fst.d   f2, CENTRE(r2)
+        fst.d   f4, CENTRE+8(r2)
+        fst.d   f6, CENTRE+16(r2)
+        fmul.dd f2, f2, f24                 // squares of the distance of the middle and of the radius
+        fmul.dd f4, f4, f8
+        fadd.dd f24, f8, f24
+        fmul.dd f6, f6, f8
+        fadd.dd f24, f8, f24
+        fmul.dd f28, f28, f26
+        fmul.dd f20, f16, f10
+        ld.l    S_PARALLEL(r20), r4
+        fadd.dd f10, f22, f10
+        pfgt.dd f10, f0, f0
+        bnc     seen
+        // the silhouette's deepest point
+        fmov.dd f30, f16
+        btne    r0, r4, deepest
+        fmov.dd f24, f8
+        reciprocal
+        fld.d   S_ONE(r20), f10
+        fmul.dd f26, f12, f14
+        fmul.dd f6, f6, f16
+        fsub.dd f10, f14, f14               // how the circle of tangents shrinks
+        fmul.dd f16, f12, f16
+        fsub.dd f10, f16, f16               // how it is tilted
+        fmul.dd f14, f16, f16
+        fmul.dd f30, f14, f30
+        pfgt.dd f16, f0, f0
+        bnc     straight
+        call    root
+        nop
+        fmul.dd f16, f18, f16
+        fmul.dd f28, f16, f16
+        br      beside
+        nop
+straight: fmov.dd f0, f16
+beside: fadd.dd f30, f16, f16
+        fsub.dd f0, f6, f30
+        fld.d   S_FAR(r20), f20
+        fld.d   S_FAR+8(r20), f22
+deepest: fmul.dd f20, f16, f10
+        fadd.dd f10, f22, f10
+        pfgt.dd f10, f0, f0
+        bc      drop
+        // the picture, and the plane of depth
+seen:   btne    r0, r4, parallel
+        fmov.dd f30, f8
+        reciprocal                          // one over the distance
+        fmul.dd f2, f12, f20
+        fmul.dd f4, f12, f22
+        fmul.dd f24, f12, f18
+        fsub.dd f24, f26, f8
+        reciprocal
+        fld.d   S_REACH(r20), f8
+        fld.d   S_BASE(r20), f10
+        fmul.dd f8, f12, f16                // the bulge's factor
+        fld.d   S_STEP(r20), f12
+        fmul.dd f16, f18, f8
+        fld.d   S_STEP+8(r20), f14
+        fadd.dd f10, f8, f8
+        fst.d   f8, DEPTH(r2)
+        fmul.dd f16, f12, f8
+        fmul.dd f8, f2, f8
+        fst.d   f8, DEPTH+8(r2)
+        fmul.dd f16, f14, f8
+        fmul.dd f8, f4, f8
+        fst.d   f8, DEPTH+16(r2)
+        fmul.dd f16, f16, f18
+        pixel   0, f20
+        pixel   1, f22
+        fmul.dd f20, f20, f8                // constant
+        fmul.dd f22, f22, f10
+        fadd.dd f8, f10, f8
+        fld.d   S_ONE(r20), f10
+        fadd.dd f8, f10, f8
+        fmul.dd f26, f8, f8
+        scaled  ONE
+        fld.d   P_TWO(r20), f16
+        fmul.dd f16, f26, f10               // x, y
+        fmul.dd f10, f12, f8
+        fmul.dd f8, f20, f8
+        scaled  ALONG_X
+        fmul.dd f10, f14, f8
+        fmul.dd f8, f22, f8
+        scaled  ALONG_Y
+        fmul.dd f16, f12, f8                // xy
+        fmul.dd f8, f14, f8
+        fmul.dd f8, f2, f8
+        fmul.dd f8, f4, f8
+        scaled  XY
+        fmul.dd f12, f12, f12
+        fmul.dd f14, f14, f14
+        fmul.dd f4, f4, f8                  // xx
+        fmul.dd f6, f6, f10
+        fadd.dd f8, f10, f8
+        fsub.dd f26, f8, f8
+        fmul.dd f12, f8, f8
+        scaled  XX
+        fmul.dd f2, f2, f8                  // yy
+        fadd.dd f8, f10, f8
+        fsub.dd f26, f8, f8
+        fmul.dd f14, f8, f8
+        scaled  YY
+        br      pictured
+        nop
+parallel: fld.d S_REACH(r20), f18
+        fld.d   S_BASE(r20), f10
+        fmul.dd f18, f6, f8
+        fst.d   f0, DEPTH+8(r2)
+        fst.d   f0, DEPTH+16(r2)
+        fadd.dd f10, f8, f8
+        fst.d   f8, DEPTH(r2)
+        fmul.dd f18, f18, f18
+        pixel   0, f2
+        pixel   1, f4
+        fmov.dd f26, f8
+        scaled  ONE
+        fst.d   f0, ALONG_X(r2)
+        fst.d   f0, ALONG_Y(r2)
+        fst.d   f0, XY(r2)
+        fld.d   S_STEP(r20), f12
+        fld.d   S_STEP+8(r20), f14
+        fmul.dd f12, f12, f8
+        fsub.dd f0, f8, f8
+        scaled  XX
+        fmul.dd f14, f14, f8
+        fsub.dd f0, f8, f8
+        scaled  YY
+        // the ellipse
+pictured: fld.d XX(r2), f16
+        fld.d   S_FOUR(r20), f10
+        fld.d   YY(r2), f20
+        fmul.dd f10, f16, f8
+        fld.d   XY(r2), f18
+        fmul.dd f8, f20, f8
+        fld.d   ALONG_X(r2), f22
+        fmul.dd f18, f18, f12
+        fld.d   ALONG_Y(r2), f24
+        fsub.dd f8, f12, f8
+        reciprocal
+        fmul.dd f18, f24, f8
+        fld.d   ONE(r2), f26
+        fmul.dd f10, f20, f14
+        fmul.dd f14, f22, f14
+        fsub.dd f8, f14, f8
+        fmul.dd f8, f12, f28
+        fmul.dd f18, f22, f8
+        fmul.dd f10, f16, f14
+        fmul.dd f14, f24, f14
+        fsub.dd f8, f14, f8
+        fmul.dd f8, f12, f30
+        fld.d   ORIGIN(r2), f8
+        fmul.dd f22, f28, f22
+        fld.d   ORIGIN+8(r2), f10
+        fadd.dd f8, f28, f8
+        fst.d   f8, PEAK(r2)
+        fmul.dd f24, f30, f24
+        fadd.dd f10, f30, f10
+        fst.d   f10, PEAK+8(r2)
+        fadd.dd f22, f24, f22
+        fld.d   S_HALF(r20), f8
+        fmul.dd f22, f8, f22
+        fld.d   S_MINUS_FOUR(r20), f10
+        fadd.dd f26, f22, f26
+        fst.d   f26, PEAK_VALUE(r2)
+        fmul.dd f10, f26, f10
+        fmul.dd f10, f12, f10
+        fmul.dd f10, f20, f20
+        fst.d   f20, SQUARES(r2)
+        fmul.dd f10, f16, f16
+        fst.d   f16, SQUARES+8(r2)
+        // its box, and the regions that this meets
+        extent  0, r11, r12
+        extent  1, r13, r14
+        clipped r11, r12, 639
+        firstrow r13
+        lastrow r14
+        clipped r13, r14, LAST_ROW
+        shr     7, r11, r11
+        shr     7, r12, r12
+        regionrow r13
+        regionrow r14
+        mov     r0, r22
+        mov     r13, r15
+rows:   mov     r11, r23
+columns: shl    2, r15, r28                 // 5 row + column
+        adds    r28, r15, r28
+        adds    r28, r23, r28
+        insert  r28
+        adds    1, r23, r23
+        subs    r12, r23, r0
+        bnc     columns
+        adds    1, r15, r15
+        subs    r14, r15, r0
+        bnc     rows
+        // their pixels
+        orh     0x4330, r0, r30
+        fld.d   S_TWO52(r20), f10
+        shl     7, r11, r8
+        double  r8, LEFT
+        shl     7, r12, r8
+        adds    127, r8, r8
+        double  r8, RIGHT
+        toprow  r13, r9
+        line    r9
+        double  r9, TOP
+        toprow  r14, r9
+        adds    127, r9, r9
+        line    r9
+        double  r9, BOTTOM
+        fld.d   S_ROUND(r20), f16
+        nearest 0, LEFT, RIGHT, PIXEL_X
+        nearest 1, TOP, BOTTOM, PIXEL_Y
+        // how far values are shifted
+        ld.l    PEAK_VALUE+4(r2), r8
+        fld.d   XX(r2), f16
+        fld.d   XY(r2), f18
+        shr     20, r8, r8
+        and     0x7FF, r8, r8
+        adds    -1021, r8, r8
+        shra    1, r8, r8
+        adds    -12, r8, r25
+        clamped r25, 20
+        fld.d   YY(r2), f20
+        fld.d   ALONG_X(r2), f22
+        fld.d   ALONG_Y(r2), f24
+        fld.d   ONE(r2), f26
+        fld.d   PEAK_VALUE(r2), f30
+        greater LEFT, TOP
+        greater LEFT, BOTTOM
+        greater RIGHT, TOP
+        greater RIGHT, BOTTOM
+        adds    r25, r25, r9                // 2^-2 depth_shift
+        mov     1023, r8
+        subs    r8, r9, r9
+        shl     20, r9, r8
+        ixfr    r0, f8
+        ixfr    r8, f9
+        fmul.dd f30, f8, f8
+        fxfr    f9, r8
+        shr     20, r8, r8
+        and     0x7FF, r8, r8
+        mov     1068, r26
+        subs    r26, r8, r26
+        clamped r26, 24
+        adds    r26, r9, r9
+        shl     20, r9, r9
+        ixfr    r0, f28
+        ixfr    r9, f29
+        // coefficients around the pixel, then around pixel (0, 0)
+        fld.d   PIXEL(r2), f8
+        fld.d   ORIGIN(r2), f12
+        fld.d   PIXEL+8(r2), f10
+        fsub.dd f8, f12, f8
+        fld.d   ORIGIN+8(r2), f12
+        call    value
+        fsub.dd f10, f12, f10
+        fmov.dd f12, f26
+        fld.d   P_TWO(r20), f12
+        fld.d   S_ROUND(r20), f30
+        fmul.dd f12, f16, f14
+        fmul.dd f14, f8, f14
+        fadd.dd f22, f14, f22
+        fmul.dd f18, f10, f14
+        fadd.dd f22, f14, f22
+        fmul.dd f12, f20, f14
+        fmul.dd f14, f10, f14
+        fadd.dd f24, f14, f24
+        fmul.dd f18, f8, f14
+        fadd.dd f24, f14, f24
+        whole   f16
+        whole   f18
+        whole   f20
+        whole   f22
+        whole   f24
+        whole   f26
+        fld.d   PIXEL_X(r2), f28
+        fld.d   PIXEL_Y(r2), f30
+        ixfr    r0, f9
+        ixfr    r0, f11
+        ixfr    r0, f14
+        times   f16, f17, f28, f2
+        times   f18, f19, f30, f4
+        fiadd.dd f2, f4, f6
+        fisub.dd f6, f22, f6
+        fisub.dd f22, f2, f22
+        fisub.dd f22, f2, f22
+        fisub.dd f22, f4, f22
+        times   f6, f7, f28, f2
+        fiadd.dd f26, f2, f26
+        times   f20, f21, f30, f2
+        times   f18, f19, f28, f4
+        fisub.dd f2, f24, f6
+        fisub.dd f24, f2, f24
+        fisub.dd f24, f2, f24
+        fisub.dd f24, f4, f24
+        times   f6, f7, f30, f2
+        fiadd.dd f26, f2, f26
+        quadraticrows
+        fst.l   f16, 8(r18)
+        fst.l   f17, 12(r18)
+        fst.l   f18, 16(r18)
+        fst.l   f19, 20(r18)
+        fst.l   f20, 24(r18)
+        fst.l   f21, 28(r18)
+        fst.l   f22, 32(r18)
+        fst.l   f23, 36(r18)
+        fst.l   f24, 40(r18)
+        fst.l   f25, 44(r18)
+        fst.l   f26, 48(r18)
+        fst.l   f27, 52(r18)
+        // depth, half a step of the root nearer where there is room
+        fld.d   FRONT(r2), f8
+        ld.l    S_PARALLEL(r20), r8
+        fsub.dd f0, f8, f12
+        btne    r0, r8, foremost
+        reciprocal
+foremost: fld.d S_REACH(r20), f8
+        fld.d   S_BASE(r20), f10
+        fmul.dd f8, f12, f12
+        fld.d   S_ROOM(r20), f8
+        fadd.dd f10, f12, f12
+        fsub.dd f12, f8, f12
+        pfgt.dd f12, f0, f0
+        bc      room
+        fmov.dd f0, f12
+room:   adds    1022, r25, r8
+        shl     20, r8, r8
+        ixfr    r0, f10
+        ixfr    r8, f11
+        pfgt.dd f12, f10, f0
+        bnc     narrow
+        fmov.dd f10, f12
+narrow: fld.d   DEPTH(r2), f16
+        fld.d   DEPTH+8(r2), f18
+        fld.d   DEPTH+16(r2), f20
+        fsub.dd f16, f12, f16
+        fld.d   ORIGIN(r2), f22
+        fld.d   ORIGIN+8(r2), f24
+        call    plane
+        adds    76, r18, r11
+        restated 76
+        heads   0, 1
+        ld.l    S_WORDS+56(r20), r8
+        shl     16, r26, r9
+        ld.l    S_WORDS+72(r20), r10
+        adds    r8, r9, r8
+        adds    r10, r25, r10
+        st.l    r8, 56(r18)
+        st.l    r10, 72(r18)
+        heads   15, 16
+        heads   17, 22
+        heads   23, 24
+        ld.l    S_WORDS+100(r20), r8
+        nop
+        st.l    r8, 100(r18)
+        surface
+        adds    COMMAND_BYTES, r18, r18
+drop:   adds    -1, r17, r17
+        adds    SPHERE_BYTES, r16, r16
+        btne    r0, r17, next
+        ld.l    SAVE(r2), r1
+        nop
+        bri     r1
+        nop

@@ -1,0 +1,64 @@
+//! Quotients, roots and whole numbers as an i860 forms them, which has no divider and no square root: a seed with 8 bits of fraction
+//! (`frcp`, `frsqr`), then Newton steps; a large number added and taken off again. Native code takes the very steps of the kernels,
+//! so that both give the same words.
+
+/// The bits of a seed.
+const SEED: u64 = !((1 << (52 - 8)) - 1);
+
+/// 1.5 * 2^52: a double of less than 2^51 added to it is rounded to a whole number, to even between two.
+const ROUND: f64 = 6_755_399_441_055_744.0;
+
+fn seed(exact: f64) -> f64 {
+    f64::from_bits(exact.to_bits() & SEED)
+}
+
+/// The reciprocal of a positive number by two steps in single precision. Wrong by two of the last place at most.
+#[inline(always)]
+pub(crate) fn reciprocal(w: f32) -> f32 {
+    let near = seed(1.0 / f64::from(w)) as f32;
+    let better = near * (2.0 - w * near);
+    better * (2.0 - w * better)
+}
+
+/// The reciprocal of a number that is not 0 by three steps in double precision; NaN for 0 and for infinities.
+pub(crate) fn reciprocal_double(value: f64) -> f64 {
+    (0..3).fold(seed(1.0 / value), |near, _| near * (2.0 - value * near))
+}
+
+/// The reciprocal of a positive number's root by three steps in double precision; NaN for all others and for infinity.
+pub(crate) fn reciprocal_root(value: f64) -> f64 {
+    let half = value * 0.5;
+    (0..3).fold(seed(1.0 / value.sqrt()), |near, _| near * (1.5 - half * (near * near)))
+}
+
+/// The root of a positive number; NaN for all others.
+pub(crate) fn root(value: f64) -> f64 {
+    value * reciprocal_root(value)
+}
+
+/// The whole number nearest to one of less than 2^51, to even between two. What is greater gives bits without a meaning, the same
+/// ones everywhere.
+pub(crate) fn whole(value: f64) -> i64 {
+    ((value + ROUND).to_bits() as i64).wrapping_sub(ROUND.to_bits() as i64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn roots_and_reciprocals_are_good_to_the_last_places() {
+        for n in -1000..1000 {
+            let value = 1.7_f64.powf(f64::from(n) * 0.5);
+            assert!((root(value) / value.sqrt() - 1.0).abs() < 1e-15, "root of {value}");
+            assert!((reciprocal_double(value) * value - 1.0).abs() < 1e-15, "reciprocal of {value}");
+        }
+        assert!([0.0, -1.0, f64::INFINITY, f64::NAN].into_iter().all(|value| root(value).is_nan()));
+    }
+
+    #[test]
+    fn whole_numbers_are_the_nearest_and_even_between_two() {
+        let values = [0.0, 0.5, 1.5, -0.5, -1.5, 2.4, -2.6, 1e15 + 0.25, -1e15];
+        assert_eq!(values.map(whole), [0, 0, 2, 0, -2, 2, -3, 1_000_000_000_000_000, -1_000_000_000_000_000]);
+    }
+}

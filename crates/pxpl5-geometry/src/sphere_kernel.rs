@@ -1,0 +1,159 @@
+//! Spheres as code of the graphics processor: i860 assembly, and the memory that it works on, as [`crate::kernel`] has them for
+//! triangles.
+//!
+//! A [`SphereKernel`] takes spheres from the display list to the words of renderer commands and to bins: centre and radius to the eye,
+//! near and far plane, conic, bounding box, regions, the conic in fixed point, planes of depth and of the surface. There is one code
+//! for all versions of the kernels, by the rules of the compiled one. The computation is that of the native code, so that the words
+//! are the same bit for bit.
+//!
+//! The parameter block stands in kernels/sphere_parameters.s. What a view decides of it `place` fills in on the processor
+//! ([`crate::kernel::place_source`]).
+
+use crate::kernel::{self, KernelSurface, ROUND_DOUBLE};
+use crate::lens::{self, DEPTH_RANGE};
+use crate::sphere::{MAX_COORDINATE, SLACK};
+use crate::{DEPTH_NEAR, Light, Transform, Viewport, WorldSphere, sphere_setup};
+use pxpl5_wire::{Lines, RegionGrid, Word, format};
+
+/// Code for spheres of one kind of surface and picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct SphereKernel {
+    /// Interpolated colour, or normals.
+    pub surface: KernelSurface,
+    /// Whether the picture is a field instead of a frame.
+    pub field: bool,
+}
+
+/// Words of a sphere in the display list.
+pub const SPHERE_WORDS: usize = 8;
+
+/// Words of the parameter block, that of the longest command.
+pub const SPHERE_PARAMETER_WORDS: usize = TEMPLATE + 53;
+
+/// Where the words of the command begin in the parameter block.
+const TEMPLATE: usize = 110;
+
+/// Words of the parameter block that a view and a light decide, from the first one on.
+pub const SPHERE_VIEW_WORDS: usize = 55;
+
+impl SphereKernel {
+    /// The kernel for a picture; `None` where there is none: pictures other than NTSC frames and fields.
+    #[must_use]
+    pub fn for_picture(surface: KernelSurface, viewport: &Viewport) -> Option<Self> {
+        let field = matches!(viewport.lines(), Lines::Field(_));
+        let grid = if field { RegionGrid::FIELD } else { RegionGrid::FRAME };
+        (viewport.grid() == grid).then_some(Self { surface, field })
+    }
+
+    /// The source in i860 assembly; its entry is the label `spheres`.
+    #[must_use]
+    pub fn source(&self) -> String {
+        let surface = match self.surface {
+            KernelSurface::Gouraud => include_str!("../kernels/sphere_gouraud.s"),
+            KernelSurface::Phong => include_str!("../kernels/sphere_phong.s"),
+        };
+        [
+            include_str!("../kernels/sphere_parameters.s"),
+            kernel::picture(self.field),
+            include_str!("../kernels/reciprocal.s"),
+            include_str!("../kernels/reciprocal_root.s"),
+            include_str!("../kernels/insert.s"),
+            surface,
+            include_str!("../kernels/sphere_macros.s"),
+            include_str!("../kernels/sphere.s"),
+            include_str!("../kernels/sphere_functions.s"),
+        ]
+        .join("\n")
+    }
+
+    /// Words of a command that it makes.
+    #[must_use]
+    pub const fn command_words(&self) -> usize {
+        match self.surface {
+            KernelSurface::Gouraud => 53,
+            KernelSurface::Phong => 38,
+        }
+    }
+
+    /// The parameter block for a view; `command` is a command of zeros. `None` where the projection cannot show spheres.
+    #[must_use]
+    pub fn parameters(
+        &self,
+        transform: &Transform,
+        light: &Light,
+        command: &[Word],
+    ) -> Option<[Word; SPHERE_PARAMETER_WORDS]> {
+        let lens = transform.lens.as_ref()?;
+        let mut words = [0; SPHERE_PARAMETER_WORDS];
+        let [x, y, z, _] = transform.to_eye.rows();
+        let origin = transform.to_eye.origin().to_array();
+        let singles = [x, y, z].concat().into_iter().chain(origin).map(f32::to_bits);
+        words.iter_mut().zip(singles).for_each(|(word, single)| *word = single);
+        let [light_x, light_y, light_z] = light.direction.map(f64::from);
+        let pairs = [lens.step, lens.rate, lens.corner, lens.near, lens.far].concat();
+        let of_light = [light_x, light_y, light_z, light.ambient.into(), light.diffuse.into()];
+        let depths = [lens.least, lens.base, lens.reach];
+        doubles(&mut words[16..], &[&[transform.to_eye.scale()], pairs.as_slice(), &depths, &of_light].concat());
+        words[54] = Word::from(lens.parallel);
+        words[55] = transform.viewport.first_line();
+        doubles(&mut words[56..], &self.constants(&transform.viewport));
+        words[TEMPLATE..].iter_mut().zip(command).for_each(|(word, of_command)| *word = *of_command);
+        Some(words)
+    }
+
+    /// What the picture decides, and numbers.
+    fn constants(&self, viewport: &Viewport) -> [f64; 27] {
+        let [width, lines] = [viewport.grid().width, viewport.frame_lines()];
+        let half = lens::half_frame(width, lines);
+        let first = lens::first_pixel(width, lines);
+        let unit = f64::from(match self.surface {
+            KernelSurface::Gouraud => 1_u32 << format::COLOUR_FRACTION_BITS,
+            KernelSurface::Phong => 1_u32 << format::NORMAL_FRACTION_BITS,
+        });
+        let near = f64::from(DEPTH_NEAR);
+        [
+            half[0],
+            half[1],
+            1.0 / half[0],
+            1.0 / half[1],
+            first[0],
+            first[1],
+            2.0,
+            0.5,
+            1.5,
+            ROUND_DOUBLE,
+            1.0,
+            4.0,
+            -4.0,
+            MAX_COORDINATE,
+            SLACK,
+            4096.0,
+            sphere_setup::MAX_SLOPE,
+            (1_u64 << 52) as f64,
+            DEPTH_RANGE,
+            near,
+            near * 0.5,
+            -f64::MAX,
+            unit,
+            unit * 0.5,
+            256.0,
+            511.0,
+            0.25,
+        ]
+    }
+}
+
+/// Doubles into words, the low half first.
+fn doubles(words: &mut [Word], values: &[f64]) {
+    for (pair, value) in words.chunks_exact_mut(2).zip(values) {
+        pair.copy_from_slice(&kernel::halves(*value));
+    }
+}
+
+/// A sphere as the display list holds it.
+#[must_use]
+pub fn sphere_words(sphere: &WorldSphere) -> [Word; SPHERE_WORDS] {
+    let [x, y, z] = sphere.centre.to_array().map(f32::to_bits);
+    let [r, g, b] = sphere.colour.map(Word::from);
+    [x, y, z, sphere.radius.to_bits(), r << 16 | g << 8 | b, 0, 0, 0]
+}
