@@ -151,6 +151,26 @@ fn without_bins_every_command_is_made_in_order() {
     }
 }
 
+/// All corners left of the picture, one of them beyond the guard band too, and the place that is reserved: none is cut, so that none has
+/// more than one command.
+#[test]
+fn what_lies_beside_the_picture_is_not_cut_without_bins_either() {
+    let mut list = Arc::unwrap_or_clone(list(30));
+    for triangle in 0..30 {
+        for (corner, x) in [-20.0, -25.0, -5_000.0].into_iter().enumerate() {
+            list.positions[3 * triangle + (corner + triangle) % 3].x = x;
+        }
+    }
+    let share = Share::new(Arc::new(list), 0, 1);
+    let viewport = Viewport::field(FieldParity::Odd);
+    for version in VERSIONS {
+        let pass = share.transform(&view(), 0, picture(viewport, Shading::Gouraud, RegionBinning::All));
+        assert_eq!((pass.stats().outside, pass.stats().clipped), (30, 0));
+        let made = pass.run_code(&mut board(version, &share), 0).expect("it returns").expect("it has a kernel");
+        assert!(made.commands.is_empty(), "{version:?}: {:?}", made.commands);
+    }
+}
+
 /// Triangles that reach behind the eye, in both structures: their pieces lie in the bins where the native ones do.
 #[test]
 fn pieces_of_clipped_triangles_are_those_of_the_native_firmware() {
