@@ -45,7 +45,7 @@ impl GpTiming {
 
 // Times of primitives that follow from i860 code (derived from code): means over the three application scenes as
 // `pxpl5_lab::code_times` measures them; its test holds these constants to the code. The software of messages has none.
-// `pass_ns` is the beginning of a pass over one structure, as two of the scenes have it; at the cycle level several take more.
+// `pass_ns` is the beginning of a pass over one structure, as most scenes have it; at the cycle level several take more.
 impl GpTiming {
     /// This table with the times of the scheduled code for Phong triangles of a frame, in bins: PPHIGS.
     #[must_use]
