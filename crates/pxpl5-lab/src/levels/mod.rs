@@ -24,13 +24,27 @@ pub fn summarise(registry: &Registry, experiment: &Experiment) -> Result<Summary
 }
 
 /// How far a figure is from that of the cycle level, percent; none where both have no value, or both are 0: pictures that are never in
-/// time have no latency.
+/// time have no latency. Where one of them has none, or that of the cycle level is 0, it counts 100.
 #[must_use]
 pub fn deviation_percent(value: f64, of_cycle: f64) -> f64 {
     match (value.is_finite(), of_cycle.is_finite()) {
         (true, true) if value == of_cycle => 0.0,
+        (true, true) if of_cycle == 0.0 => 100.0,
         (true, true) => 100.0 * (value / of_cycle - 1.0).abs(),
         (false, false) => 0.0,
         _ => 100.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::deviation_percent;
+
+    #[test]
+    fn what_one_level_has_and_the_other_has_not_counts_a_hundred_percent() {
+        assert!((deviation_percent(103.0, 100.0) - 3.0).abs() < 1e-9);
+        assert_eq!([deviation_percent(0.0, 0.0), deviation_percent(f64::NAN, f64::NAN)], [0.0; 2]);
+        let one_sided = [(59.94, 0.0), (0.0, 59.94), (1.0, f64::NAN), (f64::NAN, 1.0)];
+        assert_eq!(one_sided.map(|(value, of_cycle)| deviation_percent(value, of_cycle)), [100.0; 4]);
     }
 }
