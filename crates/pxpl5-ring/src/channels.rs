@@ -80,13 +80,11 @@ impl RingChannels {
         channel
     }
 
+    /// Says when the message on a channel ends, once.
     pub(crate) fn ends(&mut self, channel: usize, at: Time) {
         let before = std::mem::replace(&mut self.ends_at[channel], at);
-        self.first_end = if before == self.first_end {
-            self.ends_at.iter().copied().min().unwrap_or(UNKNOWN)
-        } else {
-            self.first_end.min(at)
-        };
+        debug_assert_eq!(before, UNKNOWN, "an end that is known stays");
+        self.first_end = self.first_end.min(at);
     }
 
     /// The earliest end that is known.
