@@ -66,23 +66,25 @@ fn triangles_in_time(
 ) -> Option<u64> {
     let (least, most) = ESTIMATED_FIELDS;
     let plain = experiment.clone().without_head().fields(experiment.length().clamp(least, most));
-    let is_in_time = |scene: Scene| is_in_time(&summary(&plain.clone().with_scene(scene)).ok()?);
+    let is_in_time = |scene: &Arc<Scene>| is_in_time(&summary(&plain.clone().with_scene(Arc::clone(scene))).ok()?);
     let whole = Arc::clone(plain.scene());
-    let mut denser = Scene::clone(&whole);
+    let mut denser = Arc::clone(&whole);
     let mut in_time = 0;
     let mut too_many = primitives(&whole) + 1;
     while too_many - in_time > 1 {
         let middle = in_time + (too_many - in_time) / 2;
-        let thinned = denser.decimated(middle).ok()?;
-        if is_in_time(thinned.clone())? {
+        let thinned = Arc::new(denser.decimated(middle).ok()?);
+        if is_in_time(&thinned)? {
             in_time = middle;
-        } else {
-            too_many = middle;
-            // It can have fewer, where no edge is left that can go.
-            denser = if primitives(&thinned) == middle { thinned } else { denser };
+            continue;
+        }
+        too_many = middle;
+        // It can have fewer, where no edge is left that can go: then others are thinned from what came before it.
+        if primitives(&thinned) == middle {
+            denser = thinned;
         }
     }
-    while in_time > 0 && !is_in_time(whole.decimated(in_time).ok()?)? {
+    while in_time > 0 && !is_in_time(&Arc::new(whole.decimated(in_time).ok()?))? {
         in_time -= in_time.div_ceil(100);
     }
     Some(in_time as u64)

@@ -1,20 +1,15 @@
 // A command: enable; silhouette, root, depth; of three components a product with the root, a linear part, a limit.
 COMMAND_BYTES = 212
 
-// of the vector that is 1 along axis k, what is at a right angle to where the eye lies, unit: its part along the light
-        .macro  across k, to
-        fld.d   TOWARDS(r2), f24
-        fld.d   TOWARDS+8(r2), f26
-        fld.d   TOWARDS+16(r2), f28
-        fld.d   TOWARDS+8*\k(r2), f30
-        fmul.dd f30, f24, f24
-        fmul.dd f30, f26, f26
-        fmul.dd f30, f28, f28
+// the vector f24 f26 f28 the other way round
+        .macro  turnedround
         fsub.dd f0, f24, f24
         fsub.dd f0, f26, f26
         fsub.dd f0, f28, f28
-        fld.d   S_ONE(r20), f8
-        oneof\k
+        .endm
+
+// the same with length 1
+        .macro  unit
         fmul.dd f24, f24, f16
         fmul.dd f26, f26, f8
         fadd.dd f16, f8, f16
@@ -24,6 +19,21 @@ COMMAND_BYTES = 212
         fmul.dd f24, f18, f24
         fmul.dd f26, f18, f26
         fmul.dd f28, f18, f28
+        .endm
+
+// of the vector that is 1 along axis k, what is at a right angle to where the eye lies, unit: its part along the light
+        .macro  across k, to
+        fld.d   TOWARDS(r2), f24
+        fld.d   TOWARDS+8(r2), f26
+        fld.d   TOWARDS+16(r2), f28
+        fld.d   TOWARDS+8*\k(r2), f30
+        fmul.dd f30, f24, f24
+        fmul.dd f30, f26, f26
+        fmul.dd f30, f28, f28
+        turnedround
+        fld.d   S_ONE(r20), f8
+        oneof\k
+        unit
         lit     f24, f26, f28
         fst.d   f24, \to(r2)
         .endm
@@ -56,18 +66,8 @@ COMMAND_BYTES = 212
         fld.d   CENTRE(r2), f24
         fld.d   CENTRE+8(r2), f26
         fld.d   CENTRE+16(r2), f28
-        fsub.dd f0, f24, f24
-        fsub.dd f0, f26, f26
-        fsub.dd f0, f28, f28
-        fmul.dd f24, f24, f16
-        fmul.dd f26, f26, f8
-        fadd.dd f16, f8, f16
-        fmul.dd f28, f28, f8
-        call    root
-        fadd.dd f16, f8, f16
-        fmul.dd f24, f18, f24
-        fmul.dd f26, f18, f26
-        fmul.dd f28, f18, f28
+        turnedround
+        unit
 ahead:  fst.d   f24, TOWARDS(r2)
         fst.d   f26, TOWARDS+8(r2)
         fst.d   f28, TOWARDS+16(r2)

@@ -19,6 +19,7 @@
 //! the normals. Registers and layouts stand in kernels/parameters.s. The sources are put together as a linker would, one file for
 //! each choice. This crate does not assemble or run them.
 
+use crate::newton::ROUND_DOUBLE;
 use crate::transform::Turn;
 use crate::{DEPTH_FAR, DEPTH_NEAR, Light, MAX_CLIP, NORMAL_UNIT, Transform, Triangle, Viewport, clip, light, screen};
 use glam::Vec3;
@@ -91,8 +92,6 @@ const ROUND_SINGLE: f32 = 12_582_912.0;
 const TWO_23: f32 = 8_388_608.0;
 /// More than any distance of two corners within the guard band, in subpixels.
 const TWO_18: f32 = 262_144.0;
-/// 1.5 * 2^52, in single precision too.
-pub(crate) const ROUND_DOUBLE: f64 = 6_755_399_441_055_744.0;
 
 /// Less a biased integer, this word turns the order of integers round.
 const FLIP: Word = 0x9700_0000;

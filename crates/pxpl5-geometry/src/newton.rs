@@ -6,7 +6,7 @@
 const SEED: u64 = !((1 << (52 - 8)) - 1);
 
 /// 1.5 * 2^52: a double of less than 2^51 added to it is rounded to a whole number, to even between two.
-const ROUND: f64 = 6_755_399_441_055_744.0;
+pub(crate) const ROUND_DOUBLE: f64 = 6_755_399_441_055_744.0;
 
 fn seed(exact: f64) -> f64 {
     f64::from_bits(exact.to_bits() & SEED)
@@ -39,7 +39,7 @@ pub(crate) fn root(value: f64) -> f64 {
 /// The whole number nearest to one of less than 2^51, to even between two. What is greater gives bits without a meaning, the same
 /// ones everywhere.
 pub(crate) fn whole(value: f64) -> i64 {
-    ((value + ROUND).to_bits() as i64).wrapping_sub(ROUND.to_bits() as i64)
+    ((value + ROUND_DOUBLE).to_bits() as i64).wrapping_sub(ROUND_DOUBLE.to_bits() as i64)
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Screen triangles: what is kept between transform and set-up.
 
+use crate::newton::ROUND_DOUBLE;
 use crate::outline::{Outline, SUBPIXELS, extent};
 use crate::plane::Planes;
 use crate::stats::SetupStats;
@@ -60,7 +61,6 @@ pub(crate) const DEPTH_SCALE: f32 = (DEPTH_FAR - DEPTH_NEAR) as f32;
 #[allow(clippy::manual_clamp, reason = "`clamp` would leave a NaN, which is to be near")]
 #[inline(always)]
 pub(crate) fn depth_fixed(beyond_near: f64) -> u32 {
-    const ROUND_DOUBLE: f64 = 6_755_399_441_055_744.0;
     const RANGE: f64 = (DEPTH_FAR - DEPTH_NEAR) as f64;
     let scaled = beyond_near.max(0.0).min(RANGE);
     (scaled + (ROUND_DOUBLE + DEPTH_NEAR as f64)).to_bits() as u32

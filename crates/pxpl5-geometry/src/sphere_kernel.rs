@@ -9,8 +9,9 @@
 //! The parameter block stands in kernels/sphere_parameters.s. What a view decides of it `place` fills in on the processor
 //! ([`crate::kernel::place_source`]).
 
-use crate::kernel::{self, KernelSurface, ROUND_DOUBLE};
+use crate::kernel::{self, KernelSurface};
 use crate::lens::{self, DEPTH_RANGE};
+use crate::newton::ROUND_DOUBLE;
 use crate::sphere::{MAX_COORDINATE, SLACK};
 use crate::{DEPTH_NEAR, Light, Transform, Viewport, WorldSphere, sphere_setup};
 use pxpl5_wire::{Lines, RegionGrid, Word, format};

@@ -157,14 +157,15 @@ impl Stepper {
             self.experiment.go_on()?;
             self.run_to(self.record().tick(self.period().after(PROGRESS_FIELDS)));
         }
+        self.machine.finish_pixels();
+        // What a look for a deadlock takes, behind the end of the run, is no time of it.
+        let host_seconds = self.begun_s.zip(self.experiment.host.seconds()).map(|(begin, end)| end - begin);
         let mut error = self.failure().cloned();
         // Where frames are begun on demand, a host without a further report is at rest for good reason.
         if error.is_none() && !self.experiment.on_demand && self.may_be_stuck() {
             error = self.deadlock();
         }
-        self.machine.finish_pixels();
-        let Self { experiment, machine, head, notes, window, begun_s, .. } = self;
-        let host_seconds = begun_s.zip(experiment.host.seconds()).map(|(begin, end)| end - begin);
+        let Self { experiment, machine, head, notes, window, .. } = self;
         let record = machine.into_record();
         let stopped = error.as_ref().map(|error| record.display().period_at(error.time()));
         let reached = stopped.unwrap_or(experiment.end()).min(experiment.end());
