@@ -482,7 +482,7 @@ mod tests {
         fn machines_that_are_computed_together_are_what_they_are_alone(
             gps in 1usize..5,
             renderers in 5usize..23,
-            all in proptest::collection::vec(numbers(), 1..30),
+            all in proptest::collection::vec(numbers(), 1..50),
             other in 0usize..40,
             split: bool,
             triangles in 1.0f64..400.0,
