@@ -69,6 +69,10 @@ pub(crate) enum Floating {
     PipelinedMultiplyDoubles,
     PipelinedAddDoubles,
     PipelinedSubtractDoubles,
+    /// On doubles, one at a time.
+    MultiplyDoubles,
+    AddDoubles,
+    SubtractDoubles,
     /// Read two doubles and do what it says.
     Doubles,
     /// Read what it says, through the pipe if need be, and do what it says.
@@ -98,6 +102,9 @@ impl Floating {
             (Op::Fmul, PIPELINED, _) if alike => Floating::PipelinedMultiply,
             (Op::Fadd, PIPELINED, _) if alike => Floating::PipelinedAdd,
             (Op::Fsub, PIPELINED, _) if alike => Floating::PipelinedSubtract,
+            (Op::Fmul, _, DOUBLES) if alike => Floating::MultiplyDoubles,
+            (Op::Fadd, _, DOUBLES) if alike => Floating::AddDoubles,
+            (Op::Fsub, _, DOUBLES) if alike => Floating::SubtractDoubles,
             (Op::Fmul, _, false) if alike => Floating::Multiply,
             (Op::Fadd, _, false) if alike => Floating::Add,
             (Op::Fsub, _, false) if alike => Floating::Subtract,

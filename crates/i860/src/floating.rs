@@ -21,6 +21,9 @@ impl Cpu {
             Floating::PipelinedMultiplyDoubles => self.pipelined_double(Multiply, action, from),
             Floating::PipelinedAddDoubles => self.pipelined_double(Add, action, from),
             Floating::PipelinedSubtractDoubles => self.pipelined_double(Subtract, action, from),
+            Floating::MultiplyDoubles => self.scalar_double(Multiply, action, from),
+            Floating::AddDoubles => self.scalar_double(Add, action, from),
+            Floating::SubtractDoubles => self.scalar_double(Subtract, action, from),
             Floating::Multiply => self.scalar_single(Multiply, action, from),
             Floating::Add => self.scalar_single(Add, action, from),
             Floating::Subtract => self.scalar_single(Subtract, action, from),
@@ -37,10 +40,22 @@ impl Cpu {
 
     #[inline(always)]
     fn pipelined_double(&mut self, operation: Operation, action: &FloatingAction, from: Operands) {
-        let bits = double(operation, f64::from_bits(from.a), f64::from_bits(from.b), self.flush_to_zero());
+        let bits = self.double(operation, from);
         let last = if operation == Operation::Multiply { 1 } else { 2 };
         let leaving = push(self.pipe_of(operation), last, PipeStage { bits, double: true });
         self.state.set_f(action.dest, leaving);
+    }
+
+    #[inline(always)]
+    fn scalar_double(&mut self, operation: Operation, action: &FloatingAction, from: Operands) {
+        let bits = self.double(operation, from);
+        lose(self.pipe_of(operation));
+        self.state.set_f64(action.dest, bits);
+    }
+
+    #[inline(always)]
+    fn double(&self, operation: Operation, Operands { a, b }: Operands) -> u64 {
+        double(operation, f64::from_bits(a), f64::from_bits(b), self.flush_to_zero())
     }
 
     #[inline(always)]
