@@ -147,6 +147,11 @@ impl CommandWords for PieceWords {
             self.append(Command::CopyRegion(CopyRegion { target: self.target }), out);
         }
     }
+
+    fn append_touching(&self, out: &mut Vec<Word>) -> bool {
+        self.append_words(out);
+        !self.part.triangles.is_empty() || !self.part.spheres.is_empty()
+    }
 }
 
 impl PieceWords {

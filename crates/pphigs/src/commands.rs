@@ -193,6 +193,22 @@ struct RegionWords {
 
 impl CommandWords for RegionWords {
     fn append_words(&self, out: &mut Vec<Word>) {
+        self.append_with(self.pass.triangles_in(self.region, &self.part.triangles), out);
+    }
+
+    fn append_touching(&self, out: &mut Vec<Word>) -> bool {
+        let triangles = self.pass.triangles_touching(self.region, &self.part.triangles);
+        let draws = !triangles.is_empty() || !self.part.spheres.is_empty();
+        if draws || self.part.clear || self.part.shade || self.part.copy.is_some() {
+            self.append_with(&triangles, out);
+        }
+        draws
+    }
+}
+
+impl RegionWords {
+    /// All commands, with some of the triangles.
+    fn append_with(&self, triangles: &[BinEntry], out: &mut Vec<Word>) {
         let picture = self.pass.picture();
         if self.part.select {
             let [left, top, _, _] = picture.viewport.grid().rectangle(self.region);
@@ -202,7 +218,7 @@ impl CommandWords for RegionWords {
         if self.part.clear {
             append(&Command::Clear(Clear { colour: rgb(self.pass.background()) }), &picture.layout, out);
         }
-        self.triangles(out);
+        self.triangles(triangles, out);
         self.spheres(out);
         if self.part.shade {
             append(&Command::Shade(shade(self.pass.light())), &picture.layout, out);
@@ -211,18 +227,8 @@ impl CommandWords for RegionWords {
             append(&Command::CopyRegion(CopyRegion { target: order.target }), &picture.layout, out);
         }
     }
-}
 
-/// A layout that lacks what a command needs is refused when the machine is configured.
-fn append(command: &Command, layout: &Layout, out: &mut Vec<Word>) {
-    let encoded = command.encode(layout, out);
-    debug_assert!(encoded.is_ok(), "{encoded:?}");
-}
-
-impl RegionWords {
-    fn triangles(&self, out: &mut Vec<Word>) {
-        let range = self.part.triangles.start as usize..self.part.triangles.end as usize;
-        let mut entries = &self.pass.bin(self.region).triangles[range];
+    fn triangles(&self, mut entries: &[BinEntry], out: &mut Vec<Word>) {
         for (place, transform) in self.pass.drawn() {
             let end = place.structure.triangles.end;
             let (here, rest) = entries.split_at(entries.partition_point(|entry| (entry.triangle as usize) < end));
@@ -300,6 +306,9 @@ impl RegionWords {
     }
 
     fn spheres(&self, out: &mut Vec<Word>) {
+        if self.part.spheres.is_empty() {
+            return;
+        }
         let range = self.part.spheres.start as usize..self.part.spheres.end as usize;
         let mut numbers = &self.pass.bin(self.region).spheres[range];
         let picture = self.pass.picture();
@@ -319,6 +328,12 @@ impl RegionWords {
             }
         }
     }
+}
+
+/// A layout that lacks what a command needs is refused when the machine is configured.
+fn append(command: &Command, layout: &Layout, out: &mut Vec<Word>) {
+    let encoded = command.encode(layout, out);
+    debug_assert!(encoded.is_ok(), "{encoded:?}");
 }
 
 /// Light and highlight in the formats of the command; the eye looks along -z. Nothing is lit without a light.

@@ -9,6 +9,8 @@ use crate::placing::place_once;
 use crate::view::FrameView;
 use pxpl5_geometry::{Light, RegionMask, SetupStats, Touch, Transform};
 use pxpl5_wire::RegionId;
+use std::borrow::Cow;
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 /// A screen triangle of a bin: what its commands are made from.
@@ -37,6 +39,8 @@ pub struct Pass {
     stats: SetupStats,
     /// By region.
     bins: OnceLock<Vec<Bin>>,
+    /// Where all regions get all triangles.
+    touching: OnceLock<Touching>,
     /// Makes the words of triangles; `None` where nobody wants pixels.
     encoder: Option<Encoder>,
 }
@@ -57,8 +61,8 @@ trait Take {
     /// A triangle that touches one region alone.
     fn triangle_in(&mut self, region: RegionId, triangle: u32);
 
-    /// What is left of a triangle, or a piece of it, and the bins that get it.
-    fn piece(&mut self, receivers: RegionMask, entry: BinEntry);
+    /// What is left of a triangle, or a piece of it, the regions that it touches, and those whose bins get it.
+    fn piece(&mut self, touched: RegionMask, receivers: RegionMask, entry: BinEntry);
 
     /// A sphere.
     fn sphere(&mut self, regions: RegionMask, number: u32);
@@ -95,7 +99,7 @@ impl Take for Found {
         self.note_touching(0, triangle);
     }
 
-    fn piece(&mut self, receivers: RegionMask, entry: BinEntry) {
+    fn piece(&mut self, _: RegionMask, receivers: RegionMask, entry: BinEntry) {
         receivers.iter().for_each(|region| self.in_region(region).triangles += 1);
         self.on_screen.triangles += 1;
         if entry.piece == Some(0) {
@@ -116,13 +120,35 @@ impl Take for Vec<Bin> {
         self[usize::from(region.0)].triangles.push(BinEntry { triangle, piece: Some(0) });
     }
 
-    fn piece(&mut self, receivers: RegionMask, entry: BinEntry) {
+    fn piece(&mut self, _: RegionMask, receivers: RegionMask, entry: BinEntry) {
         receivers.iter().for_each(|region| self[usize::from(region.0)].triangles.push(entry));
     }
 
     fn sphere(&mut self, regions: RegionMask, number: u32) {
         regions.iter().for_each(|region| self[usize::from(region.0)].spheres.push(number));
     }
+}
+
+/// The triangles that touch each region, where all regions get all of them.
+#[derive(Debug)]
+struct Touching {
+    /// By region, with the place in the bin.
+    entries: Vec<Vec<(u32, BinEntry)>>,
+    n_triangles: u32,
+}
+
+impl Take for Touching {
+    fn triangle_in(&mut self, region: RegionId, triangle: u32) {
+        self.piece(RegionMask::only(region), RegionMask::EMPTY, BinEntry { triangle, piece: Some(0) });
+    }
+
+    fn piece(&mut self, touched: RegionMask, _: RegionMask, entry: BinEntry) {
+        let place = self.n_triangles;
+        touched.iter().for_each(|region| self.entries[usize::from(region.0)].push((place, entry)));
+        self.n_triangles += 1;
+    }
+
+    fn sphere(&mut self, _: RegionMask, _: u32) {}
 }
 
 impl Walk {
@@ -156,7 +182,7 @@ impl Walk {
             }
             let mut pieces = 0;
             let mut put = |mask| {
-                take.piece(self.receivers(mask), BinEntry { triangle, piece: Some(pieces) });
+                take.piece(mask, self.receivers(mask), BinEntry { triangle, piece: Some(pieces) });
                 pieces += 1;
             };
             match touch {
@@ -169,7 +195,7 @@ impl Walk {
                 }
             }
             if pieces == 0 && self.picture.binning == RegionBinning::All {
-                take.piece(self.all_regions, BinEntry { triangle, piece: None });
+                take.piece(RegionMask::EMPTY, self.all_regions, BinEntry { triangle, piece: None });
             }
         }
         // Most triangles by far, counted together.
@@ -213,7 +239,7 @@ impl Pass {
         };
         let stats = walk.go(&mut found);
         let encoder = picture.pixels.then(|| Encoder::for_picture(&picture)).flatten();
-        Self { walk, found, stats, bins: OnceLock::new(), encoder }
+        Self { walk, found, stats, bins: OnceLock::new(), touching: OnceLock::new(), encoder }
     }
 
     /// What is in the bins, found again.
@@ -225,6 +251,12 @@ impl Pass {
         let mut bins: Vec<Bin> = self.found.counts.iter().map(room).collect();
         self.walk.go(&mut bins);
         bins
+    }
+
+    fn found_touching(&self) -> Touching {
+        let mut touching = Touching { entries: vec![Vec::new(); self.found.counts.len()], n_triangles: 0 };
+        self.walk.go(&mut touching);
+        touching
     }
 
     /// Numbers of entries in a region's bin.
@@ -295,6 +327,21 @@ impl Pass {
 
     pub(crate) fn bin(&self, region: RegionId) -> &Bin {
         &self.bins.get_or_init(|| self.filled())[usize::from(region.0)]
+    }
+
+    /// Triangles of some places in a region's bin.
+    pub(crate) fn triangles_in(&self, region: RegionId, places: &Range<u32>) -> &[BinEntry] {
+        &self.bin(region).triangles[places.start as usize..places.end as usize]
+    }
+
+    /// Those of them that touch the region; all of them, unless all regions get everything.
+    pub(crate) fn triangles_touching(&self, region: RegionId, places: &Range<u32>) -> Cow<'_, [BinEntry]> {
+        if self.walk.picture.binning == RegionBinning::Touched {
+            return Cow::Borrowed(self.triangles_in(region, places));
+        }
+        let all = &self.touching.get_or_init(|| self.found_touching()).entries[usize::from(region.0)];
+        let [from, to] = [places.start, places.end].map(|place| all.partition_point(|entry| entry.0 < place));
+        all[from..to].iter().map(|entry| entry.1).collect()
     }
 
     /// Structures in order, with their transforms.

@@ -135,6 +135,13 @@ pub struct CommandRun {
 pub trait CommandWords: Debug + Send + Sync {
     /// Appends the words to `out`, always the same ones.
     fn append_words(&self, out: &mut Vec<Word>);
+
+    /// The same, or without primitives that touch no pixel of the region that they are sent to; says whether a primitive is among
+    /// them.
+    fn append_touching(&self, out: &mut Vec<Word>) -> bool {
+        self.append_words(out);
+        true
+    }
 }
 
 impl CommandWords for Vec<Word> {
