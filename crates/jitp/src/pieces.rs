@@ -6,8 +6,8 @@ use pphigs::PrimitiveCounts;
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::{Clear, Command, CommandKind, CopyRegion, Layout, SelectRegion};
 use pxpl5_wire::{
-    CommandList, CommandRun, CommandWords, CopyContent, CopyOrder, CopyTarget, CopyWay, MAX_MESSAGE_WORDS, RegionId,
-    Word,
+    CommandList, CommandRun, CommandSink, CommandWords, CopyContent, CopyOrder, CopyTarget, CopyWay, MAX_MESSAGE_WORDS,
+    RegionId, Word,
 };
 use std::ops::Range;
 use std::sync::Arc;
@@ -148,8 +148,8 @@ impl CommandWords for PieceWords {
         }
     }
 
-    fn append_touching(&self, out: &mut Vec<Word>) -> bool {
-        self.append_words(out);
+    fn append_touching(&self, out: &mut dyn CommandSink) -> bool {
+        self.append_words(out.words());
         !self.part.triangles.is_empty() || !self.part.spheres.is_empty()
     }
 }

@@ -1,6 +1,5 @@
 //! Structures in place, as one eye sees them, and those that were placed lately.
 
-use crate::list::DisplayList;
 use crate::structure::DisplayStructure;
 use crate::view::{EyeView, ModelEdit};
 use glam::Mat4;
@@ -33,12 +32,6 @@ pub(crate) struct Vertices {
     pub(crate) on_screen: Vec<ScreenVertex>,
     pub(crate) normals: OnceLock<Vec<VertexSurface>>,
     pub(crate) colours: OnceLock<Vec<VertexSurface>>,
-}
-
-fn named(triangles: &[[u32; 3]]) -> Range<usize> {
-    let all = triangles.iter().flatten();
-    let (first, end) = all.fold((u32::MAX, 0), |(low, high), i| (low.min(*i), high.max(*i + 1)));
-    first as usize..end as usize
 }
 
 /// Where a triangle's corners stand among a structure's vertices.
@@ -94,12 +87,9 @@ impl RecentViews {
         Self { views: Mutex::default(), kept: views.max(1), named: OnceLock::new() }
     }
 
-    /// By structure of the list, the vertices from the first that one of its triangles names to the last.
-    pub(crate) fn named(&self, list: &DisplayList) -> &[Range<usize>] {
-        self.named.get_or_init(|| {
-            let triangles = list.structures.iter().map(|structure| &list.triangles[structure.triangles.clone()]);
-            triangles.map(named).collect()
-        })
+    /// By structure, the vertices that it names, found when first asked for.
+    pub(crate) fn named(&self, find: impl FnOnce() -> Vec<Range<usize>>) -> &[Range<usize>] {
+        self.named.get_or_init(find)
     }
 
     /// The structures of a view, placed by `place` unless somebody asked for the same view lately.

@@ -20,9 +20,19 @@ const UNMOVED: Mat4 = Mat4::IDENTITY;
 #[must_use]
 pub fn place_all(list: &DisplayList, view: &FrameView, eye: usize, viewport: Viewport) -> Vec<PlacedStructure> {
     let eye = eye_of(view, eye);
-    let named = list.recent.named(list).iter().cloned();
+    let named = list.recent.named(|| named(list)).iter().cloned();
     let structures = list.structures.iter().zip(named).enumerate();
     structures.map(|(i, (s, named))| place(list, s, named, model(view, i), eye, viewport)).collect()
+}
+
+/// By structure, the vertices from the first that one of its triangles names to the last.
+fn named(list: &DisplayList) -> Vec<Range<usize>> {
+    let of = |structure: &DisplayStructure| {
+        let all = list.triangles[structure.triangles.clone()].iter().flatten();
+        let (first, end) = all.fold((u32::MAX, 0), |(low, high), i| (low.min(*i), high.max(*i + 1)));
+        first as usize..end as usize
+    };
+    list.structures.iter().map(of).collect()
 }
 
 /// As [`place_all`], made once for all who ask.

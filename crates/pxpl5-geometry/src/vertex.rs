@@ -4,7 +4,6 @@
 //! exactly as by [`Transform::bin`], [`Transform::gouraud`] and [`Transform::phong`]. The others are left to those.
 
 use crate::clip::Guard;
-use crate::lanes::{EachLane, LANES};
 use crate::light::{self, ModelLight};
 use crate::screen;
 use crate::transform::{Snapped, ToScreen};
@@ -12,6 +11,7 @@ use crate::view::FromWorld;
 use crate::{Light, Transform};
 use glam::Vec3;
 use multiversion::multiversion;
+use pxpl5_wire::LANES;
 
 /// A vertex on the screen, as a view shows it to all triangles that share it.
 #[derive(Clone, Copy, Debug)]
@@ -104,7 +104,7 @@ fn append_lanes(
     out: &mut Vec<ScreenVertex>,
 ) {
     for some in positions {
-        let mut clip: [EachLane<f32>; 4] = [[0.0; LANES]; 4];
+        let mut clip = [[0.0; LANES]; 4];
         for i in 0..LANES {
             let [x, y, z, w] = to_clip.point(some[i]);
             clip[0][i] = x;
@@ -112,10 +112,10 @@ fn append_lanes(
             clip[2][i] = z;
             clip[3][i] = w;
         }
-        let mut x: EachLane<i32> = [0; LANES];
-        let mut y: EachLane<i32> = [0; LANES];
-        let mut z: EachLane<u32> = [0; LANES];
-        let mut inside: EachLane<bool> = [false; LANES];
+        let mut x = [0; LANES];
+        let mut y = [0; LANES];
+        let mut z = [0; LANES];
+        let mut inside = [false; LANES];
         for i in 0..LANES {
             let point = [clip[0][i], clip[1][i], clip[2][i], clip[3][i]];
             inside[i] = guard.contains(point);

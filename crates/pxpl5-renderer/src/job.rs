@@ -139,13 +139,13 @@ impl PixelJob {
         }
         let mut copied = self.execute(array, words);
         for list in lists {
-            words.clear();
-            if self.saves {
-                list.append_touching(words);
+            copied = if self.saves {
+                self.copied(array.draw(&**list, words))
             } else {
+                words.clear();
                 list.append_words(words);
-            }
-            copied = self.execute(array, words);
+                self.execute(array, words)
+            };
         }
         let [width, height] = self.size();
         let colours = copied.map_or_else(|| array.read_colour(width, height), |output| output.pixels);
@@ -154,7 +154,10 @@ impl PixelJob {
 
     /// What was copied to where these pixels go. A fault stops the list, as on the hardware; what was drawn before stays.
     fn execute(&self, array: &mut Lanes, words: &[Word]) -> Option<OutputRegion> {
-        let outputs = array.execute(words).map_or_else(|_| Vec::new(), |executed| executed.outputs);
+        self.copied(array.execute(words).map_or_else(|_| Vec::new(), |executed| executed.outputs))
+    }
+
+    fn copied(&self, outputs: Vec<OutputRegion>) -> Option<OutputRegion> {
         outputs.into_iter().rfind(|output| output.target == self.target)
     }
 
@@ -194,7 +197,7 @@ impl PixelSource for NoPixels {
 mod tests {
     use super::*;
     use crate::{Clear, CopyRegion, SelectRegion};
-    use pxpl5_wire::PictureNumber;
+    use pxpl5_wire::{CommandSink, PictureNumber};
     use pxpl5_wire::{Lines, NodeId, RegionGrid, RegionId};
 
     #[derive(Debug)]
@@ -205,8 +208,8 @@ mod tests {
             out.extend_from_slice(&self.0);
         }
 
-        fn append_touching(&self, out: &mut Vec<Word>) -> bool {
-            self.append_words(out);
+        fn append_touching(&self, out: &mut dyn CommandSink) -> bool {
+            self.append_words(out.words());
             false
         }
     }
