@@ -178,7 +178,7 @@ mod tests {
     #[test]
     fn a_queue_has_its_copies_in_order_and_turned_round() {
         let mut queue = Queue::default();
-        [true, false, false].map(|right| queue.push(right));
+        [true, false, false].into_iter().for_each(|right| queue.push(right));
         assert_eq!((queue, queue.len()), (Queue(0b01_01_11), 3));
         assert_eq!(queue.reversed(), Queue(0b11_01_01));
     }

@@ -321,9 +321,9 @@ fn send<const N: usize>(
     chain.accepted = from;
     // A round is a region of every renderer.
     for round in (0..REGIONS).step_by(renderers) {
-        for renderer in 0..renderers.min(REGIONS - round) {
+        let ports = arrays.iter_mut().zip(&mut chain.released).take(renderers.min(REGIONS - round));
+        for (renderer, (array, released)) in ports.enumerate() {
             let latency = Times::each(|i| hop.0[i] * (renderer + gps) as f64);
-            let (array, released) = (&mut arrays[renderer], &mut chain.released[renderer]);
             granted = granted.later(channels.take_first()).later(*released);
             let mut accepted = array.take(granted + overhead + latency, &of_first);
             *released = accepted - latency;
