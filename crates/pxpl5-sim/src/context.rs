@@ -159,4 +159,27 @@ mod tests {
         bench.run(echo);
         assert_eq!(bench.outputs, [(Time(110), 3), (Time(115), 2)]);
     }
+    #[test]
+    fn what_was_scheduled_is_taken_once_in_order_and_what_was_put_out_is_known() {
+        let mut context = Context::<u32, u32>::default();
+        context.at(Time(7));
+        for count in [0, 1, 3] {
+            (0..count).for_each(|event| context.after(Span(u64::from(event)), event));
+            let mut taken = Vec::new();
+            context.each_event(|time, phase, event| taken.push((time, phase, event)));
+            let expected: Vec<_> = (0..count).map(|n| (Time(7 + u64::from(n)), Phase::Work, n)).collect();
+            assert_eq!(taken, expected);
+            assert_eq!(context.drain_events().len(), 0);
+        }
+        assert!(context.is_silent());
+        context.output(Time(9), 1);
+        assert!(!context.is_silent());
+    }
+
+    #[test]
+    fn what_is_fed_waits_in_the_queue_of_the_bench() {
+        let mut bench = TestBench::<u32, u32>::new();
+        bench.feed(Time(100), Phase::Arrive, 3);
+        assert_eq!(bench.queue().next_time(), Some(Time(100)));
+    }
 }
