@@ -135,6 +135,7 @@ mod tests {
                 copied.sort_unstable();
                 copied.dedup();
                 assert_eq!(copied.len(), 20);
+                assert_eq!((binding.regions().len(), binding.renderers()), (20, renderers));
                 assert!(binding.regions().iter().all(|b| b.context < 4));
             }
         }
