@@ -39,7 +39,7 @@ CREDIT    = 4           // takes the descriptor of a buffer that is free again
 START     = 8           // takes the first descriptor of a chain
 DONE      = 12          // chains sent
 
-// ---- a descriptor of a received message: whose it is, buffer
+// ---- a descriptor of a received message: 0 the interface's, 1 it has arrived, 2 a queue entry keeps it; buffer
 D_OWNER   = 0
 D_BUFFER  = 4
 D_BYTES   = 16
@@ -161,7 +161,7 @@ interrupt:
         ld.l    RX_NEXT(r30), r20
 arrived:
         ld.l    D_OWNER(r20), r16
-        bte     r0, r16, drained
+        btne    1, r16, drained
         ld.l    D_BUFFER(r20), r21
         ld.l    0(r21), r22             // receiver and sender
         ld.l    4(r21), r23             // kind and length
@@ -258,7 +258,9 @@ copied: ld.l    0(r18), r17
         st.l    r0, D_OWNER(r20)
         bri     r1
         st.l    r20, CREDIT(r29)
-long:   st.l    r18, E_PLACE(r16)
+long:   mov     2, r17
+        st.l    r18, E_PLACE(r16)
+        st.l    r17, D_OWNER(r20)
         bri     r1
         st.l    r20, E_BUFFER(r16)
 noentry:
@@ -291,7 +293,11 @@ finished:
         st.l    r20, FINISHED(r30)
 known:  subu    r21, r17, r0
         bnc     noroom
+        ld.l    ISSUED(r30), r23
         ld.l    NODE(r30), r22
+        subs    r23, r20, r23
+        subu    15, r23, r0             // chains that are noted
+        bnc     noroom
         ld.l    TX_NEXT(r30), r20
         mov     r17, r19                // still to come
         mov     r20, r26                // the first

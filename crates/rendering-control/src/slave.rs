@@ -8,7 +8,7 @@ use pphigs::{
     BIN_ENTRY_BYTES, Editing, FrameView, PROGRAM_BYTES, Pass, RegionEnvelope, Share, Transforming, region_messages,
 };
 use pxpl5_gp::{Account, Fault, Gp, Priority, Stage};
-use pxpl5_wire::{Body, CommandList, PictureNumber, RegionId};
+use pxpl5_wire::{Body, CommandList, NodeId, PictureNumber, RegionId};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
@@ -173,11 +173,11 @@ async fn token_program(
         {
             // The token goes on when it has been received and sent, and nothing of this level happens between.
             gp.spend_messages(2).await;
-            pass_on(&gp, &config, index, token);
+            gp.send_prepared([passed_on(&config, index, token)]);
             free_bins(&gp, &state, token.drawing)?;
             continue;
         }
-        gp.spend_message().await;
+        gp.pay_for(&received).await;
         match order? {
             StageOrder::Send(view) => state.borrow_mut().views.push_back(view),
             StageOrder::Edit(frame) => {
@@ -202,8 +202,7 @@ async fn walk(gp: &Gp, config: &RenderingControlConfig, index: usize, state: &Sh
         gp.clump_buffer_free().await;
         gp.send(renderer, list.words(), Body::Commands(list)).await;
     }
-    gp.spend_message().await;
-    pass_on(gp, config, index, token);
+    gp.send_batch(vec![passed_on(config, index, token)]).await;
 }
 
 /// What this slave has for the token's region.
@@ -212,8 +211,8 @@ fn bin_messages(config: &RenderingControlConfig, state: &SharedSlaveState, token
     pass.as_ref().map_or_else(Vec::new, |pass| messages(config, pass, token))
 }
 
-/// Sends a token on that has been paid for.
-fn pass_on(gp: &Gp, config: &RenderingControlConfig, index: usize, token: Token) {
+/// What tells the next slave, or the master, of a token.
+fn passed_on(config: &RenderingControlConfig, index: usize, token: Token) -> (NodeId, u32, Body) {
     let last = token.slaves_left == 1;
     let next = Token { slaves_left: token.slaves_left - 1, ..token };
     let (receiver, order) = if last {
@@ -222,7 +221,7 @@ fn pass_on(gp: &Gp, config: &RenderingControlConfig, index: usize, token: Token)
         (config.slaves[(index + 1) % config.slaves.len()], StageOrder::Token(next))
     };
     let (words, body) = order.message();
-    gp.send_prepared([(receiver, words, body)]);
+    (receiver, words, body)
 }
 
 /// Frees a drawing's commands and bins when the tokens of all its regions have been here.
