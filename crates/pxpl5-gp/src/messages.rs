@@ -136,3 +136,87 @@ impl Gp {
         std::future::pending().await
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{CodeVersion, GpBoard, GpEvent, GpOutput, GpTiming};
+    use pxpl5_sim::{Phase, TestBench, Time};
+
+    /// Echoes each message.
+    async fn echo(gp: Gp) -> Result<(), Fault> {
+        loop {
+            let received = gp.receive().await;
+            gp.send(received.source, 1, received.body).await;
+        }
+    }
+
+    /// Waits for a message without paying, so that it is there when the other program has stopped the board.
+    async fn wait(gp: Gp) -> Result<(), Fault> {
+        gp.until("nothing", || None::<()>).await;
+        Ok(())
+    }
+
+    fn board(message_ns: u64, code: bool) -> GpBoard {
+        let mut board = GpBoard::new(NodeId(9), GpTiming { message_ns, ..GpTiming::PAPERS }, Span(25_000));
+        if code {
+            board.run_code(CodeVersion::Compiled, i860::Config::cycle());
+        }
+        let gp = board.handle_for(Priority::Interrupt);
+        board.load(Priority::Interrupt, Box::pin(echo(gp)));
+        let gp = board.handle_for(Priority::Foreground);
+        board.load(Priority::Foreground, Box::pin(wait(gp)));
+        board
+    }
+
+    /// What a board does with messages of so many words, one after the other: its busy time and how many it has sent.
+    fn fed(board: &mut GpBoard, lengths: &[usize]) -> (Span, usize) {
+        let mut bench: TestBench<GpEvent, GpOutput> = TestBench::new();
+        for (number, words) in (1..).zip(lengths) {
+            let body = Body::Words(vec![7; *words].into());
+            let message = Message { source: NodeId(2), destination: NodeId(9), words: *words as u32, body };
+            bench.feed(Time(number * 1_000_000_000), Phase::Arrive, GpEvent::Delivered(message));
+            bench.feed(
+                Time(number * 1_000_000_000 + 900_000_000),
+                Phase::Arrive,
+                GpEvent::Accepted(number << crate::PLACE_BITS),
+            );
+        }
+        bench.run(|event, context| board.handle(event, context));
+        (board.busy(), bench.outputs.len())
+    }
+
+    #[test]
+    fn by_code_a_message_takes_the_time_of_the_code_whatever_the_table_says() {
+        let lengths = [1, 2, 100, 3];
+        let [one, other] = [1_000, 5_000].map(|message_ns| fed(&mut board(message_ns, true), &lengths));
+        assert_eq!(one, other);
+        let mut processor = Processor::new(NodeId(9), 8 << 20, CodeVersion::Compiled, i860::Config::cycle());
+        let mut expected = Span::ZERO;
+        for words in lengths {
+            let body = Body::Words(vec![7; words].into());
+            let message = Message { source: NodeId(9), destination: NodeId(2), words: 1, body: body.clone() };
+            expected += processor.receive_message(NodeId(2), &body).expect("it returns");
+            expected += processor.send_chain([(&message, false)].into_iter()).expect("it returns");
+        }
+        assert_eq!(one, (expected, 4));
+        assert_eq!(fed(&mut board(1_000, false), &lengths), (Span::from_ns(8_000), 4));
+    }
+
+    #[test]
+    fn a_fault_of_the_boards_software_stops_all_its_programs() {
+        let mut board = board(1_000, true);
+        let (_, sent) = fed(&mut board, &[1, 1025, 1]);
+        assert_eq!(sent, 1, "what came later is not answered");
+        let fault = board.fault().expect("it stopped").to_string();
+        assert_eq!(fault, "node 9: unexpected message of 1025 words from node 2");
+        assert!(board.blocked("GP 9").is_none() && board.look(Time(4_000_000_000)).programs.is_empty());
+    }
+
+    /// Code runs message by message; of the table's times several make one.
+    #[test]
+    fn several_are_paid_for_at_once_by_the_table_alone() {
+        let [table, code] = [false, true].map(|code| board(1_000, code).handle_for(Priority::Interrupt).pays_at_once());
+        assert_eq!((table, code), (true, false));
+    }
+}
