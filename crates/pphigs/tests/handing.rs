@@ -105,7 +105,7 @@ fn pieces_hold_the_words_of_the_native_firmwares_messages() {
     for (triangles, spheres) in [(400, 0), (300, 60), (0, 100), (0, 0)] {
         let share = share(triangles, spheres);
         for (shading, layout) in layouts {
-            let mut processor = Processor::new(NodeId(1), 8 << 20, CodeVersion::Scheduled, i860::Config::functional());
+            let mut processor = Processor::new(NodeId(1), 8 << 20, CodeVersion::Scheduled, i860::Config::cycle());
             share.install(&mut processor).expect("it fits");
             let passes = [-0.1, 0.1].map(|x| pass(&share, x, shading, layout, RegionBinning::Touched));
             for (context, pass) in (0..).zip(&passes) {
