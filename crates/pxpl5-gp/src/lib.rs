@@ -42,6 +42,7 @@ mod probe;
 mod processor;
 mod ring;
 pub mod timing;
+mod window;
 mod work;
 
 pub use board::{GpBoard, GpEvent, GpOutput, PLACE_BITS};
@@ -52,6 +53,6 @@ pub use memory::{Account, Memory, OutOfMemory};
 pub use messages::Chain;
 pub use probe::{Mark, Stage, StageEdge};
 pub use processor::{BreakpointHit, CodeVersion, KEPT_HITS, Processor, ProcessorFault};
-pub use ring::RING_MEMORY;
 pub use timing::{GpTiming, HostTiming};
+pub use window::RING_MEMORY;
 pub use work::Work;

@@ -1,6 +1,6 @@
 //! The board's i860 with its memory, where programs run and clocks are counted.
 
-use crate::ring;
+use crate::window;
 use i860::{Bus, Cpu, Program, Ram, RunEnd, State, Trap, Unmapped};
 use pxpl5_sim::Span;
 use pxpl5_wire::{NodeId, Word};
@@ -113,7 +113,7 @@ impl Bus for Memory {
 
     #[inline]
     fn is_cacheable(&self, address: u32) -> bool {
-        ring::is_cacheable(address)
+        window::is_cacheable(address)
     }
 }
 
@@ -350,6 +350,13 @@ impl Processor {
     #[must_use]
     pub const fn program(&self) -> Option<&Arc<Program>> {
         self.loaded.as_ref()
+    }
+
+    /// The programs that were called and lie in memory as they were loaded: the one called last, then in the order of their first calls.
+    pub fn programs(&self) -> impl Iterator<Item = &Arc<Program>> {
+        let is_last = |program: &&Arc<Program>| self.loaded.as_ref().is_some_and(|last| Arc::ptr_eq(last, program));
+        let others = self.programs.iter().filter(move |program| !is_last(program));
+        self.loaded.iter().chain(others.filter(|program| self.holds(program)))
     }
 
     fn load(&mut self, program: &Arc<Program>) -> Result<(), ProcessorFault> {

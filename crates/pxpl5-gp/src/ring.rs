@@ -13,23 +13,18 @@
 
 use crate::firmware::Fault;
 use crate::processor::{Processor, ProcessorFault};
+use crate::window::{RING_MEMORY, WINDOW};
 use i860::Program;
 use pxpl5_sim::Span;
 use pxpl5_wire::{Body, Message, NodeId, Word};
-use std::ops::Range;
 use std::sync::{Arc, LazyLock};
 
-/// The part of a board's memory that belongs to the software of messages. No program may use it.
-pub const RING_MEMORY: Range<u32> = CODE..END;
-
-const CODE: u32 = 0xF_0000;
+const CODE: u32 = RING_MEMORY.start;
 const DATA: u32 = 0xF_2000;
 const ENTRIES: u32 = DATA + 0x400;
 const STACK: u32 = 0xF_3000;
 const REQUESTS: u32 = STACK;
-const WINDOW: u32 = 0xF_4000;
 const BUFFERS: u32 = WINDOW + 0x3000;
-const END: u32 = BUFFERS + RX_COUNT * BUFFER_BYTES;
 
 /// Buffers of messages that have arrived, and their descriptors.
 const RX_COUNT: u32 = 8;
@@ -204,14 +199,10 @@ static PROGRAM: LazyLock<Arc<Program>> = LazyLock::new(|| {
     }
 });
 
-/// Whether the caches may hold what lies at an address.
-pub(crate) const fn is_cacheable(address: u32) -> bool {
-    address < WINDOW || address >= END
-}
-
 const _: () = assert!(TX_ROOM == TX_NEXT + 4 && RX_NEXT == NODE + 4, "written together");
 const _: () = assert!(TX + TX_COUNT * DESCRIPTOR_BYTES <= BUFFERS && ENTRIES + ENTRY_COUNT * ENTRY_BYTES < STACK);
-const _: () = assert!(REQUESTS + TX_COUNT * DESCRIPTOR_BYTES <= WINDOW && END == 1 << 20);
+const _: () =
+    assert!(REQUESTS + TX_COUNT * DESCRIPTOR_BYTES <= WINDOW && BUFFERS + RX_COUNT * BUFFER_BYTES <= RING_MEMORY.end);
 
 #[cfg(test)]
 mod tests;
