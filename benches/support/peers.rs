@@ -154,9 +154,7 @@ impl<A: PixelArray> Ours<A> {
         for region in (0..grid.regions() as u16).map(RegionId) {
             let envelope = RegionEnvelope { begin: true, ..RegionEnvelope::default() };
             for list in pphigs::region_messages(&pass, region, 0, envelope) {
-                self.words.clear();
-                list.content.expect("pixels are wanted").append_words(&mut self.words);
-                self.array.execute(&self.words).expect("legal commands");
+                self.array.draw(&*list.content.expect("pixels are wanted"), &mut self.words);
             }
             let [_, _, width, height] = grid.rectangle(region);
             self.pixels.push(self.array.read_colour(width, height));

@@ -289,7 +289,7 @@ fn analytic(rounds: usize) -> Fallible<Vec<Row>> {
     let unit = " configurations/s";
     Ok(vec![
         rate("analytic level, Slats, one by one", None, unit, &measured[0]),
-        rate("the same, eight together", Some(4e6), unit, &measured[1]),
+        rate("the same, sixteen together", Some(4e6), unit, &measured[1]),
     ])
 }
 

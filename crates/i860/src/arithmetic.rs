@@ -52,7 +52,7 @@ pub(crate) fn single(operation: Operation, a: f32, b: f32, flush: bool) -> u32 {
 }
 
 #[inline]
-fn double(operation: Operation, a: f64, b: f64, flush: bool) -> u64 {
+pub(crate) fn double(operation: Operation, a: f64, b: f64, flush: bool) -> u64 {
     let result = match operation {
         Operation::Add => a + b,
         Operation::Subtract => a - b,

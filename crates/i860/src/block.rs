@@ -1,5 +1,6 @@
 //! Straight runs of code, decoded once: from an address to the next branch with its slot.
 
+use crate::action::Action;
 use crate::bus::Bus;
 use crate::cache::CacheTags;
 use crate::code_map::CodeMap;
@@ -26,35 +27,8 @@ pub(crate) struct Unit {
     pub(crate) first: Decoded,
     /// The core half of a pair.
     pub(crate) second: Option<Decoded>,
-    /// Which of them changes anything that a program can see.
-    pub(crate) halves: Halves,
-}
-
-/// Halves that have something to do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Halves {
-    Idle,
-    Floating,
-    /// A core half that neither accesses memory nor branches.
-    Integer,
-    Core,
-    FloatingAndInteger,
-    FloatingAndCore,
-}
-
-impl Halves {
-    fn of(first: &Decoded, second: Option<&Decoded>) -> Halves {
-        let core = second.or((!first.is_floating()).then_some(first));
-        let is_integer = core.is_some_and(|core| core.instruction.op >= Op::Addu);
-        match (first.is_floating() && !first.is_idle(), core.is_some_and(|core| !core.is_idle())) {
-            (false, false) => Halves::Idle,
-            (true, false) => Halves::Floating,
-            (false, true) if is_integer => Halves::Integer,
-            (false, true) => Halves::Core,
-            (true, true) if is_integer => Halves::FloatingAndInteger,
-            (true, true) => Halves::FloatingAndCore,
-        }
-    }
+    /// What it changes that a program can see.
+    pub(crate) action: Action,
 }
 
 impl Unit {
@@ -69,7 +43,7 @@ impl Unit {
             (false, _) if first.dual() => Mode::Entering,
             _ => Mode::Single,
         };
-        Ok(Unit { pc, mode, after, first, second: None, halves: Halves::of(&first, None) })
+        Ok(Unit { pc, mode, after, first, second: None, action: Action::new(&first, None) })
     }
 
     fn pair<B: Bus>(pc: u32, mode: Mode, code: &mut CodeMap, bus: &mut B) -> Result<Unit, TrapCause> {
@@ -81,8 +55,8 @@ impl Unit {
         if !first.is_floating() || second.is_floating() && second.instruction.op != Op::Fnop {
             return Err(TrapCause::IllegalPair);
         }
-        let halves = Halves::of(&first, Some(&second));
-        Ok(Unit { pc, mode, after: mode.after_pair(first.dual()), first, second: Some(second), halves })
+        let action = Action::new(&first, Some(&second));
+        Ok(Unit { pc, mode, after: mode.after_pair(first.dual()), first, second: Some(second), action })
     }
 
     /// The half that may access memory or branch: that of a pair, or the instruction.

@@ -1,8 +1,9 @@
 //! Execution of branches, traps by instruction, and the core half as a whole.
 
+use crate::action::CoreAction;
+use crate::block::Unit;
 use crate::bus::Bus;
 use crate::cpu::Cpu;
-use crate::decoded::Decoded;
 use crate::flow::Flow;
 use crate::instruction::{Flags, Instruction, Op};
 use crate::state::{Mode, epsr, psr};
@@ -18,29 +19,31 @@ fn delayed(taken: bool, target: u32) -> Flow {
     if taken { Flow::Delayed(target) } else { Flow::Skip }
 }
 
+/// Address behind the delay slot of a unit's branch; the slot is a pair when the next unit is dual.
+fn behind_slot(unit: &Unit) -> u32 {
+    unit.core_pc().wrapping_add(if unit.after.is_dual() { 12 } else { 8 })
+}
+
 impl Cpu {
-    /// Executes a core instruction at `pc`.
+    /// Executes the core half of a unit, which is not integer arithmetic.
     #[inline(always)]
-    pub(crate) fn core<B: Bus>(&mut self, d: &Decoded, pc: u32, bus: &mut B) -> Result<Flow, TrapCause> {
-        if d.instruction.op >= Op::Addu {
-            self.integer(&d.instruction);
-            return Ok(Flow::Next);
-        }
-        match d.instruction.op {
-            Op::LdB | Op::LdS | Op::LdL => self.load_integer(d, bus)?,
-            Op::StB | Op::StS | Op::StL => self.store_integer(d, bus)?,
-            Op::Fld => self.load_floating(d, bus)?,
-            Op::Fst => self.store_floating(d, bus)?,
-            Op::Pfld => self.load_pipelined(d, bus)?,
-            Op::Pst => self.store_pixels(d, bus)?,
-            op if op <= Op::Intovr => return self.system(&d.instruction, pc),
-            _ => return Ok(self.branch(&d.instruction, pc)),
+    pub(crate) fn core<B: Bus>(&mut self, a: &CoreAction, unit: &Unit, bus: &mut B) -> Result<Flow, TrapCause> {
+        match a.op {
+            Op::LdB | Op::LdS | Op::LdL => self.load_integer(a, bus)?,
+            Op::StB | Op::StS | Op::StL => return self.store_integer(a, bus),
+            Op::Fld => self.load_floating(a, bus)?,
+            Op::Fst => return self.store_floating(a, bus),
+            Op::Pfld => self.load_pipelined(a, bus)?,
+            Op::Pst => return self.store_pixels(a, bus),
+            op if op <= Op::Intovr => return self.system(unit),
+            _ => return Ok(self.branch(unit)),
         }
         Ok(Flow::Next)
     }
 
     #[inline(never)]
-    fn system(&mut self, i: &Instruction, pc: u32) -> Result<Flow, TrapCause> {
+    fn system(&mut self, unit: &Unit) -> Result<Flow, TrapCause> {
+        let i = &unit.core().instruction;
         match i.op {
             Op::LdC => self.state.set_r(i.dest, self.read_control(i.src2)),
             Op::StC => self.write_control(i.src2, self.state.r(i.src1)),
@@ -48,7 +51,7 @@ impl Cpu {
             Op::Flush => self.flush_line(i),
             Op::Trap => return Err(TrapCause::Instruction),
             Op::Intovr if self.state.epsr & epsr::OF != 0 => return Err(TrapCause::Overflow),
-            Op::Calli => return Ok(self.call_indirect(i, pc)),
+            Op::Calli => return Ok(self.call_indirect(i, unit)),
             Op::Lock => self.set_lock(true),
             Op::Unlock => self.set_lock(false),
             _ => {}
@@ -56,25 +59,21 @@ impl Cpu {
         Ok(Flow::Next)
     }
 
-    /// Address behind the delay slot of a branch at `pc`; the slot is a pair when the next unit is dual.
-    fn behind_slot(&self, pc: u32) -> u32 {
-        pc.wrapping_add(if self.next_mode.is_dual() { 12 } else { 8 })
-    }
-
-    fn call_indirect(&mut self, i: &Instruction, pc: u32) -> Flow {
+    fn call_indirect(&mut self, i: &Instruction, unit: &Unit) -> Flow {
         let target = self.state.r(i.src1);
-        self.state.set_r(1, self.behind_slot(pc));
+        self.state.set_r(1, behind_slot(unit));
         Flow::Delayed(target & !3)
     }
 
     #[inline]
-    fn branch(&mut self, i: &Instruction, pc: u32) -> Flow {
-        let target = pc.wrapping_add(4).wrapping_add((i.imm as u32) << 2);
+    fn branch(&mut self, unit: &Unit) -> Flow {
+        let i = &unit.core().instruction;
+        let target = unit.core_pc().wrapping_add(4).wrapping_add((i.imm as u32) << 2);
         let condition = self.state.psr & psr::CC != 0;
         match i.op {
             Op::Br => Flow::Delayed(target),
             Op::Call => {
-                self.state.set_r(1, self.behind_slot(pc));
+                self.state.set_r(1, behind_slot(unit));
                 Flow::Delayed(target)
             }
             Op::Bri => self.branch_indirect(i),

@@ -1,12 +1,12 @@
 //! The processor: fetch, pairing, delay slots, traps, and the run loop.
 
-use crate::block::{Block, Halves, Unit};
+use crate::action::{Action, CoreAction, FloatingAction};
+use crate::block::{Block, Unit};
 use crate::bus::Bus;
 use crate::clock::{Accesses, Clock};
 use crate::code::Code;
 use crate::execution::Execution;
 use crate::flow::Flow;
-use crate::operands::read_operands;
 use crate::profile::{AddressProfile, Profile};
 use crate::seed::SeedTable;
 use crate::state::{Mode, State, TRAP_VECTOR, psr};
@@ -21,8 +21,6 @@ pub struct Cpu {
     pub state: State,
     pub(crate) time: Clock,
     pub(crate) seeds: SeedTable,
-    /// Mode of the unit after the one in execution.
-    pub(crate) next_mode: Mode,
     /// Set by a return from a trap.
     pub(crate) mode_after_slot: Option<Mode>,
     /// Addresses of data that the block in execution has accessed.
@@ -51,7 +49,6 @@ impl Cpu {
             state: State::reset(),
             time: Clock::new(&config),
             seeds: config.seeds,
-            next_mode: Mode::Single,
             mode_after_slot: None,
             accesses: Accesses::new(),
             directory_base: None,
@@ -74,7 +71,6 @@ impl Cpu {
     pub fn reset(&mut self) {
         self.state = State::reset();
         self.time = Clock::new(&self.config);
-        self.next_mode = Mode::Single;
         self.mode_after_slot = None;
         self.invalidate_code();
         self.shelf.clear();
@@ -200,18 +196,7 @@ impl Cpu {
     #[inline]
     fn execute<B: Bus>(&mut self, block: &mut Block, most: usize, bus: &mut B) -> Result<(), TrapCause> {
         self.accesses.clear();
-        let mut done = 0;
-        let mut flow = Ok(Flow::Next);
-        for unit in &block.units[..most] {
-            done += 1;
-            match self.unit(unit, bus) {
-                Ok(Flow::Next) if !self.code_changed => {}
-                end => {
-                    flow = end;
-                    break;
-                }
-            }
-        }
+        let (done, flow) = self.units(&block.units[..most], bus);
         let mut execution = Execution { units: done, slot: false, taken: false, trapped: flow.is_err() };
         let end = match flow {
             Ok(flow) => self.go_on(flow, block, &mut execution, bus),
@@ -239,7 +224,7 @@ impl Cpu {
         self.state.pc = last.next();
         self.state.mode = last.after;
         match flow {
-            Flow::Next => {}
+            Flow::Next | Flow::NextOfChangedCode => {}
             Flow::Jump(target) => {
                 self.state.pc = target;
                 execution.taken = true;
@@ -271,7 +256,7 @@ impl Cpu {
             None => unreachable!("a block that ends with a delayed branch has its slot"),
         };
         execution.slot = true;
-        match self.unit(unit, bus) {
+        match self.units(std::slice::from_ref(unit), bus).1 {
             Ok(_) => {
                 self.state.pc = target;
                 self.state.mode = self.mode_after_slot.take().unwrap_or(unit.after);
@@ -284,37 +269,55 @@ impl Cpu {
         }
     }
 
-    #[inline(always)]
-    fn unit<B: Bus>(&mut self, unit: &Unit, bus: &mut B) -> Result<Flow, TrapCause> {
-        match unit.halves {
-            Halves::Idle => {}
-            Halves::Integer => self.integer(&unit.core().instruction),
-            Halves::Core => {
-                self.next_mode = unit.after;
-                return self.core(unit.core(), unit.core_pc(), bus);
+    /// Executes units until one does not go on to the next, and tells how many those were.
+    fn units<B: Bus>(&mut self, units: &[Unit], bus: &mut B) -> (usize, Result<Flow, TrapCause>) {
+        for (n, unit) in units.iter().enumerate() {
+            let flow = match &unit.action {
+                Action::Core(core) => self.core(core, unit, bus),
+                Action::FloatingAndCore(floating, core) => self.pair(floating, core, unit, bus),
+                quiet => {
+                    self.stay(quiet, unit);
+                    continue;
+                }
+            };
+            if flow != Ok(Flow::Next) {
+                return (n + 1, flow);
             }
-            Halves::Floating => {
-                let operands = read_operands(&self.state, &unit.first);
-                self.floating(&unit.first, operands);
-            }
-            Halves::FloatingAndInteger => {
-                // Both halves read before either writes.
-                let operands = read_operands(&self.state, &unit.first);
-                self.integer(&unit.core().instruction);
-                self.floating(&unit.first, operands);
-            }
-            Halves::FloatingAndCore => return self.pair(unit, bus),
         }
-        Ok(Flow::Next)
+        (units.len(), Ok(Flow::Next))
+    }
+
+    /// Executes a unit that can only go on to the next.
+    #[inline(always)]
+    fn stay(&mut self, action: &Action, unit: &Unit) {
+        match action {
+            Action::Floating(floating) => {
+                let operands = self.read_operands(floating, unit);
+                self.floating(floating, unit, operands);
+            }
+            Action::Integer(integer) => self.integer(integer),
+            // Both halves read before either writes.
+            Action::FloatingAndInteger(floating, integer) => {
+                let operands = self.read_operands(floating, unit);
+                self.integer(integer);
+                self.floating(floating, unit, operands);
+            }
+            Action::Nothing | Action::Core(_) | Action::FloatingAndCore(..) => {}
+        }
     }
 
     /// Both halves read before either writes, and the core half goes first so that its trap leaves no trace.
     #[inline(always)]
-    fn pair<B: Bus>(&mut self, unit: &Unit, bus: &mut B) -> Result<Flow, TrapCause> {
-        self.next_mode = unit.after;
-        let operands = read_operands(&self.state, &unit.first);
-        let flow = self.core(unit.core(), unit.core_pc(), bus)?;
-        self.floating(&unit.first, operands);
+    fn pair<B: Bus>(
+        &mut self,
+        floating: &FloatingAction,
+        core: &CoreAction,
+        unit: &Unit,
+        bus: &mut B,
+    ) -> Result<Flow, TrapCause> {
+        let operands = self.read_operands(floating, unit);
+        let flow = self.core(core, unit, bus)?;
+        self.floating(floating, unit, operands);
         Ok(flow)
     }
 

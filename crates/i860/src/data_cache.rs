@@ -29,31 +29,35 @@ impl DataCache {
         self.0.find(address).is_some()
     }
 
-    /// How many accesses of units before number `limit` find their lines before the first that does not, and the number of that one's
-    /// unit. Those lines become dirty where they are stored to, as when they are counted.
+    /// The first access from number `from` on that does not find its line, with the number of its unit, or the first one of a unit from
+    /// number `limit` on. Those lines become dirty where they are stored to, as when they are counted.
     #[inline]
     pub(crate) fn held(
         &mut self,
         addresses: &[u32],
         accessing: &[AccessingUnit],
+        from: usize,
         limit: usize,
     ) -> (usize, Option<usize>) {
-        let mut held = 0;
-        for (address, unit) in addresses.iter().zip(accessing) {
+        let count = addresses.len().min(accessing.len());
+        let (addresses, accessing) = (&addresses[..count], &accessing[..count]);
+        let mut next = from;
+        while next < count {
+            let unit = accessing[next];
             let number = usize::from(unit.number);
             if number >= limit {
                 break;
             }
             if unit.leaves_cache {
-                return (held, Some(number));
+                return (next, Some(number));
             }
-            let Some(at) = self.0.find(*address) else { return (held, Some(number)) };
+            let Some(at) = self.0.find(addresses[next]) else { return (next, Some(number)) };
             if unit.is_store {
                 self.0.mark_dirty(at);
             }
-            held += 1;
+            next += 1;
         }
-        (held, None)
+        (next, None)
     }
 
     /// Stores into a line if it is held, and tells whether it is.

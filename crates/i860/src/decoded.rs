@@ -57,7 +57,6 @@ mod mark {
     pub(super) const SECOND_DOUBLE: u8 = 1 << 4;
     pub(super) const MAY_BYPASS: u8 = 1 << 5;
     pub(super) const ACCESSES: u8 = 1 << 6;
-    pub(super) const SINGLE: u8 = 1 << 7;
 }
 
 impl Decoded {
@@ -108,12 +107,6 @@ impl Decoded {
         (self.marks & mark::FIRST_DOUBLE != 0, self.marks & mark::SECOND_DOUBLE != 0)
     }
 
-    /// Whether it multiplies, adds or subtracts singles to a single, none of which comes out of the pipe meanwhile.
-    #[inline]
-    pub(crate) fn is_single(&self) -> bool {
-        self.marks & mark::SINGLE != 0
-    }
-
     /// Whether the destination of a pipelined operation may be one of its sources.
     #[inline]
     pub(crate) fn may_bypass(&self) -> bool {
@@ -129,8 +122,6 @@ fn marks(i: &Instruction) -> u8 {
     let floating = i.is_floating();
     let (first, second) = source_widths(i);
     let pipelined = i.op == Op::DualOp || i.has(Flags::PIPELINED);
-    let singles = !i.has(Flags::SOURCE_DOUBLE) && !i.has(Flags::RESULT_DOUBLE);
-    let basic = matches!(i.op, Op::Fmul | Op::Fadd | Op::Fsub);
     let overlaps = i.dest >= 2 && [i.src1, i.src2].iter().any(|n| n & 30 == i.dest & 30);
     on(mark::FLOATING, floating)
         | on(mark::BRANCH, i.is_branch())
@@ -138,7 +129,6 @@ fn marks(i: &Instruction) -> u8 {
         | on(mark::FIRST_DOUBLE, floating && first)
         | on(mark::SECOND_DOUBLE, floating && second)
         | on(mark::MAY_BYPASS, floating && pipelined && overlaps)
-        | on(mark::SINGLE, basic && singles && !(pipelined && overlaps))
         | on(mark::ACCESSES, i.op <= Op::Pst || matches!(i.op, Op::Flush | Op::StC))
 }
 

@@ -1,22 +1,84 @@
 //! Execution in the floating-point half: adder, multiplier, their pipes, and the dual operations.
 
-use crate::arithmetic::{Operation, convert, multiply_low, narrow, operate, round, single, to_integer, widen};
+use crate::action::{Floating, FloatingAction};
+use crate::arithmetic::{Operation, convert, double, multiply_low, narrow, operate, round, single, to_integer, widen};
+use crate::block::Unit;
 use crate::cpu::Cpu;
-use crate::decoded::Decoded;
 use crate::dual_operation::{MULTIPLIER_ROUTES, ROUTES, Route, Source};
 use crate::instruction::{Flags, Instruction, Op};
 use crate::operands::{Operands, last_product};
 use crate::state::{PipeStage, State, fsr, psr};
 
 impl Cpu {
-    /// Executes a floating-point or graphics instruction with its operands already read.
+    /// Executes the floating-point half of a unit with its operands already read.
     #[inline(always)]
-    pub(crate) fn floating(&mut self, d: &Decoded, from: Operands) {
-        let i = &d.instruction;
+    pub(crate) fn floating(&mut self, action: &FloatingAction, unit: &Unit, from: Operands) {
+        use Operation::{Add, Multiply, Subtract};
+        match action.does {
+            Floating::PipelinedMultiply => self.pipelined_single(Multiply, action, from),
+            Floating::PipelinedAdd => self.pipelined_single(Add, action, from),
+            Floating::PipelinedSubtract => self.pipelined_single(Subtract, action, from),
+            Floating::PipelinedMultiplyDoubles => self.pipelined_double(Multiply, action, from),
+            Floating::PipelinedAddDoubles => self.pipelined_double(Add, action, from),
+            Floating::PipelinedSubtractDoubles => self.pipelined_double(Subtract, action, from),
+            Floating::MultiplyDoubles => self.scalar_double(Multiply, action, from),
+            Floating::AddDoubles => self.scalar_double(Add, action, from),
+            Floating::SubtractDoubles => self.scalar_double(Subtract, action, from),
+            Floating::Multiply => self.scalar_single(Multiply, action, from),
+            Floating::Add => self.scalar_single(Add, action, from),
+            Floating::Subtract => self.scalar_single(Subtract, action, from),
+            Floating::Singles | Floating::Doubles | Floating::Any => self.by_instruction(&unit.first.instruction, from),
+        }
+    }
+
+    #[inline(always)]
+    fn pipelined_single(&mut self, operation: Operation, action: &FloatingAction, from: Operands) {
+        let result = PipeStage { bits: u64::from(self.single(operation, from)), double: false };
+        let leaving = push(self.pipe_of(operation), 2, result);
+        self.state.set_f(action.dest, leaving);
+    }
+
+    #[inline(always)]
+    fn pipelined_double(&mut self, operation: Operation, action: &FloatingAction, from: Operands) {
+        let bits = self.double(operation, from);
+        let last = if operation == Operation::Multiply { 1 } else { 2 };
+        let leaving = push(self.pipe_of(operation), last, PipeStage { bits, double: true });
+        self.state.set_f(action.dest, leaving);
+    }
+
+    #[inline(always)]
+    fn scalar_double(&mut self, operation: Operation, action: &FloatingAction, from: Operands) {
+        let bits = self.double(operation, from);
+        lose(self.pipe_of(operation));
+        self.state.set_f64(action.dest, bits);
+    }
+
+    #[inline(always)]
+    fn double(&self, operation: Operation, Operands { a, b }: Operands) -> u64 {
+        double(operation, f64::from_bits(a), f64::from_bits(b), self.flush_to_zero())
+    }
+
+    #[inline(always)]
+    fn scalar_single(&mut self, operation: Operation, action: &FloatingAction, from: Operands) {
+        let bits = self.single(operation, from);
+        lose(self.pipe_of(operation));
+        self.state.set_f32(action.dest, bits);
+    }
+
+    #[inline(always)]
+    fn single(&self, operation: Operation, Operands { a, b }: Operands) -> u32 {
+        single(operation, f32::from_bits(a as u32), f32::from_bits(b as u32), self.flush_to_zero())
+    }
+
+    /// The pipe of the unit that does an operation.
+    #[inline(always)]
+    fn pipe_of(&mut self, operation: Operation) -> &mut [PipeStage; 3] {
+        let State { multiplier, adder, .. } = &mut self.state;
+        if operation == Operation::Multiply { multiplier } else { adder }
+    }
+
+    fn by_instruction(&mut self, i: &Instruction, from: Operands) {
         match i.op {
-            Op::Fmul if d.is_single() => self.single(Operation::Multiply, i, from),
-            Op::Fadd if d.is_single() => self.single(Operation::Add, i, from),
-            Op::Fsub if d.is_single() => self.single(Operation::Subtract, i, from),
             Op::Fnop => {}
             Op::DualOp => self.dual_operation(i, from),
             Op::Fmul => self.multiply(i, from),
@@ -34,22 +96,6 @@ impl Cpu {
     #[inline]
     fn flush_to_zero(&self) -> bool {
         self.state.fsr & fsr::FZ != 0
-    }
-
-    /// An operation on singles.
-    #[inline(always)]
-    fn single(&mut self, operation: Operation, i: &Instruction, Operands { a, b }: Operands) {
-        let bits = single(operation, f32::from_bits(a as u32), f32::from_bits(b as u32), self.flush_to_zero());
-        let State { multiplier, adder, .. } = &mut self.state;
-        let pipe = if operation == Operation::Multiply { multiplier } else { adder };
-        if i.has(Flags::PIPELINED) {
-            let leaving = pipe[2];
-            push(pipe, PipeStage { bits: u64::from(bits), double: false });
-            self.state.set_f(i.dest, leaving);
-        } else {
-            lose(pipe);
-            self.state.set_f32(i.dest, bits);
-        }
     }
 
     #[inline]
@@ -73,12 +119,12 @@ impl Cpu {
 
     #[inline]
     fn push_product(&mut self, product: PipeStage) {
-        push(&mut self.state.multiplier, product);
+        push(&mut self.state.multiplier, 2, product);
     }
 
     #[inline]
     fn push_sum(&mut self, sum: PipeStage) {
-        push(&mut self.state.adder, sum);
+        push(&mut self.state.adder, 2, sum);
     }
 
     /// A result of the adder goes to its register, or into the pipe while the oldest one leaves.
@@ -222,11 +268,18 @@ impl Cpu {
 /// No number, in both precisions: what the part leaves undefined should be seen.
 const LOST: u64 = 0x7FF8_0000_7FC0_0000;
 
-/// A result goes into a pipe, whose last one has left.
+/// A result goes into a pipe, and what its last stage held comes out.
 #[inline(always)]
-fn push(pipe: &mut [PipeStage; 3], result: PipeStage) {
-    pipe.copy_within(..2, 1);
-    pipe[0] = result;
+fn push(pipe: &mut [PipeStage; 3], last: usize, result: PipeStage) -> PipeStage {
+    let leaving = pipe[last];
+    // Field by field: a stage read whole right after its parts were written waits for them on most hosts.
+    for n in [2, 1] {
+        pipe[n].bits = pipe[n - 1].bits;
+        pipe[n].double = pipe[n - 1].double;
+    }
+    pipe[0].bits = result.bits;
+    pipe[0].double = result.double;
+    leaving
 }
 
 /// A scalar operation goes through the pipe of its unit, and what was there is lost.

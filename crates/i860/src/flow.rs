@@ -5,6 +5,8 @@
 pub(crate) enum Flow {
     /// To the instruction that follows in memory.
     Next,
+    /// There too, but it may have been stored to.
+    NextOfChangedCode,
     /// To a target, at once.
     Jump(u32),
     /// To a target, after the next unit.

@@ -1,21 +1,17 @@
 //! Execution of the integer core: arithmetic, logic, shifts, control registers.
 
+use crate::action::CoreAction;
 use crate::cpu::Cpu;
-use crate::instruction::{Flags, Instruction, Op};
+use crate::instruction::Op;
 use crate::state::{dirbase, epsr, psr};
 
 impl Cpu {
-    #[inline]
-    fn first_source(&self, i: &Instruction) -> u32 {
-        if i.has(Flags::IMMEDIATE) { i.imm as u32 } else { self.state.r(i.src1) }
-    }
-
     /// Arithmetic, logic and shifts.
-    #[inline]
-    pub(crate) fn integer(&mut self, i: &Instruction) {
-        let a = self.first_source(i);
-        let b = self.state.r(i.src2);
-        let result = match i.op {
+    #[inline(always)]
+    pub(crate) fn integer(&mut self, action: &CoreAction) {
+        let a = action.immediate.wrapping_add(self.state.r(action.first));
+        let b = self.state.r(action.second);
+        let result = match action.op {
             Op::Addu => self.add_unsigned(a, b),
             Op::Subu => self.subtract_unsigned(a, b),
             Op::Adds => self.add_signed(a, b),
@@ -24,9 +20,9 @@ impl Cpu {
             Op::Shr => self.shift_right(a, b),
             Op::Shrd => ((u64::from(a) << 32 | u64::from(b)) >> self.shift_count()) as u32,
             Op::Shra => (b as i32 >> (a & 31)) as u32,
-            _ => self.logical(i.op, a, b),
+            _ => self.logical(action.op, a, b),
         };
-        self.state.set_r(i.dest, result);
+        self.state.set_r(action.dest, result);
     }
 
     #[inline]

@@ -87,6 +87,7 @@
 //! Intel, *i860 Microprocessor Programmer's Reference Manual*, as far as remembered; encodings as public assemblers
 //! have them; period kernels with clock comments. What rests on which is in the table of freezes.
 
+mod action;
 mod arithmetic;
 mod assembler;
 mod block;

@@ -95,15 +95,24 @@ pub(crate) struct Filling {
     pub(crate) first: u8,
 }
 
-/// Which run of a block's execution, from a place on.
+/// Which run of a block's execution, from a place on: one number, which is quickly compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Run {
-    /// Scoreboard before it.
-    pub(crate) entry: Number,
+pub(crate) struct Run(u64);
+
+impl Run {
+    /// The run with a scoreboard before it, to a place. Whether the branch in it was taken, whether its last unit trapped, and
+    /// whether its first fetch is from the line that is coming in.
+    #[inline]
+    pub(crate) fn new(entry: Number, to: usize, [taken, trapped, continues]: [bool; 3]) -> Run {
+        let flags = u64::from(taken) | u64::from(trapped) << 1 | u64::from(continues) << 2;
+        Run(u64::from(entry.0) << 32 | flags << 16 | (to & 0xFFFF) as u64)
+    }
+
     /// The place where it ends.
-    pub(crate) to: u16,
-    /// Whether the branch in it was taken, whether its last unit trapped, and whether its first fetch is from the line that is coming in.
-    pub(crate) flags: [bool; 3],
+    #[inline]
+    pub(crate) fn end(self) -> usize {
+        usize::from(self.0 as u16)
+    }
 }
 
 /// What a run once took.

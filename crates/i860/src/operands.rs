@@ -1,5 +1,8 @@
 //! Operands of the floating-point half, with what leaves a pipe put through.
 
+use crate::action::{Floating, FloatingAction};
+use crate::block::Unit;
+use crate::cpu::Cpu;
 use crate::decoded::Decoded;
 use crate::dual_operation::first_has_bypass;
 use crate::instruction::{Flags, Instruction, Op};
@@ -12,18 +15,27 @@ pub(crate) struct Operands {
     pub(crate) b: u64,
 }
 
-/// Reads the sources of a floating-point or graphics instruction.
-#[inline(always)]
-pub(crate) fn read_operands(state: &State, d: &Decoded) -> Operands {
-    let i = &d.instruction;
-    if d.is_single() {
-        return Operands { a: u64::from(state.f32_bits(i.src1)), b: u64::from(state.f32_bits(i.src2)) };
+impl Cpu {
+    /// Reads the sources of a unit's floating-point half.
+    #[inline(always)]
+    pub(crate) fn read_operands(&self, a: &FloatingAction, unit: &Unit) -> Operands {
+        let state = &self.state;
+        if a.does <= Floating::Singles {
+            Operands { a: u64::from(state.f32_bits(a.first)), b: u64::from(state.f32_bits(a.second)) }
+        } else if a.does <= Floating::Doubles {
+            Operands { a: state.f64_bits(a.first), b: state.f64_bits(a.second) }
+        } else {
+            read_any(state, &unit.first)
+        }
     }
+}
+
+fn read_any(state: &State, d: &Decoded) -> Operands {
     let (first, second) = d.source_widths();
     if d.may_bypass() {
-        return read_through(state, i, first, second);
+        return read_through(state, &d.instruction, first, second);
     }
-    Operands { a: state.f_bits(i.src1, first), b: state.f_bits(i.src2, second) }
+    Operands { a: state.f_bits(d.instruction.src1, first), b: state.f_bits(d.instruction.src2, second) }
 }
 
 fn read_through(state: &State, i: &Instruction, first: bool, second: bool) -> Operands {

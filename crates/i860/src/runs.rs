@@ -85,16 +85,14 @@ impl Clock {
             return self.miss(block, course, bus);
         }
         let limit = if whole { course.units } else { block.end_of_line(number).min(course.units) };
-        let addresses = &course.accesses[course.accessed..];
-        let accessing = block.accessing.get(course.accessed..).unwrap_or_default();
-        let (held, missing) = self.data.held(addresses, accessing, limit);
+        let (held, missing) = self.data.held(course.accesses, &block.accessing, course.accessed, limit);
         let to = missing.map_or(PLACES * limit, |unit| PLACES * unit + ISSUED);
         let continues = entry.is_filling() && is_unfetched && self.fetch.is_in_line(pc);
-        let run = Run { entry, to: to as u16, flags: course.flags(to, continues) };
+        let run = Run::new(entry, to, course.flags(to, continues));
         match block.remembered.find(course.at, run) {
             Some(clocks) => {
                 self.repeat(clocks);
-                course.accessed += held;
+                course.accessed = held;
                 course.at = to;
             }
             None => self.learn(block, course, run, bus),
@@ -180,7 +178,7 @@ impl Clock {
         let from = course.at;
         let began = self.common.now;
         let before = self.common.profile.clone();
-        self.advance(block, course, usize::from(run.to), bus);
+        self.advance(block, course, run.end(), bus);
         let Some(exit) = self.number() else { return };
         let profile = &self.common.profile;
         let causes = FREEZES.iter().map(|row| (row.id, (profile.frozen_by(row.id) - before.frozen_by(row.id)) as u32));

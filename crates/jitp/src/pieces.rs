@@ -6,8 +6,8 @@ use pphigs::PrimitiveCounts;
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::{Clear, Command, CommandKind, CopyRegion, Layout, SelectRegion};
 use pxpl5_wire::{
-    CommandList, CommandRun, CommandWords, CopyContent, CopyOrder, CopyTarget, CopyWay, MAX_MESSAGE_WORDS, RegionId,
-    Word,
+    CommandList, CommandRun, CommandSink, CommandWords, CopyContent, CopyOrder, CopyTarget, CopyWay, MAX_MESSAGE_WORDS,
+    RegionId, Word,
 };
 use std::ops::Range;
 use std::sync::Arc;
@@ -146,6 +146,11 @@ impl CommandWords for PieceWords {
         if self.part.last {
             self.append(Command::CopyRegion(CopyRegion { target: self.target }), out);
         }
+    }
+
+    fn append_touching(&self, out: &mut dyn CommandSink) -> bool {
+        self.append_words(out.words());
+        !self.part.triangles.is_empty() || !self.part.spheres.is_empty()
     }
 }
 

@@ -63,9 +63,12 @@ pub trait ParameterTable {
     ///
     /// [`ParameterError::OutOfLimits`] for the first number that is beyond its own.
     fn check(&self) -> Result<(), ParameterError> {
-        let beyond = self.entries().into_iter().find(|entry| !entry.is_within_limits());
-        beyond.map_or(Ok(()), |Entry { info, value }| {
-            Err(ParameterError::OutOfLimits { name: info.name, limits: info.limits, found: value })
-        })
+        for info in self.infos() {
+            let value = self.get(info.name)?;
+            if !(Entry { info, value }).is_within_limits() {
+                return Err(ParameterError::OutOfLimits { name: info.name, limits: info.limits, found: value });
+            }
+        }
+        Ok(())
     }
 }

@@ -14,7 +14,9 @@ use pxpl5_renderer::{
     Clear, Command, CommandKind, CopyRegion, Layout, PhongSphereCommand, PhongTriangleCommand, PhongTriangleEncoder,
     SelectRegion, Shade, SphereBody, SphereCommand, TriangleCommand, TriangleEncoder,
 };
-use pxpl5_wire::{CommandList, CommandRun, CommandWords, CopyOrder, Linear, MAX_MESSAGE_WORDS, RegionId, Word};
+use pxpl5_wire::{
+    CommandList, CommandRun, CommandSink, CommandWords, CopyOrder, Linear, MAX_MESSAGE_WORDS, RegionId, Word,
+};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -193,36 +195,42 @@ struct RegionWords {
 
 impl CommandWords for RegionWords {
     fn append_words(&self, out: &mut Vec<Word>) {
+        self.append_with(self.pass.triangles_in(self.region, &self.part.triangles), out);
+    }
+
+    fn append_touching(&self, out: &mut dyn CommandSink) -> bool {
+        let triangles = self.pass.triangles_touching(self.region, &self.part.triangles);
+        let draws = !triangles.is_empty() || !self.part.spheres.is_empty();
+        if draws || self.part.clear || self.part.shade || self.part.copy.is_some() {
+            self.append_with(&triangles, out);
+        }
+        draws
+    }
+}
+
+impl RegionWords {
+    /// All commands, with some of the triangles.
+    fn append_with(&self, triangles: &[BinEntry], out: &mut dyn CommandSink) {
         let picture = self.pass.picture();
         if self.part.select {
             let [left, top, _, _] = picture.viewport.grid().rectangle(self.region);
             let select = SelectRegion { context: self.context, left: left as u16, top: top as u16 };
-            append(&Command::SelectRegion(select), &picture.layout, out);
+            append(&Command::SelectRegion(select), &picture.layout, out.words());
         }
         if self.part.clear {
-            append(&Command::Clear(Clear { colour: rgb(self.pass.background()) }), &picture.layout, out);
+            append(&Command::Clear(Clear { colour: rgb(self.pass.background()) }), &picture.layout, out.words());
         }
-        self.triangles(out);
-        self.spheres(out);
+        self.triangles(triangles, out);
+        self.spheres(out.words());
         if self.part.shade {
-            append(&Command::Shade(shade(self.pass.light())), &picture.layout, out);
+            append(&Command::Shade(shade(self.pass.light())), &picture.layout, out.words());
         }
         if let Some(order) = &self.part.copy {
-            append(&Command::CopyRegion(CopyRegion { target: order.target }), &picture.layout, out);
+            append(&Command::CopyRegion(CopyRegion { target: order.target }), &picture.layout, out.words());
         }
     }
-}
 
-/// A layout that lacks what a command needs is refused when the machine is configured.
-fn append(command: &Command, layout: &Layout, out: &mut Vec<Word>) {
-    let encoded = command.encode(layout, out);
-    debug_assert!(encoded.is_ok(), "{encoded:?}");
-}
-
-impl RegionWords {
-    fn triangles(&self, out: &mut Vec<Word>) {
-        let range = self.part.triangles.start as usize..self.part.triangles.end as usize;
-        let mut entries = &self.pass.bin(self.region).triangles[range];
+    fn triangles(&self, mut entries: &[BinEntry], out: &mut dyn CommandSink) {
         for (place, transform) in self.pass.drawn() {
             let end = place.structure.triangles.end;
             let (here, rest) = entries.split_at(entries.partition_point(|entry| (entry.triangle as usize) < end));
@@ -242,7 +250,7 @@ impl RegionWords {
         place: &PlacedStructure,
         transform: &Transform,
         encoder: &TriangleEncoder,
-        out: &mut Vec<Word>,
+        out: &mut dyn CommandSink,
     ) {
         let list = self.pass.share().list();
         let picture = self.pass.picture();
@@ -254,13 +262,16 @@ impl RegionWords {
             match some {
                 SetupBatch::Unclipped(entries, lanes) => {
                     let expressions = transform.gouraud_lanes(lanes, &mut stats);
-                    (0..entries.len()).for_each(|i| encoder.encode(&gouraud_triangle(expressions.get(i)), out));
+                    if !out.triangles(&expressions.batch(entries.len())) {
+                        let words = out.words();
+                        (0..entries.len()).for_each(|i| encoder.encode(&gouraud_triangle(expressions.get(i)), words));
+                    }
                 }
                 SetupBatch::Clipped(entry) => {
                     let triangle = list.triangle(entry.triangle as usize);
                     let piece = pick(entry, |sink| transform.gouraud(&triangle, &place.light, &mut stats, sink));
                     let piece = piece.map(|piece| piece.gouraud(&picture.viewport, &mut stats));
-                    encoder.encode(&piece.map_or(NOWHERE, gouraud_triangle), out);
+                    encoder.encode(&piece.map_or(NOWHERE, gouraud_triangle), out.words());
                 }
             }
         }
@@ -272,7 +283,7 @@ impl RegionWords {
         place: &PlacedStructure,
         transform: &Transform,
         encoder: &PhongTriangleEncoder,
-        out: &mut Vec<Word>,
+        out: &mut dyn CommandSink,
     ) {
         let list = self.pass.share().list();
         let picture = self.pass.picture();
@@ -284,22 +295,30 @@ impl RegionWords {
             match some {
                 SetupBatch::Unclipped(entries, lanes) => {
                     let expressions = transform.phong_lanes(lanes, &mut stats);
-                    for (i, entry) in entries.iter().enumerate() {
-                        let colour = list.colours[list.triangles[entry.triangle as usize][0] as usize];
-                        encoder.encode(&phong_triangle(expressions.get(i, colour)), out);
+                    let colour = |entry: &BinEntry| list.colours[list.triangles[entry.triangle as usize][0] as usize];
+                    let mut colours = [0; LANES];
+                    colours.iter_mut().zip(entries).for_each(|(out, entry)| *out = rgb(colour(entry)));
+                    if !out.triangles(&expressions.batch(entries.len(), colours)) {
+                        let words = out.words();
+                        for (i, entry) in entries.iter().enumerate() {
+                            encoder.encode(&phong_triangle(expressions.get(i, colour(entry))), words);
+                        }
                     }
                 }
                 SetupBatch::Clipped(entry) => {
                     let triangle = list.triangle(entry.triangle as usize);
                     let piece = pick(entry, |sink| transform.phong(&triangle, &mut stats, sink));
                     let piece = piece.map(|piece| piece.phong(&picture.viewport, &mut stats));
-                    encoder.encode(&piece.map_or(PHONG_NOWHERE, phong_triangle), out);
+                    encoder.encode(&piece.map_or(PHONG_NOWHERE, phong_triangle), out.words());
                 }
             }
         }
     }
 
     fn spheres(&self, out: &mut Vec<Word>) {
+        if self.part.spheres.is_empty() {
+            return;
+        }
         let range = self.part.spheres.start as usize..self.part.spheres.end as usize;
         let mut numbers = &self.pass.bin(self.region).spheres[range];
         let picture = self.pass.picture();
@@ -319,6 +338,12 @@ impl RegionWords {
             }
         }
     }
+}
+
+/// A layout that lacks what a command needs is refused when the machine is configured.
+fn append(command: &Command, layout: &Layout, out: &mut Vec<Word>) {
+    let encoded = command.encode(layout, out);
+    debug_assert!(encoded.is_ok(), "{encoded:?}");
 }
 
 /// Light and highlight in the formats of the command; the eye looks along -z. Nothing is lit without a light.

@@ -9,6 +9,8 @@ use crate::placing::place_once;
 use crate::view::FrameView;
 use pxpl5_geometry::{Light, RegionMask, SetupStats, Touch, Transform};
 use pxpl5_wire::RegionId;
+use std::borrow::Cow;
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 /// A screen triangle of a bin: what its commands are made from.
@@ -37,6 +39,8 @@ pub struct Pass {
     stats: SetupStats,
     /// By region.
     bins: OnceLock<Vec<Bin>>,
+    /// Where all regions get all triangles.
+    touching: OnceLock<Touching>,
     /// Makes the words of triangles; `None` where nobody wants pixels.
     encoder: Option<Encoder>,
 }
@@ -47,7 +51,6 @@ struct Walk {
     share: Share,
     placed: Arc<[PlacedStructure]>,
     picture: Picture,
-    all_regions: RegionMask,
     /// Structures whose primitives are taken, by their place in the display list; `None` for all.
     chosen: Option<Box<[bool]>>,
 }
@@ -57,8 +60,8 @@ trait Take {
     /// A triangle that touches one region alone.
     fn triangle_in(&mut self, region: RegionId, triangle: u32);
 
-    /// What is left of a triangle, or a piece of it, and the bins that get it.
-    fn piece(&mut self, receivers: RegionMask, entry: BinEntry);
+    /// What is left of a triangle, or a piece of it, and the regions that it touches, whose bins get it unless all do.
+    fn piece(&mut self, touched: RegionMask, entry: BinEntry);
 
     /// A sphere.
     fn sphere(&mut self, regions: RegionMask, number: u32);
@@ -67,7 +70,9 @@ trait Take {
 /// Numbers of what was found.
 #[derive(Debug)]
 struct Found {
+    /// By region.
     counts: Vec<PrimitiveCounts>,
+    binning: RegionBinning,
     on_screen: PrimitiveCounts,
     /// Triangles and spheres that are in some bin; of chosen structures only.
     touching: Option<[Vec<u32>; 2]>,
@@ -95,8 +100,10 @@ impl Take for Found {
         self.note_touching(0, triangle);
     }
 
-    fn piece(&mut self, receivers: RegionMask, entry: BinEntry) {
-        receivers.iter().for_each(|region| self.in_region(region).triangles += 1);
+    fn piece(&mut self, touched: RegionMask, entry: BinEntry) {
+        if self.binning == RegionBinning::Touched {
+            touched.iter().for_each(|region| self.in_region(region).triangles += 1);
+        }
         self.on_screen.triangles += 1;
         if entry.piece == Some(0) {
             self.note_touching(0, entry.triangle);
@@ -110,19 +117,52 @@ impl Take for Found {
     }
 }
 
-impl Take for Vec<Bin> {
+/// Bins being filled.
+struct Filling {
+    bins: Vec<Bin>,
+    binning: RegionBinning,
+}
+
+impl Take for Filling {
     #[inline(always)]
     fn triangle_in(&mut self, region: RegionId, triangle: u32) {
-        self[usize::from(region.0)].triangles.push(BinEntry { triangle, piece: Some(0) });
+        self.bins[usize::from(region.0)].triangles.push(BinEntry { triangle, piece: Some(0) });
     }
 
-    fn piece(&mut self, receivers: RegionMask, entry: BinEntry) {
-        receivers.iter().for_each(|region| self[usize::from(region.0)].triangles.push(entry));
+    fn piece(&mut self, touched: RegionMask, entry: BinEntry) {
+        match self.binning {
+            RegionBinning::Touched => {
+                touched.iter().for_each(|region| self.bins[usize::from(region.0)].triangles.push(entry));
+            }
+            RegionBinning::All => self.bins.iter_mut().for_each(|bin| bin.triangles.push(entry)),
+        }
     }
 
     fn sphere(&mut self, regions: RegionMask, number: u32) {
-        regions.iter().for_each(|region| self[usize::from(region.0)].spheres.push(number));
+        regions.iter().for_each(|region| self.bins[usize::from(region.0)].spheres.push(number));
     }
+}
+
+/// The triangles that touch each region, where all regions get all of them.
+#[derive(Debug)]
+struct Touching {
+    /// By region, with the place in the bin.
+    entries: Vec<Vec<(u32, BinEntry)>>,
+    n_triangles: u32,
+}
+
+impl Take for Touching {
+    fn triangle_in(&mut self, region: RegionId, triangle: u32) {
+        self.piece(RegionMask::only(region), BinEntry { triangle, piece: Some(0) });
+    }
+
+    fn piece(&mut self, touched: RegionMask, entry: BinEntry) {
+        let place = self.n_triangles;
+        touched.iter().for_each(|region| self.entries[usize::from(region.0)].push((place, entry)));
+        self.n_triangles += 1;
+    }
+
+    fn sphere(&mut self, _: RegionMask, _: u32) {}
 }
 
 impl Walk {
@@ -156,7 +196,7 @@ impl Walk {
             }
             let mut pieces = 0;
             let mut put = |mask| {
-                take.piece(self.receivers(mask), BinEntry { triangle, piece: Some(pieces) });
+                take.piece(mask, BinEntry { triangle, piece: Some(pieces) });
                 pieces += 1;
             };
             match touch {
@@ -169,19 +209,12 @@ impl Walk {
                 }
             }
             if pieces == 0 && self.picture.binning == RegionBinning::All {
-                take.piece(self.all_regions, BinEntry { triangle, piece: None });
+                take.piece(RegionMask::EMPTY, BinEntry { triangle, piece: None });
             }
         }
         // Most triangles by far, counted together.
         stats.triangles += in_one_region;
         stats.screen_triangles += in_one_region;
-    }
-
-    fn receivers(&self, mask: RegionMask) -> RegionMask {
-        match self.picture.binning {
-            RegionBinning::Touched => mask,
-            RegionBinning::All => self.all_regions,
-        }
     }
 }
 
@@ -203,17 +236,19 @@ impl Pass {
     fn new(share: Share, view: &FrameView, eye: usize, picture: Picture, chosen: Option<&[bool]>) -> Self {
         let regions = picture.viewport.grid().regions();
         let placed = place_once(&share.list, view, eye, picture.viewport);
-        let all = (0..regions as u16).map(|region| RegionMask::only(RegionId(region)));
-        let all_regions = all.fold(RegionMask::EMPTY, RegionMask::union);
-        let walk = Walk { share, placed, picture, all_regions, chosen: chosen.map(Box::from) };
+        let walk = Walk { share, placed, picture, chosen: chosen.map(Box::from) };
         let mut found = Found {
             counts: vec![PrimitiveCounts::default(); regions as usize],
+            binning: picture.binning,
             on_screen: PrimitiveCounts::default(),
             touching: chosen.map(|_| Default::default()),
         };
         let stats = walk.go(&mut found);
+        if picture.binning == RegionBinning::All {
+            found.counts.iter_mut().for_each(|counts| counts.triangles = found.on_screen.triangles);
+        }
         let encoder = picture.pixels.then(|| Encoder::for_picture(&picture)).flatten();
-        Self { walk, found, stats, bins: OnceLock::new(), encoder }
+        Self { walk, found, stats, bins: OnceLock::new(), touching: OnceLock::new(), encoder }
     }
 
     /// What is in the bins, found again.
@@ -222,9 +257,16 @@ impl Pass {
             triangles: Vec::with_capacity(counts.triangles as usize),
             spheres: Vec::with_capacity(counts.spheres as usize),
         };
-        let mut bins: Vec<Bin> = self.found.counts.iter().map(room).collect();
-        self.walk.go(&mut bins);
-        bins
+        let bins = self.found.counts.iter().map(room).collect();
+        let mut filling = Filling { bins, binning: self.walk.picture.binning };
+        self.walk.go(&mut filling);
+        filling.bins
+    }
+
+    fn found_touching(&self) -> Touching {
+        let mut touching = Touching { entries: vec![Vec::new(); self.found.counts.len()], n_triangles: 0 };
+        self.walk.go(&mut touching);
+        touching
     }
 
     /// Numbers of entries in a region's bin.
@@ -295,6 +337,21 @@ impl Pass {
 
     pub(crate) fn bin(&self, region: RegionId) -> &Bin {
         &self.bins.get_or_init(|| self.filled())[usize::from(region.0)]
+    }
+
+    /// Triangles of some places in a region's bin.
+    pub(crate) fn triangles_in(&self, region: RegionId, places: &Range<u32>) -> &[BinEntry] {
+        &self.bin(region).triangles[places.start as usize..places.end as usize]
+    }
+
+    /// Those of them that touch the region; all of them, unless all regions get everything.
+    pub(crate) fn triangles_touching(&self, region: RegionId, places: &Range<u32>) -> Cow<'_, [BinEntry]> {
+        if self.walk.picture.binning == RegionBinning::Touched {
+            return Cow::Borrowed(self.triangles_in(region, places));
+        }
+        let all = &self.touching.get_or_init(|| self.found_touching()).entries[usize::from(region.0)];
+        let [from, to] = [places.start, places.end].map(|place| all.partition_point(|entry| entry.0 < place));
+        all[from..to].iter().map(|entry| entry.1).collect()
     }
 
     /// Structures in order, with their transforms.

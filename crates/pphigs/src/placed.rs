@@ -5,6 +5,7 @@ use crate::view::{EyeView, ModelEdit};
 use glam::Mat4;
 use pxpl5_geometry::{Light, ScreenVertex, Touched, Transform, VertexSurface, Viewport};
 use std::collections::VecDeque;
+use std::ops::Range;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// One structure as an eye sees it.
@@ -18,11 +19,13 @@ pub struct PlacedStructure {
     pub structure: DisplayStructure,
     /// From its frame to the eye, from its own coordinates to its frame, and from the eye to the picture.
     pub(crate) matrices: [Mat4; 3],
+    /// Places among the list's vertices, from the first that one of its triangles names to the last.
+    pub(crate) named: Range<usize>,
     pub(crate) vertices: OnceLock<Vertices>,
     pub(crate) touched: OnceLock<Touched>,
 }
 
-/// The vertices of a structure, from the first that one of its triangles names to the last.
+/// The vertices of a structure, from the first [named](PlacedStructure::named) one.
 #[derive(Debug)]
 pub(crate) struct Vertices {
     pub(crate) first: usize,
@@ -49,6 +52,8 @@ impl Corners {
 pub struct RecentViews {
     views: Mutex<VecDeque<(ViewKey, Arc<[PlacedStructure]>)>>,
     kept: usize,
+    /// By structure, the vertices that it names: the same in all views.
+    named: OnceLock<Vec<Range<usize>>>,
 }
 
 impl Default for RecentViews {
@@ -79,7 +84,12 @@ impl RecentViews {
     /// None yet; so many will be kept, at least one.
     #[must_use]
     pub fn keeping(views: usize) -> Self {
-        Self { views: Mutex::default(), kept: views.max(1) }
+        Self { views: Mutex::default(), kept: views.max(1), named: OnceLock::new() }
+    }
+
+    /// By structure, the vertices that it names, found when first asked for.
+    pub(crate) fn named(&self, find: impl FnOnce() -> Vec<Range<usize>>) -> &[Range<usize>] {
+        self.named.get_or_init(find)
     }
 
     /// The structures of a view, placed by `place` unless somebody asked for the same view lately.

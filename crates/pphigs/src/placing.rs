@@ -6,6 +6,7 @@ use crate::structure::{DisplayStructure, ModelFrame};
 use crate::view::{EyeView, FrameView, product};
 use glam::{Mat4, Vec3};
 use pxpl5_geometry::{Light, Touched, Transform, UnclippedTriangle, VertexSurface, ViewTransform, Viewport};
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 /// The model matrix of a structure that was never edited.
@@ -19,8 +20,19 @@ const UNMOVED: Mat4 = Mat4::IDENTITY;
 #[must_use]
 pub fn place_all(list: &DisplayList, view: &FrameView, eye: usize, viewport: Viewport) -> Vec<PlacedStructure> {
     let eye = eye_of(view, eye);
-    let structures = list.structures.iter().enumerate();
-    structures.map(|(i, s)| place(list, s, model(view, i), eye, viewport)).collect()
+    let named = list.recent.named(|| named(list)).iter().cloned();
+    let structures = list.structures.iter().zip(named).enumerate();
+    structures.map(|(i, (s, named))| place(list, s, named, model(view, i), eye, viewport)).collect()
+}
+
+/// By structure, the vertices from the first that one of its triangles names to the last.
+fn named(list: &DisplayList) -> Vec<Range<usize>> {
+    let of = |structure: &DisplayStructure| {
+        let all = list.triangles[structure.triangles.clone()].iter().flatten();
+        let (first, end) = all.fold((u32::MAX, 0), |(low, high), i| (low.min(*i), high.max(*i + 1)));
+        first as usize..end as usize
+    };
+    list.structures.iter().map(of).collect()
 }
 
 /// As [`place_all`], made once for all who ask.
@@ -46,6 +58,7 @@ fn model(view: &FrameView, structure: usize) -> Mat4 {
 fn place(
     list: &DisplayList,
     structure: &DisplayStructure,
+    named: Range<usize>,
     model: Mat4,
     eye: &EyeView,
     viewport: Viewport,
@@ -62,6 +75,7 @@ fn place(
         light,
         structure: structure.clone(),
         matrices: [to_eye, model, eye.projection],
+        named,
         vertices: OnceLock::new(),
         touched: OnceLock::new(),
     }
@@ -77,11 +91,9 @@ impl PlacedStructure {
     /// Its vertices on the screen, transformed when first asked for.
     pub(crate) fn vertices(&self, list: &DisplayList, transform: &Transform) -> &Vertices {
         self.vertices.get_or_init(|| {
-            let named = list.triangles[self.structure.triangles.clone()].iter().flatten();
-            let (first, end) = named.fold((u32::MAX, 0), |(low, high), i| (low.min(*i), high.max(*i + 1)));
-            let positions = list.positions.get(first as usize..end as usize).unwrap_or_default();
-            let on_screen = positions.iter().map(|p| transform.screen_vertex(*p)).collect();
-            Vertices { first: first as usize, on_screen, normals: OnceLock::new(), colours: OnceLock::new() }
+            let positions = list.positions.get(self.named.clone()).unwrap_or_default();
+            let on_screen = transform.screen_vertices(positions);
+            Vertices { first: self.named.start, on_screen, normals: OnceLock::new(), colours: OnceLock::new() }
         })
     }
 
@@ -123,7 +135,7 @@ impl Vertices {
     pub(crate) fn colours(&self, list: &DisplayList, transform: &Transform, light: &Light) -> &[VertexSurface] {
         self.colours.get_or_init(|| {
             let all = self.first..self.first + self.on_screen.len();
-            all.map(|i| transform.vertex_colour(light, list.positions[i], list.normals[i], list.colours[i])).collect()
+            transform.vertex_colours(light, all.map(|i| (list.positions[i], list.normals[i], list.colours[i])))
         })
     }
 }

@@ -1,6 +1,6 @@
 //! Slats: one field.
 
-use super::copies::{CopyTimes, Queue, copy_all};
+use super::copies::{Copies, CopyTimes, MOST_RENDERERS, Queue};
 use super::load::Load;
 use super::renderer::{Array, Commands, Cost, Fifo, Times};
 use crate::{pipeline_of, video_of};
@@ -17,9 +17,6 @@ use pxpl5_run::{
 use pxpl5_sim::Time;
 use pxpl5_wire::{FieldParity, PeriodNumber, RegionGrid};
 use slats::CLUMP;
-
-/// Renderers that are looked at one by one; more than there are field regions never hold one.
-const MOST_RENDERERS: usize = 20;
 
 /// Field regions of both eyes.
 const REGIONS: usize = 20;
@@ -119,7 +116,7 @@ impl SlatsModel {
         times
     }
 
-    /// The same of many machines, in their order: exactly what [`field`](Self::field) gives of each. Eight after another that have as
+    /// The same of many machines, in their order: exactly what [`field`](Self::field) gives of each. Sixteen after another that have as
     /// many boards and channels and the same program go through it together, which is faster.
     #[must_use]
     pub fn fields(models: &[Self], triangles: f64, each: PerTriangle) -> Vec<FieldTimes> {
@@ -138,30 +135,6 @@ impl SlatsModel {
     /// What decides how many messages there are, and in which order they go.
     const fn structure(&self) -> (usize, usize, usize, bool) {
         (self.renderers, self.gps, self.source_channels, self.split)
-    }
-
-    /// When each renderer has copied the bottom regions of the field before.
-    fn bottom_of_the_field_before(&self, layouts: &Layouts) -> [f64; MOST_RENDERERS] {
-        if !self.split {
-            return [0.0; MOST_RENDERERS];
-        }
-        let mut queues = self.queues(&layouts.bottom, 0.0, |_| 0.0);
-        copy_all(&mut queues[..self.renderers], self.region_ns);
-        queues.map(|queue| queue.ready_ns)
-    }
-
-    /// The copies of a field whose last clump was accepted at an instant, by renderers that are busy until then.
-    fn copies(&self, layouts: &Layouts, rendered_ns: f64, busy_until_ns: impl Fn(usize) -> f64) -> FieldTimes {
-        let commanded_ns = rendered_ns + self.message_ns;
-        let mut queues = self.queues(&layouts.top, commanded_ns, busy_until_ns);
-        let top = copy_all(&mut queues[..self.renderers], self.region_ns);
-        let bottom = self.split.then(|| {
-            let from_ns = self.field_ns.max(commanded_ns + self.message_ns);
-            let mut bottoms = self.queues(&layouts.bottom, from_ns, |renderer| queues[renderer].ready_ns);
-            copy_all(&mut bottoms[..self.renderers], self.region_ns)
-        });
-        let bottom_in_time = bottom.is_none_or(|times| times.end_ns <= self.field_ns + self.bottom_ns);
-        FieldTimes { rendered_ns, top, bottom, in_time: top.end_ns <= self.field_ns && bottom_in_time }
     }
 
     /// Field after field like this one: one is begun at every retrace at which the one before is done with its commands.
@@ -183,25 +156,10 @@ impl SlatsModel {
         let regions = (0..REGIONS).zip((0..self.renderers).cycle());
         for (region, renderer) in regions.filter(|(region, _)| wanted(*region)) {
             let right = (region / per_half) % 2 == 1;
-            queues[renderer].push(u8::from(right));
+            queues[renderer].push(right);
         }
         for queue in queues.iter_mut().take(self.renderers).skip(1).step_by(2).filter(|_| self.split) {
-            queue.boards[..queue.len].reverse();
-        }
-        queues
-    }
-
-    /// The same, of which the commands go out one after the other from `from_ns` on, to renderers that are busy until some instants.
-    fn queues(
-        &self,
-        layout: &[Queue; MOST_RENDERERS],
-        from_ns: f64,
-        busy_until_ns: impl Fn(usize) -> f64,
-    ) -> [Queue; MOST_RENDERERS] {
-        let mut queues = *layout;
-        let each_ns = self.overhead_ns + 2.0 * 11.0 * self.fifo.word_ns;
-        for (index, queue) in queues.iter_mut().enumerate().take(self.renderers) {
-            queue.ready_ns = (from_ns + each_ns * (index + 1) as f64).max(busy_until_ns(index));
+            *queue = queue.reversed();
         }
         queues
     }
@@ -221,8 +179,9 @@ impl SlatsModel {
     }
 }
 
-/// Configurations that are computed together: the numbers of f64 in two registers of 256 bits, or one of 512.
-const TOGETHER: usize = 8;
+/// Configurations that are computed together: two registers of 512 bits, or four of 256. Each step waits for the one before, so twice as
+/// many as fit one register go together in little more time.
+const TOGETHER: usize = 16;
 
 /// As wide as the processor is.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
@@ -243,10 +202,79 @@ fn fields_at_once<const N: usize>(models: [&SlatsModel; N], triangles: f64, each
         top: models[0].layout(|region| !models[0].split || region < REGIONS / 2),
         bottom: models[0].layout(|region| region >= REGIONS / 2),
     };
-    let before = models.map(|model| model.bottom_of_the_field_before(&layouts));
-    let mut arrays = std::array::from_fn(|renderer| Array::busy_until(Times::each(|i| before[i][renderer])));
+    let before = bottom_of_the_field_before(models, &layouts);
+    let mut arrays = [Array::busy_until(Times::all(0.0)); MOST_RENDERERS];
+    for (array, before) in arrays.iter_mut().zip(before).take(models[0].renderers) {
+        *array = Array::busy_until(before);
+    }
     let rendered = render(models, &mut arrays, triangles, each);
-    std::array::from_fn(|i| models[i].copies(&layouts, rendered.0[i], |renderer| arrays[renderer].free.0[i]))
+    copies(models, &layouts, rendered, |renderer| arrays[renderer].free)
+}
+
+/// When each renderer has copied the bottom regions of the field before.
+#[inline(always)]
+fn bottom_of_the_field_before<const N: usize>(
+    models: [&SlatsModel; N],
+    layouts: &Layouts,
+) -> [Times<N>; MOST_RENDERERS] {
+    let none = Times::all(0.0);
+    if !models[0].split {
+        return [none; MOST_RENDERERS];
+    }
+    let mut copies = commanded(models, none, |_| none);
+    copies.make(&layouts.bottom, models[0].renderers, region_of(models));
+    copies.ready
+}
+
+/// The copies of a field whose last clump was accepted at an instant, by renderers that are busy until then.
+#[inline(always)]
+fn copies<const N: usize>(
+    models: [&SlatsModel; N],
+    layouts: &Layouts,
+    rendered: Times<N>,
+    busy_until: impl Fn(usize) -> Times<N>,
+) -> [FieldTimes; N] {
+    let (region, message) = (region_of(models), Times::each(|i| models[i].message_ns));
+    let to_command = rendered + message;
+    let mut of_top = commanded(models, to_command, busy_until);
+    let top = of_top.make(&layouts.top, models[0].renderers, region);
+    let bottom = if models[0].split {
+        let from = Times::each(|i| models[i].field_ns).later(to_command + message);
+        let mut of_bottom = commanded(models, from, |renderer| of_top.ready[renderer]);
+        Some(of_bottom.make(&layouts.bottom, models[0].renderers, region))
+    } else {
+        None
+    };
+    let mut fields = [FieldTimes { rendered_ns: 0.0, top: top[0], bottom: None, in_time: false }; N];
+    for (i, field) in fields.iter_mut().enumerate() {
+        let (SlatsModel { field_ns, bottom_ns, .. }, bottom) = (models[i], bottom.map(|times| times[i]));
+        let bottom_in_time = bottom.is_none_or(|times| times.end_ns <= field_ns + bottom_ns);
+        let in_time = top[i].end_ns <= *field_ns && bottom_in_time;
+        *field = FieldTimes { rendered_ns: rendered.0[i], top: top[i], bottom, in_time };
+    }
+    fields
+}
+
+/// Renderers to which the commands to copy go out one after the other from an instant on, and which are busy until others.
+#[inline(always)]
+fn commanded<const N: usize>(
+    models: [&SlatsModel; N],
+    from: Times<N>,
+    busy_until: impl Fn(usize) -> Times<N>,
+) -> Copies<N> {
+    let each = Times::<N>::each(|i| models[i].overhead_ns + 2.0 * 11.0 * models[i].fifo.word_ns);
+    let mut copies = Copies { ready: [from; MOST_RENDERERS] };
+    for (renderer, ready) in copies.ready.iter_mut().enumerate().take(models[0].renderers) {
+        let commanded = Times::each(|i| from.0[i] + each.0[i] * (renderer + 1) as f64);
+        *ready = commanded.later(busy_until(renderer));
+    }
+    copies
+}
+
+/// Time of a region on a channel.
+#[inline(always)]
+fn region_of<const N: usize>(models: [&SlatsModel; N]) -> Times<N> {
+    Times::each(|i| models[i].region_ns)
 }
 
 /// TRANSFORM and RENDER: clumps of all GPs by turns; when the last one was accepted.
@@ -289,13 +317,12 @@ fn send<const N: usize>(
     let of_first = Commands::new(|i| models[i].commands(count, first));
     let of_others = if first && gps > 1 { Commands::new(|i| models[i].commands(count, false)) } else { of_first };
     let overhead = Times::each(|i| models[i].overhead_ns);
-    let latencies: [Times<N>; MOST_RENDERERS] =
-        std::array::from_fn(|renderer| Times::each(|i| models[i].hop_ns * (renderer + gps) as f64));
+    let hop = Times::<N>::each(|i| models[i].hop_ns);
     chain.accepted = from;
     // A round is a region of every renderer.
     for round in (0..REGIONS).step_by(renderers) {
         for renderer in 0..renderers.min(REGIONS - round) {
-            let latency = latencies[renderer];
+            let latency = Times::each(|i| hop.0[i] * (renderer + gps) as f64);
             let (array, released) = (&mut arrays[renderer], &mut chain.released[renderer]);
             granted = granted.later(channels.take_first()).later(*released);
             let mut accepted = array.take(granted + overhead + latency, &of_first);
@@ -455,7 +482,7 @@ mod tests {
         fn machines_that_are_computed_together_are_what_they_are_alone(
             gps in 1usize..5,
             renderers in 5usize..23,
-            all in proptest::collection::vec(numbers(), 1..30),
+            all in proptest::collection::vec(numbers(), 1..50),
             other in 0usize..40,
             split: bool,
             triangles in 1.0f64..400.0,

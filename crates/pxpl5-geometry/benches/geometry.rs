@@ -88,7 +88,7 @@ fn transform(c: &mut Criterion) {
         let mut vertices = Vec::new();
         b.iter(|| {
             vertices.clear();
-            vertices.extend(black_box(&ball.positions).iter().map(|p| view.screen_vertex(*p)));
+            vertices.extend(view.screen_vertices(black_box(&ball.positions)));
             view.touched(&vertices, ball.triangles.iter().map(|corners| corners.map(|i| i as usize)))
         });
     });
@@ -153,9 +153,9 @@ fn setup(c: &mut Criterion) {
             }
         });
     });
-    let vertices: Vec<_> = ball.positions.iter().map(|p| view.screen_vertex(*p)).collect();
-    let colours = ball.positions.iter().zip(&ball.colours);
-    let colours: Vec<_> = colours.map(|(p, c)| view.vertex_colour(&Light::HEADLIGHT, *p, *p, *c)).collect();
+    let vertices = view.screen_vertices(&ball.positions);
+    let coloured = ball.positions.iter().zip(&ball.colours).map(|(p, c)| (*p, *p, *c));
+    let colours = view.vertex_colours(&Light::HEADLIGHT, coloured);
     let normals: Vec<_> = ball.positions.iter().map(|p| view.vertex_normal(*p, *p)).collect();
     let mut lanes = TriangleLanes::default();
     group.bench_function("gouraud/together", |bencher| {

@@ -11,10 +11,8 @@ use crate::screen;
 use crate::vertex::{UnclippedTriangle, VertexSurface};
 use crate::{GouraudTriangle, PhongTriangle, SetupStats, Transform, Viewport};
 use multiversion::multiversion;
-use pxpl5_wire::{Linear, format};
-
-/// Triangles that are set up together: the doubles in a vector of the widest unit.
-pub const LANES: usize = 8;
+pub use pxpl5_wire::LANES;
+use pxpl5_wire::{Linear, LinearLanes, TriangleBatch, format};
 
 /// One of each triangle.
 pub(crate) type EachLane<T> = [T; LANES];
@@ -92,38 +90,23 @@ impl TriangleLanes {
     }
 }
 
-/// Linear expressions, one a lane.
-#[derive(Clone, Copy, Debug, Default)]
-struct Linears {
-    a: EachLane<i32>,
-    b: EachLane<i32>,
-    c: EachLane<i32>,
-}
-
-impl Linears {
-    #[inline(always)]
-    const fn get(&self, lane: usize) -> Linear {
-        Linear { a: self.a[lane], b: self.b[lane], c: self.c[lane] }
+/// A constant where `there` is not all ones, but zero.
+#[inline(always)]
+fn or_constant(mut all: LinearLanes, constant: i32, there: &EachLane<i32>) -> LinearLanes {
+    for (i, there) in there.iter().enumerate() {
+        all.a[i] &= there;
+        all.b[i] &= there;
+        all.c[i] = all.c[i] & there | constant & !there;
     }
-
-    /// A constant where `there` is not all ones, but zero.
-    #[inline(always)]
-    fn or_constant(mut self, constant: i32, there: &EachLane<i32>) -> Self {
-        for (i, there) in there.iter().enumerate() {
-            self.a[i] &= there;
-            self.b[i] &= there;
-            self.c[i] = self.c[i] & there | constant & !there;
-        }
-        self
-    }
+    all
 }
 
 /// The expressions of some triangles.
 #[derive(Clone, Debug)]
 struct Expressions {
-    edges: [Linears; 3],
+    edges: [LinearLanes; 3],
     /// Depth, then the components.
-    planes: [Linears; 4],
+    planes: [LinearLanes; 4],
     /// How many of the planes are flat.
     flattened: EachLane<u8>,
 }
@@ -146,6 +129,12 @@ impl Expressions {
 pub struct GouraudLanes(Expressions);
 
 impl GouraudLanes {
+    /// The expressions of the first `len` side by side.
+    #[must_use]
+    pub const fn batch(&self, len: usize) -> TriangleBatch<'_> {
+        TriangleBatch { len, edges: &self.0.edges, planes: &self.0.planes, colours: None }
+    }
+
     /// The expressions of triangle `i`, in the order in which they were pushed.
     ///
     /// # Panics
@@ -163,6 +152,12 @@ impl GouraudLanes {
 pub struct PhongLanes(Expressions);
 
 impl PhongLanes {
+    /// The expressions of the first `len` side by side, with their colours, 0x00RRGGBB.
+    #[must_use]
+    pub const fn batch(&self, len: usize, colours: [u32; LANES]) -> TriangleBatch<'_> {
+        TriangleBatch { len, edges: &self.0.edges, planes: &self.0.planes, colours: Some(colours) }
+    }
+
     /// Those of triangle `i` with the colour of its first corner.
     ///
     /// # Panics
@@ -219,7 +214,7 @@ impl PictureRows {
 
     /// The same values at the rows of the picture, as [`screen::for_rows`] gives them.
     #[inline(always)]
-    fn restate(&self, frame: Linears) -> Linears {
+    fn restate(&self, frame: LinearLanes) -> LinearLanes {
         let mut all = frame;
         for i in 0..LANES {
             all.c[i] = frame.c[i].wrapping_add(frame.b[i].wrapping_mul(self.first_line));
@@ -241,17 +236,17 @@ fn set_up(triangles: &TriangleLanes, half: f32, rows: PictureRows) -> Expression
     let x = clockwise(&triangles.x, &swapped);
     let y = clockwise(&triangles.y, &swapped);
     let edges = [
-        rows.restate(edge([&x[0], &x[1]], [&y[0], &y[1]])).or_constant(-1, &there),
-        rows.restate(edge([&x[1], &x[2]], [&y[1], &y[2]])).or_constant(-1, &there),
-        rows.restate(edge([&x[2], &x[0]], [&y[2], &y[0]])).or_constant(-1, &there),
+        or_constant(rows.restate(edge([&x[0], &x[1]], [&y[0], &y[1]])), -1, &there),
+        or_constant(rows.restate(edge([&x[1], &x[2]], [&y[1], &y[2]])), -1, &there),
+        or_constant(rows.restate(edge([&x[2], &x[0]], [&y[2], &y[0]])), -1, &there),
     ];
     let [a, b, c] = &triangles.z;
     let [p, q, r] = &triangles.surface;
     let planes_through = [
-        rows.restate(planes.through(&[depths(a), depths(b), depths(c)], &mut flattened)).or_constant(0, &there),
-        rows.restate(planes.through(&component(p, &away, half), &mut flattened)).or_constant(0, &there),
-        rows.restate(planes.through(&component(q, &away, half), &mut flattened)).or_constant(0, &there),
-        rows.restate(planes.through(&component(r, &away, half), &mut flattened)).or_constant(0, &there),
+        or_constant(rows.restate(planes.through(&[depths(a), depths(b), depths(c)], &mut flattened)), 0, &there),
+        or_constant(rows.restate(planes.through(&component(p, &away, half), &mut flattened)), 0, &there),
+        or_constant(rows.restate(planes.through(&component(q, &away, half), &mut flattened)), 0, &there),
+        or_constant(rows.restate(planes.through(&component(r, &away, half), &mut flattened)), 0, &there),
     ];
     for i in 0..LANES {
         flattened[i] &= there[i] as u8;
@@ -330,8 +325,8 @@ fn clockwise([p, q, r]: &[EachLane<i32>; 3], swapped: &EachLane<i32>) -> [EachLa
 
 /// The edge from one corner to the next at the pixels of the frame, as in [`crate::Outline`].
 #[inline(always)]
-fn edge([x, to_x]: [&EachLane<i32>; 2], [y, to_y]: [&EachLane<i32>; 2]) -> Linears {
-    let mut out = Linears::default();
+fn edge([x, to_x]: [&EachLane<i32>; 2], [y, to_y]: [&EachLane<i32>; 2]) -> LinearLanes {
+    let mut out = LinearLanes::default();
     for i in 0..LANES {
         let dx = to_x[i] - x[i];
         let dy = to_y[i] - y[i];
@@ -384,8 +379,8 @@ impl LanePlanes {
 
     /// The planes through three values of each at the frame's pixels; counts the flat ones.
     #[inline(always)]
-    fn through(&self, [p, q, r]: &[EachLane<f64>; 3], flattened: &mut EachLane<u8>) -> Linears {
-        let mut out = Linears::default();
+    fn through(&self, [p, q, r]: &[EachLane<f64>; 3], flattened: &mut EachLane<u8>) -> LinearLanes {
+        let mut out = LinearLanes::default();
         let mut flat = [false; LANES];
         for i in 0..LANES {
             let d1 = q[i] - p[i];
@@ -409,7 +404,7 @@ impl LanePlanes {
 }
 
 #[cold]
-fn flatten(v: [&EachLane<f64>; 3], flat: &EachLane<bool>, out: &mut Linears, flattened: &mut EachLane<u8>) {
+fn flatten(v: [&EachLane<f64>; 3], flat: &EachLane<bool>, out: &mut LinearLanes, flattened: &mut EachLane<u8>) {
     for i in (0..LANES).filter(|i| flat[*i]) {
         let Linear { a, b, c } = plane::flat(v.map(|v| v[i]));
         out.a[i] = a;

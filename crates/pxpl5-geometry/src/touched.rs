@@ -103,14 +103,15 @@ impl CornerLanes {
     #[inline(always)]
     fn take(&mut self, vertices: &[ScreenVertex], triangles: &mut impl Iterator<Item = [usize; 3]>) -> usize {
         self.len = 0;
-        for at in triangles.take(LANES) {
+        // The range comes first, so that no triangle is taken that has no lane.
+        for (lane, at) in (0..LANES).zip(triangles) {
             let corners = [&vertices[at[0]], &vertices[at[1]], &vertices[at[2]]];
             for (corner, vertex) in corners.iter().enumerate() {
-                self.x[corner][self.len] = vertex.snapped.x;
-                self.y[corner][self.len] = vertex.snapped.y;
+                self.x[corner][lane] = vertex.snapped.x;
+                self.y[corner][lane] = vertex.snapped.y;
             }
-            self.outside[self.len] = !(corners[0].inside & corners[1].inside & corners[2].inside);
-            self.len += 1;
+            self.outside[lane] = !(corners[0].inside & corners[1].inside & corners[2].inside);
+            self.len = lane + 1;
         }
         self.len
     }

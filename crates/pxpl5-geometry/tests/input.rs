@@ -180,7 +180,9 @@ fn agrees_with_its_shared_vertices(transform: &Transform, t: &Triangle, lane: us
     assert_eq!(stats[0], stats[1], "{name}");
     let Some(lit) = lit.first() else { return false };
     let Some(normals) = normals.first() else { return false };
-    let colours = [0, 1, 2].map(|i| transform.vertex_colour(&light, t.positions[i], t.normals[i], t.colours[i]));
+    let corners = [0, 1, 2].map(|i| (t.positions[i], t.normals[i], t.colours[i]));
+    let colours = transform.vertex_colours(&light, corners.into_iter());
+    let colours: [VertexSurface; 3] = colours.try_into().expect("three corners");
     let facing = [0, 1, 2].map(|i| transform.vertex_normal(t.positions[i], t.normals[i]));
     let found = transform.gouraud_lanes(&in_lane(lane, &unclipped, &colours), &mut stats[1]);
     assert_eq!(found.get(lane), lit.gouraud(transform.viewport(), &mut stats[0]), "{name}");

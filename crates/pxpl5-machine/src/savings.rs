@@ -15,8 +15,8 @@ pub enum Saving {
     IdleBoards,
     /// The ring computes the end of a message at its grant. Without it every word slot of every channel is an event.
     Transfers,
-    /// A region without any primitive is drawn once and kept for as long as its commands stay the same. Without it every
-    /// one is cleared and shaded.
+    /// A region that no primitive touches is drawn once and kept for as long as its other commands stay the same, and triangles that
+    /// firmware sends to regions which they do not touch (Slats) are left out of their pixels. Without it everything is drawn.
     EmptyRegions,
     /// Code that repeats with all it needs in the caches takes the clocks that were counted before (cycle level). Without it
     /// the i860s count every clock.

@@ -1,7 +1,7 @@
 //! What every pixel array does, whatever its inside.
 
 use crate::isa::{DecodeErrorKind, Operand};
-use pxpl5_wire::{CopyTarget, REGION_SIZE, Word};
+use pxpl5_wire::{CommandWords, CopyTarget, REGION_SIZE, Word};
 use std::sync::Arc;
 
 /// Pixels of the array: 128 x 128 (F89).
@@ -23,6 +23,14 @@ pub trait PixelArray {
     /// [`ArrayFault`] at the first illegal word or operand. What stands before it has been executed; it and the rest of the
     /// list have not. Faults are counted.
     fn execute(&mut self, words: &[Word]) -> Result<Executed, ArrayFault>;
+
+    /// Executes what of a list touches the region, and gives what was copied. A fault stops it, as on the hardware; what was drawn
+    /// before stays. What pixel memory holds is as after [`Self::execute`], Enable is not. `room` is for words.
+    fn draw(&mut self, commands: &dyn CommandWords, room: &mut Vec<Word>) -> Vec<OutputRegion> {
+        room.clear();
+        commands.append_touching(room);
+        self.execute(room).map_or_else(|_| Vec::new(), |executed| executed.outputs)
+    }
 
     /// Bit `bit` (0 to 207) of all pixels.
     ///

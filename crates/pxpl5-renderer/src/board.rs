@@ -1,7 +1,7 @@
 //! The board: input FIFO and controller on one side, the port to the frame buffers on the other.
 
 use crate::command::CommandKind;
-use crate::contents::{MAX_CONTEXTS, begins_with_clear, changes_pixels, has_primitives};
+use crate::contents::{MAX_CONTEXTS, begins_with_clear, changes_pixels};
 use crate::fifo::{EqualCommands, InputFifo, Progress};
 use crate::job::{ArrayPool, NoPixels, PixelJob};
 use crate::look::{RendererLook, SentLists};
@@ -9,8 +9,8 @@ use crate::timing::RendererTiming;
 use crate::{Lanes, PixelArray};
 use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
 use pxpl5_wire::{
-    Body, COPY_ACKNOWLEDGEMENT_WORDS, CommandList, CommandRun, CommandWords, CopyContent, CopyOrder, CopyTarget,
-    CopyWay, MAX_MESSAGE_WORDS, Message, NodeId, PixelSource, RegionPixels,
+    Body, COPY_ACKNOWLEDGEMENT_WORDS, CommandList, CommandRun, CommandWords, CopyOrder, CopyTarget, CopyWay,
+    MAX_MESSAGE_WORDS, Message, NodeId, PixelSource, RegionPixels,
 };
 use std::collections::VecDeque;
 use std::sync::{Arc, OnceLock};
@@ -74,7 +74,8 @@ pub struct Renderer {
     cycle: Span,
     fifo: InputFifo,
     pool: Arc<ArrayPool>,
-    keeps_empty_regions: bool,
+    /// Whether regions without primitives are kept, and what touches no pixel is left out.
+    saves_regions: bool,
     logs: [ContextLog; MAX_CONTEXTS],
     copies: VecDeque<PendingCopy>,
     /// The transfer to a frame buffer that is going on.
@@ -93,8 +94,6 @@ pub struct Renderer {
 #[derive(Clone, Debug, Default)]
 struct ContextLog {
     cleared: bool,
-    /// Whether a primitive was drawn.
-    drawn: bool,
     lists: Vec<Arc<dyn CommandWords>>,
 }
 
@@ -120,7 +119,7 @@ impl Renderer {
             cycle,
             fifo,
             pool,
-            keeps_empty_regions: true,
+            saves_regions: true,
             logs,
             copies: VecDeque::new(),
             copying: None,
@@ -184,7 +183,6 @@ impl Renderer {
         if changes_pixels(&list.runs) {
             log.lists.extend(list.content.clone());
         }
-        log.drawn |= has_primitives(&list.runs);
         for order in &list.copies {
             let image = self.image(order);
             let is_released = order.way != CopyWay::IntoBacking;
@@ -210,7 +208,7 @@ impl Renderer {
 
     fn image(&self, order: &CopyOrder) -> Arc<dyn PixelSource> {
         let [_, _, width, height] = order.target.grid.rectangle(order.target.region);
-        let ContextLog { cleared, drawn, lists } = self.logs[usize::from(order.context) % MAX_CONTEXTS].clone();
+        let ContextLog { cleared, lists } = self.logs[usize::from(order.context) % MAX_CONTEXTS].clone();
         if lists.is_empty() {
             return Arc::new(NoPixels { words: width * height * order.content.words() });
         }
@@ -218,7 +216,7 @@ impl Renderer {
             pool: Arc::clone(&self.pool),
             lists,
             cleared,
-            kept: self.keeps_empty_regions && !drawn && order.content == CopyContent::Colour,
+            saves: self.saves_regions,
             target: order.target,
             content: order.content,
             done: OnceLock::new(),
@@ -357,9 +355,9 @@ impl Renderer {
         Some(array)
     }
 
-    /// Draws regions without primitives anew each time from now on, instead of keeping them.
+    /// Draws all that is sent to regions from now on, though it may touch none of their pixels, and keeps none.
     pub const fn draw_every_region(&mut self) {
-        self.keeps_empty_regions = false;
+        self.saves_regions = false;
     }
 
     /// Keeps from now on when words come into the FIFO and leave it.

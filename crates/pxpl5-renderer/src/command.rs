@@ -33,7 +33,7 @@ mod shade;
 mod sphere;
 
 pub use copy::{Clear, CopyRegion, LoadBacking, SelectRegion, StoreBacking};
-pub(crate) use draw::{COLOUR_AT, COMPONENTS_AT, DEPTH_AT, EDGES_AT, PHONG_WORDS, TRIANGLE_WORDS};
+pub(crate) use draw::{COMPONENTS_AT, DEPTH_AT, EDGES_AT, PHONG_WORDS, TRIANGLE_WORDS};
 pub use draw::{PhongTriangleCommand, PhongTriangleEncoder, TriangleCommand, TriangleEncoder};
 pub(crate) use shade::ShadeFields;
 pub use shade::{SPECULAR_SQUARINGS, Shade};

@@ -8,16 +8,7 @@ pub const MAX_CONTEXTS: usize = 8;
 
 /// Whether a list changes pixels, and does not only select and copy.
 pub(crate) fn changes_pixels(runs: &[CommandRun]) -> bool {
-    has_other_than(&[CommandKind::SelectRegion, CommandKind::CopyRegion], runs)
-}
-
-/// Whether a list has anything but what is done to a whole region.
-pub(crate) fn has_primitives(runs: &[CommandRun]) -> bool {
-    use CommandKind::{Clear, CopyRegion, SelectRegion, Shade};
-    has_other_than(&[SelectRegion, Clear, Shade, CopyRegion], runs)
-}
-
-fn has_other_than(kinds: &[CommandKind], runs: &[CommandRun]) -> bool {
+    let kinds = [CommandKind::SelectRegion, CommandKind::CopyRegion];
     runs.iter().any(|run| CommandKind::from_opcode(run.opcode).is_none_or(|kind| !kinds.contains(&kind)))
 }
 

@@ -38,40 +38,71 @@ struct HeldCommand {
     complete: Time,
 }
 
-/// When commands started, as far as arrivals still need it: with each, the number of the first word that found room then.
-#[derive(Debug, Default)]
-struct Departures {
-    all: Vec<(u64, Time)>,
-    /// Those before are forgotten.
-    first: usize,
+/// Commands of one length that started one after the other in equal steps; none of these is shorter than their words need on a
+/// channel.
+#[derive(Clone, Copy, Debug)]
+struct Departure {
+    /// Number of the first word that found room when the first of them started.
+    made_room_for: u64,
+    left_at: Time,
+    count: u64,
+    words_each: u64,
+    step: Span,
 }
 
-impl Departures {
-    fn push(&mut self, made_room_for: u64, left_at: Time) {
-        self.forget(1);
-        self.all.push((made_room_for, left_at));
-    }
-
-    /// Gives up what nobody asks for any more, and has room for so many.
-    fn forget(&mut self, room: usize) {
-        if self.first > self.all.len() / 2 {
-            self.all.drain(..self.first);
-            self.first = 0;
+impl Departure {
+    /// The last of these commands that made room for a word, or for one before it; `made_room_for` is not behind it.
+    const fn last_for(&self, word: u64) -> u64 {
+        if self.count == 1 {
+            return 0;
         }
-        self.all.reserve(room);
+        let place = (word - self.made_room_for) / self.words_each;
+        if place < self.count { place } else { self.count - 1 }
     }
 
+    /// What is left without the first few commands.
+    fn behind(self, commands: u64) -> Self {
+        Self {
+            made_room_for: self.made_room_for + commands * self.words_each,
+            left_at: self.left_at + self.step * commands,
+            count: self.count - commands,
+            ..self
+        }
+    }
+}
+
+/// When commands started, as far as arrivals still need it.
+#[derive(Debug, Default)]
+struct Departures(VecDeque<Departure>);
+
+impl Departures {
     /// When the words from `first` to `last` have all entered, of which none comes in before `soonest`: each has waited for room, and
     /// those behind it besides for their own time on the channel. `first` is not less than the last one asked for.
+    ///
+    /// Of commands that made room in equal steps the last one decides, since the steps are not shorter than the words' time.
     #[inline]
     fn entered(&mut self, first: u64, last: u64, soonest: Time, word: Span) -> Time {
-        while self.all.get(self.first + 1).is_some_and(|next| next.0 <= first) {
-            self.first += 1;
+        self.forget_before(first);
+        let mut complete = soonest;
+        for room in &self.0 {
+            if room.made_room_for > last {
+                break;
+            }
+            let Departure { made_room_for, left_at, .. } = room.behind(room.last_for(last));
+            complete = complete.max(left_at + word * (last - made_room_for.max(first) + 1));
         }
-        let rooms = self.all[self.first..].iter().take_while(|room| room.0 <= last);
-        rooms.fold(soonest, |complete, (made_room_for, left_at)| {
-            complete.max(*left_at + word * (last - (*made_room_for).max(first) + 1))
-        })
+        complete
+    }
+
+    /// Gives up what only words before `first` waited for.
+    #[inline]
+    fn forget_before(&mut self, first: u64) {
+        while self.0.get(1).is_some_and(|next| next.made_room_for <= first) {
+            self.0.pop_front();
+        }
+        if let Some(room) = self.0.front_mut().filter(|room| room.made_room_for <= first) {
+            *room = room.behind(room.last_for(first));
+        }
     }
 }
 
@@ -217,7 +248,9 @@ impl InputFifo {
             let words = work.words_each;
             let span = work.span_each;
             if let (Some(free_at), Some(span_each), None) = (self.free_at, span, &self.watched)
-                && u64::from(words) <= self.depth
+                && (1..=self.depth).contains(&u64::from(words))
+                && work.count > 0
+                && span_each >= self.word * u64::from(words)
             {
                 self.run_freely(work, free_at, span_each);
                 continue;
@@ -244,34 +277,34 @@ impl InputFifo {
         progress
     }
 
-    /// Takes commands none of which waits for more than the one before it, since none blocks: what [`InputFifo::arrival`] and
-    /// [`InputFifo::start`] say of each, in one loop. Nobody watches, and each fits.
-    fn run_freely(&mut self, work: EqualCommands, mut free_at: Time, span: Span) {
+    /// Takes commands in closed form: what [`InputFifo::arrival`] and [`InputFifo::start`] say of each. Nobody watches, each fits and
+    /// takes as long as its words on the channel, and none blocks.
+    ///
+    /// So each but the first starts when the one before it ends. By then its last word has come in: at the latest its first one found
+    /// room when the command before it started.
+    fn run_freely(&mut self, work: EqualCommands, free_at: Time, span: Span) {
         debug_assert!(
             self.waiting.is_empty() && self.words_left == self.words_in,
             "only behind a block does anything wait"
         );
         let words = u64::from(work.words_each);
+        let count = u64::from(work.count);
+        let first = self.words_in;
+        let end = first + words * count;
         let on_channel = self.word * words;
-        let mut words_in = self.words_in;
-        let mut complete = self.last_word_at;
-        self.left.forget(work.count as usize);
-        for _ in 0..work.count {
-            let last = words_in + words - 1;
-            complete += on_channel;
-            if last >= self.depth {
-                complete = self.left.entered(words_in, last, complete, self.word);
-            }
-            let start = free_at.max(complete);
-            self.left.all.push((words_in + self.depth, start));
-            words_in += words;
-            free_at = start + span;
-        }
-        self.words_in = words_in;
-        self.words_left = words_in;
-        self.last_word_at = complete;
-        self.free_at = Some(free_at);
-        self.busy += span * u64::from(work.count);
+        let complete = self.left.entered(first, first + words - 1, self.last_word_at + on_channel, self.word);
+        let start = free_at.max(complete);
+        let made_room_for = first + self.depth;
+        self.left.0.push_back(Departure { made_room_for, left_at: start, count, words_each: words, step: span });
+        self.last_word_at = if count == 1 {
+            complete
+        } else {
+            self.left.entered(first + words, end - 1, complete + on_channel * (count - 1), self.word)
+        };
+        self.words_in = end;
+        self.words_left = end;
+        self.free_at = Some(start + span * count);
+        self.busy += span * count;
     }
 
     /// When the next `words` words have all entered; `None` while that depends on a blocking command.
@@ -311,7 +344,8 @@ impl InputFifo {
     /// Starts a command when it is complete and the controller is free; gives the time if it blocks.
     fn start(&mut self, command: HeldCommand, free_at: Time) -> Option<Time> {
         let start = free_at.max(command.complete);
-        self.left.push(self.words_left + self.depth, start);
+        let made_room_for = self.words_left + self.depth;
+        self.left.0.push_back(Departure { made_room_for, left_at: start, count: 1, words_each: 0, step: Span::ZERO });
         self.words_left += u64::from(command.words);
         if let Some(watched) = &mut self.watched {
             watched.changes.push((start, -i64::from(command.words)));
@@ -366,15 +400,13 @@ mod tests {
         fifo.message(begins)
     }
 
-    fn work(commands: &[(u32, u64)]) -> Vec<EqualCommands> {
-        commands
-            .iter()
-            .map(|(words_each, ns)| EqualCommands {
-                words_each: *words_each,
-                count: 1,
-                span_each: Some(Span::from_ns(*ns)),
-            })
-            .collect()
+    fn work(runs: &[(u32, u64, u32)]) -> Vec<EqualCommands> {
+        let run = |(words_each, ns, count): &(u32, u64, u32)| EqualCommands {
+            words_each: *words_each,
+            count: *count,
+            span_each: Some(Span::from_ns(*ns)),
+        };
+        runs.iter().map(run).collect()
     }
 
     proptest! {
@@ -382,14 +414,16 @@ mod tests {
         fn the_closed_form_agrees_with_one_word_at_a_time(
             depth in 40u32..300,
             messages in proptest::collection::vec(
-                (0u64..40_000, proptest::collection::vec((1u32..40, 0u64..9_000), 1..30)), 1..12)
+                (0u64..40_000, proptest::collection::vec((1u32..40, 0u64..9_000, 1u32..25), 1..9)), 1..12)
         ) {
             let mut fifo = InputFifo::new(depth, WORD);
             let mut literal = LiteralFifo { depth: depth as usize, held: VecDeque::new(), last_word_at: Time::ZERO, free_at: Time::ZERO };
             let mut begins = Time::ZERO;
-            for (gap_ns, commands) in messages {
+            for (gap_ns, runs) in messages {
                 begins = begins.max(literal.last_word_at) + Span::from_ns(gap_ns);
-                let accepted = message(&mut fifo, begins, work(&commands)).accepted;
+                let accepted = message(&mut fifo, begins, work(&runs)).accepted;
+                let commands: Vec<_> =
+                    runs.iter().flat_map(|(words, ns, count)| vec![(*words, *ns); *count as usize]).collect();
                 prop_assert_eq!(accepted, Some(literal.message(begins, &commands).0));
                 prop_assert_eq!(fifo.free_at, Some(literal.free_at));
             }

@@ -1,10 +1,11 @@
 //! Pixels of one region, computed when somebody looks.
 
-use crate::{Command, Lanes, Layout, PixelArray};
+use crate::{Command, Lanes, Layout, OutputRegion, PixelArray};
 use pxpl5_wire::format::Z_BITS;
 use pxpl5_wire::{CommandWords, CopyContent, CopyTarget, PixelSource, Word};
 use std::collections::HashMap;
 use std::fmt;
+use std::slice::Iter;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 /// Pixel arrays that are not in use; a thread that computes pixels borrows one.
@@ -85,8 +86,8 @@ pub(crate) struct PixelJob {
     pub(crate) lists: Vec<Arc<dyn CommandWords>>,
     /// Whether the first list overwrites whatever the array held.
     pub(crate) cleared: bool,
-    /// Whether the region has no primitives and may be kept.
-    pub(crate) kept: bool,
+    /// Whether what touches no pixel is left out, and a region without primitives kept.
+    pub(crate) saves: bool,
     /// Where the pixels go.
     pub(crate) target: CopyTarget,
     /// What of each pixel is sent.
@@ -96,28 +97,33 @@ pub(crate) struct PixelJob {
 
 impl PixelJob {
     fn compute(&self) -> Arc<[Word]> {
-        if !self.kept {
-            return self.draw();
-        }
-        let Some(words) = self.words_without_copies() else { return self.draw() };
-        let region = EmptyRegion { words, cleared: self.cleared, size: self.size() };
-        self.pool.empty_region(region, || self.draw())
+        self.pool.with_idle_array(|ArrayAndWords { array, words }| {
+            words.clear();
+            let mut lists = self.lists.iter();
+            // Up to the first list that draws something.
+            if self.saves
+                && !lists.any(|list| list.append_touching(words))
+                && let Some(region) = self.as_empty_region(words)
+            {
+                return self.pool.empty_region(region, || self.draw(array, words, lists));
+            }
+            self.draw(array, words, lists)
+        })
     }
 
-    /// `None` where something is no command.
-    fn words_without_copies(&self) -> Option<Vec<Word>> {
-        let mut words = Vec::new();
-        self.lists.iter().for_each(|list| list.append_words(&mut words));
+    /// The region of these commands, none of which draws a primitive; `None` where something is no command, or depths are copied.
+    fn as_empty_region(&self, words: &[Word]) -> Option<EmptyRegion> {
         let mut kept = Vec::new();
         let mut at = 0;
         while at < words.len() {
-            let (command, length) = Command::decode(&words, at, &self.pool.layout).ok()?;
+            let (command, length) = Command::decode(words, at, &self.pool.layout).ok()?;
             if !matches!(command, Command::CopyRegion(_)) {
                 kept.extend_from_slice(&words[at..at + length]);
             }
             at += length;
         }
-        Some(kept)
+        let region = EmptyRegion { words: kept, cleared: self.cleared, size: self.size() };
+        (self.content == CopyContent::Colour).then_some(region)
     }
 
     /// Columns and rows of the region, which may be less than the array's.
@@ -126,23 +132,33 @@ impl PixelJob {
         [width, height]
     }
 
-    fn draw(&self) -> Arc<[Word]> {
-        self.pool.with_idle_array(|ArrayAndWords { array, words }| {
-            if !self.cleared {
-                array.reset();
-            }
-            let mut copied = None;
-            for list in &self.lists {
+    /// Executes some words, and the lists behind them.
+    fn draw(&self, array: &mut Lanes, words: &mut Vec<Word>, lists: Iter<'_, Arc<dyn CommandWords>>) -> Arc<[Word]> {
+        if !self.cleared {
+            array.reset();
+        }
+        let mut copied = self.execute(array, words);
+        for list in lists {
+            copied = if self.saves {
+                self.copied(array.draw(&**list, words))
+            } else {
                 words.clear();
                 list.append_words(words);
-                // A fault stops the list, as on the hardware; what was drawn before stays.
-                let outputs = array.execute(words).map_or_else(|_| Vec::new(), |executed| executed.outputs);
-                copied = outputs.into_iter().rfind(|output| output.target == self.target);
-            }
-            let [width, height] = self.size();
-            let colours = copied.map_or_else(|| array.read_colour(width, height), |output| output.pixels);
-            self.content.of(colours, || self.depths(array))
-        })
+                self.execute(array, words)
+            };
+        }
+        let [width, height] = self.size();
+        let colours = copied.map_or_else(|| array.read_colour(width, height), |output| output.pixels);
+        self.content.of(colours, || self.depths(array))
+    }
+
+    /// What was copied to where these pixels go. A fault stops the list, as on the hardware; what was drawn before stays.
+    fn execute(&self, array: &mut Lanes, words: &[Word]) -> Option<OutputRegion> {
+        self.copied(array.execute(words).map_or_else(|_| Vec::new(), |executed| executed.outputs))
+    }
+
+    fn copied(&self, outputs: Vec<OutputRegion>) -> Option<OutputRegion> {
+        outputs.into_iter().rfind(|output| output.target == self.target)
     }
 
     /// The depths of the region's pixels in 24 bits, 0 at the near plane; what a layout does not hold of them is 1 at the far plane
@@ -181,7 +197,7 @@ impl PixelSource for NoPixels {
 mod tests {
     use super::*;
     use crate::{Clear, CopyRegion, SelectRegion};
-    use pxpl5_wire::PictureNumber;
+    use pxpl5_wire::{CommandSink, PictureNumber};
     use pxpl5_wire::{Lines, NodeId, RegionGrid, RegionId};
 
     #[derive(Debug)]
@@ -190,6 +206,11 @@ mod tests {
     impl CommandWords for GivenWords {
         fn append_words(&self, out: &mut Vec<Word>) {
             out.extend_from_slice(&self.0);
+        }
+
+        fn append_touching(&self, out: &mut dyn CommandSink) -> bool {
+            self.append_words(out.words());
+            false
         }
     }
 
@@ -212,7 +233,7 @@ mod tests {
             pool: Arc::clone(pool),
             lists,
             cleared: true,
-            kept: true,
+            saves: true,
             target,
             content: CopyContent::Colour,
             done: OnceLock::new(),

@@ -14,14 +14,14 @@ mod triangle;
 mod values;
 mod whole;
 
-use crate::array::{ArrayFault, Executed, PIXELS, PixelArray, Plane};
+use crate::array::{ArrayFault, Executed, OutputRegion, PIXELS, PixelArray, Plane};
 use crate::controller::{Controller, FieldBits};
 use crate::isa::{BACKING_BLOCKS, opcode};
 use crate::layout::Layout;
 use crate::simd::{PresentVectors, Vectors};
 use columns::{ContextColumns, PixelColumns};
 use enable::Enable;
-use pxpl5_wire::{REGION_SIZE, Word};
+use pxpl5_wire::{CommandSink, CommandWords, REGION_SIZE, TriangleBatch, Word};
 use std::sync::Arc;
 use template::Templates;
 
@@ -109,6 +109,40 @@ impl Lanes {
     }
 }
 
+/// A list that is being drawn.
+struct Drawing<'a> {
+    array: &'a mut Lanes,
+    /// Words that have not been executed.
+    words: &'a mut Vec<Word>,
+    /// What was copied; nothing is drawn behind a fault.
+    outputs: Result<Vec<OutputRegion>, ArrayFault>,
+}
+
+impl Drawing<'_> {
+    fn execute(&mut self) {
+        if let Ok(outputs) = &mut self.outputs
+            && !self.words.is_empty()
+        {
+            match self.array.execute(self.words) {
+                Ok(executed) => outputs.extend(executed.outputs),
+                Err(fault) => self.outputs = Err(fault),
+            }
+        }
+        self.words.clear();
+    }
+}
+
+impl CommandSink for Drawing<'_> {
+    fn words(&mut self) -> &mut Vec<Word> {
+        self.words
+    }
+
+    fn triangles(&mut self, batch: &TriangleBatch<'_>) -> bool {
+        self.execute();
+        self.outputs.is_err() || self.array.batch(batch).is_some()
+    }
+}
+
 /// The left top `width` x `height` of all pixels.
 fn rectangle(pixels: &[Word], width: u32, height: u32) -> Arc<[Word]> {
     const WIDTH: usize = REGION_SIZE as usize;
@@ -123,6 +157,14 @@ fn rectangle(pixels: &[Word], width: u32, height: u32) -> Arc<[Word]> {
 impl PixelArray for Lanes {
     fn execute(&mut self, words: &[Word]) -> Result<Executed, ArrayFault> {
         self.run(words).inspect_err(|_| self.faults += 1)
+    }
+
+    fn draw(&mut self, commands: &dyn CommandWords, room: &mut Vec<Word>) -> Vec<OutputRegion> {
+        room.clear();
+        let mut drawing = Drawing { array: self, words: room, outputs: Ok(Vec::new()) };
+        commands.append_touching(&mut drawing);
+        drawing.execute();
+        drawing.outputs.unwrap_or_default()
     }
 
     fn plane(&self, bit: usize) -> Plane {
@@ -162,7 +204,9 @@ impl PixelArray for Lanes {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command::{Command, CommandKind};
+    use crate::command::{Clear, Command, CommandKind, PhongTriangleCommand, SelectRegion, TriangleCommand};
+    use crate::conformance::Random;
+    use pxpl5_wire::{LANES, LinearLanes};
 
     const WHOLE: [CommandKind; 6] = [
         CommandKind::Clear,
@@ -197,6 +241,100 @@ mod tests {
         let executed = lanes.execute(&words).unwrap();
         let clocks = CommandKind::Sphere.clocks(&theirs).unwrap();
         assert_eq!(executed.clocks, u64::from(clocks));
+    }
+
+    /// Eight triangles with commands before and behind them.
+    #[derive(Debug)]
+    struct SomeTriangles {
+        layout: Layout,
+        edges: [LinearLanes; 3],
+        planes: [LinearLanes; 4],
+        colours: Option<[Word; LANES]>,
+    }
+
+    impl SomeTriangles {
+        fn random(layout: Layout, random: &mut Random, with_normals: bool) -> Self {
+            // Lines through the region, and values that wrap now and then.
+            let edge = |random: &mut Random| LinearLanes {
+                a: [(); LANES].map(|()| random.signed(9)),
+                b: [(); LANES].map(|()| random.signed(9)),
+                c: [(); LANES].map(|()| random.signed(16)),
+            };
+            let plane = |random: &mut Random| LinearLanes {
+                a: [(); LANES].map(|()| random.signed(22)),
+                b: [(); LANES].map(|()| random.signed(22)),
+                c: [(); LANES].map(|()| random.signed(32)),
+            };
+            let edges = [(); 3].map(|()| edge(random));
+            let planes = [(); 4].map(|()| plane(random));
+            Self {
+                layout,
+                edges,
+                planes,
+                colours: with_normals.then(|| [(); LANES].map(|()| random.signed(24) as Word)),
+            }
+        }
+
+        fn append(&self, command: Command, out: &mut Vec<Word>) {
+            command.encode(&self.layout, out).expect("the layout has what it needs");
+        }
+
+        fn begin(&self, out: &mut Vec<Word>) {
+            self.append(Command::SelectRegion(SelectRegion { context: 0, left: 128, top: 64 }), out);
+            self.append(Command::Clear(Clear { colour: 0x12_34_56 }), out);
+        }
+
+        fn triangle(&self, i: usize) -> Command {
+            let edges = self.edges.map(|edge| edge.get(i));
+            let [depth, components @ ..] = self.planes.map(|plane| plane.get(i));
+            match self.colours {
+                None => Command::Triangle(TriangleCommand { edges, depth, colour: components }),
+                Some(colours) => {
+                    let colour = colours[i] & 0xff_ffff;
+                    Command::PhongTriangle(PhongTriangleCommand { edges, depth, normal: components, colour })
+                }
+            }
+        }
+    }
+
+    impl CommandWords for SomeTriangles {
+        fn append_words(&self, out: &mut Vec<Word>) {
+            self.begin(out);
+            (0..LANES).for_each(|i| self.append(self.triangle(i), out));
+            self.append(self.triangle(3), out);
+        }
+
+        fn append_touching(&self, out: &mut dyn CommandSink) -> bool {
+            self.begin(out.words());
+            let batch = TriangleBatch { len: LANES, edges: &self.edges, planes: &self.planes, colours: self.colours };
+            assert!(out.triangles(&batch), "the layout has such triangles");
+            self.append(self.triangle(3), out.words());
+            true
+        }
+    }
+
+    #[test]
+    fn triangles_without_words_leave_the_pixels_of_their_commands() {
+        let mut random = Random::new(20);
+        let mut covered = 0;
+        for round in 0..40 {
+            let with_normals = round % 2 == 1;
+            let layout = if with_normals { Layout::rendering_control_phong() } else { Layout::slats() };
+            let list = SomeTriangles::random(layout, &mut random, with_normals);
+            let mut words = Vec::new();
+            list.append_words(&mut words);
+            for vectors in Vectors::available() {
+                let mut by_words = Lanes::with_vectors(&layout, vectors);
+                by_words.execute(&words).expect("whole commands");
+                let mut by_batch = Lanes::with_vectors(&layout, vectors);
+                assert!(by_batch.draw(&list, &mut Vec::new()).is_empty());
+                for bit in 0..crate::isa::MEMORY_BITS as usize {
+                    assert_eq!(by_batch.plane(bit), by_words.plane(bit), "bit {bit} on {vectors:?}");
+                }
+                covered += by_words.read_colour(128, 128).iter().filter(|colour| **colour != 0x12_34_56).count();
+            }
+        }
+        assert!(covered > 10_000, "{covered}");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Messages and what their words mean.
 
-use crate::{NodeId, PeriodNumber, PictureNumber, RegionGrid, RegionId, Word};
+use crate::{NodeId, PeriodNumber, PictureNumber, RegionGrid, RegionId, TriangleBatch, Word};
 use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -135,6 +135,32 @@ pub struct CommandRun {
 pub trait CommandWords: Debug + Send + Sync {
     /// Appends the words to `out`, always the same ones.
     fn append_words(&self, out: &mut Vec<Word>);
+
+    /// Hands the same commands to somebody, or without primitives that touch no pixel of the region that they are sent to; says
+    /// whether a primitive is among them. Whole commands, of which each that draws sets Enable first.
+    fn append_touching(&self, out: &mut dyn CommandSink) -> bool {
+        self.append_words(out.words());
+        true
+    }
+}
+
+/// Takes commands in order: words, and triangles without them where it can.
+pub trait CommandSink {
+    /// The words of commands are appended here.
+    fn words(&mut self) -> &mut Vec<Word>;
+
+    /// Takes triangles that come behind the words so far. False where their words are to be appended instead.
+    fn triangles(&mut self, batch: &TriangleBatch<'_>) -> bool;
+}
+
+impl CommandSink for Vec<Word> {
+    fn words(&mut self) -> &mut Vec<Word> {
+        self
+    }
+
+    fn triangles(&mut self, _: &TriangleBatch<'_>) -> bool {
+        false
+    }
 }
 
 impl CommandWords for Vec<Word> {

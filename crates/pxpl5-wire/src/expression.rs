@@ -30,6 +30,45 @@ impl Linear {
     }
 }
 
+/// Triangles whose expressions stand side by side: a vector of the widest unit holds a double of each.
+pub const LANES: usize = 8;
+
+/// Linear expressions of [`LANES`] triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LinearLanes {
+    /// [`Linear::a`] of each.
+    pub a: [i32; LANES],
+    /// [`Linear::b`] of each.
+    pub b: [i32; LANES],
+    /// [`Linear::c`] of each.
+    pub c: [i32; LANES],
+}
+
+impl LinearLanes {
+    /// The expression of triangle `i`.
+    ///
+    /// # Panics
+    /// If `i` is not below [`LANES`].
+    #[inline(always)]
+    #[must_use]
+    pub const fn get(&self, i: usize) -> Linear {
+        Linear { a: self.a[i], b: self.b[i], c: self.c[i] }
+    }
+}
+
+/// Some triangles as their commands for a renderer have them.
+#[derive(Clone, Copy, Debug)]
+pub struct TriangleBatch<'a> {
+    /// How many there are, at most [`LANES`].
+    pub len: usize,
+    /// A pixel is covered where all three are at least 0.
+    pub edges: &'a [LinearLanes; 3],
+    /// Depth; then red, green and blue, or x, y and z of the normal.
+    pub planes: &'a [LinearLanes; 4],
+    /// The colours of triangles with normals, 0x00RRGGBB.
+    pub colours: Option<[u32; LANES]>,
+}
+
 /// `xx x^2 + xy x y + yy y^2 + x x + y y + one` at the integer pixel (x, y), in 64-bit two's complement (sums wrap).
 ///
 /// The machine's evaluator forms `A x^2 + B x y + C y^2 + D x + E y + F` (F89). Two words a coefficient are

@@ -25,11 +25,11 @@ mod number;
 mod region;
 
 pub use body::{
-    Body, COPY_ACKNOWLEDGEMENT, COPY_ACKNOWLEDGEMENT_WORDS, CommandList, CommandRun, CommandWords, CopyContent,
-    CopyOrder, CopyTarget, CopyWay, FieldParity, Lines, Message, PixelSource, RegionPixels, SWAP_REQUEST,
+    Body, COPY_ACKNOWLEDGEMENT, COPY_ACKNOWLEDGEMENT_WORDS, CommandList, CommandRun, CommandSink, CommandWords,
+    CopyContent, CopyOrder, CopyTarget, CopyWay, FieldParity, Lines, Message, PixelSource, RegionPixels, SWAP_REQUEST,
     read_swap_request, swap_request,
 };
-pub use expression::{Linear, Quadratic};
+pub use expression::{LANES, Linear, LinearLanes, Quadratic, TriangleBatch};
 pub use number::{PeriodNumber, PictureNumber, ViewNumber};
 pub use region::{Eye, RegionGrid, RegionId, SurfaceId};
 

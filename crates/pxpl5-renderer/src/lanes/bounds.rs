@@ -2,7 +2,7 @@
 //!
 //! Floating point decides only which pixels are looked at, with a margin; the edges themselves decide in integers.
 
-use pxpl5_wire::Linear;
+use pxpl5_wire::{LANES, Linear, LinearLanes};
 
 /// Last column and row of the array.
 const LAST: i64 = 127;
@@ -68,38 +68,31 @@ impl RowLimit {
     }
 }
 
-/// Triangles that are looked at side by side: a vector of the widest unit holds one number of each.
-pub(super) const SIDE_BY_SIDE: usize = 8;
-
 /// A number of each of some triangles.
-type PerTriangle<T> = [T; SIDE_BY_SIDE];
+type PerTriangle<T> = [T; LANES];
 
-/// The edges of some triangles over the array's own columns and rows; edge `e` of triangle `i` at `[e][i]`.
+/// The edges of some triangles over the array's own columns and rows.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Edges {
-    a: [PerTriangle<i32>; 3],
-    b: [PerTriangle<i32>; 3],
-    c: [PerTriangle<i32>; 3],
-}
+pub(super) struct Edges(pub(super) [LinearLanes; 3]);
 
 impl Edges {
     /// Sets the edges of triangle `i`.
     #[inline(always)]
-    pub(super) fn set(&mut self, i: usize, edges: [[i32; 3]; 3]) {
-        for (e, [a, b, c]) in edges.into_iter().enumerate() {
-            self.a[e][i] = a;
-            self.b[e][i] = b;
-            self.c[e][i] = c;
+    pub(super) fn set(&mut self, i: usize, edges: [Linear; 3]) {
+        for (e, Linear { a, b, c }) in edges.into_iter().enumerate() {
+            self.0[e].a[i] = a;
+            self.0[e].b[i] = b;
+            self.0[e].c[i] = c;
         }
     }
 
     /// Takes all to an array that begins with this column and row of the picture.
     #[inline(always)]
     pub(super) fn localise(&mut self, [left, top]: [i32; 2]) {
-        for e in 0..3 {
-            for i in 0..SIDE_BY_SIDE {
-                let moved = self.a[e][i].wrapping_mul(left).wrapping_add(self.b[e][i].wrapping_mul(top));
-                self.c[e][i] = self.c[e][i].wrapping_add(moved);
+        for e in &mut self.0 {
+            for i in 0..LANES {
+                let moved = e.a[i].wrapping_mul(left).wrapping_add(e.b[i].wrapping_mul(top));
+                e.c[i] = e.c[i].wrapping_add(moved);
             }
         }
     }
@@ -107,12 +100,7 @@ impl Edges {
     /// The edges of triangle `i`.
     #[inline(always)]
     pub(super) const fn get(&self, i: usize) -> [Linear; 3] {
-        [self.edge(0, i), self.edge(1, i), self.edge(2, i)]
-    }
-
-    #[inline(always)]
-    const fn edge(&self, e: usize, i: usize) -> Linear {
-        Linear { a: self.a[e][i], b: self.b[e][i], c: self.c[e][i] }
+        [self.0[0].get(i), self.0[1].get(i), self.0[2].get(i)]
     }
 }
 
@@ -135,17 +123,18 @@ const REACH: f64 = 512.0;
 impl Boxes {
     #[inline(always)]
     pub(super) fn enclosing(edges: &Edges) -> Self {
-        let a = three(&edges.a);
-        let b = three(&edges.b);
-        let c = three(&edges.c);
-        let mut straight = [true; SIDE_BY_SIDE];
-        let mut left = [true; SIDE_BY_SIDE];
-        let mut right = [true; SIDE_BY_SIDE];
-        let mut low = [[f64::INFINITY; SIDE_BY_SIDE]; 2];
-        let mut high = [[f64::NEG_INFINITY; SIDE_BY_SIDE]; 2];
+        let [p, q, r] = &edges.0;
+        let a = [doubles(&p.a), doubles(&q.a), doubles(&r.a)];
+        let b = [doubles(&p.b), doubles(&q.b), doubles(&r.b)];
+        let c = [doubles(&p.c), doubles(&q.c), doubles(&r.c)];
+        let mut straight = [true; LANES];
+        let mut left = [true; LANES];
+        let mut right = [true; LANES];
+        let mut low = [[f64::INFINITY; LANES]; 2];
+        let mut high = [[f64::NEG_INFINITY; LANES]; 2];
         for e in 0..3 {
             let f = (e + 1) % 3;
-            for i in 0..SIDE_BY_SIDE {
+            for i in 0..LANES {
                 straight[i] &= REACH * (a[e][i].abs() + b[e][i].abs()) + c[e][i].abs() <= f64::from(i32::MAX);
                 // Times this, the corner is where edges e and f are zero.
                 let determinant = a[e][i] * b[f][i] - a[f][i] * b[e][i];
@@ -160,8 +149,8 @@ impl Boxes {
                 high[1][i] = high[1][i].max(y);
             }
         }
-        let mut closed = [false; SIDE_BY_SIDE];
-        for i in 0..SIDE_BY_SIDE {
+        let mut closed = [false; LANES];
+        for i in 0..LANES {
             closed[i] = (left[i] | right[i]) & straight[i];
         }
         Self { x: pixels(&low[0], &high[0]), y: pixels(&low[1], &high[1]), closed, straight }
@@ -194,12 +183,10 @@ impl Boxes {
 }
 
 #[inline(always)]
-fn three(v: &[PerTriangle<i32>; 3]) -> [PerTriangle<f64>; 3] {
-    let mut out = [[0.0; SIDE_BY_SIDE]; 3];
+fn doubles(v: &PerTriangle<i32>) -> PerTriangle<f64> {
+    let mut out = [0.0; LANES];
     for (out, v) in out.iter_mut().zip(v) {
-        for (out, v) in out.iter_mut().zip(v) {
-            *out = f64::from(*v);
-        }
+        *out = f64::from(*v);
     }
     out
 }
@@ -208,8 +195,8 @@ fn three(v: &[PerTriangle<i32>; 3]) -> [PerTriangle<f64>; 3] {
 #[inline(always)]
 fn pixels(low: &PerTriangle<f64>, high: &PerTriangle<f64>) -> [PerTriangle<i32>; 2] {
     const BEYOND: f64 = (LAST + 1) as f64;
-    let mut out = [[0; SIDE_BY_SIDE]; 2];
-    for i in 0..SIDE_BY_SIDE {
+    let mut out = [[0; LANES]; 2];
+    for i in 0..LANES {
         out[0][i] = small((low[i] - MARGIN).ceil().clamp(0.0, BEYOND));
         out[1][i] = small((high[i] + MARGIN).floor().clamp(-1.0, LAST as f64));
     }
@@ -239,7 +226,7 @@ mod tests {
     /// The bounds of one triangle among others.
     fn bounds(edges: &[Linear; 3]) -> Option<Bounds> {
         let mut all = Edges::default();
-        all.set(5, edges.map(|e| [e.a, e.b, e.c]));
+        all.set(5, *edges);
         Boxes::enclosing(&all).bounds(5, edges)
     }
 

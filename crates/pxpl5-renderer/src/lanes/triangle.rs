@@ -1,13 +1,13 @@
 //! Triangles by values: a vector of pixels at a time, masks instead of branches.
 
-use super::bounds::{Area, Boxes, Edges, SIDE_BY_SIDE};
+use super::bounds::{Area, Boxes, Edges};
 use super::columns::Values;
 use super::enable::Enable;
 use super::template::{Template, starts_anew};
-use crate::command::{COLOUR_AT, COMPONENTS_AT, DEPTH_AT, EDGES_AT, PHONG_WORDS, TRIANGLE_WORDS};
+use crate::command::{COMPONENTS_AT, DEPTH_AT, EDGES_AT};
 use crate::simd::{SimdVector, VectorKernel};
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_BITS, NORMAL_FRACTION_BITS};
-use pxpl5_wire::{Linear, Word};
+use pxpl5_wire::{LANES, Linear, TriangleBatch, Word};
 use std::ops::Range;
 
 const WIDTH: usize = 128;
@@ -37,18 +37,16 @@ impl<V: SimdVector> Walk<V> {
     }
 }
 
-/// What commands of `N` words store in the pixels that pass.
-pub(super) trait PaintTriangle<const N: usize> {
-    /// Takes what the command has besides expressions.
-    fn begin(&mut self, words: &[Word; N]);
+/// What triangles store in the pixels that pass.
+pub(super) trait PaintTriangle {
+    /// Takes the colour of the triangle that comes, where it has one.
+    fn begin(&mut self, colour: Word);
     /// Stores pixels from index `at` where the mask is true.
     fn store<V: SimdVector>(&mut self, walks: &[Walk<V>; 3], at: usize, mask: V::Mask);
 }
 
-/// All triangles of one kind at the start of `words`, as many as follow each other. Gives their number.
-pub(super) struct DrawTriangles<'a, const N: usize, P> {
-    pub(super) words: &'a [Word],
-    pub(super) template: &'a Template<N>,
+/// Draws triangles into a region.
+pub(super) struct TrianglePainter<'a, P> {
     /// Column and row of the picture that the array begins with.
     pub(super) origin: [i32; 2],
     pub(super) z_shift: u8,
@@ -57,11 +55,75 @@ pub(super) struct DrawTriangles<'a, const N: usize, P> {
     pub(super) enable: &'a mut Enable,
 }
 
+/// All triangles of one kind at the start of `words`, as many as follow each other. Gives their number.
+pub(super) struct DrawTriangles<'a, const N: usize, P> {
+    pub(super) words: &'a [Word],
+    pub(super) template: &'a Template<N>,
+    pub(super) painter: TrianglePainter<'a, P>,
+}
+
+/// Triangles without words. Enable stays as it was: nobody reads it before a command sets it.
+pub(super) struct DrawBatch<'a, P> {
+    pub(super) batch: &'a TriangleBatch<'a>,
+    pub(super) painter: TrianglePainter<'a, P>,
+}
+
+/// Where what a triangle has besides its edges is read, when it is needed. Expressions are over the picture's columns and rows.
+trait Surface {
+    fn depth(&self) -> Linear;
+    fn components(&self) -> [Linear; 3];
+    /// Of no meaning where a triangle has none.
+    fn colour(&self) -> Word;
+}
+
+impl<const N: usize> Surface for &[Word; N] {
+    #[inline(always)]
+    fn depth(&self) -> Linear {
+        coefficients(self, DEPTH_AT)
+    }
+
+    #[inline(always)]
+    fn components(&self) -> [Linear; 3] {
+        let [p, q, r] = COMPONENTS_AT;
+        [coefficients(self, p), coefficients(self, q), coefficients(self, r)]
+    }
+
+    /// Commands that have a colour end with it.
+    #[inline(always)]
+    fn colour(&self) -> Word {
+        self[N - 1]
+    }
+}
+
+/// One of a batch.
+struct OfBatch<'a> {
+    batch: &'a TriangleBatch<'a>,
+    i: usize,
+}
+
+impl Surface for OfBatch<'_> {
+    #[inline(always)]
+    fn depth(&self) -> Linear {
+        self.batch.planes[0].get(self.i)
+    }
+
+    #[inline(always)]
+    fn components(&self) -> [Linear; 3] {
+        let [_, p, q, r] = self.batch.planes;
+        [p.get(self.i), q.get(self.i), r.get(self.i)]
+    }
+
+    #[inline(always)]
+    fn colour(&self) -> Word {
+        if let Some(colours) = &self.batch.colours { colours[self.i] } else { 0 }
+    }
+}
+
 /// A triangle being drawn.
-struct CurrentTriangle<'a, const N: usize> {
+struct CurrentTriangle<S> {
     /// Over the array's own columns and rows.
     edges: [Linear; 3],
-    words: &'a [Word; N],
+    surface: S,
     /// Somebody looks at Enable afterwards.
     keep: bool,
 }
@@ -73,7 +135,7 @@ struct Tested<V: SimdVector> {
     mask: V::Mask,
 }
 
-impl<const N: usize, P: PaintTriangle<N>> VectorKernel for DrawTriangles<'_, N, P> {
+impl<const N: usize, P: PaintTriangle> VectorKernel for DrawTriangles<'_, N, P> {
     type Output = usize;
 
     #[inline(always)]
@@ -83,76 +145,93 @@ impl<const N: usize, P: PaintTriangle<N>> VectorKernel for DrawTriangles<'_, N, 
         // Whoever follows a triangle, but for the last, is one.
         let read_later = !starts_anew(self.words.get(drawn * N));
         let mut left = drawn;
-        for some in commands[..drawn].chunks(SIDE_BY_SIDE) {
+        for some in commands[..drawn].chunks(LANES) {
             let mut edges = Edges::default();
             take_edges(some, &mut edges);
-            edges.localise(self.origin);
+            edges.localise(self.painter.origin);
             let boxes = Boxes::enclosing(&edges);
-            for (i, command) in some.iter().enumerate() {
+            for (i, words) in some.iter().enumerate() {
                 left -= 1;
-                self.triangle::<V>(command, edges.get(i), &boxes, i, read_later && left == 0);
+                let keep = read_later && left == 0;
+                let triangle = CurrentTriangle { edges: edges.get(i), surface: words, keep };
+                self.painter.triangle::<V, _>(&triangle, &boxes, i);
             }
         }
         drawn
     }
 }
 
-impl<const N: usize, P: PaintTriangle<N>> DrawTriangles<'_, N, P> {
-    /// Triangle `i` of those with these boxes; `keep` says that somebody looks at Enable afterwards.
+impl<P: PaintTriangle> VectorKernel for DrawBatch<'_, P> {
+    type Output = ();
+
     #[inline(always)]
-    fn triangle<V: SimdVector>(&mut self, words: &[Word; N], edges: [Linear; 3], boxes: &Boxes, i: usize, keep: bool) {
-        let bounds = boxes.bounds(i, &edges);
-        if keep {
+    fn run<V: SimdVector>(mut self) {
+        let mut edges = Edges(*self.batch.edges);
+        edges.localise(self.painter.origin);
+        let boxes = Boxes::enclosing(&edges);
+        for i in 0..self.batch.len.min(LANES) {
+            let surface = OfBatch { batch: self.batch, i };
+            let triangle = CurrentTriangle { edges: edges.get(i), surface, keep: false };
+            self.painter.triangle::<V, _>(&triangle, &boxes, i);
+        }
+    }
+}
+
+impl<P: PaintTriangle> TrianglePainter<'_, P> {
+    /// Triangle `i` of those with these boxes.
+    #[inline(always)]
+    fn triangle<V: SimdVector, S: Surface>(&mut self, triangle: &CurrentTriangle<S>, boxes: &Boxes, i: usize) {
+        let bounds = boxes.bounds(i, &triangle.edges);
+        if triangle.keep {
             self.enable.emptied(bounds.map_or(0..0, |bounds| bounds.area.top..bounds.area.bottom));
         }
         let Some(bounds) = bounds else { return };
-        let triangle = CurrentTriangle { edges, words, keep };
-        self.paint.begin(words);
+        self.paint.begin(triangle.surface.colour());
         let Area { left, right, top, bottom } = bounds.area;
         if let Some(x) = one_vector(left, right, V::LANES) {
-            self.narrow::<V>(&triangle, x, top..bottom);
+            self.narrow::<V, S>(triangle, x, top..bottom);
             return;
         }
         for y in top..bottom {
             let (left, right) = bounds.row(y);
-            self.row::<V>(&triangle, y, left / V::LANES * V::LANES, right);
+            self.row::<V, S>(triangle, y, left / V::LANES * V::LANES, right);
         }
     }
 
-    /// The expression that stands at `at` among the words.
+    /// An expression over the picture's columns and rows.
     #[inline(always)]
-    fn walk<V: SimdVector>(&self, words: &[Word; N], at: usize, x: usize, y: usize) -> Walk<V> {
-        let [a, b, c] = coefficients(words, at);
+    fn walk<V: SimdVector>(&self, e: &Linear, x: usize, y: usize) -> Walk<V> {
         let [left, top] = self.origin;
-        Walk::start(&Linear { a, b, c }, left + x as i32, top + y as i32)
+        Walk::start(e, left + x as i32, top + y as i32)
     }
 
     #[inline(always)]
-    fn components<V: SimdVector>(&self, words: &[Word; N], x: usize, y: usize) -> [Walk<V>; 3] {
-        let [i, j, k] = COMPONENTS_AT;
-        [self.walk(words, i, x, y), self.walk(words, j, x, y), self.walk(words, k, x, y)]
+    fn components<V: SimdVector>(&self, surface: &impl Surface, x: usize, y: usize) -> [Walk<V>; 3] {
+        let [p, q, r] = surface.components();
+        [self.walk(&p, x, y), self.walk(&q, x, y), self.walk(&r, x, y)]
     }
 
     /// One vector a row, from column `x`; two rows at a time, since branches that nobody can foretell cost more than a row
     /// outside of the triangle.
     #[inline(always)]
-    fn narrow<V: SimdVector>(&mut self, triangle: &CurrentTriangle<N>, x: usize, rows: Range<usize>) {
+    fn narrow<V: SimdVector, S: Surface>(&mut self, triangle: &CurrentTriangle<S>, x: usize, rows: Range<usize>) {
         let pairs = rows.len().div_ceil(2);
         let top = rows.start.min(WIDTH - 2 * pairs);
         let [mut first, mut second, mut third] = three::<V>(&triangle.edges, x, top);
         let [p, q, r] = [triangle.edges[0].b, triangle.edges[1].b, triangle.edges[2].b];
-        let mut depth = self.walk::<V>(triangle.words, DEPTH_AT, x, top);
-        let deeper = triangle.words[DEPTH_AT + 1] as i32;
+        let plane = triangle.surface.depth();
+        let mut depth = self.walk::<V>(&plane, x, top);
+        let deeper = plane.b;
         for y in (0..pairs).map(|pair| top + 2 * pair) {
             let at = [y * WIDTH + x, (y + 1) * WIDTH + x];
             let lower = [first.below(p), second.below(q), third.below(r), depth.below(deeper)];
             let upper = self.test(at[0], [first, second, third], depth);
             let lower = self.test(at[1], [lower[0], lower[1], lower[2]], lower[3]);
             if V::any_of(upper.mask, lower.mask) {
-                let walks = self.components::<V>(triangle.words, x, y);
+                let walks = self.components::<V>(&triangle.surface, x, y);
                 self.nearer(&upper, at[0], triangle.keep);
                 self.paint.store(&walks, at[0], upper.mask);
-                let walks = self.components_below(triangle.words, &walks);
+                let walks = components_below(&triangle.surface, &walks);
                 self.nearer(&lower, at[1], triangle.keep);
                 self.paint.store(&walks, at[1], lower.mask);
             }
@@ -164,16 +243,10 @@ impl<const N: usize, P: PaintTriangle<N>> DrawTriangles<'_, N, P> {
     }
 
     #[inline(always)]
-    fn components_below<V: SimdVector>(&self, words: &[Word; N], [p, q, r]: &[Walk<V>; 3]) -> [Walk<V>; 3] {
-        let [i, j, k] = COMPONENTS_AT.map(|at| words[at + 1] as i32);
-        [p.below(i), q.below(j), r.below(k)]
-    }
-
-    #[inline(always)]
-    fn row<V: SimdVector>(&mut self, triangle: &CurrentTriangle<N>, y: usize, left: usize, right: usize) {
+    fn row<V: SimdVector, S: Surface>(&mut self, triangle: &CurrentTriangle<S>, y: usize, left: usize, right: usize) {
         let [mut first, mut second, mut third] = three::<V>(&triangle.edges, left, y);
-        let mut depth = self.walk::<V>(triangle.words, DEPTH_AT, left, y);
-        let mut walks = self.components::<V>(triangle.words, left, y);
+        let mut depth = self.walk::<V>(&triangle.surface.depth(), left, y);
+        let mut walks = self.components::<V>(&triangle.surface, left, y);
         for x in (left..right).step_by(V::LANES) {
             let at = y * WIDTH + x;
             let tested = self.test(at, [first, second, third], depth);
@@ -208,10 +281,16 @@ impl<const N: usize, P: PaintTriangle<N>> DrawTriangles<'_, N, P> {
     }
 }
 
+#[inline(always)]
+fn components_below<V: SimdVector>(surface: &impl Surface, [p, q, r]: &[Walk<V>; 3]) -> [Walk<V>; 3] {
+    let [i, j, k] = surface.components();
+    [p.below(i.b), q.below(j.b), r.below(k.b)]
+}
+
 /// Not inlined: the compiler would put vectors together number by number.
 #[inline(never)]
 fn take_edges<const N: usize>(commands: &[[Word; N]], edges: &mut Edges) {
-    for (i, words) in commands.iter().enumerate().take(SIDE_BY_SIDE) {
+    for (i, words) in commands.iter().enumerate().take(LANES) {
         let [p, q, r] = EDGES_AT;
         edges.set(i, [coefficients(words, p), coefficients(words, q), coefficients(words, r)]);
     }
@@ -227,8 +306,8 @@ fn one_vector(left: usize, right: usize, lanes: usize) -> Option<usize> {
 }
 
 #[inline(always)]
-fn coefficients<const N: usize>(words: &[Word; N], at: usize) -> [i32; 3] {
-    [words[at] as i32, words[at + 1] as i32, words[at + 2] as i32]
+fn coefficients<const N: usize>(words: &[Word; N], at: usize) -> Linear {
+    Linear { a: words[at] as i32, b: words[at + 1] as i32, c: words[at + 2] as i32 }
 }
 
 /// Written out, because a closure over an array would be compiled apart, without the vector unit's features.
@@ -250,9 +329,9 @@ pub(super) struct PaintGouraud<'a> {
     pub(super) colour: &'a mut Values,
 }
 
-impl PaintTriangle<TRIANGLE_WORDS> for PaintGouraud<'_> {
+impl PaintTriangle for PaintGouraud<'_> {
     #[inline(always)]
-    fn begin(&mut self, _: &[Word; TRIANGLE_WORDS]) {}
+    fn begin(&mut self, _: Word) {}
 
     #[inline(always)]
     fn store<V: SimdVector>(&mut self, [red, green, blue]: &[Walk<V>; 3], at: usize, mask: V::Mask) {
@@ -271,10 +350,10 @@ pub(super) struct PaintPhong<'a> {
     pub(super) colour: &'a mut Values,
 }
 
-impl PaintTriangle<PHONG_WORDS> for PaintPhong<'_> {
+impl PaintTriangle for PaintPhong<'_> {
     #[inline(always)]
-    fn begin(&mut self, words: &[Word; PHONG_WORDS]) {
-        self.constant = words[COLOUR_AT] & 0xff_ffff;
+    fn begin(&mut self, colour: Word) {
+        self.constant = colour & 0xff_ffff;
     }
 
     #[inline(always)]

@@ -3,13 +3,13 @@
 use super::Lanes;
 use super::columns::{ContextColumns, Values};
 use super::template::{CommandCost, starts_anew};
-use super::triangle::{DrawTriangles, PaintGouraud, PaintPhong};
+use super::triangle::{DrawBatch, DrawTriangles, PaintGouraud, PaintPhong, TrianglePainter};
 use crate::array::Executed;
 use crate::command::{COMPONENTS_AT, CommandKind, PHONG_WORDS, TRIANGLE_WORDS};
 use crate::controller::FieldBits;
 use crate::isa::Operand;
 use crate::simd::{SimdVector, VectorKernel};
-use pxpl5_wire::{Linear, Word};
+use pxpl5_wire::{Linear, TriangleBatch, Word};
 
 impl Lanes {
     /// Executes the command at the start of `words`, if it is one of this layout, and the triangles of the same kind that
@@ -82,11 +82,13 @@ impl Lanes {
         let drawn = self.vectors.run(DrawTriangles {
             words,
             template,
-            origin: self.controller.origin(),
-            z_shift: self.layout.z_shift(),
-            z,
-            paint: PaintGouraud { colour },
-            enable: &mut self.enable,
+            painter: TrianglePainter {
+                origin: self.controller.origin(),
+                z_shift: self.layout.z_shift(),
+                z,
+                paint: PaintGouraud { colour },
+                enable: &mut self.enable,
+            },
         });
         self.controller.hold(linear(words, last(drawn, TRIANGLE_WORDS)?));
         Some((template.cost, drawn))
@@ -99,14 +101,38 @@ impl Lanes {
         let drawn = self.vectors.run(DrawTriangles {
             words,
             template,
-            origin: self.controller.origin(),
-            z_shift: self.layout.z_shift(),
-            z,
-            paint: PaintPhong { normal: [nx, ny, nz], constant: 0, colour },
-            enable: &mut self.enable,
+            painter: TrianglePainter {
+                origin: self.controller.origin(),
+                z_shift: self.layout.z_shift(),
+                z,
+                paint: PaintPhong { normal: [nx, ny, nz], constant: 0, colour },
+                enable: &mut self.enable,
+            },
         });
         self.controller.hold(linear(words, last(drawn, PHONG_WORDS)?));
         Some((template.cost, drawn))
+    }
+
+    /// Draws triangles as their commands would, but for Enable and the coefficients held; `None` where this layout has no such command.
+    pub(super) fn batch(&mut self, batch: &TriangleBatch<'_>) -> Option<()> {
+        let columns = self.context_columns()?;
+        let origin = self.controller.origin();
+        let z_shift = self.layout.z_shift();
+        let enable = &mut self.enable;
+        if batch.colours.is_none() {
+            self.templates.triangle.as_ref()?;
+            let [z, colour] = self.columns.many_mut([columns.z, columns.colour])?;
+            let painter = TrianglePainter { origin, z_shift, z, paint: PaintGouraud { colour }, enable };
+            self.vectors.run(DrawBatch { batch, painter });
+        } else {
+            self.templates.phong_triangle.as_ref()?;
+            let [nx, ny, nz] = columns.normal?;
+            let [z, colour, nx, ny, nz] = self.columns.many_mut([columns.z, columns.colour, nx, ny, nz])?;
+            let paint = PaintPhong { normal: [nx, ny, nz], constant: 0, colour };
+            let painter = TrianglePainter { origin, z_shift, z, paint, enable };
+            self.vectors.run(DrawBatch { batch, painter });
+        }
+        Some(())
     }
 }
 
