@@ -435,6 +435,8 @@ fn table_of_code() -> Result<(), Box<dyn std::error::Error>> {
         "entry in a bin, us",
         "beginning of a pass, us",
         "edit, us",
+        "message or chain, us",
+        "scenes, us",
         "table, triangle, us",
     ]);
     for (name, version, of, table) in [
@@ -445,6 +447,7 @@ fn table_of_code() -> Result<(), Box<dyn std::error::Error>> {
         let times = code_times(version, of)?;
         let us = |ns: f64| format!("{:.2}", ns * 1e-3);
         let [least, greatest] = times.triangle_range_ns.map(us);
+        let [least_message, greatest_message] = times.message_range_ns.map(us);
         row(&[
             name.to_owned(),
             us(times.triangle_ns),
@@ -454,6 +457,8 @@ fn table_of_code() -> Result<(), Box<dyn std::error::Error>> {
             us(times.entry_ns),
             us(times.pass_ns),
             us(times.edit_ns),
+            us(times.message_ns),
+            format!("{least_message} to {greatest_message}"),
             us(table.triangle_ns as f64),
         ]);
     }
@@ -500,7 +505,9 @@ floating point by the rules of the compiled kernel.
 
 Spheres (centre and radius to the eye, near and far plane, conic, bounding box, regions, fixed point, planes: kernels/sphere.s), edits
 and the beginning of a pass (bins reset, matrices of each structure multiplied and turned round, light) are code in the same
-manner. Not in code: the software of messages and tokens, which takes the table's time. What the ring's interface does of
+manner. Messages and chains are received and sent by crates/pxpl5-gp/kernels/ring.s, and the bins of tokens are
+handed over by crates/pphigs/kernels/token.s; the original's operating software is not published, and ring_rules.md says what this
+one stands for. Not in code: what a master decides, and the six transformations of cube maps. What the ring's interface does of
 a message (its DMA, its FIFOs) is no code at any level: it is simulated word by word. So a figure of the whole program is expected to
 be larger than these.
 

@@ -242,13 +242,12 @@ fn breakpoints_show_registers_and_change_no_trace() {
     let experiment = experiment(&settings).expect("it can be built");
     let whole = outcome(experiment.run());
     let mut stepper = experiment.stepper().expect("it can be built");
-    let has_code = |stepper: &Stepper, gp: usize| {
+    let kernel = |stepper: &Stepper, gp: usize| {
         let board = stepper.machine().board(Board::Gp(gp))?;
-        board.with_processor(|processor| processor.program().cloned())?
+        board.with_processor(|processor| processor.programs().find_map(|program| program.symbol("start")))?
     };
-    stepper.run_until(stepper.end(), |stepper, _| (0..8).any(|gp| has_code(stepper, gp).is_some()));
-    let program = (0..8).find_map(|gp| has_code(&stepper, gp)).expect("code has run");
-    let address = program.symbol("start").expect("its entry");
+    stepper.run_until(stepper.end(), |stepper, _| (0..8).any(|gp| kernel(stepper, gp).is_some()));
+    let address = (0..8).find_map(|gp| kernel(&stepper, gp)).expect("a kernel has run");
     stepper.break_at(BTreeSet::from([address]));
     let mut met = 0;
     while let Pause::Breakpoints(hits) = stepper.run_to(stepper.end()) {

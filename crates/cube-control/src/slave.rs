@@ -8,7 +8,7 @@ use crate::update::FaceUpdate;
 use pphigs::{PROGRAM_BYTES, RegionEnvelope, Share, region_messages};
 use pxpl5_gp::{Account, Fault, Gp, Priority, Stage};
 use pxpl5_sim::Span;
-use pxpl5_wire::{Body, CommandList, PictureNumber, SurfaceId};
+use pxpl5_wire::{Body, CommandList, NodeId, PictureNumber, SurfaceId};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
@@ -140,11 +140,11 @@ async fn token_program(gp: Gp, config: CubeControlConfig, index: usize, state: S
         {
             // The token goes on when it has been received and sent, and nothing of this level happens between.
             gp.spend_messages(2).await;
-            pass_on(&gp, &config, index, token);
+            gp.send_prepared([passed_on(&config, index, token)]);
             free_bins(&gp, &state, token)?;
             continue;
         }
-        gp.spend_message().await;
+        gp.pay_for(&received).await;
         match order? {
             UpdateOrder::Send(update) => state.borrow_mut().updates.push_back(update),
             UpdateOrder::Edit(update) => state.borrow_mut().next_edit = update.next(),
@@ -164,8 +164,7 @@ async fn walk(gp: &Gp, config: &CubeControlConfig, index: usize, state: &SharedS
         gp.clump_buffer_free().await;
         gp.send(renderer, list.words(), Body::Commands(list)).await;
     }
-    gp.spend_message().await;
-    pass_on(gp, config, index, token);
+    gp.send_batch(vec![passed_on(config, index, token)]).await;
 }
 
 /// What this slave has for the token's region: the first slave begins the region, the last one ends it.
@@ -183,8 +182,8 @@ fn bin_messages(config: &CubeControlConfig, state: &SharedSlaveState, token: Tok
     pass.face(face).map_or_else(Vec::new, |pass| region_messages(pass, region, 0, envelope))
 }
 
-/// Sends a token on that has been paid for.
-fn pass_on(gp: &Gp, config: &CubeControlConfig, index: usize, token: Token) {
+/// What tells the next slave, or the master, of a token.
+fn passed_on(config: &CubeControlConfig, index: usize, token: Token) -> (NodeId, u32, Body) {
     let last = token.slaves_left == 1;
     let next = Token { slaves_left: token.slaves_left - 1, ..token };
     let (receiver, order) = if last {
@@ -193,7 +192,7 @@ fn pass_on(gp: &Gp, config: &CubeControlConfig, index: usize, token: Token) {
         (config.slaves[(index + 1) % config.slaves.len()], UpdateOrder::Token(next))
     };
     let (words, body) = order.message();
-    gp.send_prepared([(receiver, words, body)]);
+    (receiver, words, body)
 }
 
 /// Frees an update's commands and bins when all its tokens have been here.

@@ -5,7 +5,7 @@
 //! from outside, equal in every word (tests/begin.rs).
 
 use crate::cost::TransformCost;
-use crate::layout::{BEGIN_CODE, BIN_TABLE, DISPLAY_LIST, MESSAGE, MODELS, PARAMETERS, SPHERE_PARAMETERS, STACK};
+use crate::layout::{BEGIN_CODE, BIN_TABLE, LISTS, MESSAGE, MODELS, PARAMETERS, SPHERE_PARAMETERS, STACK};
 use crate::list::{DisplayList, Share};
 use crate::picture::{Picture, RegionBinning};
 use crate::placed::PlacedStructure;
@@ -21,8 +21,8 @@ use pxpl5_sim::Span;
 use pxpl5_wire::Word;
 use std::sync::{Arc, LazyLock};
 
-/// Structures whose matrices there is room for, before the display list.
-const MOST_STRUCTURES: u32 = (DISPLAY_LIST - MODELS) / MATRIX_BYTES;
+/// Structures whose matrices there is room for, before the lists of messages.
+const MOST_STRUCTURES: u32 = (LISTS - MODELS) / MATRIX_BYTES;
 const MATRIX_BYTES: u32 = 64;
 /// Words of an edit: the structure's number and its matrix.
 const EDIT_WORDS: u32 = 17;

@@ -6,7 +6,9 @@
 use crate::begin::Beginning;
 use crate::cost::TransformCost;
 use crate::counts::PrimitiveCounts;
-use crate::layout::{BIN_TABLE, CODE, DISPLAY_LIST, PARAMETERS, SPHERE_CODE, SPHERE_PARAMETERS, STACK};
+use crate::layout::{
+    BIN_BOUNDS_BYTES, BIN_TABLE, BINS, CODE, DISPLAY_LIST, PARAMETERS, SPHERE_CODE, SPHERE_PARAMETERS, STACK,
+};
 use crate::list::Share;
 use crate::pass::Pass;
 use crate::picture::{RegionBinning, Shading};
@@ -158,7 +160,8 @@ impl Pass {
         let (of_triangles, spheres) = self.run_triangles(processor, kernel, places.commands)?;
         let (of_spheres, end) = self.run_spheres(processor, sphere_kernel(kernel), spheres)?;
         let tails = processor.read(BIN_TABLE, places.bins.len())?;
-        let bins = places.bins.iter().zip(tails).map(|(head, tail)| *head..tail).collect();
+        let bins: Vec<Range<u32>> = places.bins.iter().zip(tails).map(|(head, tail)| *head..tail).collect();
+        note_bins(processor, context, spheres, &bins)?;
         let span = of_triangles + of_spheres;
         Ok(Some(KernelOutput { span, of_spheres, commands: places.commands..end, spheres, bins }))
     }
@@ -224,6 +227,17 @@ impl Pass {
         Kernel::for_picture(schedule, surface, &self.picture().viewport, self.is_binned())
     }
 
+    /// Words of the commands of a triangle and of a sphere in the bins that code has filled; `None` where no code fills bins of both.
+    pub(crate) fn binned_words(&self, version: CodeVersion) -> Option<[u32; 2]> {
+        let kernel = self.kernel(version).filter(|_| self.is_binned())?;
+        Some([kernel.command_bytes() / 4, sphere_kernel(kernel).command_words() as u32])
+    }
+
+    /// Whether renderers shade the region at its end.
+    pub(crate) fn shades_at_pixels(&self) -> bool {
+        self.picture().shading == Shading::Phong
+    }
+
     fn is_binned(&self) -> bool {
         self.picture().binning == RegionBinning::Touched
     }
@@ -281,6 +295,13 @@ impl Pass {
         }
         Ok(Places { commands: begin, bins })
     }
+}
+
+/// Leaves where the bins of a context begin and end for the tokens of its regions, while the other context's table is in use.
+fn note_bins(processor: &mut Processor, context: u8, spheres: u32, bins: &[Range<u32>]) -> Result<(), ProcessorFault> {
+    let bounds = bins.iter().flat_map(|bin| [bin.start, bin.end]);
+    let words: Vec<Word> = std::iter::once(spheres).chain(bounds).take(BIN_BOUNDS_BYTES as usize / 4).collect();
+    processor.write(BINS + u32::from(context % 2) * BIN_BOUNDS_BYTES, &words)
 }
 
 /// A call of a kernel for some primitives.
@@ -343,8 +364,8 @@ fn sphere_program(kernel: SphereKernel) -> Arc<Program> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::begin;
-    use crate::layout::BEGIN_CODE;
+    use crate::layout::{BEGIN_CODE, MESSAGE, TOKEN_CODE};
+    use crate::{begin, handing};
     use pxpl5_geometry::kernel::KernelList;
 
     const SURFACES: [KernelSurface; 2] = [KernelSurface::Gouraud, KernelSurface::Phong];
@@ -373,6 +394,8 @@ mod tests {
             let program = program(kernel);
             assert!(program.base == CODE && end(&program) <= BEGIN_CODE, "{kernel:?} ends at {:#x}", end(&program));
         }
+        let token = handing::program();
+        assert!(token.base == TOKEN_CODE && end(&token) <= MESSAGE, "{:#x}", end(&token));
         let begin = begin::program();
         assert!(begin.base == BEGIN_CODE && end(&begin) <= SPHERE_CODE, "{:#x}", end(&begin));
         for kernel in SURFACES.into_iter().flat_map(|surface| BOTH.map(|field| SphereKernel { surface, field })) {

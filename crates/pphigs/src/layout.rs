@@ -24,5 +24,17 @@ pub(crate) const STACK: u32 = 0x1_1400;
 pub(crate) const DISPLAY_LIST: u32 = 1 << 20;
 /// Where a message of the host lies: matrices, edits.
 pub(crate) const MESSAGE: u32 = 0x1_4000;
-/// Model matrices by structure.
+/// Model matrices by structure, up to the lists of messages.
 pub(crate) const MODELS: u32 = 0x1_6000;
+/// Where the bins of both contexts begin and end, as their tokens find them.
+pub(crate) const BINS: u32 = 0x1_3000;
+/// Bytes of that for one context.
+pub(crate) const BIN_BOUNDS_BYTES: u32 = 0x400;
+/// The parameter block of a token's code, the commands that enclose a region, and the code itself.
+pub(crate) const TOKEN_PARAMETERS: u32 = 0x1_3800;
+pub(crate) const ENVELOPES: u32 = 0x1_3900;
+pub(crate) const TOKEN_CODE: u32 = 0x1_3C00;
+/// Messages of a region that is handed over, and their pieces.
+pub(crate) const LISTS: u32 = 0x8_0000;
+pub(crate) const PIECES: u32 = 0x9_0000;
+pub(crate) const LISTS_END: u32 = pxpl5_gp::RING_MEMORY.start;

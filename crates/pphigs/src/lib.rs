@@ -16,6 +16,7 @@
 //!   wants pixels, from the same transformed vertices.
 //! - [`TransformCost`]: what a TRANSFORM does, counted, and its time by table.
 //! - [`Transforming`]: the same as work of a board, in time by table or by i860 code that makes the same words.
+//! - [`Handing`]: a region's bin handed over to the ring, as such work.
 //!
 //! **Not modelled:** traversal of nested structures, picking, text, and PPHIGS's other primitives.
 //!
@@ -27,6 +28,7 @@ mod commands;
 mod cost;
 mod counts;
 mod encoder;
+mod handing;
 mod layout;
 mod list;
 mod pass;
@@ -44,6 +46,7 @@ pub use commands::{
 };
 pub use cost::TransformCost;
 pub use counts::PrimitiveCounts;
+pub use handing::{Handing, MessagePieces};
 pub use list::{DisplayList, Share};
 pub use pass::Pass;
 pub use picture::{Picture, RegionBinning, Shading};

@@ -104,6 +104,7 @@ impl GpBoard {
             progress: 0,
             waits: [Wait::NONE; 2],
             pays_one_by_one: false,
+            stopped_by: None,
         };
         let shared = Rc::new(RefCell::new(shared));
         Self {
@@ -249,13 +250,21 @@ impl GpBoard {
                     }
                 }
             });
-            if self.shared.borrow().progress == before {
+            if self.stop() || self.shared.borrow().progress == before {
                 return;
             }
         }
     }
 
-    /// The fault that stopped a program.
+    /// Ends all programs where a fault of the board's own software has stopped it.
+    fn stop(&mut self) -> bool {
+        let Some(fault) = self.shared.borrow_mut().stopped_by.take() else { return false };
+        self.fault.get_or_insert(fault);
+        self.tasks.clear();
+        true
+    }
+
+    /// The fault that stopped a program, or the board.
     #[must_use]
     pub const fn fault(&self) -> Option<&Fault> {
         self.fault.as_ref()

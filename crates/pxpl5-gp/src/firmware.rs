@@ -97,6 +97,8 @@ pub(crate) struct Shared {
     pub(crate) waits: [Wait; 2],
     /// Whether programs pay for messages one after the other, though nothing happens between.
     pub(crate) pays_one_by_one: bool,
+    /// What stopped the board: software of its own that no program could do anything about.
+    pub(crate) stopped_by: Option<Fault>,
 }
 
 /// What a program waits for: its name, and what can end the wait.
@@ -246,68 +248,10 @@ impl Gp {
         self.wait(wait, || self.shared.borrow().cpu.is_done(self.priority).then_some(())).await;
     }
 
-    /// Waits for the next message in order of arrival and pays the software cost of receiving it.
-    pub async fn receive(&self) -> Received {
-        let received = self.next_message().await;
-        self.spend_message().await;
-        received
-    }
-
-    /// Waits for the next message in order of arrival, without cost; pay for it with [`Gp::spend_message`].
-    pub async fn next_message(&self) -> Received {
-        self.until("a message", || self.shared.borrow_mut().inbox.pop_front()).await
-    }
-
-    /// Whether this program may pay for several messages at once: no other of its board comes between.
-    #[must_use]
-    pub fn pays_at_once(&self) -> bool {
-        self.priority == Priority::Interrupt && !self.shared.borrow().pays_one_by_one
-    }
-
-    /// Pays the software cost of so many messages in a row.
-    pub async fn spend_messages(&self, count: u64) {
-        self.spend(Span::from_ns(self.timing().message_ns) * count).await;
-    }
-
-    /// Takes a message if one has arrived, without cost; pay for it with [`Gp::spend_message`].
-    #[must_use]
-    pub fn take_message(&self) -> Option<Received> {
-        self.shared.borrow_mut().inbox.pop_front()
-    }
-
-    /// Pays the software cost of one message (`message_ns`).
-    pub async fn spend_message(&self) {
-        self.spend(Span::from_ns(self.timing().message_ns)).await;
-    }
-
     /// Waits for the next retrace and gives the field that it begins.
     pub async fn retrace(&self) -> PeriodNumber {
         let present = self.field();
         self.until("a retrace", || Some(self.field()).filter(|field| *field > present)).await
-    }
-
-    /// Sends one message in the background: pays the software cost, then queues it behind earlier ones.
-    pub async fn send(&self, destination: NodeId, words: u32, body: Body) -> Ticket {
-        self.spend_message().await;
-        self.send_prepared([(destination, words, body)])
-    }
-
-    /// Sends several messages as one chain of the DMA: one software cost, then all go in the background, at the same
-    /// time where they have different receivers. A chain waits for the one before it.
-    pub async fn send_batch(&self, batch: Vec<(NodeId, u32, Body)>) -> Ticket {
-        self.spend_message().await;
-        self.send_prepared(batch)
-    }
-
-    /// As [`Gp::send_batch`], for messages that belong together, in groups of one receiver each: between the first and the
-    /// last of a group the receiver takes no message of another board, because the group keeps its port.
-    pub async fn send_groups(&self, groups: Vec<(NodeId, Vec<(u32, Body)>)>) -> Ticket {
-        self.spend_message().await;
-        self.post(groups.into_iter().flat_map(|(destination, group)| {
-            let last = group.len().saturating_sub(1);
-            let numbered = (0..).zip(group);
-            numbered.map(move |(place, (words, body))| (destination, words, body, place < last))
-        }))
     }
 
     /// Waits until the clump buffer is free: everything sent before has been accepted.
@@ -326,30 +270,6 @@ impl Gp {
     pub async fn accepted(&self, ticket: Ticket) {
         let wait = Wait { what: "a receiver to accept a message", ended_by: Cause::Acceptance };
         self.wait(wait, || (self.shared.borrow().accepted >= ticket.0).then_some(())).await;
-    }
-
-    /// Hands a chain of messages to the DMA whose software cost was paid before by [`Gp::spend_message`].
-    pub fn send_prepared(&self, batch: impl IntoIterator<Item = (NodeId, u32, Body)>) -> Ticket {
-        self.post(batch.into_iter().map(|(destination, words, body)| (destination, words, body, false)))
-    }
-
-    /// Hands a chain to the DMA: of each message its receiver, words, what it carries, and whether it keeps the receiver's
-    /// port for the next one.
-    fn post(&self, batch: impl Iterator<Item = (NodeId, u32, Body, bool)>) -> Ticket {
-        let source = self.node();
-        let links = batch.map(|(destination, words, body, hold)| ChainLink {
-            message: Message { source, destination, words, body },
-            hold,
-        });
-        let links: Vec<ChainLink> = links.collect();
-        let shared = &mut *self.shared.borrow_mut();
-        if links.is_empty() {
-            return Ticket(shared.issued);
-        }
-        shared.issued += 1;
-        let ticket = Ticket(shared.issued);
-        shared.batches.push_back(Batch { ticket, links });
-        ticket
     }
 
     /// Sets the bytes that an account of the memory holds.

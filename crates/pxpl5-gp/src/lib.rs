@@ -24,10 +24,11 @@
 //! The host workstation runs on the same board model with its own timing table.
 //!
 //! - The time of [`Work`] comes from the timing table, or from i860 code that runs on the board's [`Processor`]
-//!   ([`GpBoard::run_code`]); programs do not know which.
+//!   ([`GpBoard::run_code`]); programs do not know which. The software of messages is such code too (kernels/ring.s), with
+//!   memory of its own ([`RING_MEMORY`]).
 //!
-//! **Not modelled here:** the bus between CPU and DMA, the cost of taking an interrupt beyond the message's software
-//! cost, and what an interrupt program does to the caches.
+//! **Not modelled here:** the bus between CPU and DMA, and the instant within a call at which an interrupt comes: a call runs
+//! whole when it begins, so that the interrupt's code finds the caches as the end of the call leaves them.
 //!
 //! Sources: TR94 (memory, clock, background rendering); the timing table states each number's own.
 
@@ -36,9 +37,12 @@ mod cpu;
 mod firmware;
 mod look;
 mod memory;
+mod messages;
 mod probe;
 mod processor;
+mod ring;
 pub mod timing;
+mod window;
 mod work;
 
 pub use board::{GpBoard, GpEvent, GpOutput, PLACE_BITS};
@@ -46,7 +50,9 @@ pub use cpu::Priority;
 pub use firmware::{Fault, Firmware, Gp, Received, Ticket};
 pub use look::{GpLook, ProgramLook, WaitingMail};
 pub use memory::{Account, Memory, OutOfMemory};
+pub use messages::Chain;
 pub use probe::{Mark, Stage, StageEdge};
 pub use processor::{BreakpointHit, CodeVersion, KEPT_HITS, Processor, ProcessorFault};
 pub use timing::{GpTiming, HostTiming};
+pub use window::RING_MEMORY;
 pub use work::Work;

@@ -1,6 +1,7 @@
 //! The board's i860 with its memory, where programs run and clocks are counted.
 
-use i860::{Cpu, Program, Ram, RunEnd, State, Trap};
+use crate::window;
+use i860::{Bus, Cpu, Program, Ram, RunEnd, State, Trap, Unmapped};
 use pxpl5_sim::Span;
 use pxpl5_wire::{NodeId, Word};
 use serde::{Deserialize, Serialize};
@@ -96,6 +97,26 @@ fn extent(program: &Program) -> Range<u32> {
     program.base..program.base.saturating_add(program.bytes.len() as u32)
 }
 
+/// Memory as the core sees it: the part that the ring's interface shares is not for its caches.
+struct Memory(Ram);
+
+impl Bus for Memory {
+    #[inline]
+    fn read(&mut self, address: u32, size: u32) -> Result<u64, Unmapped> {
+        self.0.read(address, size)
+    }
+
+    #[inline]
+    fn write(&mut self, address: u32, size: u32, value: u64) -> Result<(), Unmapped> {
+        self.0.write(address, size, value)
+    }
+
+    #[inline]
+    fn is_cacheable(&self, address: u32) -> bool {
+        window::is_cacheable(address)
+    }
+}
+
 /// Bytes of a line of the data cache, to which the output of a bin context is aligned.
 const LINE: u32 = i860::timing::ChipSizes::PAPERS.line_bytes as u32;
 
@@ -118,7 +139,7 @@ pub struct Processor {
     /// What its core is built with, again at every reset.
     core: i860::Config,
     cpu: Cpu,
-    ram: Ram,
+    memory: Memory,
     loaded: Option<Arc<Program>>,
     /// All that were ever loaded.
     programs: Vec<Arc<Program>>,
@@ -161,13 +182,13 @@ impl Processor {
     /// A processor after reset, its memory all zero; `core` gives the clocks of its instructions and of the memory.
     #[must_use]
     pub fn new(gp: NodeId, memory_bytes: u64, version: CodeVersion, core: i860::Config) -> Self {
-        let ram = Ram::new(0, memory_bytes as usize);
+        let memory = Memory(Ram::new(0, memory_bytes as usize));
         Self {
             gp,
             version,
             core,
             cpu: Cpu::new(core),
-            ram,
+            memory,
             loaded: None,
             programs: Vec::new(),
             outputs: [None, None],
@@ -188,10 +209,16 @@ impl Processor {
         self.version
     }
 
+    /// The port of the board.
+    #[must_use]
+    pub const fn node(&self) -> NodeId {
+        self.gp
+    }
+
     /// Size of the memory in bytes.
     #[must_use]
     pub fn memory_bytes(&self) -> u32 {
-        self.ram.bytes().len() as u32
+        self.memory.0.bytes().len() as u32
     }
 
     /// Puts words into memory, beside all caches.
@@ -200,7 +227,7 @@ impl Processor {
     ///
     /// [`ProcessorFault::Unmapped`] when they do not fit; nothing is written then.
     pub fn write(&mut self, address: u32, words: &[Word]) -> Result<(), ProcessorFault> {
-        self.ram.load_words(address, words).map_err(|_| self.unmapped(address, words.len()))
+        self.memory.0.load_words(address, words).map_err(|_| self.unmapped(address, words.len()))
     }
 
     /// Reads words of memory as code has left them.
@@ -209,7 +236,7 @@ impl Processor {
     ///
     /// [`ProcessorFault::Unmapped`] when they are not all there.
     pub fn read(&self, address: u32, words: usize) -> Result<Vec<Word>, ProcessorFault> {
-        self.ram.words(address, words).map_err(|_| self.unmapped(address, words))
+        self.memory.0.words(address, words).map_err(|_| self.unmapped(address, words))
     }
 
     fn unmapped(&self, address: u32, words: usize) -> ProcessorFault {
@@ -269,7 +296,7 @@ impl Processor {
             state.r[*number] = *value;
         }
         let end = if self.breakpoints.is_empty() {
-            self.cpu.run(&mut self.ram, Some(RETURN), budget)
+            self.cpu.run(&mut self.memory, Some(RETURN), budget)
         } else {
             self.run_watched(begin, budget)
         };
@@ -290,7 +317,7 @@ impl Processor {
                 let state = Box::new(self.cpu.state.clone());
                 self.hits.push(BreakpointHit { gp: self.gp, address, into_call, state });
             }
-            match self.cpu.run(&mut self.ram, Some(RETURN), 1.min(last.saturating_sub(self.cpu.instructions()))) {
+            match self.cpu.run(&mut self.memory, Some(RETURN), 1.min(last.saturating_sub(self.cpu.instructions()))) {
                 RunEnd::Exhausted if self.cpu.instructions() < last => {}
                 end => return end,
             }
@@ -325,6 +352,13 @@ impl Processor {
         self.loaded.as_ref()
     }
 
+    /// The programs that were called and lie in memory as they were loaded: the one called last, then in the order of their first calls.
+    pub fn programs(&self) -> impl Iterator<Item = &Arc<Program>> {
+        let is_last = |program: &&Arc<Program>| self.loaded.as_ref().is_some_and(|last| Arc::ptr_eq(last, program));
+        let others = self.programs.iter().filter(move |program| !is_last(program));
+        self.loaded.iter().chain(others.filter(|program| self.holds(program)))
+    }
+
     fn load(&mut self, program: &Arc<Program>) -> Result<(), ProcessorFault> {
         if self.loaded.as_ref().is_some_and(|loaded| Arc::ptr_eq(loaded, program)) {
             return Ok(());
@@ -332,7 +366,7 @@ impl Processor {
         let previous = self.loaded.take().filter(|previous| self.holds(previous));
         let previous = previous.map(|previous| (self.number(&previous), extent(&previous)));
         let unmapped = self.unmapped(program.base, program.bytes.len() / 4);
-        self.ram.load(program.base, &program.bytes).map_err(|_| unmapped)?;
+        self.memory.0.load(program.base, &program.bytes).map_err(|_| unmapped)?;
         let next = self.number(program);
         self.cpu.exchange_code(previous, next);
         self.loaded = Some(Arc::clone(program));
@@ -342,7 +376,7 @@ impl Processor {
     /// Whether memory holds a program as it was loaded.
     fn holds(&self, program: &Program) -> bool {
         let Range { start, end } = extent(program);
-        self.ram.bytes().get(start as usize..end as usize) == Some(program.bytes.as_slice())
+        self.memory.0.bytes().get(start as usize..end as usize) == Some(program.bytes.as_slice())
     }
 
     /// The number by which the core knows a program.

@@ -44,13 +44,15 @@ impl GpTiming {
 }
 
 // Times of primitives that follow from i860 code (derived from code): means over the three application scenes as
-// `pxpl5_lab::code_times` measures them; its test holds these constants to the code. The software of messages has none.
+// `pxpl5_lab::code_times` measures them; its test holds these constants to the code. `message_ns` is what kernels/ring.s takes for a message
+// or a chain, with the bins that tokens hand over: from 7.2 us (head) to 16.0 us under PPHIGS, 12.7 to 24.4 us under Slats.
 // `pass_ns` is the beginning of a pass over one structure, as most scenes have it; at the cycle level several take more.
 impl GpTiming {
     /// This table with the times of the scheduled code for Phong triangles of a frame, in bins: PPHIGS.
     #[must_use]
     pub const fn of_scheduled_phong(self) -> Self {
         Self {
+            message_ns: 10_720,
             triangle_ns: 16_088,
             sphere_ns: 48_406,
             guard_ns: 213_466,
@@ -65,6 +67,7 @@ impl GpTiming {
     #[must_use]
     pub const fn of_compiled_gouraud(self) -> Self {
         Self {
+            message_ns: 17_298,
             triangle_ns: 53_963,
             sphere_ns: 77_953,
             guard_ns: 133_222,
@@ -79,6 +82,7 @@ impl GpTiming {
     #[must_use]
     pub const fn of_scheduled_gouraud(self) -> Self {
         Self {
+            message_ns: 20_132,
             triangle_ns: 20_295,
             sphere_ns: 78_420,
             guard_ns: 226_560,

@@ -10,6 +10,11 @@
 //! `triangle` the mean of the scenes' means. Each is found from what the others leave of the time, in turn until they stay. `sphere` is
 //! what entries leave of the spheres' time, the mean of the means of those of the three scenes that have spheres. Triangles are measured
 //! without the spheres of their scene, whose code takes the instruction cache.
+//!
+//! A message's time is the mean over all that a board receives and sends around these passes: under PPHIGS a slave's, with the bins that
+//! it hands over with its tokens, under Slats those of fields; of the three scenes the mean again.
+
+mod messages;
 
 use glam::Mat4;
 use pphigs::{DisplayList, Editing, FrameView, ModelEdit, Pass, Picture, RegionBinning, Shading, Share};
@@ -69,6 +74,10 @@ pub struct CodeTimes {
     pub pass_ns: f64,
     /// An edit among others.
     pub edit_ns: f64,
+    /// A message, or a chain: mean of the scenes' means.
+    pub message_ns: f64,
+    /// The least and the greatest scene's mean.
+    pub message_range_ns: [f64; 2],
 }
 
 /// Rounds after which the times stay as they are: each takes over a small part of the last one's error.
@@ -111,6 +120,8 @@ pub fn code_times(version: CodeVersion, of: CodeUse) -> Result<CodeTimes, Experi
     let begun: Vec<f64> = SCENES.iter().map(|scene| beginning_ns(version, of, scene)).collect::<Result<_, _>>()?;
     let pass_ns = begun.iter().sum::<f64>() / begun.len() as f64;
     let edit_ns = edit_ns(version)?;
+    let messages: Vec<f64> =
+        SCENES.iter().map(|scene| messages::message_ns(version, of, scene)).collect::<Result<_, _>>()?;
     let range = [0.0; 2];
     let mut times = CodeTimes {
         triangle_ns: 0.0,
@@ -120,6 +131,8 @@ pub fn code_times(version: CodeVersion, of: CodeUse) -> Result<CodeTimes, Experi
         guard_ns: 0.0,
         pass_ns,
         edit_ns,
+        message_ns: messages.iter().sum::<f64>() / messages.len() as f64,
+        message_range_ns: extremes(&messages),
     };
     for _ in 0..ROUNDS {
         times.improve(of, &cut, &scenes);
@@ -144,8 +157,7 @@ impl CodeTimes {
         };
         let means: Vec<f64> = scenes.iter().map(mean).collect();
         self.triangle_ns = means.iter().sum::<f64>() / means.len() as f64;
-        self.triangle_range_ns =
-            [means.iter().copied().fold(f64::INFINITY, f64::min), means.iter().copied().fold(0.0, f64::max)];
+        self.triangle_range_ns = extremes(&means);
         let without_entries = |[uncut, cut, n, ns]: &Sample| ([*cut, *uncut], ns - entry_ns * n);
         self.guard_ns = solve(cut.iter().map(without_entries)) - self.triangle_ns;
     }
@@ -160,6 +172,11 @@ impl CodeTimes {
         let means: Vec<f64> = sums.filter(|[n, _]| *n > 0.0).map(|[n, ns]| ns / n).collect();
         means.iter().sum::<f64>() / means.len().max(1) as f64
     }
+}
+
+/// The least and the greatest.
+fn extremes(values: &[f64]) -> [f64; 2] {
+    [values.iter().copied().fold(f64::INFINITY, f64::min), values.iter().copied().fold(0.0, f64::max)]
 }
 
 /// The factor of the first of two unknowns by least squares; where the second never occurs, of the first alone.
@@ -314,6 +331,8 @@ mod tests {
             guard_ns: 0.0,
             pass_ns: 0.0,
             edit_ns: 0.0,
+            message_ns: 0.0,
+            message_range_ns: [0.0; 2],
         };
         let scenes = [vec![[2.0, 4.0, 112.0], [3.0, 1.0, 153.0]], vec![[0.0; 3]], vec![[1.0, 0.0, 60.0]]];
         assert_eq!(times.sphere(&scenes), 55.0);

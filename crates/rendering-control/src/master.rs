@@ -79,7 +79,7 @@ pub async fn master(gp: Gp, config: RenderingControlConfig) -> Result<(), Fault>
     loop {
         while master.begin_one().await {}
         if let Some(received) = master.wait().await {
-            master.gp.spend_message().await;
+            master.gp.pay_for(&received).await;
             master.note(&received).await?;
         }
     }

@@ -5,10 +5,11 @@ use crate::master::copy_order;
 use crate::protocol::{StageOrder, Token};
 use crate::rules::EyeDrawing;
 use pphigs::{
-    BIN_ENTRY_BYTES, Editing, FrameView, PROGRAM_BYTES, Pass, RegionEnvelope, Share, Transforming, region_messages,
+    BIN_ENTRY_BYTES, Editing, FrameView, Handing, PROGRAM_BYTES, Pass, RegionEnvelope, Share, Transforming,
+    region_messages,
 };
 use pxpl5_gp::{Account, Fault, Gp, Priority, Stage};
-use pxpl5_wire::{Body, CommandList, PictureNumber, RegionId};
+use pxpl5_wire::{Body, NodeId, PictureNumber, RegionId};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
@@ -169,15 +170,15 @@ async fn token_program(
         let order = StageOrder::read(&received, gp.node());
         if let Ok(StageOrder::Token(token)) = order
             && gp.pays_at_once()
-            && bin_messages(&config, &state, token).is_empty()
+            && is_empty(&config, &state, token)
         {
             // The token goes on when it has been received and sent, and nothing of this level happens between.
             gp.spend_messages(2).await;
-            pass_on(&gp, &config, index, token);
+            gp.send_prepared([passed_on(&config, index, token)]);
             free_bins(&gp, &state, token.drawing)?;
             continue;
         }
-        gp.spend_message().await;
+        gp.pay_for(&received).await;
         match order? {
             StageOrder::Send(view) => state.borrow_mut().views.push_back(view),
             StageOrder::Edit(frame) => {
@@ -187,7 +188,7 @@ async fn token_program(
             }
             StageOrder::Transform(drawing) => state.borrow_mut().next_transform = drawing.after(1),
             StageOrder::Token(token) => {
-                walk(&gp, &config, index, &state, token).await;
+                walk(&gp, &config, index, &state, token).await?;
                 free_bins(&gp, &state, token.drawing)?;
             }
             other => return Err(Fault::Protocol { node: gp.node(), found: format!("at a slave: {other:?}") }),
@@ -196,24 +197,35 @@ async fn token_program(
 }
 
 /// Sends this slave's bin of the token's region, then passes the token on.
-async fn walk(gp: &Gp, config: &RenderingControlConfig, index: usize, state: &SharedSlaveState, token: Token) {
+async fn walk(
+    gp: &Gp,
+    config: &RenderingControlConfig,
+    index: usize,
+    state: &SharedSlaveState,
+    token: Token,
+) -> Result<(), Fault> {
     let renderer = config.renderers[usize::from(token.renderer)];
-    for list in bin_messages(config, state, token) {
+    let context = (token.drawing.0 % 2) as u8;
+    let pass = state.borrow().bins[usize::from(context)].clone();
+    if let Some(pass) = &pass {
+        gp.work(&Handing { pass, context, region: token.region, envelope: envelope(config, token) }).await?;
+    }
+    for list in pass.map_or_else(Vec::new, |pass| region_messages(&pass, token.region, 0, envelope(config, token))) {
         gp.clump_buffer_free().await;
         gp.send(renderer, list.words(), Body::Commands(list)).await;
     }
-    gp.spend_message().await;
-    pass_on(gp, config, index, token);
+    gp.send_batch(vec![passed_on(config, index, token)]).await;
+    Ok(())
 }
 
-/// What this slave has for the token's region.
-fn bin_messages(config: &RenderingControlConfig, state: &SharedSlaveState, token: Token) -> Vec<CommandList> {
+/// Whether this slave has nothing for the token's region.
+fn is_empty(config: &RenderingControlConfig, state: &SharedSlaveState, token: Token) -> bool {
     let pass = &state.borrow().bins[(token.drawing.0 % 2) as usize];
-    pass.as_ref().map_or_else(Vec::new, |pass| messages(config, pass, token))
+    pass.as_ref().is_none_or(|pass| region_messages(pass, token.region, 0, envelope(config, token)).is_empty())
 }
 
-/// Sends a token on that has been paid for.
-fn pass_on(gp: &Gp, config: &RenderingControlConfig, index: usize, token: Token) {
+/// What tells the next slave, or the master, of a token.
+fn passed_on(config: &RenderingControlConfig, index: usize, token: Token) -> (NodeId, u32, Body) {
     let last = token.slaves_left == 1;
     let next = Token { slaves_left: token.slaves_left - 1, ..token };
     let (receiver, order) = if last {
@@ -222,7 +234,7 @@ fn pass_on(gp: &Gp, config: &RenderingControlConfig, index: usize, token: Token)
         (config.slaves[(index + 1) % config.slaves.len()], StageOrder::Token(next))
     };
     let (words, body) = order.message();
-    gp.send_prepared([(receiver, words, body)]);
+    (receiver, words, body)
 }
 
 /// Frees a drawing's commands and bins when the tokens of all its regions have been here.
@@ -236,14 +248,13 @@ fn free_bins(gp: &Gp, state: &SharedSlaveState, drawing: EyeDrawing) -> Result<(
 }
 
 /// The first slave begins the region, the last one ends it.
-fn messages(config: &RenderingControlConfig, pass: &Arc<Pass>, token: Token) -> Vec<CommandList> {
+fn envelope(config: &RenderingControlConfig, token: Token) -> RegionEnvelope {
     let last = token.slaves_left == 1;
-    let envelope = RegionEnvelope {
+    RegionEnvelope {
         begin: usize::from(token.slaves_left) == config.slaves.len(),
         shade: last,
         copy: token.end.way().filter(|_| last).map(|way| copy_order(config, token.drawing, token.region, way)),
-    };
-    region_messages(pass, token.region, 0, envelope)
+    }
 }
 
 async fn tell_master(gp: &Gp, config: &RenderingControlConfig, order: &StageOrder) {

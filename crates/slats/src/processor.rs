@@ -145,17 +145,17 @@ impl SlatsProcessor {
                 })
                 .await;
             self.gp.end(Stage::Render, PictureNumber::drawn_for(field), None);
-            self.gp.spend_message().await;
-            self.gp.send_prepared(self.copies(field, true));
+            self.gp.send_batch(self.copies(field, true)).await;
             self.show_if_complete(field).await;
-            if self.config.copy.is_split() {
-                // The chain for the bottom regions is ready before the retrace and starts with it.
-                self.gp.spend_message().await;
-            }
+            // The chain for the bottom regions is ready before the retrace and starts with it.
+            let bottom = match self.config.copy.is_split() {
+                true => Some(self.gp.prepare(self.copies(field, false)).await),
+                false => None,
+            };
             begin_at = if self.gp.field() < field { field } else { self.gp.field().next() };
-            if self.config.copy.is_split() {
+            if let Some(bottom) = bottom {
                 self.gp.until("a retrace", || (self.gp.field() >= field).then_some(())).await;
-                self.gp.send_prepared(self.copies(field, false));
+                self.gp.start(bottom);
             }
         }
     }
@@ -163,8 +163,8 @@ impl SlatsProcessor {
     /// Asks for the last complete field of these lines; a later request for the new one takes its place.
     async fn show_backup(&self, field: PeriodNumber) {
         if self.config.copy == CopySchedule::Backup {
-            self.gp.spend_message().await;
-            self.swap(self.state.borrow().complete[FieldParity::of_field(field) as usize]);
+            let complete = self.state.borrow().complete[FieldParity::of_field(field) as usize];
+            self.gp.send_batch(self.swap(complete)).await;
         }
     }
 
@@ -176,17 +176,18 @@ impl SlatsProcessor {
         let renderers = (0..self.binding.renderers()).filter(|r| !self.binding.copies(*r, true).is_empty()).count();
         self.gp.until("the copies of a field", || (self.state.borrow().copied >= renderers as u64).then_some(())).await;
         self.state.borrow_mut().copied = 0;
-        self.gp.spend_message().await;
+        let buffer = self.buffer(field);
+        let request = self.gp.prepare(self.swap(buffer)).await;
         if self.gp.field() < field {
-            let buffer = self.buffer(field);
             self.state.borrow_mut().complete[FieldParity::of_field(field) as usize] = buffer;
-            self.swap(buffer);
+            self.gp.start(request);
         }
     }
 
-    fn swap(&self, buffer: u8) {
+    /// Requests to show a buffer.
+    fn swap(&self, buffer: u8) -> Vec<(NodeId, u32, Body)> {
         let requests = self.config.frame_buffers.iter().map(|node| (*node, 2, Body::Words(swap_request(buffer))));
-        self.gp.send_prepared(requests);
+        requests.collect()
     }
 
     /// Where a field is written.

@@ -142,6 +142,11 @@ fn program_of(board: &GpBoard) -> Option<Arc<Program>> {
     board.with_processor(|processor| processor.program().cloned()).flatten()
 }
 
+/// The programs that a board's memory holds, the one that ran last first.
+fn programs_of(board: &GpBoard) -> Vec<Arc<Program>> {
+    board.with_processor(|processor| processor.programs().cloned().collect()).unwrap_or_default()
+}
+
 /// Where the code of a board begins that it ran last.
 ///
 /// # Errors
@@ -167,11 +172,11 @@ pub(super) fn place_in_code(stepper: &Stepper, board: Option<Board>, text: &str)
     if let Some(at) = address(text).map(|at| at & !3) {
         return Ok(at);
     }
-    let programs: Vec<Arc<Program>> = with_code.iter().filter_map(|board| program_of(board)).collect();
+    let programs: Vec<Arc<Program>> = with_code.iter().flat_map(|board| programs_of(board)).collect();
     let found = programs.iter().find_map(|program| program.symbol(text));
     found.ok_or_else(|| {
-        let labels = programs.first().map_or_else(Vec::new, |program| program.labels.clone());
-        let names: Vec<String> = labels.into_iter().map(|(name, _)| name).collect();
+        let own = with_code.first().map_or_else(Vec::new, |board| programs_of(board));
+        let names: Vec<String> = own.iter().flat_map(|program| program.labels.clone()).map(|(name, _)| name).collect();
         let names = if names.is_empty() { "no code has run yet".to_owned() } else { names.join(", ") };
         format!("expected an address such as 0x1000 or a label ({names}), found `{text}`")
     })
@@ -179,8 +184,9 @@ pub(super) fn place_in_code(stepper: &Stepper, board: Option<Board>, text: &str)
 
 /// The labels at an address of a board's code.
 pub(super) fn labels(board: &GpBoard, at: u32) -> Vec<String> {
-    let labels = program_of(board).map_or_else(Vec::new, |program| program.labels.clone());
-    labels.into_iter().filter(|(_, place)| *place == at).map(|(name, _)| name).collect()
+    let programs = programs_of(board);
+    let labels = programs.iter().flat_map(|program| program.labels.clone());
+    labels.filter(|(_, place)| *place == at).map(|(name, _)| name).collect()
 }
 
 /// Words of a board's memory.

@@ -1,0 +1,145 @@
+//! A bin handed over by code: the same messages, with the same words, as the native firmware sends.
+
+use glam::{Mat4, Vec3};
+use pphigs::{
+    DisplayList, DisplayStructure, EyeView, FrameView, Handing, ModelFrame, Pass, Picture, RegionBinning,
+    RegionEnvelope, Shading, Share, region_messages,
+};
+use pxpl5_geometry::{Culling, Viewport, WorldSphere};
+use pxpl5_gp::{CodeVersion, GpTiming, Processor, Work};
+use pxpl5_renderer::Layout;
+use pxpl5_sim::{Span, SplitMix64};
+use pxpl5_wire::{
+    CopyContent, CopyOrder, CopyTarget, CopyWay, Lines, NodeId, PictureNumber, RegionGrid, RegionId, ViewNumber, Word,
+};
+use std::sync::Arc;
+
+/// Commands lie behind the first megabyte; what encloses them is the program's.
+const PROGRAMS_END: Word = 1 << 20;
+
+fn vector(numbers: &mut SplitMix64, size: f32) -> Vec3 {
+    Vec3::new(numbers.unit() - 0.5, numbers.unit() - 0.5, numbers.unit() - 0.5) * (2.0 * size)
+}
+
+/// Small triangles and spheres before the eye, most of them in the middle, so that some bins fill several messages.
+fn share(triangles: u32, spheres: usize) -> Share {
+    let mut numbers = SplitMix64::new(3);
+    let mut list = DisplayList { towards_light: Vec3::Z, ambient: 0.2, diffuse: 0.8, ..DisplayList::default() };
+    for number in 0..triangles {
+        let centre = Vec3::new(0.0, 0.0, -6.0) + vector(&mut numbers, if number % 3 == 0 { 1.5 } else { 0.3 });
+        for corner in 0..3 {
+            list.positions.push(centre + vector(&mut numbers, 0.1));
+            list.normals.push(Vec3::Z);
+            list.colours.push([corner * 100; 3]);
+        }
+        list.triangles.push([3 * number, 3 * number + 1, 3 * number + 2]);
+    }
+    let sphere =
+        |_| WorldSphere { centre: Vec3::new(0.0, 0.0, -6.0) + vector(&mut numbers, 0.8), radius: 0.05, colour: [9; 3] };
+    list.spheres = (0..spheres).map(sphere).collect();
+    let (frame, culling) = (ModelFrame::World, Culling::None);
+    list.structures = vec![DisplayStructure { triangles: 0..triangles as usize, spheres: 0..spheres, frame, culling }];
+    Share::new(Arc::new(list), 0, 1)
+}
+
+fn pass(share: &Share, x: f32, shading: Shading, layout: Layout, binning: RegionBinning) -> Arc<Pass> {
+    let matrix = Mat4::from_translation(Vec3::new(x, 0.0, 0.0));
+    let projection = Mat4::perspective_rh(0.9, 4.0 / 3.0, 0.5, 40.0);
+    let eyes = vec![EyeView { world_to_eye: matrix, head_to_eye: matrix, projection }];
+    let view = FrameView { number: ViewNumber::FIRST, eyes, edits: Vec::new() };
+    share.transform(&view, 0, Picture { viewport: Viewport::FRAME, shading, binning, layout, pixels: true })
+}
+
+fn order(region: RegionId) -> CopyOrder {
+    let target = CopyTarget {
+        frame_buffer: NodeId(40),
+        buffer: 0,
+        lines: Lines::Frame,
+        grid: RegionGrid::FRAME,
+        region,
+        picture: PictureNumber::FIRST,
+    };
+    CopyOrder { target, context: 0, way: CopyWay::ThroughBacking, acknowledge: None, content: CopyContent::Colour }
+}
+
+fn envelopes(region: RegionId) -> [RegionEnvelope; 4] {
+    let nothing = RegionEnvelope::default();
+    let begin = RegionEnvelope { begin: true, ..nothing };
+    let end = RegionEnvelope { shade: true, copy: Some(order(region)), ..nothing };
+    [nothing, begin, end, RegionEnvelope { begin: true, ..end }]
+}
+
+/// Compares the messages of a bin that code has filled; how many there are.
+fn compare(
+    processor: &mut Processor,
+    pass: &Arc<Pass>,
+    context: u8,
+    region: RegionId,
+    envelope: RegionEnvelope,
+) -> usize {
+    let handing = Handing { pass, context, region, envelope };
+    let span = handing.by_code(&GpTiming::PAPERS, processor).expect("it returns");
+    assert!(span > Span::ZERO);
+    let found = Handing::listed(processor).expect("in memory");
+    let expected = region_messages(pass, region, 0, envelope);
+    assert_eq!(found.len(), expected.len(), "messages of region {region:?} with {envelope:?}");
+    for (pieces, list) in found.iter().zip(&expected) {
+        let mut words = Vec::new();
+        list.content.as_ref().expect("pixels are wanted").append_words(&mut words);
+        assert_eq!(pieces.iter().map(|piece| piece[1]).sum::<Word>(), list.words());
+        let mut rest = words.as_slice();
+        for [address, length] in pieces {
+            let (piece, behind) = rest.split_at(*length as usize);
+            if *address >= PROGRAMS_END {
+                assert_eq!(processor.read(*address, piece.len()).expect("in memory"), piece, "region {region:?}");
+            }
+            rest = behind;
+        }
+    }
+    found.len()
+}
+
+#[test]
+fn pieces_hold_the_words_of_the_native_firmwares_messages() {
+    let layouts = [(Shading::Phong, Layout::rendering_control_phong()), (Shading::Gouraud, Layout::slats())];
+    for (triangles, spheres) in [(400, 0), (300, 60), (0, 100), (0, 0)] {
+        let share = share(triangles, spheres);
+        for (shading, layout) in layouts {
+            let mut processor = Processor::new(NodeId(1), 8 << 20, CodeVersion::Scheduled, i860::Config::cycle());
+            share.install(&mut processor).expect("it fits");
+            let passes = [-0.1, 0.1].map(|x| pass(&share, x, shading, layout, RegionBinning::Touched));
+            for (context, pass) in (0..).zip(&passes) {
+                pass.run_code(&mut processor, context).expect("it returns").expect("it has a kernel");
+            }
+            // Tokens of both contexts come when both bins are full.
+            let mut most = 0;
+            for (region, (context, pass)) in
+                (0..20).map(RegionId).flat_map(|r| (0..).zip(&passes).map(move |of| (r, of)))
+            {
+                for envelope in envelopes(region) {
+                    most = most.max(compare(&mut processor, pass, context, region, envelope));
+                }
+            }
+            let expected = if triangles + spheres as u32 > 0 { 2..20 } else { 0..2 };
+            assert!(expected.contains(&most), "{most} messages at most of {triangles} triangles and {spheres} spheres");
+        }
+    }
+}
+
+#[test]
+fn by_the_table_it_is_part_of_a_message() {
+    let share = share(30, 0);
+    let layout = Layout::rendering_control_phong();
+    let pass = pass(&share, 0.0, Shading::Phong, layout, RegionBinning::Touched);
+    let handing = Handing { pass: &pass, context: 0, region: RegionId(9), envelope: RegionEnvelope::default() };
+    assert_eq!(handing.by_table(&GpTiming::PAPERS), Span::ZERO);
+}
+
+#[test]
+fn without_bins_of_code_nothing_is_handed_over() {
+    let share = share(30, 0);
+    let pass = pass(&share, 0.0, Shading::Gouraud, Layout::slats(), RegionBinning::All);
+    let mut processor = Processor::new(NodeId(1), 8 << 20, CodeVersion::Scheduled, i860::Config::cycle());
+    let handing = Handing { pass: &pass, context: 0, region: RegionId(9), envelope: RegionEnvelope::default() };
+    assert_eq!(handing.by_code(&GpTiming::PAPERS, &mut processor), Ok(Span::ZERO));
+}

@@ -1,0 +1,222 @@
+//! Messages as a program sees them: taken from the inbox, sent in chains, each at the price of its software.
+//!
+//! That price is `message_ns` of the timing table, or the time of the code that handles the message on the board's processor
+//! ([`Processor::receive_message`], [`Processor::send_chain`]); programs do not know which.
+
+use crate::cpu::Priority;
+use crate::firmware::{Batch, ChainLink, Fault, Gp, Received, Ticket};
+use crate::processor::Processor;
+use pxpl5_sim::Span;
+use pxpl5_wire::{Body, Message, NodeId};
+
+/// Messages whose software has been paid for ([`Gp::prepare`]): one chain of the DMA, to be started when the program says so.
+#[derive(Debug)]
+pub struct Chain(Vec<ChainLink>);
+
+impl Gp {
+    /// Waits for the next message in order of arrival and pays the software cost of receiving it.
+    pub async fn receive(&self) -> Received {
+        let received = self.next_message().await;
+        self.pay_for(&received).await;
+        received
+    }
+
+    /// Waits for the next message in order of arrival, without cost; pay for it with [`Gp::pay_for`].
+    pub async fn next_message(&self) -> Received {
+        self.until("a message", || self.shared.borrow_mut().inbox.pop_front()).await
+    }
+
+    /// Takes a message if one has arrived, without cost; pay for it with [`Gp::pay_for`].
+    #[must_use]
+    pub fn take_message(&self) -> Option<Received> {
+        self.shared.borrow_mut().inbox.pop_front()
+    }
+
+    /// Pays the software cost of receiving a message: that of the table, or of the code that takes it.
+    pub async fn pay_for(&self, received: &Received) {
+        self.software(|processor| processor.receive_message(received.source, &received.body)).await;
+    }
+
+    /// Whether this program may pay for several messages at once: each takes the time of the table, and no other program of
+    /// its board comes between. Code runs message by message, because another program's may have to run in between.
+    #[must_use]
+    pub fn pays_at_once(&self) -> bool {
+        let shared = self.shared.borrow();
+        self.priority == Priority::Interrupt && !shared.pays_one_by_one && shared.processor.is_none()
+    }
+
+    /// Pays for so many messages in a row by the table, where [`Gp::pays_at_once`] allows it.
+    pub async fn spend_messages(&self, count: u64) {
+        self.spend(Span::from_ns(self.timing().message_ns) * count).await;
+    }
+
+    /// Sends one message in the background: pays the software cost, then queues it behind earlier ones.
+    pub async fn send(&self, destination: NodeId, words: u32, body: Body) -> Ticket {
+        self.send_batch(vec![(destination, words, body)]).await
+    }
+
+    /// Sends several messages as one chain of the DMA: one software cost, then all go in the background, at the same
+    /// time where they have different receivers. A chain waits for the one before it.
+    pub async fn send_batch(&self, batch: Vec<(NodeId, u32, Body)>) -> Ticket {
+        let chain = self.prepare(batch).await;
+        self.start(chain)
+    }
+
+    /// As [`Gp::send_batch`], for messages that belong together, in groups of one receiver each: between the first and the
+    /// last of a group the receiver takes no message of another board, because the group keeps its port.
+    pub async fn send_groups(&self, groups: Vec<(NodeId, Vec<(u32, Body)>)>) -> Ticket {
+        let links = groups.into_iter().flat_map(|(destination, group)| {
+            let last = group.len().saturating_sub(1);
+            let numbered = (0..).zip(group);
+            numbered.map(move |(place, (words, body))| (destination, words, body, place < last))
+        });
+        let chain = self.pay_for_chain(self.chain(links)).await;
+        self.start(chain)
+    }
+
+    /// Pays the software cost of a chain that [`Gp::start`] will send.
+    pub async fn prepare(&self, batch: Vec<(NodeId, u32, Body)>) -> Chain {
+        self.pay_for_chain(self.unheld(batch)).await
+    }
+
+    /// Hands a chain to the DMA; it goes behind earlier ones.
+    pub fn start(&self, Chain(links): Chain) -> Ticket {
+        let shared = &mut *self.shared.borrow_mut();
+        if links.is_empty() {
+            return Ticket(shared.issued);
+        }
+        shared.issued += 1;
+        let ticket = Ticket(shared.issued);
+        shared.batches.push_back(Batch { ticket, links });
+        ticket
+    }
+
+    /// Hands a chain to the DMA that was paid for by [`Gp::spend_messages`].
+    pub fn send_prepared(&self, batch: impl IntoIterator<Item = (NodeId, u32, Body)>) -> Ticket {
+        self.start(self.unheld(batch))
+    }
+
+    fn unheld(&self, batch: impl IntoIterator<Item = (NodeId, u32, Body)>) -> Chain {
+        self.chain(batch.into_iter().map(|(destination, words, body)| (destination, words, body, false)))
+    }
+
+    /// A chain: of each message its receiver, words, what it carries, and whether it keeps the receiver's port for the next one.
+    fn chain(&self, batch: impl Iterator<Item = (NodeId, u32, Body, bool)>) -> Chain {
+        let source = self.node();
+        let links = batch.map(|(destination, words, body, hold)| ChainLink {
+            message: Message { source, destination, words, body },
+            hold,
+        });
+        Chain(links.collect())
+    }
+
+    async fn pay_for_chain(&self, chain: Chain) -> Chain {
+        self.software(|processor| processor.send_chain(chain.0.iter().map(|link| (&link.message, link.hold)))).await;
+        chain
+    }
+
+    /// Spends the time of the software of a message.
+    async fn software(&self, code: impl FnOnce(&mut Processor) -> Result<Span, Fault>) {
+        let span = {
+            let shared = &mut *self.shared.borrow_mut();
+            match &mut shared.processor {
+                Some(processor) => code(processor),
+                None => Ok(Span::from_ns(shared.timing.message_ns)),
+            }
+        };
+        match span {
+            Ok(span) => self.spend(span).await,
+            Err(fault) => self.stop(fault).await,
+        }
+    }
+
+    /// Stops the board with a fault of its own software, as a trap there would: its programs do not go on.
+    async fn stop(&self, fault: Fault) {
+        self.shared.borrow_mut().stopped_by = Some(fault);
+        std::future::pending().await
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{CodeVersion, GpBoard, GpEvent, GpOutput, GpTiming};
+    use pxpl5_sim::{Phase, TestBench, Time};
+
+    /// Echoes each message.
+    async fn echo(gp: Gp) -> Result<(), Fault> {
+        loop {
+            let received = gp.receive().await;
+            gp.send(received.source, 1, received.body).await;
+        }
+    }
+
+    /// Waits for a message without paying, so that it is there when the other program has stopped the board.
+    async fn wait(gp: Gp) -> Result<(), Fault> {
+        gp.until("nothing", || None::<()>).await;
+        Ok(())
+    }
+
+    fn board(message_ns: u64, code: bool) -> GpBoard {
+        let mut board = GpBoard::new(NodeId(9), GpTiming { message_ns, ..GpTiming::PAPERS }, Span(25_000));
+        if code {
+            board.run_code(CodeVersion::Compiled, i860::Config::cycle());
+        }
+        let gp = board.handle_for(Priority::Interrupt);
+        board.load(Priority::Interrupt, Box::pin(echo(gp)));
+        let gp = board.handle_for(Priority::Foreground);
+        board.load(Priority::Foreground, Box::pin(wait(gp)));
+        board
+    }
+
+    /// What a board does with messages of so many words, one after the other: its busy time and how many it has sent.
+    fn fed(board: &mut GpBoard, lengths: &[usize]) -> (Span, usize) {
+        let mut bench: TestBench<GpEvent, GpOutput> = TestBench::new();
+        for (number, words) in (1..).zip(lengths) {
+            let body = Body::Words(vec![7; *words].into());
+            let message = Message { source: NodeId(2), destination: NodeId(9), words: *words as u32, body };
+            bench.feed(Time(number * 1_000_000_000), Phase::Arrive, GpEvent::Delivered(message));
+            bench.feed(
+                Time(number * 1_000_000_000 + 900_000_000),
+                Phase::Arrive,
+                GpEvent::Accepted(number << crate::PLACE_BITS),
+            );
+        }
+        bench.run(|event, context| board.handle(event, context));
+        (board.busy(), bench.outputs.len())
+    }
+
+    #[test]
+    fn by_code_a_message_takes_the_time_of_the_code_whatever_the_table_says() {
+        let lengths = [1, 2, 100, 3];
+        let [one, other] = [1_000, 5_000].map(|message_ns| fed(&mut board(message_ns, true), &lengths));
+        assert_eq!(one, other);
+        let mut processor = Processor::new(NodeId(9), 8 << 20, CodeVersion::Compiled, i860::Config::cycle());
+        let mut expected = Span::ZERO;
+        for words in lengths {
+            let body = Body::Words(vec![7; words].into());
+            let message = Message { source: NodeId(9), destination: NodeId(2), words: 1, body: body.clone() };
+            expected += processor.receive_message(NodeId(2), &body).expect("it returns");
+            expected += processor.send_chain([(&message, false)].into_iter()).expect("it returns");
+        }
+        assert_eq!(one, (expected, 4));
+        assert_eq!(fed(&mut board(1_000, false), &lengths), (Span::from_ns(8_000), 4));
+    }
+
+    #[test]
+    fn a_fault_of_the_boards_software_stops_all_its_programs() {
+        let mut board = board(1_000, true);
+        let (_, sent) = fed(&mut board, &[1, 1025, 1]);
+        assert_eq!(sent, 1, "what came later is not answered");
+        let fault = board.fault().expect("it stopped").to_string();
+        assert_eq!(fault, "node 9: unexpected message of 1025 words from node 2");
+        assert!(board.blocked("GP 9").is_none() && board.look(Time(4_000_000_000)).programs.is_empty());
+    }
+
+    /// Code runs message by message; of the table's times several make one.
+    #[test]
+    fn several_are_paid_for_at_once_by_the_table_alone() {
+        let [table, code] = [false, true].map(|code| board(1_000, code).handle_for(Priority::Interrupt).pays_at_once());
+        assert_eq!((table, code), (true, false));
+    }
+}

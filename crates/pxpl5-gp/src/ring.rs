@@ -1,0 +1,208 @@
+//! The software of messages as code of the board (kernels/ring.s), and the part of memory that it shares with the ring's interface.
+//!
+//! ```text
+//!   CODE      DATA                REQUESTS     WINDOW, never in a cache
+//!   | ring.s  | queue, chains,    | messages   | registers, descriptors | buffers of messages |
+//!   |         | frame, stack      | to send    | of messages and chains | that have arrived   |
+//! ```
+//!
+//! The original software is not published; kernels/ring_rules.md says what the code stands for and what it is made by. The
+//! interface's DMA is played from outside before each call: a message is put into the next buffer when its software begins, since
+//! the board's inbox counts no buffers, and every chain before has been sent when the next one is built, since the board's queue of
+//! chains is simulated elsewhere ([`crate::Gp::start`]).
+
+use crate::firmware::Fault;
+use crate::processor::{Processor, ProcessorFault};
+use crate::window::{RING_MEMORY, WINDOW};
+use i860::Program;
+use pxpl5_sim::Span;
+use pxpl5_wire::{Body, Message, NodeId, Word};
+use std::sync::{Arc, LazyLock};
+
+const CODE: u32 = RING_MEMORY.start;
+const DATA: u32 = 0xF_2000;
+const ENTRIES: u32 = DATA + 0x400;
+const STACK: u32 = 0xF_3000;
+const REQUESTS: u32 = STACK;
+const BUFFERS: u32 = WINDOW + 0x3000;
+
+/// Buffers of messages that have arrived, and their descriptors.
+const RX_COUNT: u32 = 8;
+const RX: u32 = WINDOW + 256;
+/// A header of two words and the longest message, in whole cache lines.
+const BUFFER_BYTES: u32 = 4608;
+/// Descriptors of messages in chains.
+const TX_COUNT: u32 = 256;
+const TX: u32 = WINDOW + 0x1000;
+const DESCRIPTOR_BYTES: u32 = 16;
+/// Entries of the queue.
+const ENTRY_COUNT: u32 = 16;
+const ENTRY_BYTES: u32 = 64;
+
+// What the software keeps at DATA, as ring.s names it.
+const NODE: u32 = DATA;
+const RX_NEXT: u32 = DATA + 4;
+const FREE: u32 = DATA + 16;
+const TX_NEXT: u32 = DATA + 28;
+const TX_ROOM: u32 = DATA + 32;
+const ISSUED: u32 = DATA + 36;
+const HANDLERS: u32 = DATA + 64;
+// Registers of the interface.
+const CAUSE: u32 = WINDOW;
+const DONE: u32 = WINDOW + 12;
+
+/// Kinds of messages, as headers have them: words for a program, commands, pixels.
+const KINDS: u32 = 3;
+
+/// Flag of a request that keeps the receiver's port.
+const HOLD: Word = 1;
+
+/// Instructions after which a call is taken to be endless: many times what a message needs.
+const BUDGET: u64 = 10_000;
+
+impl Processor {
+    /// Runs the software that receives a message: interrupt, dispatch, queue, and what a program does to take it and to give its
+    /// buffer back.
+    ///
+    /// # Errors
+    ///
+    /// [`Fault::Protocol`] for a message that has no handler on a processor or a length that no message has, [`Fault::Processor`]
+    /// when the code does not come to its end.
+    pub fn receive_message(&mut self, source: NodeId, body: &Body) -> Result<Span, Fault> {
+        let (kind, length, words) = match body {
+            Body::Words(words) => (0, words.len() as u32, &words[..]),
+            Body::Commands(list) => (1, list.words(), [].as_slice()),
+            Body::Pixels(_) => (2, 1, [].as_slice()),
+        };
+        let (span, taken) = deliver(self, source, kind << 16 | length.min(0xFFFF), words)?;
+        let what = || match kind {
+            0 => format!("of {length} words from node {}", source.0),
+            _ => "of commands or pixels at a processor".to_owned(),
+        };
+        taken.map(|_| span).map_err(|_| Fault::Protocol { node: self.node(), found: what() })
+    }
+
+    /// Runs the software that sends a chain of messages, each with whether it keeps its receiver's port: header and descriptor of
+    /// each, and what is done with the chains before. A chain of more messages than there are descriptors goes in several.
+    ///
+    /// # Errors
+    ///
+    /// [`Fault::Protocol`] for a length that no message has, [`Fault::Processor`] when the code does not come to its end.
+    pub fn send_chain<'a>(&mut self, links: impl Iterator<Item = (&'a Message, bool)>) -> Result<Span, Fault> {
+        // Where the words lie nobody asks: they travel beside memory.
+        let request = |(message, hold): (&Message, bool)| {
+            let kind = match message.body {
+                Body::Words(_) => 0,
+                Body::Commands(_) => 1,
+                Body::Pixels(_) => 2,
+            };
+            [message.destination.0.into(), kind << 16 | if hold { HOLD } else { 0 }, message.words, 0]
+        };
+        let requests: Vec<Request> = links.map(request).collect();
+        let mut span = Span::ZERO;
+        for part in requests.chunks(TX_COUNT as usize).chain(requests.is_empty().then_some([].as_slice())) {
+            let (took, refused) = chain(self, part, 0)?;
+            if let Some(at) = refused {
+                let [destination, _, words, _] = part.get(at).copied().unwrap_or_default();
+                let found = format!("of {words} words for node {destination}");
+                return Err(Fault::Protocol { node: self.node(), found });
+            }
+            span += took;
+        }
+        Ok(span)
+    }
+}
+
+/// A message to be sent: receiver; kind and flags; length in words; address.
+type Request = [Word; 4];
+
+/// A queue entry as a program gets it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Taken {
+    place: u32,
+    words: u32,
+    sender: u32,
+}
+
+/// What the software refuses, as ring.s numbers it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Refusal(Word);
+
+/// Puts a message into memory as the interface does, and has it received: `header` is its kind and length.
+fn deliver(
+    processor: &mut Processor,
+    source: NodeId,
+    header: Word,
+    words: &[Word],
+) -> Result<(Span, Result<Taken, Refusal>), ProcessorFault> {
+    install(processor)?;
+    let descriptor = word(processor, RX_NEXT)?;
+    let buffer = word(processor, descriptor + 4)?;
+    let room = (BUFFER_BYTES / 4 - 2) as usize;
+    let receiver = Word::from(processor.node().0);
+    let held = [&[receiver << 16 | Word::from(source.0), header], &words[..words.len().min(room)]].concat();
+    processor.write(buffer, &held)?;
+    processor.write(descriptor, &[1])?;
+    processor.write(CAUSE, &[1])?;
+    let span = processor.call(&PROGRAM, "receive", &[(2, STACK)], BUDGET)?;
+    let [entry, place, words, sender] = [16, 17, 18, 19].map(|number| processor.register(number));
+    Ok((span, if entry == 0 { Err(Refusal(place)) } else { Ok(Taken { place, words, sender }) }))
+}
+
+/// Has a chain built and started; `Some` place of the message that the software refuses.
+fn chain(
+    processor: &mut Processor,
+    requests: &[Request],
+    ticket: Word,
+) -> Result<(Span, Option<usize>), ProcessorFault> {
+    install(processor)?;
+    processor.write(REQUESTS, requests.as_flattened())?;
+    let sent = word(processor, ISSUED)?;
+    processor.write(DONE, &[sent])?;
+    let count = requests.len() as Word;
+    let registers = [(2, STACK), (16, REQUESTS), (17, count), (18, ticket)];
+    let span = processor.call(&PROGRAM, "send", &registers, BUDGET + BUDGET * u64::from(count))?;
+    Ok((span, (processor.register(16) != 0).then(|| processor.register(17) as usize)))
+}
+
+fn word(processor: &Processor, address: u32) -> Result<Word, ProcessorFault> {
+    Ok(processor.read(address, 1)?.first().copied().unwrap_or_default())
+}
+
+/// Puts empty queues, descriptors and the table of handlers into a memory that has none yet.
+fn install(processor: &mut Processor) -> Result<(), ProcessorFault> {
+    if word(processor, RX_NEXT)? != 0 {
+        return Ok(());
+    }
+    let handler = |label: &str| PROGRAM.symbol(label).unwrap_or_default();
+    let handlers = [handler("queue"), handler("nohandler"), handler("nohandler")];
+    const { assert!(KINDS == 3, "a handler for each kind") };
+    for number in 0..RX_COUNT {
+        let buffer = BUFFERS + number * BUFFER_BYTES;
+        processor.write(RX + number * DESCRIPTOR_BYTES, &[0, buffer])?;
+    }
+    for number in 0..ENTRY_COUNT {
+        let next = if number + 1 < ENTRY_COUNT { ENTRIES + (number + 1) * ENTRY_BYTES } else { 0 };
+        processor.write(ENTRIES + number * ENTRY_BYTES, &[next])?;
+    }
+    processor.write(HANDLERS, &handlers)?;
+    processor.write(FREE, &[ENTRIES])?;
+    processor.write(TX_NEXT, &[TX, TX_COUNT])?;
+    processor.write(NODE, &[processor.node().0.into(), RX])
+}
+
+static PROGRAM: LazyLock<Arc<Program>> = LazyLock::new(|| {
+    let constants = format!("DATA = {DATA}\nWINDOW = {WINDOW}\nRX_COUNT = {RX_COUNT}\nTX_COUNT = {TX_COUNT}\n");
+    match i860::assemble("ring", CODE, &[constants.as_str(), include_str!("../kernels/ring.s")].concat()) {
+        Ok(program) => Arc::new(program),
+        Err(errors) => unreachable!("it is assembled by the tests: {errors}"),
+    }
+});
+
+const _: () = assert!(TX_ROOM == TX_NEXT + 4 && RX_NEXT == NODE + 4, "written together");
+const _: () = assert!(TX + TX_COUNT * DESCRIPTOR_BYTES <= BUFFERS && ENTRIES + ENTRY_COUNT * ENTRY_BYTES < STACK);
+const _: () =
+    assert!(REQUESTS + TX_COUNT * DESCRIPTOR_BYTES <= WINDOW && BUFFERS + RX_COUNT * BUFFER_BYTES <= RING_MEMORY.end);
+
+#[cfg(test)]
+mod tests;

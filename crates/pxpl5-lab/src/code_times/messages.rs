@@ -1,0 +1,132 @@
+//! Mean time of a message's software: what a board receives and sends around the passes over a scene.
+
+use super::{BOARDS, CodeUse, Rig, VIEWS};
+use pphigs::{FrameView, Handing, Pass, RegionEnvelope, region_messages};
+use pxpl5_gp::{CodeVersion, Fault, GpTiming, Processor, Work};
+use pxpl5_machine::MachineConfig;
+use pxpl5_renderer::CommandKind;
+use pxpl5_run::ExperimentError;
+use pxpl5_sim::Span;
+use pxpl5_wire::{Body, CommandList, Message, NodeId, RegionId};
+use std::sync::Arc;
+
+/// Words of an order or a notice, and of a token (rendering-control's protocol).
+const ORDER: u32 = 3;
+const TOKEN: u32 = 6;
+
+/// A board other than the one that is measured.
+const OTHER: NodeId = NodeId(2);
+
+/// Time of the messages of a board, and how many there were: each received, or sent as a chain of its own.
+#[derive(Default)]
+struct Traffic {
+    span: Span,
+    messages: u64,
+}
+
+impl Traffic {
+    fn receive(&mut self, processor: &mut Processor, words: u32) -> Result<(), Fault> {
+        let body = Body::Words(vec![0; words as usize].into());
+        self.messages += 1;
+        self.span += processor.receive_message(OTHER, &body)?;
+        Ok(())
+    }
+
+    fn send(&mut self, processor: &mut Processor, bodies: &[(u32, Body)]) -> Result<(), Fault> {
+        let source = processor.node();
+        let message =
+            |(words, body): &(u32, Body)| Message { source, destination: OTHER, words: *words, body: body.clone() };
+        let messages: Vec<Message> = bodies.iter().map(message).collect();
+        self.messages += 1;
+        self.span += processor.send_chain(messages.iter().map(|message| (message, false)))?;
+        Ok(())
+    }
+
+    fn send_words(&mut self, processor: &mut Processor, words: u32) -> Result<(), Fault> {
+        self.send(processor, &[(words, Body::Words(vec![0; words as usize].into()))])
+    }
+}
+
+fn commands(list: CommandList) -> (u32, Body) {
+    (list.words(), Body::Commands(list))
+}
+
+/// Mean time of a message of a board under a scene, in nanoseconds.
+pub(super) fn message_ns(version: CodeVersion, of: CodeUse, scene: &str) -> Result<f64, ExperimentError> {
+    let mut rig = Rig::new(version, scene, BOARDS)?;
+    let mut traffic = Traffic::default();
+    for number in 0..VIEWS {
+        let view = rig.view(number);
+        match of {
+            CodeUse::Pphigs => slave(&mut rig, of, &view, &mut traffic),
+            CodeUse::Slats => field(&mut rig, of, &view, &mut traffic),
+        }
+        .map_err(|error| ExperimentError::Scene(error.to_string()))?;
+        if number == 0 {
+            // The first view only fills the caches.
+            traffic = Traffic::default();
+        }
+    }
+    Ok(traffic.span.0 as f64 / 1e3 / traffic.messages as f64)
+}
+
+/// A frame of a slave: the host's view, leave for EDIT and TRANSFORM, reports of both, and of each eye the token of every region.
+fn slave(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) -> Result<(), Fault> {
+    let regions = of.picture().viewport.grid().regions() as u16;
+    traffic.receive(&mut rig.processor, 1 + view.to_words().len() as u32)?;
+    traffic.receive(&mut rig.processor, ORDER)?;
+    traffic.send_words(&mut rig.processor, ORDER)?;
+    for eye in 0..2 {
+        if eye > 0 {
+            traffic.receive(&mut rig.processor, ORDER)?;
+        }
+        let pass = rig.share.transform(view, eye, of.picture());
+        pass.run_code(&mut rig.processor, eye as u8)?;
+        traffic.send_words(&mut rig.processor, ORDER + u32::from(regions))?;
+        for region in (0..regions).map(RegionId) {
+            token(&mut rig.processor, &pass, eye as u8, region, traffic)?;
+        }
+    }
+    Ok(())
+}
+
+/// A token of a slave in the middle: it neither begins the region nor ends it.
+fn token(
+    processor: &mut Processor,
+    pass: &Arc<Pass>,
+    context: u8,
+    region: RegionId,
+    traffic: &mut Traffic,
+) -> Result<(), Fault> {
+    let envelope = RegionEnvelope::default();
+    traffic.receive(processor, TOKEN)?;
+    traffic.span += Handing { pass, context, region, envelope }.by_code(&GpTiming::PAPERS, processor)?;
+    for list in region_messages(pass, region, context, envelope) {
+        traffic.send(processor, &[commands(list)])?;
+    }
+    traffic.send_words(processor, TOKEN)
+}
+
+/// A field of Slats on a board: the view, a chain for each clump to the regions of both eyes, and two chains of copy commands to all
+/// renderers.
+fn field(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) -> Result<(), Fault> {
+    let regions = of.picture().viewport.grid().regions() as u16;
+    traffic.receive(&mut rig.processor, view.to_words().len() as u32)?;
+    for clump in of.parts(&rig.share) {
+        let passes = [0, 1].map(|eye| clump.transform(view, eye, of.picture()));
+        for pass in &passes {
+            pass.run_code(&mut rig.processor, 0)?;
+        }
+        let lists = passes.iter().flat_map(|pass| {
+            let of_region = |region| region_messages(pass, RegionId(region), 0, RegionEnvelope::default());
+            (0..regions).flat_map(of_region).map(commands)
+        });
+        traffic.send(&mut rig.processor, &lists.collect::<Vec<_>>())?;
+    }
+    for _ in 0..2 {
+        let words = CommandKind::SelectRegion.words() + CommandKind::CopyRegion.words();
+        let copies = vec![(words, Body::Words(vec![0; words as usize].into())); MachineConfig::slats().n_renderers];
+        traffic.send(&mut rig.processor, &copies)?;
+    }
+    Ok(())
+}
