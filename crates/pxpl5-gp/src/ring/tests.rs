@@ -172,7 +172,7 @@ fn a_chain_is_the_descriptors_of_its_messages_and_frees_those_of_the_chain_befor
     let lengths = (0..=TX_COUNT).chain((0..200).map(|n| n * 7 % 60));
     for (ticket, count) in (1000..).zip(lengths) {
         let request = |numbers: &mut SplitMix64| {
-            let flags = below(numbers, 3) << 16 | below(numbers, 2) * HOLD | below(numbers, 2) * 2;
+            let flags = (below(numbers, 3) << 16) | (below(numbers, 2) * HOLD) | (below(numbers, 2) * 2);
             [below(numbers, 1 << 10), flags, 1 + below(numbers, MOST_WORDS), numbers.bits() as Word]
         };
         let requests: Vec<Request> = (0..count).map(|_| request(&mut numbers)).collect();
