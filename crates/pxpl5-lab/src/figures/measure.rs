@@ -6,6 +6,7 @@ use super::measured::{FigureValue, Result, detail, scene_named};
 use super::reading::{Reading, Samples};
 use crate::levels::summarise;
 use crate::limit::LimitQuery;
+use parameters::{ParameterTable, Value};
 use pphigs::{BIN_ENTRY_BYTES, Picture, RegionBinning, Shading, Share, TransformCost};
 use pxpl5_analytic::{StereoModel, stereo_loads};
 use pxpl5_geometry::Viewport;
@@ -73,11 +74,15 @@ impl Bench {
     #[must_use]
     pub fn with_times_of_code(mut self) -> Self {
         for preset in PRESETS {
-            let gp = MachineConfig::preset(preset.name).map(|machine| machine.with_times_of_code().gp).ok();
-            let times = gp.map(|gp| [gp.triangle_ns, gp.sphere_ns, gp.guard_ns, gp.bin_entry_ns]).into_iter().flatten();
-            let paths = ["triangle_ns", "sphere_ns", "guard_ns", "bin_entry_ns"]
-                .map(|name| format!("{}:gp.{name}", preset.name));
-            self.changes.extend(paths.into_iter().zip(times));
+            let Ok(machine) = MachineConfig::preset(preset.name) else { continue };
+            let by_code = machine.clone().with_times_of_code().gp.entries();
+            for (code, table) in by_code.iter().zip(machine.gp.entries()) {
+                if let Value::Whole(ns) = code.value
+                    && code.value != table.value
+                {
+                    self.changes.push((format!("{}:gp.{}", preset.name, code.info.name), ns));
+                }
+            }
         }
         self
     }
