@@ -2,12 +2,12 @@
 
 use crate::action::Action;
 use crate::bus::Bus;
-use crate::cache::CacheTags;
+use crate::cache::InstructionTags;
 use crate::code_map::CodeMap;
 use crate::decode::decode;
 use crate::decoded::Decoded;
 use crate::execution::Execution;
-use crate::instruction::Op;
+use crate::instruction::{Instruction, Op};
 use crate::memo::BlockMemory;
 use crate::state::Mode;
 use crate::timing::ChipSizes;
@@ -27,8 +27,6 @@ pub(crate) struct Unit {
     pub(crate) first: Decoded,
     /// The core half of a pair.
     pub(crate) second: Option<Decoded>,
-    /// What it changes that a program can see.
-    pub(crate) action: Action,
 }
 
 impl Unit {
@@ -43,7 +41,7 @@ impl Unit {
             (false, _) if first.dual() => Mode::Entering,
             _ => Mode::Single,
         };
-        Ok(Unit { pc, mode, after, first, second: None, action: Action::new(&first, None) })
+        Ok(Unit { pc, mode, after, first, second: None })
     }
 
     fn pair<B: Bus>(pc: u32, mode: Mode, code: &mut CodeMap, bus: &mut B) -> Result<Unit, TrapCause> {
@@ -55,8 +53,7 @@ impl Unit {
         if !first.is_floating() || second.is_floating() && second.instruction.op != Op::Fnop {
             return Err(TrapCause::IllegalPair);
         }
-        let action = Action::new(&first, Some(&second));
-        Ok(Unit { pc, mode, after: mode.after_pair(first.dual()), first, second: Some(second), action })
+        Ok(Unit { pc, mode, after: mode.after_pair(first.dual()), first, second: Some(second) })
     }
 
     /// The half that may access memory or branch: that of a pair, or the instruction.
@@ -106,25 +103,51 @@ const NEVER: u64 = u64::MAX;
 /// A run of units that ends with a branch, before an instruction that cannot be executed, or at its greatest length.
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
-    pub(crate) units: Vec<Unit>,
-    /// What follows a delayed branch that ends the block.
-    pub(crate) slot: Option<Result<Unit, TrapCause>>,
+    /// Where it begins, and in which mode.
+    pub(crate) pc: u32,
+    mode: Mode,
+    /// Mode after its slot.
+    pub(crate) after_slot: Mode,
+    /// Mode and address of what follows its units.
+    pub(crate) after: Mode,
+    pub(crate) next: u32,
+    /// Number of its units, without the slot.
+    pub(crate) count: usize,
     /// Instructions, the slot included.
     pub(crate) instructions: u64,
-    /// Bytes of the units, without the slot.
-    bytes: u32,
-    /// The units that access data, in order, each once.
-    pub(crate) accessing: Box<[AccessingUnit]>,
-    /// The first unit on each line of the cache.
-    lines: Box<[u8]>,
     /// State of the instruction cache in which all of it was held.
     held_in: u64,
+    /// What the units change that a program can see, and the slot behind them.
+    pub(crate) actions: Box<[Action]>,
+    /// The units that access data, in order, each once.
+    pub(crate) accessing: Box<[AccessingUnit]>,
     pub(crate) remembered: BlockMemory,
+    /// The units, and the slot behind them.
+    units: Box<[Unit]>,
+    /// The first unit on each line of the cache.
+    lines: Box<[u8]>,
+    /// Why what follows a delayed branch that ends the block cannot be executed.
+    pub(crate) wrong_slot: Option<TrapCause>,
+}
+
+/// What the clock must know of an access.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Access {
+    pub(crate) op: Op,
+    pub(crate) dest: u8,
+    pub(crate) size: u8,
+}
+
+impl Access {
+    pub(crate) fn of(i: &Instruction) -> Access {
+        Access { op: i.op, dest: i.dest, size: i.size }
+    }
 }
 
 /// A unit that accesses data.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AccessingUnit {
+    pub(crate) access: Access,
     /// Its number in the block.
     pub(crate) number: u8,
     pub(crate) is_store: bool,
@@ -133,14 +156,25 @@ pub(crate) struct AccessingUnit {
 }
 
 impl AccessingUnit {
-    fn new((number, op): (u8, Op)) -> Option<AccessingUnit> {
+    fn new((number, unit): (u8, &Unit)) -> Option<AccessingUnit> {
+        let access = Access::of(&unit.core().instruction);
+        let op = access.op;
         let accesses = op <= Op::Pst || op == Op::Flush;
         accesses.then(|| AccessingUnit {
+            access,
             number,
             is_store: is_store(op),
             leaves_cache: matches!(op, Op::Pfld | Op::Flush),
         })
     }
+}
+
+/// The first of some units on each line of the cache.
+fn first_on_lines(units: &[Unit]) -> Box<[u8]> {
+    let mut line = None;
+    let lines = (0..).zip(units);
+    let first = lines.filter(|(_, unit)| line.replace(unit.pc / LINE_BYTES) != Some(unit.pc / LINE_BYTES));
+    first.map(|(number, _)| number).collect()
 }
 
 impl Block {
@@ -156,81 +190,74 @@ impl Block {
             units.push(unit);
             last = unit;
         }
-        let is_delayed = last.core().instruction.is_delayed_branch();
-        let slot = is_delayed.then(|| match Unit::read(last.next(), last.after, code, bus) {
-            Ok(unit) if unit.core().is_branch() => Err(TrapCause::BranchInSlot),
-            read => read,
-        });
-        let mut block = Block {
-            units,
-            slot,
-            instructions: 0,
-            bytes: last.next().wrapping_sub(pc),
-            accessing: Box::default(),
-            lines: Box::default(),
+        let count = units.len();
+        let mut wrong_slot = None;
+        if last.core().instruction.is_delayed_branch() {
+            match Unit::read(last.next(), last.after, code, bus) {
+                Ok(unit) if unit.core().is_branch() => wrong_slot = Some(TrapCause::BranchInSlot),
+                Ok(unit) => units.push(unit),
+                Err(cause) => wrong_slot = Some(cause),
+            }
+        }
+        Ok(Block {
+            pc,
+            mode,
+            after_slot: units.last().map_or(last.after, |last| last.after),
+            after: last.after,
+            next: last.next(),
+            count,
+            instructions: units.iter().map(Unit::instructions).sum(),
             held_in: NEVER,
+            actions: (0..).zip(&units).map(|(n, unit)| Action::new(n, &unit.first, unit.second.as_ref())).collect(),
+            accessing: (0..).zip(&units).filter_map(AccessingUnit::new).collect(),
             remembered: BlockMemory::default(),
-        };
-        block.sum_up();
-        Ok(block)
-    }
-
-    fn sum_up(&mut self) {
-        self.instructions = self.units_and_slot().map(Unit::instructions).sum();
-        self.accessing = (0..).zip(self.ops()).filter_map(AccessingUnit::new).collect();
-        let mut line = None;
-        let lines = (0..).zip(self.units_and_slot());
-        let first = lines.filter(|(_, unit)| line.replace(unit.pc / LINE_BYTES) != Some(unit.pc / LINE_BYTES));
-        self.lines = first.map(|(number, _)| number).collect();
-    }
-
-    fn units_and_slot(&self) -> impl Iterator<Item = &Unit> {
-        self.units.iter().chain(self.slot.iter().flatten())
-    }
-
-    fn ops(&self) -> impl Iterator<Item = Op> {
-        self.units_and_slot().map(|unit| unit.core().instruction.op)
+            lines: first_on_lines(&units),
+            units: units.into_boxed_slice(),
+            wrong_slot,
+        })
     }
 
     /// The units that were executed.
     #[inline]
-    pub(crate) fn executed(&self, execution: Execution) -> impl Iterator<Item = &Unit> {
-        self.units[..execution.units].iter().chain(self.slot.iter().flatten().take(usize::from(execution.slot)))
+    pub(crate) fn executed(&self, execution: Execution) -> &[Unit] {
+        self.units.get(..execution.units + usize::from(execution.slot)).unwrap_or_default()
     }
 
     /// How many instructions those are.
     #[inline]
     pub(crate) fn instructions_of(&self, execution: Execution) -> u64 {
-        if execution.units == self.units.len() && execution.slot == self.slot.is_some() {
+        let executed = self.executed(execution);
+        if executed.len() == self.units.len() {
             self.instructions
         } else {
-            self.executed(execution).map(Unit::instructions).sum()
+            executed.iter().map(Unit::instructions).sum()
         }
     }
 
     /// A unit by its number; the slot has the one behind the last.
     #[inline]
     pub(crate) fn unit(&self, number: usize) -> &Unit {
-        match (self.units.get(number), &self.slot) {
-            (Some(unit), _) | (None, Some(Ok(unit))) => unit,
-            _ => unreachable!("it was executed"),
-        }
+        &self.units[number]
     }
 
-    /// Number of the first unit that is not on the same line of the cache as another one.
-    pub(crate) fn end_of_line(&self, number: usize) -> usize {
-        let next = self.lines.iter().find(|first| usize::from(**first) > number);
-        next.map_or(usize::MAX, |first| usize::from(*first))
+    /// An address on the line of the cache that a unit is on, and the number of the first unit behind that line.
+    #[inline]
+    pub(crate) fn line(&self, number: usize) -> (u32, usize) {
+        let next = self.lines.iter().skip(1).position(|first| usize::from(*first) > number);
+        let line = next.unwrap_or(self.lines.len() - 1);
+        let end = self.lines.get(line + 1).map_or(usize::MAX, |first| usize::from(*first));
+        (self.pc.wrapping_add(line as u32 * LINE_BYTES), end)
     }
 
     /// Whether the instruction cache holds all of it.
     #[inline]
-    pub(crate) fn is_held(&mut self, cache: &CacheTags) -> bool {
+    pub(crate) fn is_held(&mut self, cache: &InstructionTags) -> bool {
         self.held_in == cache.changes() || self.look_up(cache)
     }
 
-    fn look_up(&mut self, cache: &CacheTags) -> bool {
-        let held = self.lines.iter().all(|first| cache.find(self.unit(usize::from(*first)).pc).is_some());
+    fn look_up(&mut self, cache: &InstructionTags) -> bool {
+        let mut addresses = (0..self.lines.len() as u32).map(|line| self.pc.wrapping_add(line * LINE_BYTES));
+        let held = addresses.all(|address| cache.holds(address));
         if held {
             self.held_in = cache.changes();
         }
@@ -240,14 +267,13 @@ impl Block {
     /// Whether it is that of an address and a mode.
     #[inline]
     pub(crate) fn begins(&self, pc: u32, mode: Mode) -> bool {
-        let first = &self.units[0];
-        first.pc == pc && first.mode == mode
+        self.pc == pc && self.mode == mode
     }
 
     /// Whether an address lies behind its first unit and before its end; the slot is behind its end.
     #[inline]
     pub(crate) fn passes(&self, address: u32) -> bool {
-        let offset = address.wrapping_sub(self.units[0].pc);
-        offset != 0 && offset < self.bytes
+        let offset = address.wrapping_sub(self.pc);
+        offset != 0 && offset < self.next.wrapping_sub(self.pc)
     }
 }

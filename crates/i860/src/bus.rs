@@ -65,8 +65,11 @@ impl Ram {
     /// # Errors
     /// [`Unmapped`] when they do not fit; nothing is written then.
     pub fn load_words(&mut self, address: u32, words: &[u32]) -> Result<(), Unmapped> {
-        let bytes: Vec<u8> = words.iter().flat_map(|w| w.to_le_bytes()).collect();
-        self.load(address, &bytes)
+        let at = self.offset(address, size_of_val(words))?;
+        for (place, word) in self.bytes[at..].as_chunks_mut::<4>().0.iter_mut().zip(words) {
+            *place = word.to_le_bytes();
+        }
+        Ok(())
     }
 
     /// Reads `count` 32-bit words from `address`.

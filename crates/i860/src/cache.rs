@@ -2,46 +2,35 @@
 
 use crate::timing::ChipSizes;
 
-/// A tag array of so many ways with pseudo-random replacement.
+/// A tag array of so many sets and ways, for lines of so many bytes (all powers of two), with pseudo-random replacement.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Tags<const WAYS: usize> {
-    /// Line number + 1, 0 for empty.
-    sets: Vec<[u32; WAYS]>,
-    dirty: Vec<[bool; WAYS]>,
-    line_shift: u32,
-    set_mask: u32,
+pub(crate) struct Tags<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> {
+    /// Addresses of lines with [`VALID`] and [`DIRTY`] in their low bits, 0 for empty.
+    sets: Box<[[u32; WAYS]; SETS]>,
     /// Fills and clears so far: while it stays, so does what is held.
     changes: u64,
 }
 
-/// The tags of a cache.
-pub(crate) type CacheTags = Tags<{ ChipSizes::PAPERS.cache_ways as usize }>;
+/// Bits of a tag.
+const VALID: u32 = 1;
+const DIRTY: u32 = 2;
 
-/// Where a line is held.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Place {
-    set: usize,
-    way: usize,
+/// The tags of a cache of so many sets.
+type CacheTags<const SETS: usize> = Tags<SETS, CACHE_WAYS, { ChipSizes::PAPERS.line_bytes as u32 }>;
+const CACHE_WAYS: usize = ChipSizes::PAPERS.cache_ways as usize;
+
+const fn sets(cache_bytes: u64) -> usize {
+    (cache_bytes / ChipSizes::PAPERS.line_bytes) as usize / CACHE_WAYS
 }
 
-impl CacheTags {
-    /// Those of a cache of this many bytes.
-    pub(crate) fn of_cache(bytes: u64) -> CacheTags {
-        let line_bytes = ChipSizes::PAPERS.line_bytes;
-        Tags::new((bytes / line_bytes) as u32, line_bytes as u32)
-    }
-}
+/// Those of the instruction cache and of the data cache.
+pub(crate) type InstructionTags = CacheTags<{ sets(ChipSizes::PAPERS.instruction_cache_bytes) }>;
+pub(crate) type DataTags = CacheTags<{ sets(ChipSizes::PAPERS.data_cache_bytes) }>;
 
-impl<const WAYS: usize> Tags<WAYS> {
-    pub(crate) fn new(entries: u32, line_bytes: u32) -> Tags<WAYS> {
-        let sets = entries as usize / WAYS;
-        Tags {
-            sets: vec![[0; WAYS]; sets],
-            dirty: vec![[false; WAYS]; sets],
-            line_shift: line_bytes.trailing_zeros(),
-            set_mask: sets as u32 - 1,
-            changes: 0,
-        }
+impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAYS, LINE_BYTES> {
+    pub(crate) fn new() -> Self {
+        const { assert!(SETS.is_power_of_two() && LINE_BYTES.is_power_of_two() && LINE_BYTES > VALID + DIRTY) };
+        Tags { sets: Box::new([[0; WAYS]; SETS]), changes: 0 }
     }
 
     #[inline]
@@ -49,42 +38,64 @@ impl<const WAYS: usize> Tags<WAYS> {
         self.changes
     }
 
-    /// The place of an address, if it is held.
-    #[inline]
-    pub(crate) fn find(&self, address: u32) -> Option<Place> {
-        let line = address >> self.line_shift;
-        let set = (line & self.set_mask) as usize;
-        let ways = &self.sets[set];
-        (0..WAYS).find(|way| ways[*way] == line + 1).map(|way| Place { set, way })
+    /// Counts as changed since any state of a number up to `latest`.
+    pub(crate) fn number_changes_from(&mut self, latest: u64) {
+        self.changes = self.changes.max(latest) + 1;
     }
 
     #[inline]
-    pub(crate) fn mark_dirty(&mut self, at: Place) {
-        self.dirty[at.set][at.way] = true;
+    fn set(address: u32) -> usize {
+        (address / LINE_BYTES) as usize % SETS
+    }
+
+    /// The tag of a clean line.
+    #[inline]
+    fn tag(address: u32) -> u32 {
+        address & !(LINE_BYTES - 1) | VALID
+    }
+
+    /// Whether an address is held.
+    #[inline]
+    pub(crate) fn holds(&self, address: u32) -> bool {
+        self.sets[Self::set(address)].iter().any(|held| held & !DIRTY == Self::tag(address))
+    }
+
+    /// Whether an address is held; its line is dirty from now on if `stores`.
+    #[inline]
+    pub(crate) fn access(&mut self, address: u32, stores: bool) -> bool {
+        let ways = &mut self.sets[Self::set(address)];
+        let tag = Self::tag(address);
+        for held in ways {
+            if *held & !DIRTY == tag {
+                if stores {
+                    *held |= DIRTY;
+                }
+                return true;
+            }
+        }
+        false
     }
 
     /// Takes an address in; an empty way first, else the way chosen by `random`. Gives the address of a dirty
     /// line that had to leave.
     pub(crate) fn fill(&mut self, address: u32, random: u32) -> Option<u32> {
-        let line = address >> self.line_shift;
-        let set = (line & self.set_mask) as usize;
         self.changes += 1;
-        let ways = &mut self.sets[set];
+        let ways = &mut self.sets[Self::set(address)];
         let way = ways.iter().position(|tag| *tag == 0).unwrap_or(random as usize % WAYS);
-        let was_dirty = std::mem::take(&mut self.dirty[set][way]);
-        let left = std::mem::replace(&mut ways[way], line + 1);
-        was_dirty.then(|| (left - 1) << self.line_shift)
+        let left = std::mem::replace(&mut ways[way], Self::tag(address));
+        (left & DIRTY != 0).then_some(left & !(VALID | DIRTY))
     }
 
     /// Makes a held line clean; tells whether it was dirty.
     pub(crate) fn clean(&mut self, address: u32) -> bool {
-        self.find(address).is_some_and(|at| std::mem::take(&mut self.dirty[at.set][at.way]))
+        let dirty = Self::tag(address) | DIRTY;
+        let way = self.sets[Self::set(address)].iter_mut().find(|held| **held == dirty);
+        way.map(|held| *held &= !DIRTY).is_some()
     }
 
     pub(crate) fn clear(&mut self) {
         self.changes += 1;
         self.sets.fill([0; WAYS]);
-        self.dirty.fill([false; WAYS]);
     }
 }
 
@@ -110,22 +121,21 @@ mod tests {
 
     #[test]
     fn two_ways_hold_two_lines_of_a_set_and_a_third_drives_one_out() {
-        let mut tags = Tags::<2>::new(256, 32);
+        let mut tags = Tags::<128, 2, 32>::new();
         let a = 0x1000;
         let b = 0x2000;
         let c = 0x3000;
         assert_eq!((tags.fill(a, 0), tags.fill(b, 0)), (None, None));
-        assert!(tags.find(a + 31).is_some() && tags.find(b).is_some() && tags.find(a + 32).is_none());
+        assert!(tags.holds(a + 31) && tags.holds(b) && !tags.holds(a + 32));
         tags.fill(c, 0);
-        assert!(tags.find(a).is_none() && tags.find(b).is_some() && tags.find(c).is_some());
+        assert!(!tags.holds(a) && tags.holds(b) && tags.holds(c));
     }
 
     #[test]
     fn a_dirty_line_that_leaves_gives_its_address_once() {
-        let mut tags = Tags::<2>::new(2, 32);
+        let mut tags = Tags::<1, 2, 32>::new();
         tags.fill(0x40, 0);
-        let at = tags.find(0x40).expect("just filled");
-        tags.mark_dirty(at);
+        assert!(tags.access(0x40, true) && !tags.access(0x60, true));
         tags.fill(0x80, 0);
         assert_eq!(tags.fill(0xC0, 0), Some(0x40));
         assert_eq!(tags.fill(0x100, 0), None);

@@ -1,6 +1,6 @@
 //! The clock: issue, freezes, caches, queues. Told of every block what it executed; changes no value.
 
-use crate::block::{Block, Unit};
+use crate::block::{Access, Block, Unit};
 use crate::bus::Bus;
 use crate::common::Common;
 use crate::data_cache::DataCache;
@@ -8,9 +8,9 @@ use crate::decoded::{Decoded, hazard};
 use crate::dram::Transfer;
 use crate::execution::Execution;
 use crate::fetch::Fetch;
-use crate::instruction::{Instruction, Op};
+use crate::instruction::Op;
 use crate::load_pipe::LoadPipe;
-use crate::memo::Memo;
+use crate::memo::{Memo, Numbers};
 use crate::profile::{AddressProfile, Profile};
 use crate::scoreboard::{NO_WAIT, Scoreboard};
 use crate::store_pipe::StorePipe;
@@ -24,6 +24,8 @@ const BUS_BYTES: u32 = ChipSizes::PAPERS.bus_bytes as u32;
 pub(crate) struct Accesses {
     all: [u32; Accesses::MOST],
     count: usize,
+    /// Whether all were looked up in the data cache as they were made, and found their lines there.
+    pub(crate) all_held: bool,
 }
 
 impl Accesses {
@@ -31,11 +33,14 @@ impl Accesses {
     const MOST: usize = 64;
 
     pub(crate) fn new() -> Accesses {
-        Accesses { all: [0; Accesses::MOST], count: 0 }
+        Accesses { all: [0; Accesses::MOST], count: 0, all_held: false }
     }
 
-    pub(crate) fn clear(&mut self) {
+    /// Before a block, whose accesses are looked up as they are made if `looks_up`.
+    #[inline]
+    pub(crate) fn begin(&mut self, looks_up: bool) {
         self.count = 0;
+        self.all_held = looks_up;
     }
 
     #[inline]
@@ -113,6 +118,14 @@ impl Clock {
         self.translation.clear();
     }
 
+    /// Goes on with other numbers of scoreboards, and gives those that it had.
+    pub(crate) fn exchange_numbers(&mut self, numbers: &mut Box<Numbers>) {
+        self.write_board();
+        if let Some(memo) = &mut self.memo {
+            std::mem::swap(&mut memo.numbers, numbers);
+        }
+    }
+
     /// Page tables at this address, or none.
     pub(crate) fn set_translation(&mut self, directory: Option<u32>) {
         self.translation.set_directory(directory);
@@ -120,12 +133,26 @@ impl Clock {
 
     // ---- blocks
 
+    /// Whether clocks of runs are reused, as it is without anything that looks at single units.
+    #[inline]
+    pub(crate) fn repeats(&self) -> bool {
+        self.on && self.memo.is_some() && !self.translation.is_on() && self.sampler.is_none()
+    }
+
     /// Counts the clocks of what a block has executed.
     #[inline]
     pub(crate) fn pass<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &Accesses, bus: &B) {
+        if !(accesses.all_held && self.repeat_all(block, execution)) {
+            self.pass_slowly(block, execution, accesses, bus);
+        }
+    }
+
+    /// Counts them where not all is known.
+    #[inline(never)]
+    fn pass_slowly<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &Accesses, bus: &B) {
         if !self.on {
             self.common.profile.instructions += block.instructions_of(execution);
-        } else if self.memo.is_none() || self.translation.is_on() || self.sampler.is_some() {
+        } else if !self.repeats() {
             self.count(block, execution, accesses, bus);
         } else {
             self.go(block, execution, accesses.addresses(), bus);
@@ -137,7 +164,7 @@ impl Clock {
         self.write_board();
         let mut accesses = accesses.addresses().iter();
         let last = execution.units + usize::from(execution.slot) - 1;
-        block.executed(execution).enumerate().for_each(|(n, unit)| {
+        block.executed(execution).iter().enumerate().for_each(|(n, unit)| {
             let before = self.common.now;
             self.fetch(unit, bus);
             self.issue(unit);
@@ -177,7 +204,7 @@ impl Clock {
                 Op::StC => self.common.charge(Freeze::ControlStore),
                 _ => {
                     if let Some(address) = accesses.next() {
-                        self.access(&core.instruction, *address, bus);
+                        self.access(Access::of(&core.instruction), *address, bus);
                     }
                 }
             }
@@ -231,7 +258,7 @@ impl Clock {
     // ---- data accesses
 
     #[inline]
-    pub(crate) fn access<B: Bus>(&mut self, i: &Instruction, address: u32, bus: &B) {
+    pub(crate) fn access<B: Bus>(&mut self, i: Access, address: u32, bus: &B) {
         match i.op {
             Op::LdB | Op::LdS | Op::LdL => self.load_integer(address, i.dest, bus),
             Op::Fld => self.load_floating(address, i.size, bus),
@@ -286,7 +313,7 @@ impl Clock {
     #[inline]
     fn store(&mut self, address: u32, size: u32) {
         self.translation.translate(address, &mut self.common);
-        if self.data.store(address) {
+        if self.data.access(address, true) {
             self.board.set_hazard(hazard::STORE_HIT, Freeze::LoadAfterStoreHit, self.common.now);
         } else {
             self.stores.store(address, size, &mut self.common);

@@ -5,7 +5,11 @@ use std::ops::Range;
 /// Words of code that were decoded, so that a store into them is noticed.
 #[derive(Debug)]
 pub(crate) struct CodeMap {
-    /// Lowest and highest address of them.
+    /// Addresses of the program, where it is one.
+    program: Range<u32>,
+    /// Whether something stored there.
+    is_stored_to: bool,
+    /// Lowest and highest address of the program and of the words.
     range: (u32, u32),
     /// A bit for each word, by its number modulo [`CodeMap::BITS`].
     words: Box<[u64]>,
@@ -14,8 +18,14 @@ pub(crate) struct CodeMap {
 impl CodeMap {
     const BITS: usize = 1 << 14;
 
-    pub(crate) fn new() -> CodeMap {
-        CodeMap { range: (u32::MAX, 0), words: vec![0; CodeMap::BITS / 64].into_boxed_slice() }
+    pub(crate) fn new(program: Range<u32>) -> CodeMap {
+        let range = CodeMap::ends(&program);
+        CodeMap { program, is_stored_to: false, range, words: Box::default() }
+    }
+
+    /// Lowest and highest address of a range.
+    fn ends(program: &Range<u32>) -> (u32, u32) {
+        if program.is_empty() { (u32::MAX, 0) } else { (program.start, program.end - 1) }
     }
 
     fn bit(address: u32) -> (usize, u64) {
@@ -24,33 +34,36 @@ impl CodeMap {
     }
 
     pub(crate) fn mark(&mut self, pc: u32) {
+        if self.words.is_empty() {
+            self.words = vec![0; CodeMap::BITS / 64].into_boxed_slice();
+        }
         let (at, bit) = CodeMap::bit(pc);
         self.words[at] |= bit;
         self.range = (self.range.0.min(pc), self.range.1.max(pc | 3));
     }
 
-    /// Whether some of `size` bytes may have been decoded.
+    /// Notes a store of some bytes; tells whether some of them may have been decoded.
     #[inline]
-    pub(crate) fn may_hold(&self, address: u32, size: u32) -> bool {
+    pub(crate) fn note_store(&mut self, address: u32, size: u32) -> bool {
         let last = address.wrapping_add(size - 1);
-        last >= self.range.0 && address <= self.range.1 && self.is_marked(address, last)
+        last >= self.range.0 && address <= self.range.1 && self.note_near(address, last)
     }
 
-    fn is_marked(&self, first: u32, last: u32) -> bool {
+    fn note_near(&mut self, first: u32, last: u32) -> bool {
+        self.is_stored_to |= last >= self.program.start && first < self.program.end;
         [first, last].into_iter().any(|address| {
             let (at, bit) = CodeMap::bit(address);
-            self.words[at] & bit != 0
+            self.words.get(at).is_some_and(|words| words & bit != 0)
         })
     }
 
-    /// Whether none lies outside some addresses.
-    pub(crate) fn is_within(&self, extent: &Range<u32>) -> bool {
-        let (lowest, highest) = self.range;
-        lowest > highest || extent.contains(&lowest) && extent.contains(&highest)
+    /// Whether all lie in the program, into which nothing stored.
+    pub(crate) fn is_as_assembled(&self) -> bool {
+        !self.is_stored_to && self.range == CodeMap::ends(&self.program)
     }
 
     pub(crate) fn clear(&mut self) {
         self.words.fill(0);
-        self.range = (u32::MAX, 0);
+        self.range = CodeMap::ends(&self.program);
     }
 }

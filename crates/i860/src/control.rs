@@ -1,6 +1,6 @@
 //! Execution of branches, traps by instruction, and the core half as a whole.
 
-use crate::action::CoreAction;
+use crate::action::{Core, CoreAction};
 use crate::block::Unit;
 use crate::bus::Bus;
 use crate::cpu::Cpu;
@@ -25,20 +25,34 @@ fn behind_slot(unit: &Unit) -> u32 {
 }
 
 impl Cpu {
-    /// Executes the core half of a unit, which is not integer arithmetic.
+    /// Executes the core half of a unit.
     #[inline(always)]
-    pub(crate) fn core<B: Bus>(&mut self, a: &CoreAction, unit: &Unit, bus: &mut B) -> Result<Flow, TrapCause> {
-        match a.op {
-            Op::LdB | Op::LdS | Op::LdL => self.load_integer(a, bus)?,
-            Op::StB | Op::StS | Op::StL => return self.store_integer(a, bus),
-            Op::Fld => self.load_floating(a, bus)?,
-            Op::Fst => return self.store_floating(a, bus),
-            Op::Pfld => self.load_pipelined(a, bus)?,
-            Op::Pst => return self.store_pixels(a, bus),
-            op if op <= Op::Intovr => return self.system(unit),
-            _ => return Ok(self.branch(unit)),
-        }
-        Ok(Flow::Next)
+    pub(crate) fn core<'a, B: Bus>(&mut self, a: &CoreAction, unit: impl Fn() -> &'a Unit, bus: &mut B) -> Flow {
+        let done = match a.does {
+            Core::Nothing => return Flow::Next,
+            Core::Integer => {
+                self.integer(a);
+                return Flow::Next;
+            }
+            Core::LoadByte => self.load_integer::<1, B>(a, bus),
+            Core::LoadShort => self.load_integer::<2, B>(a, bus),
+            Core::LoadLong => self.load_integer::<4, B>(a, bus),
+            Core::StoreByte => self.store_integer::<1, B>(a, bus),
+            Core::StoreShort => self.store_integer::<2, B>(a, bus),
+            Core::StoreLong => self.store_integer::<4, B>(a, bus),
+            Core::LoadSingle => self.load_floating::<4, B>(a, bus),
+            Core::LoadDouble => self.load_floating::<8, B>(a, bus),
+            Core::LoadQuad => self.load_floating::<16, B>(a, bus),
+            Core::StoreSingle => self.store_floating::<4, B>(a, bus),
+            Core::StoreDouble => self.store_floating::<8, B>(a, bus),
+            Core::StoreQuad => self.store_floating::<16, B>(a, bus),
+            Core::PipelinedLoadSingle => self.load_pipelined::<4, B>(a, bus),
+            Core::PipelinedLoadDouble => self.load_pipelined::<8, B>(a, bus),
+            Core::StorePixels => self.store_pixels(a, bus),
+            Core::System => self.system(unit()),
+            Core::Branch => return self.branch(unit()),
+        };
+        self.flow(done)
     }
 
     #[inline(never)]

@@ -1,7 +1,8 @@
 //! The processor: fetch, pairing, delay slots, traps, and the run loop.
 
-use crate::action::{Action, CoreAction, FloatingAction};
-use crate::block::{Block, Unit};
+use crate::action::{Action, Floating};
+use crate::assembler::Program;
+use crate::block::Block;
 use crate::bus::Bus;
 use crate::clock::{Accesses, Clock};
 use crate::code::Code;
@@ -9,11 +10,13 @@ use crate::execution::Execution;
 use crate::flow::Flow;
 use crate::profile::{AddressProfile, Profile};
 use crate::seed::SeedTable;
+use crate::shelf::Shelf;
 use crate::state::{Mode, State, TRAP_VECTOR, psr};
 use crate::timing::Config;
 use crate::trap::{RunEnd, Trap, TrapCause};
 use std::fmt;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// An i860 XR with its caches and clock; memory is passed in with every run.
 pub struct Cpu {
@@ -25,13 +28,13 @@ pub struct Cpu {
     pub(crate) mode_after_slot: Option<Mode>,
     /// Addresses of data that the block in execution has accessed.
     pub(crate) accesses: Accesses,
+    /// Why the unit in execution trapped.
+    cause: Option<TrapCause>,
     /// What the block in execution has written to the directory base.
     pub(crate) directory_base: Option<u32>,
     /// Whether blocks may differ from the code in memory.
     pub(crate) code_changed: bool,
     pub(crate) code: Code,
-    /// Code that is not in memory at present, by the number that [`Cpu::exchange_code`] was told.
-    shelf: Vec<(usize, Code)>,
     config: Config,
 }
 
@@ -51,10 +54,10 @@ impl Cpu {
             seeds: config.seeds,
             mode_after_slot: None,
             accesses: Accesses::new(),
+            cause: None,
             directory_base: None,
             code_changed: false,
             code: Code::new(),
-            shelf: Vec::new(),
             config,
         }
     }
@@ -73,7 +76,6 @@ impl Cpu {
         self.time = Clock::new(&self.config);
         self.mode_after_slot = None;
         self.invalidate_code();
-        self.shelf.clear();
     }
 
     /// Clocks since reset (0 without timing).
@@ -128,19 +130,26 @@ impl Cpu {
         self.code_changed = false;
     }
 
-    /// Instead of [`Cpu::invalidate_code`] where several programs take turns in memory: from now on the one that the caller knows by
-    /// the number `next` is there, as it was each time before. The one that was there, with its number and the addresses that it
-    /// takes, is set aside as long as it is still as it was loaded; `None` where it is not. No clock changes.
-    pub fn exchange_code(&mut self, previous: Option<(usize, Range<u32>)>, next: usize) {
-        let known = self.shelf.iter().position(|(number, _)| *number == next);
-        let fetched = known.map_or_else(Code::new, |at| self.shelf.swap_remove(at).1);
-        let code = std::mem::replace(&mut self.code, fetched);
-        if let Some((number, extent)) = previous
-            && code.is_as_loaded(&extent)
-        {
-            self.shelf.push((number, code));
-        }
+    /// From now on, until [`Cpu::close`], it runs with what a shelf knows of `program`, which lies in memory as it was assembled; or of
+    /// none, so that all code is decoded anew. No clock changes.
+    ///
+    /// All processors that use a shelf have the same [`Config::freezes`].
+    pub fn open(&mut self, shelf: &mut Shelf, program: Option<&Arc<Program>>) {
+        self.code = program.map_or_else(Code::new, |program| shelf.take(program));
         self.code_changed = false;
+        self.time.exchange_numbers(&mut shelf.numbers);
+        self.time.fetch.number_states_from(shelf.cache_states);
+    }
+
+    /// Gives what it knows of the program back to the shelf that it is from; false where the code in memory is no longer that of the
+    /// program, of which nothing is known then.
+    pub fn close(&mut self, shelf: &mut Shelf, program: Option<&Arc<Program>>) -> bool {
+        self.time.exchange_numbers(&mut shelf.numbers);
+        shelf.cache_states = self.time.fetch.states();
+        let code = std::mem::replace(&mut self.code, Code::new());
+        let Some(program) = program.filter(|_| code.is_as_assembled()) else { return false };
+        shelf.put(program, code);
+        true
     }
 
     /// Runs until `stop` is reached in single-instruction mode, a trap is taken, or `budget` more instructions have
@@ -180,8 +189,8 @@ impl Cpu {
             },
         };
         let whole = block.instructions <= most && stop.is_none_or(|stop| !block.passes(stop));
-        let units = if whole { block.units.len() } else { 1 };
-        let end = self.execute(&mut block, units, bus);
+        let units = if whole { block.count } else { 1 };
+        self.execute(&mut block, units, bus);
         if let Some(value) = self.directory_base.take() {
             self.obey_directory_base(value);
         }
@@ -189,136 +198,104 @@ impl Cpu {
         if self.code_changed {
             self.invalidate_code();
         }
-        end.map_err(|cause| self.take_trap(cause))
+        match self.cause.take() {
+            None => Ok(()),
+            Some(cause) => Err(self.take_trap(cause)),
+        }
     }
 
     /// Executes at most `most` units of a block and the slot of their branch, then counts their clocks.
     #[inline]
-    fn execute<B: Bus>(&mut self, block: &mut Block, most: usize, bus: &mut B) -> Result<(), TrapCause> {
-        self.accesses.clear();
-        let (done, flow) = self.units(&block.units[..most], bus);
-        let mut execution = Execution { units: done, slot: false, taken: false, trapped: flow.is_err() };
-        let end = match flow {
-            Ok(flow) => self.go_on(flow, block, &mut execution, bus),
-            Err(cause) => {
-                let last = &block.units[done - 1];
-                self.state.pc = last.pc;
-                self.state.mode = last.mode;
-                Err(cause)
-            }
-        };
+    fn execute<B: Bus>(&mut self, block: &mut Block, most: usize, bus: &mut B) {
+        self.accesses.begin(self.time.repeats());
+        let (units, flow) = self.units(block, 0..most, bus);
+        let mut execution = Execution { units, slot: false, taken: false, trapped: false };
+        self.go_on(flow, block, &mut execution, bus);
         self.time.pass(block, execution, &self.accesses, bus);
-        end
     }
 
     /// Goes to where the last unit of a block leads, by way of the slot if there is one.
     #[inline]
-    fn go_on<B: Bus>(
-        &mut self,
-        flow: Flow,
-        block: &Block,
-        execution: &mut Execution,
-        bus: &mut B,
-    ) -> Result<(), TrapCause> {
-        let last = &block.units[execution.units - 1];
-        self.state.pc = last.next();
-        self.state.mode = last.after;
+    fn go_on<B: Bus>(&mut self, flow: Flow, block: &Block, execution: &mut Execution, bus: &mut B) {
+        let (next, after) = match execution.units == block.count {
+            true => (block.next, block.after),
+            false => {
+                let last = block.unit(execution.units - 1);
+                (last.next(), last.after)
+            }
+        };
+        self.state.pc = next;
+        self.state.mode = after;
         match flow {
             Flow::Next | Flow::NextOfChangedCode => {}
             Flow::Jump(target) => {
                 self.state.pc = target;
                 execution.taken = true;
             }
-            Flow::Skip => {
-                let skipped = if last.after.is_dual() { 8 } else { 4 };
-                self.state.pc = last.next().wrapping_add(skipped);
-            }
+            Flow::Skip => self.state.pc = next.wrapping_add(if after.is_dual() { 8 } else { 4 }),
             Flow::Delayed(target) => {
                 execution.taken = true;
-                return self.slot(block, target, execution, bus);
+                self.slot(block, target, execution, bus);
+            }
+            Flow::Trapped => {
+                execution.trapped = true;
+                let last = block.unit(execution.units - 1);
+                self.state.pc = last.pc;
+                self.state.mode = last.mode;
             }
         }
-        Ok(())
     }
 
     /// Executes the slot of a branch that was taken.
     #[inline]
-    fn slot<B: Bus>(
-        &mut self,
-        block: &Block,
-        target: u32,
-        execution: &mut Execution,
-        bus: &mut B,
-    ) -> Result<(), TrapCause> {
-        let unit = match &block.slot {
-            Some(Ok(unit)) => unit,
-            Some(Err(cause)) => return Err(*cause),
-            None => unreachable!("a block that ends with a delayed branch has its slot"),
-        };
+    fn slot<B: Bus>(&mut self, block: &Block, target: u32, execution: &mut Execution, bus: &mut B) {
+        if block.wrong_slot.is_some() {
+            self.cause = block.wrong_slot;
+            return;
+        }
         execution.slot = true;
-        match self.units(std::slice::from_ref(unit), bus).1 {
-            Ok(_) => {
-                self.state.pc = target;
-                self.state.mode = self.mode_after_slot.take().unwrap_or(unit.after);
-                Ok(())
-            }
-            Err(cause) => {
-                execution.trapped = true;
-                Err(cause)
-            }
+        if self.units(block, block.count..block.count + 1, bus).1 == Flow::Trapped {
+            execution.trapped = true;
+        } else {
+            self.state.pc = target;
+            self.state.mode = self.mode_after_slot.take().unwrap_or(block.after_slot);
         }
     }
 
-    /// Executes units until one does not go on to the next, and tells how many those were.
-    fn units<B: Bus>(&mut self, units: &[Unit], bus: &mut B) -> (usize, Result<Flow, TrapCause>) {
-        for (n, unit) in units.iter().enumerate() {
-            let flow = match &unit.action {
-                Action::Core(core) => self.core(core, unit, bus),
-                Action::FloatingAndCore(floating, core) => self.pair(floating, core, unit, bus),
-                quiet => {
-                    self.stay(quiet, unit);
-                    continue;
-                }
-            };
-            if flow != Ok(Flow::Next) {
-                return (n + 1, flow);
-            }
-        }
-        (units.len(), Ok(Flow::Next))
-    }
-
-    /// Executes a unit that can only go on to the next.
+    /// Where control goes from something that may trap.
     #[inline(always)]
-    fn stay(&mut self, action: &Action, unit: &Unit) {
-        match action {
-            Action::Floating(floating) => {
-                let operands = self.read_operands(floating, unit);
-                self.floating(floating, unit, operands);
-            }
-            Action::Integer(integer) => self.integer(integer),
-            // Both halves read before either writes.
-            Action::FloatingAndInteger(floating, integer) => {
-                let operands = self.read_operands(floating, unit);
-                self.integer(integer);
-                self.floating(floating, unit, operands);
-            }
-            Action::Nothing | Action::Core(_) | Action::FloatingAndCore(..) => {}
-        }
+    pub(crate) fn flow(&mut self, done: Result<Flow, TrapCause>) -> Flow {
+        done.unwrap_or_else(|cause| self.trapped(cause))
     }
 
-    /// Both halves read before either writes, and the core half goes first so that its trap leaves no trace.
+    #[cold]
+    fn trapped(&mut self, cause: TrapCause) -> Flow {
+        self.cause = Some(cause);
+        Flow::Trapped
+    }
+
+    /// Executes units of a block until one does not go on to the next, and tells how many those were.
+    fn units<B: Bus>(&mut self, block: &Block, range: Range<usize>, bus: &mut B) -> (usize, Flow) {
+        let actions = &block.actions[range];
+        for action in actions {
+            let flow = self.unit(action, block, bus);
+            if !matches!(flow, Flow::Next) {
+                return (usize::from(action.number) + 1, flow);
+            }
+        }
+        (actions.len(), Flow::Next)
+    }
+
+    /// Executes a unit. Both halves read before either writes, and the core half goes first so that its trap leaves no trace.
     #[inline(always)]
-    fn pair<B: Bus>(
-        &mut self,
-        floating: &FloatingAction,
-        core: &CoreAction,
-        unit: &Unit,
-        bus: &mut B,
-    ) -> Result<Flow, TrapCause> {
-        let operands = self.read_operands(floating, unit);
-        let flow = self.core(core, unit, bus)?;
-        self.floating(floating, unit, operands);
-        Ok(flow)
+    fn unit<B: Bus>(&mut self, action: &Action, block: &Block, bus: &mut B) -> Flow {
+        let unit = || block.unit(usize::from(action.number));
+        let operands = self.read_operands(&action.floating, unit);
+        let flow = self.core(&action.core, unit, bus);
+        if action.floating.does != Floating::Nothing && !matches!(flow, Flow::Trapped) {
+            self.floating(&action.floating, unit, operands);
+        }
+        flow
     }
 
     /// Raises the interrupt pin for one moment; false when psr.IM holds it off.

@@ -2,7 +2,7 @@
 
 use crate::block::AccessingUnit;
 use crate::bus::Bus;
-use crate::cache::CacheTags;
+use crate::cache::DataTags;
 use crate::common::Common;
 use crate::dram::Transfer;
 use crate::store_pipe::StorePipe;
@@ -13,11 +13,11 @@ const BUS_BYTES: u32 = ChipSizes::PAPERS.bus_bytes as u32;
 const BEATS: u32 = ChipSizes::PAPERS.line_bytes as u32 / BUS_BYTES;
 
 #[derive(Clone, Debug)]
-pub(crate) struct DataCache(CacheTags);
+pub(crate) struct DataCache(DataTags);
 
 impl DataCache {
     pub(crate) fn new() -> DataCache {
-        DataCache(CacheTags::of_cache(ChipSizes::PAPERS.data_cache_bytes))
+        DataCache(DataTags::new())
     }
 
     pub(crate) fn clear(&mut self) {
@@ -26,7 +26,7 @@ impl DataCache {
 
     #[inline]
     pub(crate) fn holds(&self, address: u32) -> bool {
-        self.0.find(address).is_some()
+        self.0.holds(address)
     }
 
     /// The first access from number `from` on that does not find its line, with the number of its unit, or the first one of a unit from
@@ -51,23 +51,18 @@ impl DataCache {
             if unit.leaves_cache {
                 return (next, Some(number));
             }
-            let Some(at) = self.0.find(addresses[next]) else { return (next, Some(number)) };
-            if unit.is_store {
-                self.0.mark_dirty(at);
+            if !self.0.access(addresses[next], unit.is_store) {
+                return (next, Some(number));
             }
             next += 1;
         }
         (next, None)
     }
 
-    /// Stores into a line if it is held, and tells whether it is.
+    /// Whether the line of an access is held, which becomes dirty if that stores.
     #[inline]
-    pub(crate) fn store(&mut self, address: u32) -> bool {
-        let held = self.0.find(address);
-        if let Some(at) = held {
-            self.0.mark_dirty(at);
-        }
-        held.is_some()
+    pub(crate) fn access(&mut self, address: u32, stores: bool) -> bool {
+        self.0.access(address, stores)
     }
 
     /// Brings in the `size` bytes that a load needs; `None` if they are there.

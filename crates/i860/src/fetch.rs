@@ -2,7 +2,7 @@
 
 use crate::block::Block;
 use crate::bus::Bus;
-use crate::cache::CacheTags;
+use crate::cache::InstructionTags;
 use crate::common::Common;
 use crate::memo::Filling;
 use crate::timing::{ChipSizes, Freeze};
@@ -16,7 +16,7 @@ const BEATS: u32 = LINE_BYTES / ChipSizes::PAPERS.bus_bytes as u32;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Fetch {
-    cache: CacheTags,
+    cache: InstructionTags,
     /// Number of the line of the last fetch.
     line: u32,
     /// Clocks at which its transfers arrive, by place in the line.
@@ -27,8 +27,7 @@ pub(crate) struct Fetch {
 
 impl Fetch {
     pub(crate) fn new() -> Fetch {
-        let cache = CacheTags::of_cache(ChipSizes::PAPERS.instruction_cache_bytes);
-        Fetch { cache, line: NO_LINE, arrivals: [0; BEATS as usize], first: 0 }
+        Fetch { cache: InstructionTags::new(), line: NO_LINE, arrivals: [0; BEATS as usize], first: 0 }
     }
 
     /// Number of the line of the last fetch, for what continues there.
@@ -52,7 +51,7 @@ impl Fetch {
     /// Whether a fetch from `pc` goes to the bus.
     #[inline]
     pub(crate) fn misses(&self, pc: u32) -> bool {
-        !self.is_in_line(pc) && self.cache.find(pc).is_none()
+        !self.is_in_line(pc) && !self.cache.holds(pc)
     }
 
     /// What is still to come of a line.
@@ -60,6 +59,16 @@ impl Fetch {
     pub(crate) fn filling(&self, common: &Common) -> Filling {
         let clocks = common.instruction_fill_end.saturating_sub(common.now);
         Filling { clocks, first: if clocks == 0 { 0 } else { self.first } }
+    }
+
+    /// States of the cache are numbered from here on, for blocks that other processors execute too.
+    pub(crate) fn number_states_from(&mut self, latest: u64) {
+        self.cache.number_changes_from(latest);
+    }
+
+    /// Number of the present state of the cache.
+    pub(crate) fn states(&self) -> u64 {
+        self.cache.changes()
     }
 
     /// Whether all of a block is in the cache.
@@ -92,7 +101,7 @@ impl Fetch {
         common.await_instruction(common.instruction_fill_end);
         translation.translate(pc, common);
         self.line = pc / LINE_BYTES;
-        if self.cache.find(pc).is_none() {
+        if !self.cache.holds(pc) {
             self.miss(pc, common, bus);
         }
     }

@@ -12,7 +12,7 @@ use crate::state::{PipeStage, State, fsr, psr};
 impl Cpu {
     /// Executes the floating-point half of a unit with its operands already read.
     #[inline(always)]
-    pub(crate) fn floating(&mut self, action: &FloatingAction, unit: &Unit, from: Operands) {
+    pub(crate) fn floating<'a>(&mut self, action: &FloatingAction, unit: impl Fn() -> &'a Unit, from: Operands) {
         use Operation::{Add, Multiply, Subtract};
         match action.does {
             Floating::PipelinedMultiply => self.pipelined_single(Multiply, action, from),
@@ -27,7 +27,10 @@ impl Cpu {
             Floating::Multiply => self.scalar_single(Multiply, action, from),
             Floating::Add => self.scalar_single(Add, action, from),
             Floating::Subtract => self.scalar_single(Subtract, action, from),
-            Floating::Singles | Floating::Doubles | Floating::Any => self.by_instruction(&unit.first.instruction, from),
+            Floating::Nothing => {}
+            Floating::Singles | Floating::Doubles | Floating::Any => {
+                self.by_instruction(&unit().first.instruction, from);
+            }
         }
     }
 
@@ -271,14 +274,9 @@ const LOST: u64 = 0x7FF8_0000_7FC0_0000;
 /// A result goes into a pipe, and what its last stage held comes out.
 #[inline(always)]
 fn push(pipe: &mut [PipeStage; 3], last: usize, result: PipeStage) -> PipeStage {
+    let [first, second, _] = *pipe;
     let leaving = pipe[last];
-    // Field by field: a stage read whole right after its parts were written waits for them on most hosts.
-    for n in [2, 1] {
-        pipe[n].bits = pipe[n - 1].bits;
-        pipe[n].double = pipe[n - 1].double;
-    }
-    pipe[0].bits = result.bits;
-    pipe[0].double = result.double;
+    *pipe = [result, first, second];
     leaving
 }
 

@@ -13,4 +13,6 @@ pub(crate) enum Flow {
     Delayed(u32),
     /// To what follows the next unit.
     Skip,
+    /// To a trap, whose cause is noted.
+    Trapped,
 }

@@ -64,7 +64,7 @@
 //! state, clocks and profile after every run (tests/memo.rs: random programs, also larger than the caches; crates/pphigs/tests/memo.rs:
 //! the triangle kernels with every row switched);
 //! [`Config::memoise`] chooses. What it is worth for the triangle kernels, crates/pphigs/benches measures. Programs that take turns
-//! in memory stay decoded, with what they remember ([`Cpu::exchange_code`]).
+//! in memory stay decoded, with what they remember, for all processors that run them ([`Shelf`]).
 //! Clocks by address ([`Cpu::watch`]) and translation on are always counted.
 //!
 //! # Conformance
@@ -124,6 +124,7 @@ mod profile;
 mod runs;
 mod scoreboard;
 mod seed;
+mod shelf;
 pub mod state;
 mod store_pipe;
 mod syntax;
@@ -143,6 +144,7 @@ pub use instruction::{Flags, Instruction, Op};
 pub use mnemonic::mnemonic;
 pub use profile::{AddressProfile, Profile};
 pub use seed::SeedTable;
+pub use shelf::Shelf;
 pub use state::State;
 pub use timing::{CHIP_PATH, Config};
 pub use trap::{RunEnd, Trap, TrapCause};

@@ -10,17 +10,19 @@ use crate::trap::TrapCause;
 
 impl Cpu {
     #[inline(always)]
-    fn effective_address(&self, a: &CoreAction) -> Result<u32, TrapCause> {
+    fn effective_address(&self, a: &CoreAction, size: u32) -> Result<u32, TrapCause> {
         let address = a.immediate.wrapping_add(self.state.r(a.first)).wrapping_add(self.state.r(a.second));
-        let size = u32::from(a.size);
         if address & (size - 1) == 0 { Ok(address) } else { Err(TrapCause::Unaligned { address, size }) }
     }
 
     /// What an access leaves behind: its address, in the base register if that is incremented.
     #[inline(always)]
-    fn accessed(&mut self, a: &CoreAction, address: u32) {
+    fn accessed(&mut self, a: &CoreAction, address: u32, stores: bool) {
         self.state.set_r(a.increments, address);
         self.accesses.push(address);
+        if self.accesses.all_held {
+            self.accesses.all_held = self.time.data.access(address, stores);
+        }
     }
 
     #[inline(always)]
@@ -31,7 +33,7 @@ impl Cpu {
     #[inline(always)]
     fn write<B: Bus>(&mut self, bus: &mut B, address: u32, size: u32, value: u64) -> Result<(), TrapCause> {
         bus.write(address, size, value).map_err(|_| TrapCause::DataAccess { address })?;
-        self.code_changed |= self.code.words.may_hold(address, size);
+        self.code_changed |= self.code.words.note_store(address, size);
         Ok(())
     }
 
@@ -42,34 +44,46 @@ impl Cpu {
     }
 
     #[inline(always)]
-    pub(crate) fn load_integer<B: Bus>(&mut self, a: &CoreAction, bus: &mut B) -> Result<(), TrapCause> {
-        let address = self.effective_address(a)?;
-        let value = match a.size {
+    pub(crate) fn load_integer<const SIZE: u32, B: Bus>(
+        &mut self,
+        a: &CoreAction,
+        bus: &mut B,
+    ) -> Result<Flow, TrapCause> {
+        let address = self.effective_address(a, SIZE)?;
+        let value = match SIZE {
             4 => self.read(bus, address, 4)? as u32,
             2 => self.read(bus, address, 2)? as i16 as u32,
             _ => self.read(bus, address, 1)? as i8 as u32,
         };
         self.state.set_r(a.dest, value);
-        self.accessed(a, address);
-        Ok(())
+        self.accessed(a, address, false);
+        Ok(Flow::Next)
     }
 
     #[inline(always)]
-    pub(crate) fn store_integer<B: Bus>(&mut self, a: &CoreAction, bus: &mut B) -> Result<Flow, TrapCause> {
-        let address = self.effective_address(a)?;
+    pub(crate) fn store_integer<const SIZE: u32, B: Bus>(
+        &mut self,
+        a: &CoreAction,
+        bus: &mut B,
+    ) -> Result<Flow, TrapCause> {
+        let address = self.effective_address(a, SIZE)?;
         let value = u64::from(self.state.r(a.dest));
-        match a.size {
+        match SIZE {
             4 => self.write(bus, address, 4, value)?,
-            size => self.write(bus, address, u32::from(size), value)?,
+            size => self.write(bus, address, size, value)?,
         }
-        self.accessed(a, address);
+        self.accessed(a, address, true);
         Ok(self.after_store())
     }
 
     #[inline(always)]
-    pub(crate) fn load_floating<B: Bus>(&mut self, a: &CoreAction, bus: &mut B) -> Result<(), TrapCause> {
-        let address = self.effective_address(a)?;
-        match a.size {
+    pub(crate) fn load_floating<const SIZE: u32, B: Bus>(
+        &mut self,
+        a: &CoreAction,
+        bus: &mut B,
+    ) -> Result<Flow, TrapCause> {
+        let address = self.effective_address(a, SIZE)?;
+        match SIZE {
             4 => {
                 let low = self.read(bus, address, 4)?;
                 self.state.set_f32(a.dest, low as u32);
@@ -80,8 +94,8 @@ impl Cpu {
             }
             _ => self.load_quad(a.dest & 28, address, bus)?,
         }
-        self.accessed(a, address);
-        Ok(())
+        self.accessed(a, address, false);
+        Ok(Flow::Next)
     }
 
     #[inline(always)]
@@ -94,9 +108,13 @@ impl Cpu {
     }
 
     #[inline(always)]
-    pub(crate) fn store_floating<B: Bus>(&mut self, a: &CoreAction, bus: &mut B) -> Result<Flow, TrapCause> {
-        let address = self.effective_address(a)?;
-        match a.size {
+    pub(crate) fn store_floating<const SIZE: u32, B: Bus>(
+        &mut self,
+        a: &CoreAction,
+        bus: &mut B,
+    ) -> Result<Flow, TrapCause> {
+        let address = self.effective_address(a, SIZE)?;
+        match SIZE {
             4 => self.write(bus, address, 4, u64::from(self.state.f32_bits(a.dest)))?,
             8 => self.write(bus, address, 8, self.state.f64_bits(a.dest))?,
             _ => {
@@ -105,23 +123,28 @@ impl Cpu {
                 self.write(bus, address + 8, 8, self.state.f64_bits(quad + 2))?;
             }
         }
-        self.accessed(a, address);
+        self.accessed(a, address, true);
         Ok(self.after_store())
     }
 
-    pub(crate) fn load_pipelined<B: Bus>(&mut self, a: &CoreAction, bus: &mut B) -> Result<(), TrapCause> {
-        let address = self.effective_address(a)?;
-        let bits = self.read(bus, address, u32::from(a.size))?;
+    pub(crate) fn load_pipelined<const SIZE: u32, B: Bus>(
+        &mut self,
+        a: &CoreAction,
+        bus: &mut B,
+    ) -> Result<Flow, TrapCause> {
+        let address = self.effective_address(a, SIZE)?;
+        let bits = self.read(bus, address, SIZE)?;
         let [first, second, leaving] = self.state.load;
         self.state.set_f(a.dest, leaving);
-        self.state.load = [PipeStage { bits, double: a.size == 8 }, first, second];
-        self.accessed(a, address);
-        Ok(())
+        self.state.load = [PipeStage { bits, double: SIZE == 8 }, first, second];
+        self.accesses.all_held = false;
+        self.accessed(a, address, false);
+        Ok(Flow::Next)
     }
 
     /// Writes the pixels whose PM bit is set, bit 0 at the lowest address, and shifts PM by the pixels passed.
     pub(crate) fn store_pixels<B: Bus>(&mut self, a: &CoreAction, bus: &mut B) -> Result<Flow, TrapCause> {
-        let address = self.effective_address(a)?;
+        let address = self.effective_address(a, 8)?;
         self.read(bus, address, 8)?;
         let size = 1 << self.state.pixel_size();
         let pixels = 8 / size;
@@ -131,7 +154,7 @@ impl Cpu {
             self.write(bus, address + n * size, size, value >> (8 * n * size))?;
         }
         self.state.set_pixel_mask(mask >> pixels);
-        self.accessed(a, address);
+        self.accessed(a, address, true);
         Ok(self.after_store())
     }
 
@@ -142,6 +165,7 @@ impl Cpu {
         if i.has(Flags::AUTOINCREMENT) {
             self.state.set_r(i.src2, address);
         }
+        self.accesses.all_held = false;
         self.accesses.push(address);
     }
 }

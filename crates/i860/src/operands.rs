@@ -18,14 +18,16 @@ pub(crate) struct Operands {
 impl Cpu {
     /// Reads the sources of a unit's floating-point half.
     #[inline(always)]
-    pub(crate) fn read_operands(&self, a: &FloatingAction, unit: &Unit) -> Operands {
+    pub(crate) fn read_operands<'a>(&self, a: &FloatingAction, unit: impl Fn() -> &'a Unit) -> Operands {
         let state = &self.state;
-        if a.does <= Floating::Singles {
+        if a.does == Floating::Nothing {
+            Operands::default()
+        } else if a.does <= Floating::Singles {
             Operands { a: u64::from(state.f32_bits(a.first)), b: u64::from(state.f32_bits(a.second)) }
         } else if a.does <= Floating::Doubles {
             Operands { a: state.f64_bits(a.first), b: state.f64_bits(a.second) }
         } else {
-            read_any(state, &unit.first)
+            read_any(state, &unit().first)
         }
     }
 }

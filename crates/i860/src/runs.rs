@@ -5,13 +5,12 @@
 //! an access that goes past the data cache (at a place of the last kind, behind which the next one begins with what the access has
 //! left), before a line that the instruction cache does not hold, or with what was executed of the block.
 
-use crate::block::Block;
+use crate::block::{AccessingUnit, Block};
 use crate::bus::Bus;
 use crate::clock::Clock;
 use crate::execution::Execution;
-use crate::instruction::Instruction;
 use crate::memo::{Memo, Number, RememberedClocks, Run};
-use crate::timing::{FREEZES, Freeze};
+use crate::timing::Freeze;
 
 /// Places of a unit.
 const PLACES: usize = 3;
@@ -42,13 +41,35 @@ impl Course<'_> {
 }
 
 impl Clock {
+    /// Counts the clocks of what a block has executed where all its data are in the cache: tells whether it did, which is where its code
+    /// is there too and it is remembered as one run.
+    #[inline]
+    pub(crate) fn repeat_all(&mut self, block: &mut Block, execution: Execution) -> bool {
+        let Some(entry) = self.memo.as_ref().and_then(Memo::present) else { return false };
+        if !self.holds(block) {
+            return false;
+        }
+        let to = PLACES * (execution.units + usize::from(execution.slot));
+        let continues = entry.is_filling() && self.fetch.is_in_line(block.pc);
+        let run = Run::new(entry, [0, to], [execution.taken, execution.trapped, continues]);
+        let Some(clocks) = block.remembered.find(run) else { return false };
+        self.repeat(clocks);
+        true
+    }
+
+    /// Whether fetches from a block do not go past the cache.
+    #[inline]
+    fn holds(&self, block: &mut Block) -> bool {
+        !self.common.costs.applies(Freeze::InstructionMiss) || self.fetch.holds(block)
+    }
+
     /// Counts the clocks of what a block has executed, from one access past the caches to the next.
     #[inline]
     pub(crate) fn go<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &[u32], bus: &B) {
         let units = execution.units + usize::from(execution.slot);
-        let last = block.units.len() - 1;
+        let last = block.count - 1;
         let mut course = Course { execution, units, last, accesses, accessed: 0, at: 0 };
-        let whole = !self.common.costs.applies(Freeze::InstructionMiss) || self.fetch.holds(block);
+        let whole = self.holds(block);
         while course.at < PLACES * units {
             match self.number() {
                 Some(entry) => self.next_run(block, &mut course, entry, whole, bus),
@@ -80,16 +101,20 @@ impl Clock {
     fn next_run<B: Bus>(&mut self, block: &mut Block, course: &mut Course<'_>, entry: Number, whole: bool, bus: &B) {
         let number = course.at / PLACES;
         let is_unfetched = course.at.is_multiple_of(PLACES);
-        let pc = block.unit(number).pc;
-        if !whole && is_unfetched && self.fetch.misses(pc) {
+        // Where all is held, only a run that begins with a fetch behind a line that is coming in asks for its line.
+        let (line, end) = match whole && !(entry.is_filling() && is_unfetched) {
+            true => (0, usize::MAX),
+            false => block.line(number),
+        };
+        if !whole && is_unfetched && self.fetch.misses(line) {
             return self.miss(block, course, bus);
         }
-        let limit = if whole { course.units } else { block.end_of_line(number).min(course.units) };
+        let limit = if whole { course.units } else { end.min(course.units) };
         let (held, missing) = self.data.held(course.accesses, &block.accessing, course.accessed, limit);
         let to = missing.map_or(PLACES * limit, |unit| PLACES * unit + ISSUED);
-        let continues = entry.is_filling() && is_unfetched && self.fetch.is_in_line(pc);
-        let run = Run::new(entry, to, course.flags(to, continues));
-        match block.remembered.find(course.at, run) {
+        let continues = entry.is_filling() && is_unfetched && self.fetch.is_in_line(line);
+        let run = Run::new(entry, [course.at, to], course.flags(to, continues));
+        match block.remembered.find(run) {
             Some(clocks) => {
                 self.repeat(clocks);
                 course.accessed = held;
@@ -97,24 +122,23 @@ impl Clock {
             }
             None => self.learn(block, course, run, bus),
         }
-        if let Some(unit) = missing {
+        if missing.is_some() {
             let address = course.accesses[course.accessed];
-            let is_store = block.accessing[course.accessed].is_store;
-            self.go_past(&block.unit(unit).core().instruction, is_store, address, bus);
+            self.go_past(&block.accessing[course.accessed], address, bus);
             course.accessed += 1;
         }
     }
 
     /// Counts an access that goes past the cache.
     #[inline]
-    fn go_past<B: Bus>(&mut self, i: &Instruction, is_store: bool, address: u32, bus: &B) {
-        if !is_store {
+    fn go_past<B: Bus>(&mut self, unit: &AccessingUnit, address: u32, bus: &B) {
+        if !unit.is_store {
             self.write_board();
-            return self.access(i, address, bus);
+            return self.access(unit.access, address, bus);
         }
         // A store leaves nothing on the scoreboard when it misses: where it need not wait, nothing changes.
         let before = self.common.now;
-        self.access(i, address, bus);
+        self.access(unit.access, address, bus);
         if self.common.now != before
             && let Some(left) = self.memo.as_mut().and_then(Memo::leave)
         {
@@ -163,9 +187,7 @@ impl Clock {
     fn repeat(&mut self, remembered: &RememberedClocks) {
         self.common.now += u64::from(remembered.clocks);
         self.common.profile.instructions += u64::from(remembered.instructions);
-        for (why, clocks) in &remembered.frozen {
-            self.common.profile.frozen[*why as usize] += u64::from(*clocks);
-        }
+        remembered.waited.add_to(&mut self.common.profile.frozen);
         self.fetch.continue_in(remembered.line);
         if let Some(memo) = &mut self.memo {
             memo.follow(remembered);
@@ -175,23 +197,14 @@ impl Clock {
     /// Counts a run and remembers it.
     #[cold]
     fn learn<B: Bus>(&mut self, block: &mut Block, course: &mut Course<'_>, run: Run, bus: &B) {
-        let from = course.at;
         let began = self.common.now;
         let before = self.common.profile.clone();
         self.advance(block, course, run.end(), bus);
         let Some(exit) = self.number() else { return };
-        let profile = &self.common.profile;
-        let causes = FREEZES.iter().map(|row| (row.id, (profile.frozen_by(row.id) - before.frozen_by(row.id)) as u32));
-        block.remembered.add(
-            from,
-            RememberedClocks {
-                run,
-                exit,
-                clocks: (self.common.now - began) as u32,
-                instructions: (profile.instructions - before.instructions) as u32,
-                frozen: causes.filter(|(_, clocks)| *clocks != 0).collect(),
-                line: self.fetch.line(),
-            },
-        );
+        let clocks = self.common.now - began;
+        let profiles = [&before, &self.common.profile];
+        if let Some(remembered) = RememberedClocks::new(run, exit, clocks, self.fetch.line(), profiles) {
+            block.remembered.add(remembered);
+        }
     }
 }

@@ -5,19 +5,20 @@ use crate::common::Common;
 use crate::timing::{ChipSizes, Freeze};
 
 const PAGE_BYTES: u32 = ChipSizes::PAPERS.page_bytes as u32;
-/// Translations of a set.
+/// Translations of a set, and sets.
 const WAYS: usize = ChipSizes::PAPERS.tlb_ways as usize;
+const SETS: usize = ChipSizes::PAPERS.tlb_entries as usize / WAYS;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Translation {
     /// Address of the page directory while translation is on.
     directory: Option<u32>,
-    tlb: Tags<WAYS>,
+    tlb: Tags<SETS, WAYS, PAGE_BYTES>,
 }
 
 impl Translation {
     pub(crate) fn new() -> Translation {
-        Translation { directory: None, tlb: Tags::new(ChipSizes::PAPERS.tlb_entries as u32, PAGE_BYTES) }
+        Translation { directory: None, tlb: Tags::new() }
     }
 
     #[inline]
@@ -40,7 +41,7 @@ impl Translation {
     pub(crate) fn translate(&mut self, address: u32, common: &mut Common) {
         if let Some(directory) = self.directory
             && common.costs.applies(Freeze::TlbMiss)
-            && self.tlb.find(address).is_none()
+            && !self.tlb.holds(address)
         {
             self.miss(address, directory, common);
         }

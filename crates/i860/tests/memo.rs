@@ -1,10 +1,12 @@
 //! Memoising the clocks of code that repeats changes nothing but the host's time. The same of the triangle kernels:
 //! crates/pphigs/tests/memo.rs.
 
+use i860::state::Mode;
 use i860::timing::{DramTiming, FREEZES, Freeze, FreezeRules};
-use i860::{AddressProfile, Config, Cpu, Ram, RunEnd, assemble, decode};
+use i860::{AddressProfile, Config, Cpu, Program, Ram, RunEnd, Shelf, assemble, decode};
 use parameters::ParameterTable;
 use proptest::prelude::*;
+use std::sync::Arc;
 
 const CODE: u32 = 0x1000;
 const MEMORY: usize = 0x1_0000;
@@ -243,24 +245,76 @@ fn a_profile_by_address_accounts_for_the_same_clocks() {
     assert_eq!(by_address, plain.clocks());
 }
 
+/// A turn on a shelf: which processor runs which program for how many instructions.
+fn turns() -> impl Strategy<Value = Vec<(usize, usize, u64)>> {
+    prop::collection::vec((0usize..3, 0usize..2, 1u64..400), 20..60)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 1_000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Programs may store into themselves; each is loaded again before its turn.
+    #[test]
+    fn processors_that_share_a_shelf_take_the_clocks_that_each_takes_alone(
+        words in prop::collection::vec(prop::collection::vec(likely_word(), 1..60), 2),
+        registers in prop::collection::vec(far_registers(), 3),
+        freezes in rules(),
+        turns in turns(),
+    ) {
+        let program = |words: &Vec<u32>| {
+            let empty = assemble("empty.s", CODE, "").unwrap_or_else(|e| panic!("{e}"));
+            Arc::new(Program { bytes: words.iter().flat_map(|word| word.to_le_bytes()).collect(), ..empty })
+        };
+        let programs: Vec<Arc<Program>> = words.iter().map(program).collect();
+        let mut twins: Vec<Twins> = registers.iter().map(|all| Twins::new(Config { freezes, ..Config::cycle() }, &[], all)).collect();
+        let mut shelf = Shelf::new();
+        for (which, number, instructions) in turns {
+            let program = &programs[number];
+            let [memoised, counted] = &mut twins[which].0;
+            for (cpu, ram) in [&mut *memoised, &mut *counted] {
+                ram.load(CODE, &program.bytes).expect("fits");
+                cpu.state.pc = CODE;
+                cpu.state.mode = Mode::Single;
+            }
+            memoised.0.open(&mut shelf, Some(program));
+            counted.0.invalidate_code();
+            let ends = [&mut *memoised, &mut *counted].map(|(cpu, ram)| format!("{:?}", cpu.run(ram, None, instructions)));
+            prop_assert_eq!(&ends[0], &ends[1]);
+            let is_as_assembled = memoised.1.bytes()[CODE as usize..].starts_with(&program.bytes);
+            let is_kept = memoised.0.close(&mut shelf, Some(program));
+            prop_assert!(is_as_assembled || !is_kept, "what has changed is not shared");
+            prop_assert_eq!(&memoised.0.state, &counted.0.state);
+            prop_assert_eq!(memoised.0.profile(), counted.0.profile());
+            prop_assert!(memoised.1 == counted.1, "memory");
+        }
+    }
+}
+
+fn two_loops() -> [Arc<Program>; 2] {
+    let sources = [LOOP.to_owned(), LOOP.replace("adds    -1, r5, r5", "adds    -2, r5, r5")];
+    sources.map(|source| Arc::new(assemble("loop.s", CODE, &source).unwrap_or_else(|e| panic!("{e}"))))
+}
+
 /// Programs that take turns at the same addresses, their code exchanged or forgotten: the same state at the same clock.
 #[test]
 fn programs_that_take_turns_are_decoded_once_and_take_the_same_clocks() {
-    let sources = [LOOP.to_owned(), LOOP.replace("adds    -1, r5, r5", "adds    -2, r5, r5")];
-    let programs = sources.map(|source| assemble("loop.s", CODE, &source).unwrap_or_else(|e| panic!("{e}")));
+    let programs = two_loops();
     let take_turns = |exchange: bool| {
         let mut ram = Ram::new(0, MEMORY);
         let mut cpu = Cpu::new(Config::cycle());
+        let mut shelf = Shelf::new();
         for turn in 0..20 {
             let program = &programs[turn % 2];
             ram.load(CODE, &program.bytes).expect("fits");
-            match exchange {
-                true => cpu.exchange_code((turn > 0).then(|| ((turn + 1) % 2, CODE..CODE + 0x40)), turn % 2),
-                false => cpu.invalidate_code(),
+            if exchange {
+                cpu.open(&mut shelf, Some(program));
+            } else {
+                cpu.invalidate_code();
             }
             cpu.state.pc = CODE;
             cpu.state.r[4] = 0x4000;
             assert_eq!(cpu.run(&mut ram, program.symbol("end"), 10_000), RunEnd::Stopped);
+            assert!(!exchange || cpu.close(&mut shelf, Some(program)), "memory holds it as it was assembled");
         }
         (cpu.state.clone(), cpu.profile(), cpu.repeated_instructions())
     };
