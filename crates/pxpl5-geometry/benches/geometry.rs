@@ -4,8 +4,7 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::{Mat4, Vec3};
 use pxpl5_geometry::{
-    Culling, LANES, Light, ScreenVertex, SetupStats, Transform, Triangle, TriangleLanes, UnclippedTriangle,
-    VertexSurface, ViewTransform, Viewport,
+    Culling, LANES, Light, SetupStats, SurfaceVertex, Transform, Triangle, TriangleLanes, ViewTransform, Viewport,
 };
 use std::hint::black_box;
 
@@ -89,7 +88,7 @@ fn transform(c: &mut Criterion) {
         b.iter(|| {
             vertices.clear();
             vertices.extend(view.screen_vertices(black_box(&ball.positions)));
-            view.touched(&vertices, ball.triangles.iter().map(|corners| corners.map(|i| i as usize)))
+            view.touched(&vertices, 0, &ball.triangles)
         });
     });
     group.bench_function("gouraud/triangle", |b| {
@@ -118,12 +117,11 @@ fn transform(c: &mut Criterion) {
 }
 
 /// Puts triangles that need no clipping into lanes.
-fn fill(lanes: &mut TriangleLanes, some: &[[u32; 3]], vertices: &[ScreenVertex], surfaces: &[VertexSurface]) {
+fn fill<'a>(lanes: &mut TriangleLanes<'a>, some: &[[u32; 3]], vertices: &'a [SurfaceVertex]) {
     lanes.clear();
     for corners in some {
         let [a, b, c] = corners.map(|i| i as usize);
-        let Some(triangle) = UnclippedTriangle::new([&vertices[a], &vertices[b], &vertices[c]]) else { continue };
-        lanes.push(&triangle, [&surfaces[a], &surfaces[b], &surfaces[c]]);
+        let _ = lanes.push([&vertices[a], &vertices[b], &vertices[c]]);
     }
 }
 
@@ -154,14 +152,14 @@ fn setup(c: &mut Criterion) {
         });
     });
     let vertices = view.screen_vertices(&ball.positions);
-    let coloured = ball.positions.iter().zip(&ball.colours).map(|(p, c)| (*p, *p, *c));
-    let colours = view.vertex_colours(&Light::HEADLIGHT, coloured);
-    let normals: Vec<_> = ball.positions.iter().map(|p| view.vertex_normal(*p, *p)).collect();
+    let positions = &ball.positions;
+    let colours = view.vertex_colours(&Light::HEADLIGHT, &vertices, positions, positions, &ball.colours);
+    let normals = view.vertex_normals(&vertices, positions, positions);
     let mut lanes = TriangleLanes::default();
     group.bench_function("gouraud/together", |bencher| {
         bencher.iter(|| {
             for some in ball.triangles.chunks(LANES) {
-                fill(&mut lanes, some, &vertices, &colours);
+                fill(&mut lanes, some, &colours);
                 let expressions = view.gouraud_lanes(&lanes, &mut stats);
                 (0..some.len()).for_each(|i| _ = black_box(expressions.get(i)));
             }
@@ -170,7 +168,7 @@ fn setup(c: &mut Criterion) {
     group.bench_function("phong/together", |bencher| {
         bencher.iter(|| {
             for some in ball.triangles.chunks(LANES) {
-                fill(&mut lanes, some, &vertices, &normals);
+                fill(&mut lanes, some, &normals);
                 let expressions = view.phong_lanes(&lanes, &mut stats);
                 (0..some.len()).for_each(|i| _ = black_box(expressions.get(i, [200; 3])));
             }

@@ -1,4 +1,4 @@
-// Puts the command at r18 into the bin of every region that a triangle touches: 128 pixels wide, 5 regions across. A
+// Puts the command at r18 into the bin of every region that a triangle touches, 128 pixels wide. A
 // region is touched when its pixels meet the pixels of the bounding box, and every edge has a point of the region on
 // its inner side.
 //
@@ -48,10 +48,8 @@ bins:   mov     r0, r22
         mov     r0, r11
 ba:     adds    -9, r25, r12                // last pixel whose centre is left of its right side
         shra    4, r12, r12
-        subs    639, r12, r0                // at most 639
-        bnc     bb
-        mov     639, r12
-bb:     adds    7, r26, r13
+        lastcolumn r12
+        adds    7, r26, r13
         shra    4, r13, r13
         firstrow r13
         subs    r0, r13, r0
@@ -60,10 +58,8 @@ bb:     adds    7, r26, r13
 bc1:    adds    -9, r27, r14
         shra    4, r14, r14
         lastrow r14
-        subs    LAST_ROW, r14, r0
-        bnc     bd
-        mov     LAST_ROW, r14
-bd:     subs    r12, r11, r0                // empty?
+        lastline r14
+        subs    r12, r11, r0                // empty?
         bc      return
         subs    r14, r13, r0
         bc      return
@@ -73,6 +69,7 @@ bd:     subs    r12, r11, r0                // empty?
         regionrow r14
         shl     7, r11, r7
         adds    127, r7, r8
+        cutoff  r8
         mov     r1, r15
         call    rowbox
         nop
@@ -93,9 +90,7 @@ bd:     subs    r12, r11, r0                // empty?
         adds    8, r28, r28
         subs    r28, r27, r0
         bc      many
-        shl     2, r13, r28                 // 5 row + column
-        adds    r28, r13, r28
-        adds    r28, r11, r28
+        regionnumber r13, r11
         insert  r28
 return: bri     r1
         nop
@@ -103,10 +98,8 @@ return: bri     r1
 // top and bottom line of the row r13 of regions
 rowbox: toprow  r13, r9
         adds    LAST_OF_REGION, r9, r10
-        subs    LAST_ROW, r10, r0
-        bnc     rb
-        mov     LAST_ROW, r10
-rb:     line    r9
+        lastline r10
+        line    r9
         line    r10
         bri     r1
         nop
@@ -119,12 +112,11 @@ rows:   call    rowbox
         mov     r11, r23                    // column
 columns: shl    7, r23, r7
         adds    127, r7, r8
+        cutoff  r8
         test    0
         test    1
         test    2
-        shl     2, r13, r28
-        adds    r28, r13, r28
-        adds    r28, r23, r28
+        regionnumber r13, r23
         insert  r28
 outside: adds   1, r23, r23
         subs    r12, r23, r0

@@ -74,3 +74,8 @@ P_TWO18     = 468         // single: 2^18, more than any distance in subpixels w
 P_CULL      = 472         // words: the area's high word, exclusive-or the first, and the second, is negative where it is not drawn
 P_CLIPPER   = 480         // address of the clipper
 P_THIRD     = 488         // double: 1 / 3
+// Words that say how large a picture is that is no NTSC frame or field.
+P_LAST_X    = 496         // its last subpixel across and down
+P_LAST_Y    = 500
+P_COLUMNS   = 504         // regions across
+P_SAFE      = 508         // a distance from pixel (0, 0) in subpixels that is inside the guard band

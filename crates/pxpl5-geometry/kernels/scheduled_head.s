@@ -3,8 +3,7 @@
 // cache. Both are linear code (i860::linear) without a branch: what depends on the triangle is chosen by masks and by places in tables.
 // Triangles in doubt (near the planes of the clipper, without area, in more than one region) leave the loop.
 //
-// Arithmetic and its order are those of the native transform and set-up; only 16 / area is formed by Newton steps (in double
-// precision) instead of a division.
+// Arithmetic and its order are those of the native transform and set-up; 1 / area is formed by Newton steps in double precision.
 
 // ---- stack frame
 SAVE    = 0         // return address

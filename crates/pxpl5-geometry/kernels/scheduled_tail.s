@@ -34,7 +34,7 @@ slow:   fnop
         bc      doubt                       // 0 > the words
         call    box
         nop
-        or      55264, r0, r7               // inside the guard band, which ends at 65520 and twice the centre less that?
+        safe    r7                          // inside the guard band?
         adds    r7, r24, r8
         adds    r7, r26, r9
         subs    r7, r25, r10

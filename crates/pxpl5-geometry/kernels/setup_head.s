@@ -3,6 +3,7 @@ AREA_WORD = 8
 LOW_XY    = 16
 HIGH_XY   = 24
 SIDE_WORD = 32
+ROW_WORD  = 56
 TO_X      = 320
 TO_Y      = 328
 FROM_X    = 336

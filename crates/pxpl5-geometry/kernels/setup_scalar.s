@@ -51,23 +51,21 @@ s\@:    ftrunc.sd f16, f18
         st.l    r11, \to+4(r2)
         .endm
 
-// 0 to `most`
-        .macro  clamped r, most
+// at least 0, and brought to the picture by `atmost`
+        .macro  clamped r, atmost
         subs    r0, \r, r0
         bc      low\@                       // r > 0
         mov     r0, \r
-low\@:  subs    \most, \r, r0
-        bnc     high\@
-        mov     \most, \r
-high\@: nop
+low\@:  \atmost \r
+        nop
         .endm
 
 // pixel of reference along one axis, the middle of the box within the picture, and how far the corner's coordinate is from its centre
-        .macro  reference box, at, most, to, distance
+        .macro  reference box, at, atmost, to, distance
         ld.l    \box(r2), r10
         ld.l    \box+4(r2), r11
-        clamped r10, \most
-        clamped r11, \most
+        clamped r10, \atmost
+        clamped r11, \atmost
         adds    r10, r11, r10
         shra    5, r10, r10
         xorh    0x8000, r10, r11            // to a double
@@ -248,8 +246,8 @@ oriented\@: fst.l f16, DX1(r2)
         ld.l    SECOND(r2), r8
         fld.d   C_X(r7), f24
         ld.l    THIRD(r2), r9
-        reference BOX, f24, 10239, REFX, TOX
-        reference BOX+8, f25, 7679, REFY, TOY
+        reference BOX, f24, atmostx, REFX, TOX
+        reference BOX+8, f25, atmosty, REFY, TOY
         fld.d   PERPIX(r2), f8
         reciprocal
         fld.d   P_SIXTEEN(r20), f8

@@ -11,6 +11,9 @@ RADIUS  = 12
 COLOUR  = 16
 P_TWO   = S_TWO
 P_LINE  = S_LINE
+P_LAST_X = S_LAST_X
+P_LAST_Y = S_LAST_Y
+P_COLUMNS = S_COLUMNS
 
 // ---- stack frame
 SAVE    = 0        // return address
@@ -265,10 +268,10 @@ pictured: fld.d XX(r2), f16
         // its box, and the regions that this meets
         extent  0, r11, r12
         extent  1, r13, r14
-        clipped r11, r12, 639
+        clipped r11, r12, lastcolumn
         firstrow r13
         lastrow r14
-        clipped r13, r14, LAST_ROW
+        clipped r13, r14, lastline
         shr     7, r11, r11
         shr     7, r12, r12
         regionrow r13
@@ -276,9 +279,7 @@ pictured: fld.d XX(r2), f16
         mov     r0, r22
         mov     r13, r15
 rows:   mov     r11, r23
-columns: shl    2, r15, r28                 // 5 row + column
-        adds    r28, r15, r28
-        adds    r28, r23, r28
+columns: regionnumber r15, r23
         insert  r28
         adds    1, r23, r23
         subs    r12, r23, r0

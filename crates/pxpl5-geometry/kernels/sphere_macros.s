@@ -103,15 +103,13 @@ low\@:  subs    \most, \r, r0
 high\@:
         .endm
 
-// a range within 0 to `most`; to `drop` if nothing is left
-        .macro  clipped first, last, most
+// a range from 0, its end brought to the picture by `atmost`; to `drop` if nothing is left
+        .macro  clipped first, last, atmost
         subs    r0, \first, r0
         bc      above\@                     // first > 0
         mov     r0, \first
-above\@: subs   \most, \last, r0
-        bnc     inside\@
-        mov     \most, \last
-inside\@: subs  \last, \first, r0
+above\@: \atmost \last
+        subs    \last, \first, r0
         bc      drop
         .endm
 

@@ -43,4 +43,8 @@ S_HALF_UNIT = 408
 S_256       = 416         // 256
 S_511       = 424         // 511
 S_QUARTER   = 432         // 0.25
-S_WORDS     = 440         // the command with zeros for operands
+S_WORDS     = 440         // the command with zeros for operands, 53 words at most
+// What the picture decides where it is no NTSC frame or field: words, as P_LAST_X and the rest.
+S_LAST_X    = 652
+S_LAST_Y    = 656
+S_COLUMNS   = 660

@@ -225,12 +225,12 @@ d\@:    st.l    r24, \to(r2)
         st.l    r25, \to+4(r2)
         .endm
 
-// pixel of reference along one axis: middle of the box within the picture (last subpixel `most`)
+// pixel of reference along one axis: middle of the box within the picture, whose last subpixel is what the macro `most` gives
         .macro  clamped r, most
         subs    r0, \r, r0
         bc      low\@                       // r > 0
         mov     r0, \r
-low\@:  mov     \most, r30
+low\@:  \most   r30
         subs    r30, \r, r0
         bnc     high\@
         mov     r30, \r
@@ -378,8 +378,8 @@ oriented: edge  0, 0, 1
         head    4, 72
         head    5, 88
         head    6, 104
-        reference BOX, SX, 10239, REFX, TOX
-        reference BOX+8, SY, 7679, REFY, TOY
+        reference BOX, SX, mostx, REFX, TOX
+        reference BOX+8, SY, mosty, REFY, TOY
         fld.d   AREA(r2), f8
         reciprocal
         fld.d   P_SIXTEEN(r20), f8

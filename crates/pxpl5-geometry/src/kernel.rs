@@ -23,7 +23,7 @@ use crate::newton::ROUND_DOUBLE;
 use crate::transform::Turn;
 use crate::{DEPTH_FAR, DEPTH_NEAR, Light, MAX_CLIP, NORMAL_UNIT, Transform, Triangle, Viewport, clip, light, screen};
 use glam::Vec3;
-use pxpl5_wire::{Lines, RegionGrid, Word};
+use pxpl5_wire::{Lines, REGION_SIZE, RegionGrid, Word};
 
 /// How the code was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -57,6 +57,17 @@ pub enum KernelList {
     Strips,
 }
 
+/// What the code knows of the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum KernelPicture {
+    /// An NTSC frame: 640 x 480 in regions of 128 x 128.
+    Frame,
+    /// An NTSC field: 640 x 240 in regions of 128 x 120.
+    Field,
+    /// A frame of any size in regions of 128 x 128, which the parameter block gives: the face of a cube, another display.
+    Grid,
+}
+
 /// Code for one kind of triangle and picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Kernel {
@@ -66,8 +77,8 @@ pub struct Kernel {
     pub surface: KernelSurface,
     /// Kind of display list that it reads.
     pub list: KernelList,
-    /// Whether the picture is a field instead of a frame.
-    pub field: bool,
+    /// What it knows of the picture.
+    pub picture: KernelPicture,
     /// Whether it puts commands into bins; else all of them go everywhere.
     pub binned: bool,
     /// Whether triangles that face away are not drawn.
@@ -97,14 +108,13 @@ const TWO_18: f32 = 262_144.0;
 const FLIP: Word = 0x9700_0000;
 
 impl Kernel {
-    /// The kernel for a picture of triangles, each with corners of its own; `None` where there is none: pictures other than NTSC
-    /// frames and fields.
+    /// The kernel for a picture of triangles, each with corners of its own; `None` where there is none: regions of other sizes than
+    /// [`KernelPicture`] has, and pictures other than NTSC frames and fields without bins.
     #[must_use]
     pub fn for_picture(schedule: Schedule, surface: KernelSurface, viewport: &Viewport, binned: bool) -> Option<Self> {
-        let field = matches!(viewport.lines(), Lines::Field(_));
-        let grid = if field { RegionGrid::FIELD } else { RegionGrid::FRAME };
+        let picture = KernelPicture::of(viewport).filter(|picture| binned || *picture != KernelPicture::Grid)?;
         let list = KernelList::Triangles;
-        (viewport.grid() == grid).then_some(Self { schedule, surface, list, field, binned, culls: false })
+        Some(Self { schedule, surface, list, picture, binned, culls: false })
     }
 
     /// The source in i860 assembly, with linear stretches where the schedule is [`Schedule::Dual`]; its entry is the label
@@ -117,9 +127,12 @@ impl Kernel {
             KernelList::Strips => include_str!("../kernels/list_strips.s"),
         };
         let insert = include_str!("../kernels/insert.s");
-        let common = [include_str!("../kernels/parameters.s"), list, self.picture(), self.cull(), insert];
-        let bins_of_frames =
-            if self.binned && !self.field { include_str!("../kernels/bins_scheduled.s") } else { bins };
+        let common = [include_str!("../kernels/parameters.s"), list, self.picture.source(), self.cull(), insert];
+        let bins_of_frames = match self.picture {
+            KernelPicture::Frame if self.binned => include_str!("../kernels/bins_scheduled.s"),
+            KernelPicture::Grid => include_str!("../kernels/bins_grid.s"),
+            _ => bins,
+        };
         let triangle = match self.schedule {
             Schedule::Straight => [self.straight(), vec![bins]].concat(),
             Schedule::Compiled => [self.compiled(), vec![bins]].concat(),
@@ -145,7 +158,7 @@ impl Kernel {
         };
         [
             include_str!("../kernels/parameters.s"),
-            self.picture(),
+            self.picture.source(),
             self.cull(),
             include_str!("../kernels/reciprocal.s"),
             include_str!("../kernels/setup_scalar.s"),
@@ -159,10 +172,6 @@ impl Kernel {
             self.bins(),
         ]
         .join("\n")
-    }
-
-    const fn picture(&self) -> &'static str {
-        picture(self.field)
     }
 
     const fn bins(&self) -> &'static str {
@@ -212,7 +221,8 @@ impl Kernel {
         let strips = self.list == KernelList::Strips;
         let (vertices, setup) = self.schedules();
         // With bins the expressions are restated for a field when the regions are known.
-        let [edges, reference, planes] = match self.field && !self.binned {
+        let field = self.picture == KernelPicture::Field;
+        let [edges, reference, planes] = match field && !self.binned {
             true => [
                 include_str!("../kernels/edges_field.s"),
                 include_str!("../kernels/reference_field.s"),
@@ -224,14 +234,22 @@ impl Kernel {
                 include_str!("../kernels/planes_frame.s"),
             ],
         };
-        let (regions, tail) = match (self.binned, self.field) {
+        let (regions, tail) = match (self.binned, self.picture) {
             (false, _) => (include_str!("../kernels/regions_later.s"), include_str!("../kernels/tail_none.s")),
-            (true, true) => (include_str!("../kernels/regions_later.s"), include_str!("../kernels/tail_field.s")),
-            (true, false) => (include_str!("../kernels/regions_frame.s"), include_str!("../kernels/tail_frame.s")),
+            (true, KernelPicture::Field) => {
+                (include_str!("../kernels/regions_later.s"), include_str!("../kernels/tail_field.s"))
+            }
+            (true, KernelPicture::Frame) => {
+                (include_str!("../kernels/regions_frame.s"), include_str!("../kernels/tail_frame.s"))
+            }
+            (true, KernelPicture::Grid) => {
+                (include_str!("../kernels/regions_grid.s"), include_str!("../kernels/tail_frame.s"))
+            }
         };
-        let middle = match self.binned {
-            true => include_str!("../kernels/middle_seen.s"),
-            false => include_str!("../kernels/middle_anywhere.s"),
+        let middle = match (self.binned, self.picture) {
+            (true, KernelPicture::Grid) => include_str!("../kernels/middle_grid.s"),
+            (true, _) => include_str!("../kernels/middle_seen.s"),
+            (false, _) => include_str!("../kernels/middle_anywhere.s"),
         };
         let (doubt, doubted) = match strips {
             false => (include_str!("../kernels/doubt_of_triangle.s"), include_str!("../kernels/doubted_triangle.s")),
@@ -322,7 +340,7 @@ impl Kernel {
             (Triangles, Phong) => ".linear 100 30 1 5 0",
             (Strips, Phong) => ".linear 100 30 1 8 0",
         };
-        let setup = match (self.list, self.surface, self.field) {
+        let setup = match (self.list, self.surface, matches!(self.picture, KernelPicture::Field)) {
             (_, Phong, true) if !self.binned && !self.culls => ".linear 300 20 2 8 0",
             _ if !self.binned || self.culls => ".linear 64 15 2 8 0",
             (_, Gouraud, false) => ".linear 150 20 2 8 0",
@@ -380,6 +398,8 @@ impl Kernel {
         words.integers(472, &culled(transform.dropped));
         words.integers(480, &[clipper]);
         words.doubles(488, &[1.0 / 3.0]);
+        let [last_x, last_y, columns] = size_words(transform.viewport());
+        words.integers(496, &[last_x, last_y, columns, safe_distance(transform.viewport())]);
         self.sides().iter().zip([392, 416]).for_each(|((unit, less), at)| {
             words.doubles(at, &[*unit]);
             words.singles(at + 8, &[*unit as f32]);
@@ -422,8 +442,39 @@ impl Kernel {
     }
 }
 
-pub(crate) const fn picture(field: bool) -> &'static str {
-    if field { include_str!("../kernels/field.s") } else { include_str!("../kernels/frame.s") }
+impl KernelPicture {
+    /// `None` where no code knows the picture.
+    pub(crate) fn of(viewport: &Viewport) -> Option<Self> {
+        let grid = viewport.grid();
+        match viewport.lines() {
+            Lines::Field(_) => (grid == RegionGrid::FIELD).then_some(Self::Field),
+            Lines::Frame if grid == RegionGrid::FRAME => Some(Self::Frame),
+            Lines::Frame => {
+                [grid.region_width, grid.region_height].iter().all(|size| *size == REGION_SIZE).then_some(Self::Grid)
+            }
+        }
+    }
+
+    pub(crate) const fn source(self) -> &'static str {
+        match self {
+            Self::Frame => concat!(include_str!("../kernels/ntsc.s"), "\n", include_str!("../kernels/frame.s")),
+            Self::Field => concat!(include_str!("../kernels/ntsc.s"), "\n", include_str!("../kernels/field.s")),
+            Self::Grid => include_str!("../kernels/grid.s"),
+        }
+    }
+}
+
+/// The last subpixel of a picture across and down the frame, and its regions across.
+pub(crate) const fn size_words(viewport: &Viewport) -> [Word; 3] {
+    let grid = viewport.grid();
+    [16 * grid.width - 1, 16 * viewport.frame_lines() - 1, grid.columns()]
+}
+
+/// What is not farther than this from pixel (0, 0), in subpixels along either axis, is inside the guard band: this ends a pixel before
+/// [`screen::GUARD_PIXELS`] beyond the far side, as far from the middle before the near one, and a pixel is left for rounding.
+fn safe_distance(viewport: &Viewport) -> Word {
+    let size = viewport.grid().width.max(viewport.frame_lines());
+    16 * (screen::GUARD_PIXELS as u32 - 2 - size)
 }
 
 /// A parameter block in the making; places in bytes, as in kernels/parameters.s.

@@ -5,10 +5,11 @@
 //! The loops are plain Rust, compiled once for each vector unit (see [`mod@multiversion`]); there is nothing in which the units
 //! could differ.
 
+use crate::newton;
 use crate::outline::SUBPIXELS;
 use crate::plane::{self, MAX_SLOPE};
 use crate::screen;
-use crate::vertex::{UnclippedTriangle, VertexSurface};
+use crate::vertex::SurfaceVertex;
 use crate::{GouraudTriangle, PhongTriangle, SetupStats, Transform, Viewport};
 use multiversion::multiversion;
 pub use pxpl5_wire::LANES;
@@ -19,26 +20,22 @@ pub(crate) type EachLane<T> = [T; LANES];
 
 /// Up to [`LANES`] triangles that need no clipping, with what their surfaces need.
 #[derive(Clone, Debug)]
-pub struct TriangleLanes {
+pub struct TriangleLanes<'a> {
     len: usize,
-    /// First by corner, then by triangle; x and y in 1/16 px.
-    x: [EachLane<i32>; 3],
-    y: [EachLane<i32>; 3],
-    z: [EachLane<u32>; 3],
-    facing: [EachLane<f32>; 3],
-    /// First by component of colour or normal, then by corner, then by triangle.
-    surface: [[EachLane<f32>; 3]; 3],
+    /// First by corner, then by triangle.
+    corners: [EachLane<&'a SurfaceVertex>; 3],
 }
 
-impl Default for TriangleLanes {
+/// All corners of a triangle of which nothing is seen.
+static NOWHERE: SurfaceVertex = SurfaceVertex::NOWHERE;
+
+impl Default for TriangleLanes<'_> {
     fn default() -> Self {
-        let integers = [[0; LANES]; 3];
-        let reals = [[0.0; LANES]; 3];
-        Self { len: 0, x: integers, y: integers, z: [[0; LANES]; 3], facing: reals, surface: [reals; 3] }
+        Self { len: 0, corners: [[&NOWHERE; LANES]; 3] }
     }
 }
 
-impl TriangleLanes {
+impl<'a> TriangleLanes<'a> {
     /// Triangles held, at most [`LANES`].
     #[must_use]
     pub const fn len(&self) -> usize {
@@ -56,25 +53,21 @@ impl TriangleLanes {
         self.len = 0;
     }
 
-    /// Adds a triangle, all corners of which are seen in the same view.
+    /// Adds a triangle, all corners of which are seen in the same view; false, and it is not added, where it needs clipping.
     ///
     /// # Panics
     /// If there are [`LANES`] already.
     #[inline(always)]
-    pub fn push(&mut self, UnclippedTriangle(corners): &UnclippedTriangle, surface: [&VertexSurface; 3]) {
-        let lane = self.len;
-        for corner in 0..3 {
-            let snapped = &corners[corner];
-            let vertex = surface[corner];
-            self.x[corner][lane] = snapped.x;
-            self.y[corner][lane] = snapped.y;
-            self.z[corner][lane] = snapped.z;
-            self.facing[corner][lane] = vertex.facing;
-            for component in 0..3 {
-                self.surface[component][corner][lane] = vertex.values[component];
-            }
+    #[must_use]
+    pub fn push(&mut self, [a, b, c]: [&'a SurfaceVertex; 3]) -> bool {
+        let inside = a.screen.is_inside() & b.screen.is_inside() & c.screen.is_inside();
+        if inside {
+            self.corners[0][self.len] = a;
+            self.corners[1][self.len] = b;
+            self.corners[2][self.len] = c;
+            self.len += 1;
         }
-        self.len += 1;
+        inside
     }
 
     /// Takes the place of a triangle of which nothing is seen.
@@ -82,11 +75,43 @@ impl TriangleLanes {
     /// # Panics
     /// If there are [`LANES`] already.
     pub fn push_nothing(&mut self) {
-        for corner in 0..3 {
-            self.x[corner][self.len] = 0;
-            self.y[corner][self.len] = 0;
+        for corner in &mut self.corners {
+            corner[self.len] = &NOWHERE;
         }
         self.len += 1;
+    }
+}
+
+/// What is at the corners of some triangles: first by corner, then by triangle.
+struct CornerValues {
+    /// In 1/16 px.
+    x: [EachLane<i32>; 3],
+    y: [EachLane<i32>; 3],
+    z: [EachLane<f64>; 3],
+    facing: [EachLane<f32>; 3],
+    /// First by component of colour or normal.
+    surface: [[EachLane<f32>; 3]; 3],
+}
+
+impl CornerValues {
+    #[inline(always)]
+    fn of(triangles: &TriangleLanes<'_>) -> Self {
+        let integers = [[0; LANES]; 3];
+        let reals = [[0.0; LANES]; 3];
+        let mut all = Self { x: integers, y: integers, z: [[0.0; LANES]; 3], facing: reals, surface: [reals; 3] };
+        for corner in 0..3 {
+            for i in 0..LANES {
+                let vertex = triangles.corners[corner][i];
+                all.x[corner][i] = vertex.screen.0.x;
+                all.y[corner][i] = vertex.screen.0.y;
+                all.z[corner][i] = f64::from(vertex.screen.0.z);
+                all.facing[corner][i] = vertex.facing;
+                all.surface[0][corner][i] = vertex.values[0];
+                all.surface[1][corner][i] = vertex.values[1];
+                all.surface[2][corner][i] = vertex.values[2];
+            }
+        }
+        all
     }
 }
 
@@ -173,19 +198,21 @@ impl PhongLanes {
 impl Transform {
     /// As [`Self::gouraud`] and set-up of what it gives, for each triangle. It does not ask whether any region is touched.
     #[must_use]
-    pub fn gouraud_lanes(&self, triangles: &TriangleLanes, stats: &mut SetupStats) -> GouraudLanes {
+    pub fn gouraud_lanes(&self, triangles: &TriangleLanes<'_>, stats: &mut SetupStats) -> GouraudLanes {
         GouraudLanes(self.set_up_lanes(triangles, 0.0, stats))
     }
 
     /// As [`Self::phong`] and set-up of what it gives, for each triangle. It does not ask whether any region is touched.
     #[must_use]
-    pub fn phong_lanes(&self, triangles: &TriangleLanes, stats: &mut SetupStats) -> PhongLanes {
+    pub fn phong_lanes(&self, triangles: &TriangleLanes<'_>, stats: &mut SetupStats) -> PhongLanes {
         PhongLanes(self.set_up_lanes(triangles, screen::NORMAL_HALF, stats))
     }
 
-    fn set_up_lanes(&self, triangles: &TriangleLanes, half: f32, stats: &mut SetupStats) -> Expressions {
+    fn set_up_lanes(&self, triangles: &TriangleLanes<'_>, half: f32, stats: &mut SetupStats) -> Expressions {
         let out = set_up(triangles, half, PictureRows::of_picture(&self.viewport));
-        stats.flattened_planes += out.flattened[..triangles.len].iter().map(|n| u64::from(*n)).sum::<u64>();
+        if out.flattened != [0; LANES] {
+            stats.flattened_planes += out.flattened[..triangles.len].iter().map(|n| u64::from(*n)).sum::<u64>();
+        }
         out
     }
 }
@@ -227,23 +254,23 @@ impl PictureRows {
 }
 
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn set_up(triangles: &TriangleLanes, half: f32, rows: PictureRows) -> Expressions {
-    let planes = LanePlanes::through_corners(triangles, rows);
-    let away = away(&triangles.facing);
+fn set_up(triangles: &TriangleLanes<'_>, half: f32, rows: PictureRows) -> Expressions {
+    let corners = CornerValues::of(triangles);
+    let planes = LanePlanes::through_corners(&corners, rows);
+    let away = away(&corners.facing);
     let mut flattened = [0; LANES];
     let there = with_area(&planes.twice_area);
     let swapped = counterclockwise(&planes.twice_area);
-    let x = clockwise(&triangles.x, &swapped);
-    let y = clockwise(&triangles.y, &swapped);
+    let x = clockwise(&corners.x, &swapped);
+    let y = clockwise(&corners.y, &swapped);
     let edges = [
         or_constant(rows.restate(edge([&x[0], &x[1]], [&y[0], &y[1]])), -1, &there),
         or_constant(rows.restate(edge([&x[1], &x[2]], [&y[1], &y[2]])), -1, &there),
         or_constant(rows.restate(edge([&x[2], &x[0]], [&y[2], &y[0]])), -1, &there),
     ];
-    let [a, b, c] = &triangles.z;
-    let [p, q, r] = &triangles.surface;
+    let [p, q, r] = &corners.surface;
     let planes_through = [
-        or_constant(rows.restate(planes.through(&[depths(a), depths(b), depths(c)], &mut flattened)), 0, &there),
+        or_constant(rows.restate(planes.through(&corners.z, &mut flattened)), 0, &there),
         or_constant(rows.restate(planes.through(&component(p, &away, half), &mut flattened)), 0, &there),
         or_constant(rows.restate(planes.through(&component(q, &away, half), &mut flattened)), 0, &there),
         or_constant(rows.restate(planes.through(&component(r, &away, half), &mut flattened)), 0, &there),
@@ -252,15 +279,6 @@ fn set_up(triangles: &TriangleLanes, half: f32, rows: PictureRows) -> Expression
         flattened[i] &= there[i] as u8;
     }
     Expressions { edges, planes: planes_through, flattened }
-}
-
-#[inline(always)]
-fn depths(z: &EachLane<u32>) -> EachLane<f64> {
-    let mut out = [0.0; LANES];
-    for i in 0..LANES {
-        out[i] = f64::from(z[i]);
-    }
-    out
 }
 
 /// Which surfaces face away from the eye on the whole, as in [`crate::light::turned`].
@@ -361,19 +379,19 @@ struct LanePlanes {
 impl LanePlanes {
     /// The corners may run either way: a change of direction changes the signs of products and area alike.
     #[inline(always)]
-    fn through_corners(triangles: &TriangleLanes, rows: PictureRows) -> Self {
-        let [p, q, r] = &triangles.x;
-        let [s, t, u] = &triangles.y;
+    fn through_corners(corners: &CornerValues, rows: PictureRows) -> Self {
+        let [p, q, r] = &corners.x;
+        let [s, t, u] = &corners.y;
         let x = [side(p, q), side(p, r)];
         let y = [side(s, t), side(s, u)];
         let mut twice_area = [0.0; LANES];
         let mut per_pixel = [0.0; LANES];
         for i in 0..LANES {
             twice_area[i] = x[0][i] * y[1][i] - y[0][i] * x[1][i];
-            per_pixel[i] = 16.0 / twice_area[i];
+            per_pixel[i] = 16.0 * newton::reciprocal_double(twice_area[i]);
         }
-        let reference = [middle(&triangles.x, rows.last[0]), middle(&triangles.y, rows.last[1])];
-        let to_reference = [pixels(&triangles.x[0], &reference[0]), pixels(&triangles.y[0], &reference[1])];
+        let reference = [middle(&corners.x, rows.last[0]), middle(&corners.y, rows.last[1])];
+        let to_reference = [pixels(&corners.x[0], &reference[0]), pixels(&corners.y[0], &reference[1])];
         Self { twice_area, x, y, per_pixel, to_reference, reference }
     }
 

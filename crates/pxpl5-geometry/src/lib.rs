@@ -118,5 +118,5 @@ pub use stats::SetupStats;
 pub use touch::Touch;
 pub use touched::Touched;
 pub use transform::{Culling, Transform, TriangleEnds};
-pub use vertex::{ScreenVertex, UnclippedTriangle, VertexSurface};
+pub use vertex::{ScreenVertex, SurfaceVertex};
 pub use view::{MAX_PICTURE, ViewError, ViewTransform, Viewport};

@@ -40,7 +40,8 @@ impl NormalRows {
 
     #[inline(always)]
     fn apply(&self, normal: [f32; 3]) -> [f32; 3] {
-        self.rows.map(|row| dot(row, normal))
+        let [x, y, z] = self.rows;
+        [dot(x, normal), dot(y, normal), dot(z, normal)]
     }
 
     /// How far a unit normal at `position` turns towards the eye.
@@ -59,14 +60,12 @@ fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
 /// A normal of unit length, as the display list holds it; along +Z if it has no direction.
 #[inline(always)]
 pub(crate) fn unit_normal(normal: Vec3) -> [f32; 3] {
-    let n = normal.to_array().map(f64::from);
-    let square = view::dot(n, n);
-    if square > 0.0 && square.is_finite() {
-        let inverse = 1.0 / square.sqrt();
-        n.map(|v| (v * inverse) as f32)
-    } else {
-        [0.0, 0.0, 1.0]
-    }
+    let [x, y, z] = [f64::from(normal.x), f64::from(normal.y), f64::from(normal.z)];
+    let square = view::dot([x, y, z], [x, y, z]);
+    // Computed in any case, for the sake of lanes.
+    let inverse = 1.0 / square.sqrt();
+    let unit = [(x * inverse) as f32, (y * inverse) as f32, (z * inverse) as f32];
+    if (square > 0.0) & (square < f64::INFINITY) { unit } else { [0.0, 0.0, 1.0] }
 }
 
 impl<'a> ModelLight<'a> {
@@ -82,7 +81,8 @@ impl<'a> ModelLight<'a> {
         let facing = self.normals.towards_eye(position, n);
         let cosine = if facing < 0.0 { -toward_light } else { toward_light };
         let intensity = self.intensity(cosine);
-        colour.map(|c| f32::from(c) * 256.0 * intensity)
+        let [red, green, blue] = colour;
+        [f32::from(red) * 256.0 * intensity, f32::from(green) * 256.0 * intensity, f32::from(blue) * 256.0 * intensity]
     }
 
     /// [`Self::colour`] at a corner of a triangle.

@@ -21,6 +21,7 @@ pub(crate) fn reciprocal(w: f32) -> f32 {
 }
 
 /// The reciprocal of a number that is not 0 by three steps in double precision; NaN for 0 and for infinities.
+#[inline(always)]
 pub(crate) fn reciprocal_double(value: f64) -> f64 {
     (0..3).fold(seed(1.0 / value), |near, _| near * (2.0 - value * near))
 }

@@ -1,8 +1,8 @@
 //! Planes: linear expressions through the values of three corners.
 //!
 //! Slopes are rounded to integers, so at distance (dx, dy) from the pixel of reference a plane is wrong by at most
-//! `(|dx| + |dy|) (1/2 + 2^-16) + 1` of the expression's last bit: the rounding of the slopes, the rounding of the
-//! constant (1/2) and that of the 64-bit floating-point steps (1/2, and 2^-16 per pixel, see [`MAX_SLOPE`]). The
+//! `(|dx| + |dy|) (1/2 + 2^-15) + 1` of the expression's last bit: the rounding of the slopes, the rounding of the
+//! constant (1/2) and that of the 64-bit floating-point steps (1/2, and 2^-15 per pixel, see [`MAX_SLOPE`]). The
 //! reference is a pixel of the picture in the middle of the triangle's visible bounding box, so |dx| + |dy| is
 //! at most half the picture's width plus height, and the error on the largest picture below 1,026.
 //!
@@ -10,6 +10,7 @@
 //! within a pixel. Expressions are evaluated modulo 2^32 at integer pixels, so coefficients modulo 2^32 give the
 //! right value wherever the true value fits in 32 bits, which it does at every covered pixel.
 
+use crate::newton::reciprocal_double;
 use crate::outline::Outline;
 use crate::stats::SetupStats;
 use pxpl5_wire::Linear;
@@ -17,9 +18,9 @@ use pxpl5_wire::Linear;
 /// Steepest plane in units of the expression's last bit per pixel: the whole range of 32 bits in one subpixel.
 ///
 /// A steeper plane, which only a triangle thinner than a subpixel can have, is made *flat*: it gets the mean of its
-/// corners everywhere, and [`SetupStats::flattened_planes`] counts it. Below this limit a slope, off by 2^-52 of
-/// itself, is off by 2^-16; over the 2^13 px from a corner to the pixel of reference no step exceeds 2^50, and the
-/// steps together are off by less than 1/2.
+/// corners everywhere, and [`SetupStats::flattened_planes`] counts it. Below this limit a slope, off by 2^-51 of
+/// itself (one over the area is formed by Newton steps), is off by 2^-15; over the 2^13 px from a corner to the pixel of
+/// reference no step exceeds 2^50, and the steps together are off by less than 1/2.
 pub const MAX_SLOPE: f64 = 68_719_476_736.0;
 
 /// 1.5 * 2^52: adding it rounds to an integer, to even, for absolute values below 2^51.
@@ -64,7 +65,7 @@ impl Planes {
         Self {
             x: [f64::from(x[1] - x[0]), f64::from(x[2] - x[0])],
             y: [f64::from(y[1] - y[0]), f64::from(y[2] - y[0])],
-            per_pixel: 16.0 / outline.twice_area() as f64,
+            per_pixel: 16.0 * reciprocal_double(outline.twice_area() as f64),
             to_reference: [pixels_to_centre(x[0], reference[0]), pixels_to_centre(y[0], reference[1])],
             reference,
         }

@@ -9,41 +9,42 @@
 //! The parameter block stands in kernels/sphere_parameters.s. What a view decides of it `place` fills in on the processor
 //! ([`crate::kernel::place_source`]).
 
-use crate::kernel::{self, KernelSurface};
+use crate::kernel::{self, KernelPicture, KernelSurface};
 use crate::lens::{self, DEPTH_RANGE};
 use crate::newton::ROUND_DOUBLE;
 use crate::sphere::{MAX_COORDINATE, SLACK};
 use crate::{DEPTH_NEAR, Light, Transform, Viewport, WorldSphere, sphere_setup};
-use pxpl5_wire::{Lines, RegionGrid, Word, format};
+use pxpl5_wire::{Word, format};
 
 /// Code for spheres of one kind of surface and picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SphereKernel {
     /// Interpolated colour, or normals.
     pub surface: KernelSurface,
-    /// Whether the picture is a field instead of a frame.
-    pub field: bool,
+    /// What it knows of the picture.
+    pub picture: KernelPicture,
 }
 
 /// Words of a sphere in the display list.
 pub const SPHERE_WORDS: usize = 8;
 
-/// Words of the parameter block, that of the longest command.
-pub const SPHERE_PARAMETER_WORDS: usize = TEMPLATE + 53;
+/// Words of the parameter block.
+pub const SPHERE_PARAMETER_WORDS: usize = SIZE + 3;
 
 /// Where the words of the command begin in the parameter block.
 const TEMPLATE: usize = 110;
+
+/// Where the size of the picture stands, behind the longest command.
+const SIZE: usize = TEMPLATE + 53;
 
 /// Words of the parameter block that a view and a light decide, from the first one on.
 pub const SPHERE_VIEW_WORDS: usize = 55;
 
 impl SphereKernel {
-    /// The kernel for a picture; `None` where there is none: pictures other than NTSC frames and fields.
+    /// The kernel for a picture; `None` where there is none: regions of other sizes than [`KernelPicture`] has.
     #[must_use]
     pub fn for_picture(surface: KernelSurface, viewport: &Viewport) -> Option<Self> {
-        let field = matches!(viewport.lines(), Lines::Field(_));
-        let grid = if field { RegionGrid::FIELD } else { RegionGrid::FRAME };
-        (viewport.grid() == grid).then_some(Self { surface, field })
+        KernelPicture::of(viewport).map(|picture| Self { surface, picture })
     }
 
     /// The source in i860 assembly; its entry is the label `spheres`.
@@ -55,7 +56,7 @@ impl SphereKernel {
         };
         [
             include_str!("../kernels/sphere_parameters.s"),
-            kernel::picture(self.field),
+            self.picture.source(),
             include_str!("../kernels/reciprocal.s"),
             include_str!("../kernels/reciprocal_root.s"),
             include_str!("../kernels/insert.s"),
@@ -98,7 +99,8 @@ impl SphereKernel {
         words[54] = Word::from(lens.parallel);
         words[55] = transform.viewport.first_line();
         doubles(&mut words[56..], &self.constants(&transform.viewport));
-        words[TEMPLATE..].iter_mut().zip(command).for_each(|(word, of_command)| *word = *of_command);
+        words[TEMPLATE..SIZE].iter_mut().zip(command).for_each(|(word, of_command)| *word = *of_command);
+        words[SIZE..].copy_from_slice(&kernel::size_words(&transform.viewport));
         Some(words)
     }
 

@@ -3,7 +3,8 @@
 use crate::bin::{Binner, Range, quotient};
 use crate::lanes::{EachLane, LANES};
 use crate::touch::Touch;
-use crate::transform::Turn;
+use crate::transform::{Snapped, Turn};
+use crate::vertex::OUTSIDE;
 use crate::{RegionMask, ScreenVertex, Transform};
 use multiversion::multiversion;
 use pxpl5_wire::RegionId;
@@ -40,8 +41,19 @@ impl Touched {
         }
     }
 
-    fn push(&mut self, touch: Touch) {
-        self.codes.push(match touch {
+    /// The region of triangle `i` where that is the only one.
+    ///
+    /// # Panics
+    /// If there are not as many triangles.
+    #[inline(always)]
+    #[must_use]
+    pub fn only_region(&self, i: usize) -> Option<RegionId> {
+        let code = self.codes[i];
+        (code < RegionMask::CAPACITY).then_some(RegionId(code as u16))
+    }
+
+    fn code(&mut self, touch: Touch) -> u32 {
+        match touch {
             Touch::NeedsClipping => NEEDS_CLIPPING,
             Touch::Degenerate => DEGENERATE,
             Touch::BackFacing => BACK_FACING,
@@ -51,30 +63,42 @@ impl Touched {
                 self.several.push(regions);
                 SEVERAL + (self.several.len() - 1) as u32
             }
-        });
+        }
     }
 }
 
 impl Transform {
-    /// What [`Self::bin`] finds of triangles, given as places of their corners among vertices that this view sees.
+    /// What [`Self::bin`] finds of triangles, given by the numbers of their corners; `vertices`, which this view sees, begin with
+    /// number `first`.
     ///
     /// # Panics
-    /// If there is no vertex at such a place.
+    /// If there is no vertex of such a number.
     #[must_use]
-    pub fn touched(&self, vertices: &[ScreenVertex], mut triangles: impl Iterator<Item = [usize; 3]>) -> Touched {
-        let mut all = Touched { codes: Vec::with_capacity(triangles.size_hint().0), several: Vec::new() };
-        let mut some = CornerLanes::default();
-        while some.take(vertices, &mut triangles) > 0 {
-            let found = touch_lanes(&some, &self.binner, self.dropped);
-            for lane in 0..some.len {
-                match found.codes[lane] {
-                    _ if some.outside[lane] => all.codes.push(NEEDS_CLIPPING),
-                    SEVERAL => all.push(self.touch_several(&some, &found, lane)),
-                    known => all.codes.push(known),
+    pub fn touched(&self, vertices: &[ScreenVertex], first: u32, triangles: &[[u32; 3]]) -> Touched {
+        let mut all = Touched { codes: Vec::with_capacity(triangles.len()), several: Vec::new() };
+        let (chunks, rest) = triangles.as_chunks();
+        for some in chunks {
+            self.append_touched(&CornerLanes::of(vertices, first, some), LANES, &mut all);
+        }
+        if let [.., last] = rest {
+            let mut some = [*last; LANES];
+            some[..rest.len()].copy_from_slice(rest);
+            self.append_touched(&CornerLanes::of(vertices, first, &some), rest.len(), &mut all);
+        }
+        all
+    }
+
+    #[inline(always)]
+    fn append_touched(&self, corners: &CornerLanes, len: usize, all: &mut Touched) {
+        let mut found = touch_lanes(corners, &self.binner, self.dropped);
+        if found.any_several {
+            for lane in 0..len {
+                if found.codes[lane] == SEVERAL {
+                    found.codes[lane] = all.code(self.touch_several(corners, &found, lane));
                 }
             }
         }
-        all
+        all.codes.extend_from_slice(&found.codes[..len]);
     }
 
     /// A triangle whose box lies in more than one region.
@@ -88,38 +112,39 @@ fn range_in(lane: usize, [first, last]: &[EachLane<i32>; 2]) -> Range {
     Range { first: first[lane], last: last[lane] }
 }
 
-/// Corners of some triangles.
-#[derive(Debug, Default)]
-struct CornerLanes {
-    len: usize,
-    x: [EachLane<i32>; 3],
-    y: [EachLane<i32>; 3],
-    /// Some corner is not inside the guard band.
-    outside: EachLane<bool>,
-}
+/// x and y of the corners of some triangles, first by corner.
+#[derive(Debug)]
+struct CornerLanes([EachLane<[i32; 2]>; 3]);
 
 impl CornerLanes {
-    /// Takes the next triangles; gives their number.
+    /// Those of triangles whose corners are some of the vertices, which begin with number `first`.
     #[inline(always)]
-    fn take(&mut self, vertices: &[ScreenVertex], triangles: &mut impl Iterator<Item = [usize; 3]>) -> usize {
-        self.len = 0;
-        // The range comes first, so that no triangle is taken that has no lane.
-        for (lane, at) in (0..LANES).zip(triangles) {
-            let corners = [&vertices[at[0]], &vertices[at[1]], &vertices[at[2]]];
-            for (corner, vertex) in corners.iter().enumerate() {
-                self.x[corner][lane] = vertex.snapped.x;
-                self.y[corner][lane] = vertex.snapped.y;
+    fn of(vertices: &[ScreenVertex], first: u32, triangles: &EachLane<[u32; 3]>) -> Self {
+        let mut all = [[[0; 2]; LANES]; 3];
+        for lane in 0..LANES {
+            for corner in 0..3 {
+                let ScreenVertex(Snapped { x, y, .. }) = vertices[triangles[lane][corner].wrapping_sub(first) as usize];
+                all[corner][lane] = [x, y];
             }
-            self.outside[lane] = !(corners[0].inside & corners[1].inside & corners[2].inside);
-            self.len = lane + 1;
         }
-        self.len
+        Self(all)
+    }
+
+    /// One of the two coordinates.
+    #[inline(always)]
+    fn coordinate(&self, axis: usize) -> [EachLane<i32>; 3] {
+        let mut all = [[0; LANES]; 3];
+        for (corner, places) in all.iter_mut().zip(&self.0) {
+            for (coordinate, place) in corner.iter_mut().zip(places) {
+                *coordinate = place[axis];
+            }
+        }
+        all
     }
 
     /// x and y of a triangle's corners in clockwise order.
     fn clockwise(&self, lane: usize) -> [[i32; 3]; 2] {
-        let [a, b, c] = self.x.map(|x| x[lane]);
-        let [d, e, f] = self.y.map(|y| y[lane]);
+        let [[a, d], [b, e], [c, f]] = [self.0[0][lane], self.0[1][lane], self.0[2][lane]];
         let counterclockwise = i64::from(b - a) * i64::from(f - d) < i64::from(e - d) * i64::from(c - a);
         if counterclockwise { [[a, c, b], [d, f, e]] } else { [[a, b, c], [d, e, f]] }
     }
@@ -129,6 +154,7 @@ impl CornerLanes {
 struct LaneTouches {
     /// As in [`Touched`]; [`SEVERAL`] alone where the edges decide between several regions.
     codes: EachLane<u32>,
+    any_several: bool,
     /// First and last column and row of pixels.
     x: [EachLane<i32>; 2],
     y: [EachLane<i32>; 2],
@@ -136,8 +162,9 @@ struct LaneTouches {
 
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn touch_lanes(corners: &CornerLanes, binner: &Binner, dropped: Option<Turn>) -> LaneTouches {
-    let x = extent(&corners.x);
-    let y = extent(&corners.y);
+    let corners = [corners.coordinate(0), corners.coordinate(1)];
+    let x = extent(&corners[0]);
+    let y = extent(&corners[1]);
     let columns = ranges(&x, |range| range.within(binner.width));
     let rows = ranges(&y, |range| binner.rows_of_lines(range).within(binner.height));
     let in_column = cells(&x, &columns[0], |pixel| {
@@ -148,25 +175,31 @@ fn touch_lanes(corners: &CornerLanes, binner: &Binner, dropped: Option<Turn>) ->
         let row = quotient(pixel, binner.row_reciprocal);
         (row, binner.row_box(row))
     });
-    let areas = areas(corners);
-    let clockwise = dropped == Some(Turn::Clockwise);
-    let counterclockwise = dropped == Some(Turn::Counterclockwise);
+    let areas = areas(&corners);
+    // Positive times the area of what is dropped.
+    let dropped = match dropped {
+        None => 0.0,
+        Some(Turn::Clockwise) => 1.0,
+        Some(Turn::Counterclockwise) => -1.0,
+    };
     let mut codes = [0; LANES];
+    let mut n_several = 0;
     for i in 0..LANES {
         let one = in_column[i] + in_row[i] * binner.columns_of_regions();
         let code = if (in_column[i] | in_row[i]) < 0 { SEVERAL } else { one as u32 };
         let empty = (columns[0][i] > columns[1][i]) | (rows[0][i] > rows[1][i]);
         let code = if empty { UNTOUCHED } else { code };
-        let is_dropped = (clockwise & (areas[i] > 0.0)) | (counterclockwise & (areas[i] < 0.0));
-        let code = if is_dropped { BACK_FACING } else { code };
-        codes[i] = if areas[i] == 0.0 { DEGENERATE } else { code };
+        let code = if areas[i] * dropped > 0.0 { BACK_FACING } else { code };
+        let code = if areas[i] == 0.0 { DEGENERATE } else { code };
+        codes[i] = if x[1][i] == OUTSIDE { NEEDS_CLIPPING } else { code };
+        n_several += u32::from(codes[i] == SEVERAL);
     }
-    LaneTouches { codes, x: columns, y: rows }
+    LaneTouches { codes, any_several: n_several > 0, x: columns, y: rows }
 }
 
 /// Twice the areas, exact: products of two differences of corners need 35 bits.
 #[inline(always)]
-fn areas(CornerLanes { x: [a, b, c], y: [d, e, f], .. }: &CornerLanes) -> EachLane<f64> {
+fn areas([[a, b, c], [d, e, f]]: &[[EachLane<i32>; 3]; 2]) -> EachLane<f64> {
     let mut out = [0.0; LANES];
     for i in 0..LANES {
         let first = f64::from(b[i] - a[i]) * f64::from(f[i] - d[i]);

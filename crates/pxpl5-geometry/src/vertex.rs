@@ -4,7 +4,8 @@
 //! exactly as by [`Transform::bin`], [`Transform::gouraud`] and [`Transform::phong`]. The others are left to those.
 
 use crate::clip::Guard;
-use crate::light::{self, ModelLight};
+use crate::light::{self, ModelLight, NormalRows};
+use crate::outline::SUBPIXELS;
 use crate::screen;
 use crate::transform::{Snapped, ToScreen};
 use crate::view::FromWorld;
@@ -14,33 +15,36 @@ use multiversion::multiversion;
 use pxpl5_wire::LANES;
 
 /// A vertex on the screen, as a view shows it to all triangles that share it.
-#[derive(Clone, Copy, Debug)]
-pub struct ScreenVertex {
-    /// Of no meaning outside.
-    pub(crate) snapped: Snapped,
-    /// Inside the guard band, so that it needs no clipping.
-    pub(crate) inside: bool,
-}
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ScreenVertex(pub(crate) Snapped);
 
-/// What the surface needs at a vertex: its lit colour, or its normal as an eye sees it.
+/// x of a vertex that is not inside the guard band: beyond all that are, and differences with them are as exact as others.
+pub(crate) const OUTSIDE: i32 = 2 * screen::GUARD_PIXELS * SUBPIXELS;
+
+const NOT_INSIDE: Snapped = Snapped { x: OUTSIDE, y: 0, z: 0 };
+
+/// A vertex on the screen with what its surface needs there, its lit colour or its normal as an eye sees it: 32 bytes, which never lie
+/// in two cache lines.
 #[derive(Clone, Copy, Debug)]
-pub struct VertexSurface {
-    /// In the expressions' units; normals without the half unit that rounds.
-    pub(crate) values: [f32; 3],
+#[repr(align(32))]
+pub struct SurfaceVertex {
+    pub(crate) screen: ScreenVertex,
     /// How far a normal turns towards the eye; 0 for colours.
     pub(crate) facing: f32,
+    /// In the expressions' units; normals without the half unit that rounds.
+    pub(crate) values: [f32; 3],
 }
 
-/// The corners on the screen of a triangle that needs no clipping.
-#[derive(Clone, Copy, Debug)]
-pub struct UnclippedTriangle(pub(crate) [Snapped; 3]);
+impl SurfaceVertex {
+    pub(crate) const NOWHERE: Self =
+        Self { screen: ScreenVertex(Snapped { x: 0, y: 0, z: 0 }), facing: 0.0, values: [0.0; 3] };
+}
 
-impl UnclippedTriangle {
-    /// `None` where the triangle needs clipping.
+impl ScreenVertex {
+    /// Inside the guard band, so that it needs no clipping.
     #[inline(always)]
-    #[must_use]
-    pub const fn new([a, b, c]: [&ScreenVertex; 3]) -> Option<Self> {
-        if a.inside & b.inside & c.inside { Some(Self([a.snapped, b.snapped, c.snapped])) } else { None }
+    pub(crate) const fn is_inside(&self) -> bool {
+        self.0.x != OUTSIDE
     }
 }
 
@@ -50,15 +54,19 @@ fn snapped_component(component: f32) -> f32 {
     screen::normal_value(screen::normal_fixed(component)) - screen::NORMAL_HALF
 }
 
+/// A component of a lit colour on the grid of [`screen::colour_fixed`], in the expressions' units.
+#[inline(always)]
+fn snapped_colour(component: f32) -> f32 {
+    screen::colour_value(screen::colour_fixed(component))
+}
+
 impl Transform {
     /// Transforms a vertex, given by its position in the world, to the screen.
     #[inline(always)]
     #[must_use]
     pub fn screen_vertex(&self, position: Vec3) -> ScreenVertex {
         let clip = self.to_clip.point(position);
-        let inside = self.guard.contains(clip);
-        let snapped = if inside { self.to_screen.snap(clip) } else { Snapped::default() };
-        ScreenVertex { snapped, inside }
+        ScreenVertex(if self.guard.contains(clip) { self.to_screen.snap(clip) } else { NOT_INSIDE })
     }
 
     /// The same of many, several side by side.
@@ -71,27 +79,42 @@ impl Transform {
         out
     }
 
-    /// The normal of a vertex in eye coordinates, for Phong shading.
-    #[inline]
+    /// Vertices with their normals in eye coordinates, for Phong shading; of each its place on the screen, and its position and normal in
+    /// the world. As many as the fewest of them.
     #[must_use]
-    pub fn vertex_normal(&self, position: Vec3, normal: Vec3) -> VertexSurface {
-        let (normal, facing) = light::normal_and_facing(&self.normals, position, normal);
-        VertexSurface { values: normal.map(snapped_component), facing }
+    pub fn vertex_normals(
+        &self,
+        on_screen: &[ScreenVertex],
+        positions: &[Vec3],
+        normals: &[Vec3],
+    ) -> Vec<SurfaceVertex> {
+        let n = on_screen.len().min(positions.len()).min(normals.len());
+        let mut out = without_surface(&on_screen[..n]);
+        set_normals(&self.normals, &positions[..n], &normals[..n], &mut out);
+        out
     }
 
-    /// The lit colours of vertices, for Gouraud shading; of each its position, normal and colour in the world.
+    /// Vertices with their lit colours, for Gouraud shading; of each its place on the screen, and its position, normal and colour in the
+    /// world. As many as the fewest of them.
+    #[must_use]
     pub fn vertex_colours(
         &self,
         light: &Light,
-        vertices: impl Iterator<Item = (Vec3, Vec3, [u8; 3])>,
-    ) -> Vec<VertexSurface> {
+        on_screen: &[ScreenVertex],
+        positions: &[Vec3],
+        normals: &[Vec3],
+        colours: &[[u8; 3]],
+    ) -> Vec<SurfaceVertex> {
         let light = ModelLight::new(&self.normals, light);
-        let colour = |(position, normal, colour)| {
-            let lit = light.colour(position, normal, colour);
-            VertexSurface { values: lit.map(|v| screen::colour_value(screen::colour_fixed(v))), facing: 0.0 }
-        };
-        vertices.map(colour).collect()
+        let n = on_screen.len().min(positions.len()).min(normals.len()).min(colours.len());
+        let mut out = without_surface(&on_screen[..n]);
+        set_colours(&light, &positions[..n], &normals[..n], &colours[..n], &mut out);
+        out
     }
+}
+
+fn without_surface(on_screen: &[ScreenVertex]) -> Vec<SurfaceVertex> {
+    on_screen.iter().map(|screen| SurfaceVertex { screen: *screen, ..SurfaceVertex::NOWHERE }).collect()
 }
 
 /// Appends what [`Transform::screen_vertex`] gives of each. Plain loops, compiled once for each vector unit: see [`crate::lanes`].
@@ -115,18 +138,76 @@ fn append_lanes(
         let mut x = [0; LANES];
         let mut y = [0; LANES];
         let mut z = [0; LANES];
-        let mut inside = [false; LANES];
         for i in 0..LANES {
             let point = [clip[0][i], clip[1][i], clip[2][i], clip[3][i]];
-            inside[i] = guard.contains(point);
+            let inside = guard.contains(point);
             let snapped = to_screen.snap(point);
-            x[i] = if inside[i] { snapped.x } else { 0 };
-            y[i] = if inside[i] { snapped.y } else { 0 };
-            z[i] = if inside[i] { snapped.z } else { 0 };
+            x[i] = if inside { snapped.x } else { NOT_INSIDE.x };
+            y[i] = if inside { snapped.y } else { NOT_INSIDE.y };
+            z[i] = if inside { snapped.z } else { NOT_INSIDE.z };
+        }
+        let mut all = [ScreenVertex::default(); LANES];
+        for i in 0..LANES {
+            all[i] = ScreenVertex(Snapped { x: x[i], y: y[i], z: z[i] });
+        }
+        out.extend_from_slice(&all);
+    }
+}
+
+/// Sets normals, several side by side.
+#[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+fn set_normals(rows: &NormalRows, positions: &[Vec3], normals: &[Vec3], out: &mut [SurfaceVertex]) {
+    let (chunks, rest) = out.as_chunks_mut::<LANES>();
+    let whole = chunks.len() * LANES;
+    let given = positions.as_chunks::<LANES>().0.iter().zip(normals.as_chunks::<LANES>().0);
+    for (out, (position, normal)) in chunks.iter_mut().zip(given) {
+        let mut found = [[0.0; LANES]; 4];
+        for i in 0..LANES {
+            let ([x, y, z], facing) = light::normal_and_facing(rows, position[i], normal[i]);
+            found[0][i] = snapped_component(x);
+            found[1][i] = snapped_component(y);
+            found[2][i] = snapped_component(z);
+            found[3][i] = facing;
         }
         for i in 0..LANES {
-            out.push(ScreenVertex { snapped: Snapped { x: x[i], y: y[i], z: z[i] }, inside: inside[i] });
+            out[i].values = [found[0][i], found[1][i], found[2][i]];
+            out[i].facing = found[3][i];
         }
+    }
+    for ((out, position), normal) in rest.iter_mut().zip(&positions[whole..]).zip(&normals[whole..]) {
+        let (normal, facing) = light::normal_and_facing(rows, *position, *normal);
+        out.values = normal.map(snapped_component);
+        out.facing = facing;
+    }
+}
+
+/// Sets lit colours, several side by side.
+#[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+fn set_colours(
+    light: &ModelLight<'_>,
+    positions: &[Vec3],
+    normals: &[Vec3],
+    colours: &[[u8; 3]],
+    out: &mut [SurfaceVertex],
+) {
+    let (chunks, rest) = out.as_chunks_mut::<LANES>();
+    let whole = chunks.len() * LANES;
+    let given = positions.as_chunks::<LANES>().0.iter().zip(normals.as_chunks::<LANES>().0);
+    for ((out, (position, normal)), colour) in chunks.iter_mut().zip(given).zip(colours.as_chunks::<LANES>().0) {
+        let mut lit = [[0.0; LANES]; 3];
+        for i in 0..LANES {
+            let [red, green, blue] = light.colour(position[i], normal[i], colour[i]);
+            lit[0][i] = snapped_colour(red);
+            lit[1][i] = snapped_colour(green);
+            lit[2][i] = snapped_colour(blue);
+        }
+        for i in 0..LANES {
+            out[i].values = [lit[0][i], lit[1][i], lit[2][i]];
+        }
+    }
+    for (i, out) in rest.iter_mut().enumerate() {
+        let i = whole + i;
+        out.values = light.colour(positions[i], normals[i], colours[i]).map(snapped_colour);
     }
 }
 
@@ -148,8 +229,40 @@ mod tests {
         let mut positions: Vec<_> = (0..2_003).map(place).collect();
         positions.extend([Vec3::ZERO, Vec3::NAN, Vec3::splat(f32::MAX), Vec3::new(0.0, 0.0, f32::NEG_INFINITY)]);
         let alone: Vec<_> = positions.iter().map(|position| transform.screen_vertex(*position)).collect();
-        assert!(alone.iter().any(|vertex| vertex.inside) && alone.iter().any(|vertex| !vertex.inside));
-        let seen = |vertices: &[ScreenVertex]| -> Vec<_> { vertices.iter().map(|v| (v.inside, v.snapped)).collect() };
-        assert_eq!(seen(&transform.screen_vertices(&positions)), seen(&alone));
+        assert!(alone.iter().any(ScreenVertex::is_inside) && !alone.iter().all(ScreenVertex::is_inside));
+        assert_eq!(transform.screen_vertices(&positions), alone);
+    }
+
+    #[test]
+    fn surfaces_side_by_side_are_those_of_one_after_the_other() {
+        let view = ViewTransform {
+            model_view: Mat4::from_rotation_y(0.3),
+            projection: Mat4::perspective_rh(1.0, 4.0 / 3.0, 0.1, 50.0),
+        };
+        let transform = Transform::new(&view, Viewport::FRAME, Culling::None).expect("finite");
+        let light = Light { direction: [0.6, 0.0, 0.8], ambient: 0.2, diffuse: 0.7 };
+        // All ways to face, and what is no direction.
+        let direction = |i: i32| match i % 40 {
+            38 => Vec3::ZERO,
+            39 => Vec3::NAN,
+            _ => Vec3::new((i % 7 - 3) as f32, (i % 5 - 2) as f32 * 0.4, (i % 11 - 5) as f32 * 1e-3),
+        };
+        let positions: Vec<_> = (0..803).map(|i| Vec3::new((i % 9 - 4) as f32, (i % 4) as f32, -5.0)).collect();
+        let normals: Vec<_> = (0..803).map(direction).collect();
+        let colours: Vec<_> = (0..803).map(|i: u32| [i as u8, (i * 7) as u8, (i * 31) as u8]).collect();
+        let on_screen = transform.screen_vertices(&positions);
+        let bits = |v: &SurfaceVertex| (v.screen, v.facing.to_bits(), v.values.map(f32::to_bits));
+        let lit = transform.vertex_colours(&light, &on_screen, &positions, &normals, &colours);
+        let turned = transform.vertex_normals(&on_screen, &positions, &normals);
+        for (i, (lit, turned)) in lit.iter().zip(&turned).enumerate() {
+            let one = i..i + 1;
+            let (screen, position, normal) = (&on_screen[one.clone()], &positions[one.clone()], &normals[one.clone()]);
+            let lit_alone = transform.vertex_colours(&light, screen, position, normal, &colours[one]);
+            assert_eq!(bits(lit), bits(&lit_alone[0]), "{i}");
+            assert_eq!(bits(turned), bits(&transform.vertex_normals(screen, position, normal)[0]), "{i}");
+        }
+        let bright = lit.iter().filter(|vertex| vertex.values[0] > 0.0).count();
+        let away = turned.iter().filter(|vertex| vertex.facing < 0.0).count();
+        assert!(lit.len() == 803 && turned.len() == 803 && bright > 500 && away > 100, "{bright} {away}");
     }
 }

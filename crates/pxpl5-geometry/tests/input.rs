@@ -4,8 +4,8 @@ mod support;
 
 use glam::{Mat4, Vec3};
 use pxpl5_geometry::{
-    Culling, GouraudSphere, LANES, Light, LitColours, ScreenTriangle, SetupStats, Touch, Transform, Triangle,
-    TriangleLanes, UnclippedTriangle, VertexSurface, ViewError, ViewTransform, Viewport, WorldSphere,
+    Culling, GouraudSphere, LANES, Light, LitColours, ScreenTriangle, SetupStats, SurfaceVertex, Touch, Transform,
+    Triangle, TriangleLanes, ViewError, ViewTransform, Viewport, WorldSphere,
 };
 use pxpl5_wire::{FieldParity, Linear};
 use support::random::Random;
@@ -80,7 +80,7 @@ fn matrices_that_mirror_turn_no_face_round() {
         let transform = Transform::new(view, Viewport::FRAME, Culling::Back).expect("a finite view");
         let vertices = positions.map(|p| transform.screen_vertex(p));
         let stats = drawn(&transform, positions).1;
-        let shared = transform.touched(&vertices, std::iter::once([0, 1, 2])).get(0) == Touch::BackFacing;
+        let shared = transform.touched(&vertices, 0, &[[0, 1, 2]]).get(0) == Touch::BackFacing;
         assert_eq!(stats.back_facing == 1, shared, "alone and with shared vertices");
         shared
     };
@@ -165,39 +165,41 @@ fn shared_vertices_give_what_their_triangles_give() {
 fn agrees_with_its_shared_vertices(transform: &Transform, t: &Triangle, lane: usize, name: &str) -> bool {
     let light = Light { direction: [0.6, 0.0, 0.8], ambient: 0.2, diffuse: 0.7 };
     let [a, b, c] = t.positions.map(|p| transform.screen_vertex(p));
-    let Some(unclipped) = UnclippedTriangle::new([&a, &b, &c]) else { return false };
     let mut stats = [SetupStats::default(); 2];
     let mut lit = Vec::new();
     let mut normals = Vec::new();
     transform.gouraud(t, &light, &mut stats[0], |t| lit.push(t));
     transform.phong(t, &mut SetupStats::default(), |t| normals.push(t));
     stats[1].triangles += 1;
+    // Numbered from 5.
     let vertices = [a, b, c, transform.screen_vertex(Vec3::NAN)];
-    let touch = transform.touched(&vertices, (0..=lane).map(|i| if i == lane { [0, 1, 2] } else { [0, 3, 1] }));
+    let triangles: Vec<_> = (0..=lane).map(|i| if i == lane { [5, 6, 7] } else { [5, 8, 6] }).collect();
+    let touch = transform.touched(&vertices, 5, &triangles);
+    if touch.get(lane) == Touch::NeedsClipping {
+        return false;
+    }
     assert!((0..lane).all(|i| touch.get(i) == Touch::NeedsClipping));
     let mask = touch.get(lane).count(&mut stats[1]);
     assert_eq!(mask, lit.first().map(|t| t.outline.regions), "{name}");
     assert_eq!(stats[0], stats[1], "{name}");
     let Some(lit) = lit.first() else { return false };
     let Some(normals) = normals.first() else { return false };
-    let corners = [0, 1, 2].map(|i| (t.positions[i], t.normals[i], t.colours[i]));
-    let colours = transform.vertex_colours(&light, corners.into_iter());
-    let colours: [VertexSurface; 3] = colours.try_into().expect("three corners");
-    let facing = [0, 1, 2].map(|i| transform.vertex_normal(t.positions[i], t.normals[i]));
-    let found = transform.gouraud_lanes(&in_lane(lane, &unclipped, &colours), &mut stats[1]);
+    let colours = transform.vertex_colours(&light, &vertices[..3], &t.positions, &t.normals, &t.colours);
+    let facing = transform.vertex_normals(&vertices[..3], &t.positions, &t.normals);
+    let found = transform.gouraud_lanes(&in_lane(lane, &colours), &mut stats[1]);
     assert_eq!(found.get(lane), lit.gouraud(transform.viewport(), &mut stats[0]), "{name}");
     assert!((0..lane).all(|empty| found.get(empty).edges == [Linear::constant(-1); 3]));
-    let found = transform.phong_lanes(&in_lane(lane, &unclipped, &facing), &mut stats[1]).get(lane, t.colours[0]);
+    let found = transform.phong_lanes(&in_lane(lane, &facing), &mut stats[1]).get(lane, t.colours[0]);
     assert_eq!(found, normals.phong(transform.viewport(), &mut stats[0]), "{name}");
     assert_eq!(stats[0], stats[1], "{name}");
     true
 }
 
 /// A triangle in a lane behind others of which nothing is seen.
-fn in_lane(lane: usize, triangle: &UnclippedTriangle, surface: &[VertexSurface; 3]) -> TriangleLanes {
+fn in_lane(lane: usize, corners: &[SurfaceVertex]) -> TriangleLanes<'_> {
     let mut lanes = TriangleLanes::default();
     (0..lane).for_each(|_| lanes.push_nothing());
-    lanes.push(triangle, surface.each_ref());
+    assert!(lanes.push([&corners[0], &corners[1], &corners[2]]), "it needs no clipping");
     lanes
 }
 

@@ -4,7 +4,8 @@
 
 use pxpl5_wire::{LANES, Linear, LinearLanes};
 
-/// Last column and row of the array.
+/// Columns and rows of the array, and the last one.
+const WIDTH: i32 = 128;
 const LAST: i64 = 127;
 /// More than the error of a quotient, less than what costs pixels.
 const MARGIN: f64 = 1e-3;
@@ -28,43 +29,60 @@ pub(super) struct Bounds {
     limits: Option<[RowLimit; 3]>,
 }
 
-/// x >= or <= (b y + c) * scale.
+/// x >= or <= (b y + c) * scale, all exact but for the scale.
 #[derive(Clone, Copy, Debug)]
 struct RowLimit {
-    b: i64,
-    c: i64,
+    b: f64,
+    c: f64,
     scale: f64,
     from_left: bool,
 }
 
+/// First and one past the last column of some rows; the first may be beyond the last.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spans {
+    pub(super) left: [i32; LANES],
+    pub(super) right: [i32; LANES],
+}
+
 impl Bounds {
-    /// First and one past the last column of row `y`.
+    /// The columns of the rows from `top` on.
     #[inline(always)]
-    pub(super) fn row(&self, y: usize) -> (usize, usize) {
-        let Some(limits) = &self.limits else { return (self.area.left, self.area.right) };
-        let mut left = self.area.left as f64;
-        let mut right = self.area.right as f64 - 1.0;
+    pub(super) fn spans(&self, top: usize) -> Spans {
+        let mut spans = Spans { left: [self.area.left as i32; LANES], right: [self.area.right as i32; LANES] };
+        let Some(limits) = &self.limits else { return spans };
+        let mut first = [self.area.left as f64; LANES];
+        let mut last = [self.area.right as f64 - 1.0; LANES];
         for limit in limits {
-            let x = (limit.b * y as i64 + limit.c) as f64 * limit.scale;
+            let mut at = [0.0; LANES];
+            for (i, at) in at.iter_mut().enumerate() {
+                *at = (limit.b * f64::from((top + i) as i32) + limit.c) * limit.scale;
+            }
             if limit.from_left {
-                left = left.max(x - MARGIN);
+                for i in 0..LANES {
+                    first[i] = first[i].max(at[i] - MARGIN);
+                }
             } else {
-                right = right.min(x + MARGIN);
+                for i in 0..LANES {
+                    last[i] = last[i].min(at[i] + MARGIN);
+                }
             }
         }
-        (left.ceil() as usize, (right + 1.0) as usize)
+        for i in 0..LANES {
+            spans.left[i] = small(first[i].ceil().min(f64::from(WIDTH)));
+            spans.right[i] = small((last[i] + 1.0).floor().max(0.0));
+        }
+        spans
     }
 }
 
 impl RowLimit {
     #[inline(always)]
     fn from_edge(e: &Linear) -> Self {
-        let a = i64::from(e.a);
-        let b = i64::from(e.b);
-        let c = i64::from(e.c);
+        let a = f64::from(e.a);
         // A horizontal edge limits no row; the box has taken it into account.
-        let scale = if a == 0 { 0.0 } else { -1.0 / a as f64 };
-        Self { b, c, scale, from_left: a >= 0 }
+        let scale = if e.a == 0 { 0.0 } else { -1.0 / a };
+        Self { b: f64::from(e.b), c: f64::from(e.c), scale, from_left: e.a >= 0 }
     }
 }
 
@@ -127,19 +145,20 @@ impl Boxes {
         let a = [doubles(&p.a), doubles(&q.a), doubles(&r.a)];
         let b = [doubles(&p.b), doubles(&q.b), doubles(&r.b)];
         let c = [doubles(&p.c), doubles(&q.c), doubles(&r.c)];
-        let mut straight = [true; LANES];
-        let mut left = [true; LANES];
-        let mut right = [true; LANES];
+        // Truths are numbers until the end: vectors of them side by side cost least.
+        let mut reach = [0.0_f64; LANES];
+        let mut least = [f64::INFINITY; LANES];
+        let mut greatest = [f64::NEG_INFINITY; LANES];
         let mut low = [[f64::INFINITY; LANES]; 2];
         let mut high = [[f64::NEG_INFINITY; LANES]; 2];
         for e in 0..3 {
             let f = (e + 1) % 3;
             for i in 0..LANES {
-                straight[i] &= REACH * (a[e][i].abs() + b[e][i].abs()) + c[e][i].abs() <= f64::from(i32::MAX);
+                reach[i] = reach[i].max(REACH * (a[e][i].abs() + b[e][i].abs()) + c[e][i].abs());
                 // Times this, the corner is where edges e and f are zero.
                 let determinant = a[e][i] * b[f][i] - a[f][i] * b[e][i];
-                left[i] &= determinant > 0.0;
-                right[i] &= determinant < 0.0;
+                least[i] = least[i].min(determinant);
+                greatest[i] = greatest[i].max(determinant);
                 let scale = 1.0 / determinant;
                 let x = (b[e][i] * c[f][i] - b[f][i] * c[e][i]) * scale;
                 let y = (a[f][i] * c[e][i] - a[e][i] * c[f][i]) * scale;
@@ -149,9 +168,14 @@ impl Boxes {
                 high[1][i] = high[1][i].max(y);
             }
         }
+        let mut straight = [false; LANES];
         let mut closed = [false; LANES];
         for i in 0..LANES {
-            closed[i] = (left[i] | right[i]) & straight[i];
+            straight[i] = reach[i] <= f64::from(i32::MAX);
+            closed[i] = (least[i] > 0.0) | (greatest[i] < 0.0);
+        }
+        for i in 0..LANES {
+            closed[i] &= straight[i];
         }
         Self { x: pixels(&low[0], &high[0]), y: pixels(&low[1], &high[1]), closed, straight }
     }
@@ -252,7 +276,10 @@ mod tests {
                 continue;
             };
             for (x, y) in pixels {
-                let (left, right) = bounds.row(y);
+                // As one row of several.
+                let place = y % LANES;
+                let spans = bounds.spans(y - place);
+                let [left, right] = [spans.left[place], spans.right[place]].map(|x| x as usize);
                 assert!((bounds.area.top..bounds.area.bottom).contains(&y), "{edges:?} {x} {y}");
                 assert!((left..right).contains(&x), "{edges:?} {x} {y} {bounds:?}");
             }

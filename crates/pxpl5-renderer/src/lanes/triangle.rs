@@ -1,6 +1,6 @@
 //! Triangles by values: a vector of pixels at a time, masks instead of branches.
 
-use super::bounds::{Area, Boxes, Edges};
+use super::bounds::{Area, Boxes, Edges, Spans};
 use super::columns::Values;
 use super::enable::Enable;
 use super::template::{Template, starts_anew};
@@ -35,6 +35,38 @@ impl<V: SimdVector> Walk<V> {
     fn advance(&mut self) {
         self.value = self.value.add(self.step);
     }
+}
+
+/// A linear expression over the array's columns and rows, ready to be walked along from anywhere.
+#[derive(Clone, Copy)]
+struct Slope<V> {
+    /// At the array's first pixels.
+    begin: V,
+    step: V,
+    a: i32,
+    b: i32,
+}
+
+impl<V: SimdVector> Slope<V> {
+    /// An expression over columns and rows of which the array begins with these.
+    #[inline(always)]
+    fn over(e: &Linear, [left, top]: [i32; 2]) -> Self {
+        let Walk { value: begin, step } = Walk::start(e, left, top);
+        Self { begin, step, a: e.a, b: e.b }
+    }
+
+    #[inline(always)]
+    fn walk(&self, x: usize, y: usize) -> Walk<V> {
+        let further = self.a.wrapping_mul(x as i32).wrapping_add(self.b.wrapping_mul(y as i32));
+        Walk { value: self.begin.add(V::splat(further)), step: self.step }
+    }
+}
+
+/// A triangle of which each row begins elsewhere.
+struct WideTriangle<V> {
+    edges: [Slope<V>; 3],
+    depth: Slope<V>,
+    components: [Slope<V>; 3],
 }
 
 /// What triangles store in the pixels that pass.
@@ -192,9 +224,28 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
             self.narrow::<V, S>(triangle, x, top..bottom);
             return;
         }
-        for y in top..bottom {
-            let (left, right) = bounds.row(y);
-            self.row::<V, S>(triangle, y, left / V::LANES * V::LANES, right);
+        let wide = self.wide::<V, S>(triangle);
+        for first in (top..bottom).step_by(LANES) {
+            let Spans { left, right } = bounds.spans(first);
+            for (y, (left, right)) in (first..bottom).zip(left.iter().zip(right)) {
+                self.row(&wide, y, *left as usize / V::LANES * V::LANES, right as usize, triangle.keep);
+            }
+        }
+    }
+
+    /// What begins each row of a wide triangle.
+    #[inline(always)]
+    fn wide<V: SimdVector, S: Surface>(&self, triangle: &CurrentTriangle<S>) -> WideTriangle<V> {
+        let [left, top] = self.origin;
+        let [p, q, r] = triangle.surface.components();
+        WideTriangle {
+            edges: [
+                Slope::over(&triangle.edges[0], [0, 0]),
+                Slope::over(&triangle.edges[1], [0, 0]),
+                Slope::over(&triangle.edges[2], [0, 0]),
+            ],
+            depth: Slope::over(&triangle.surface.depth(), [left, top]),
+            components: [Slope::over(&p, [left, top]), Slope::over(&q, [left, top]), Slope::over(&r, [left, top])],
         }
     }
 
@@ -243,15 +294,17 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
     }
 
     #[inline(always)]
-    fn row<V: SimdVector, S: Surface>(&mut self, triangle: &CurrentTriangle<S>, y: usize, left: usize, right: usize) {
-        let [mut first, mut second, mut third] = three::<V>(&triangle.edges, left, y);
-        let mut depth = self.walk::<V>(&triangle.surface.depth(), left, y);
-        let mut walks = self.components::<V>(&triangle.surface, left, y);
+    fn row<V: SimdVector>(&mut self, triangle: &WideTriangle<V>, y: usize, left: usize, right: usize, keep: bool) {
+        let [p, q, r] = &triangle.edges;
+        let [mut first, mut second, mut third] = [p.walk(left, y), q.walk(left, y), r.walk(left, y)];
+        let mut depth = triangle.depth.walk(left, y);
+        let [p, q, r] = &triangle.components;
+        let mut walks = [p.walk(left, y), q.walk(left, y), r.walk(left, y)];
         for x in (left..right).step_by(V::LANES) {
             let at = y * WIDTH + x;
             let tested = self.test(at, [first, second, third], depth);
             if V::any_of(tested.mask, tested.mask) {
-                self.nearer(&tested, at, triangle.keep);
+                self.nearer(&tested, at, keep);
                 self.paint.store(&walks, at, tested.mask);
             }
             first.advance();

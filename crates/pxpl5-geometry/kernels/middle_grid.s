@@ -1,0 +1,19 @@
+        // the pixel of reference: the middle of what is seen of the box; where nothing is, there will be no command
+lx_p    = shra 31, lx
+lx_u    = andnot lx_p, lx
+ly_p    = shra 31, ly
+ly_u    = andnot ly_p, ly
+lastx   = ld.l P_LAST_X(r20)
+hx_r    = subs lastx, hx
+hx_s    = shra 31, hx_r
+hx_t    = and hx_s, hx_r
+hx_u    = adds hx_t, hx
+lasty   = ld.l P_LAST_Y(r20)
+hy_r    = subs lasty, hy
+hy_s    = shra 31, hy_r
+hy_t    = and hy_s, hy_r
+hy_u    = adds hy_t, hy
+rxa     = adds lx_u, hx_u
+rx      = shra 5, rxa
+rya     = adds ly_u, hy_u
+ry      = shra 5, rya
