@@ -4,10 +4,10 @@ use crate::config::CubeControlConfig;
 use crate::update::FaceUpdate;
 use address_recalculation::CubeFace;
 use glam::{Mat4, Vec4};
-use pphigs::{BIN_ENTRY_BYTES, EyeView, FrameView, Pass, PrimitiveCounts, Share, TransformCost};
+use pphigs::{BIN_ENTRY_BYTES, EyeView, FrameView, Pass, PrimitiveCounts, Share, Surrounding, TransformCost};
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_sim::Span;
-use pxpl5_wire::RegionId;
+use pxpl5_wire::{PictureNumber, RegionId};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -34,18 +34,23 @@ fn to_face(face: CubeFace) -> Mat4 {
 #[derive(Clone, Debug)]
 pub struct CubePass {
     update: Arc<FaceUpdate>,
+    /// Its bin context, 0 or 1.
+    context: u8,
     faces: Vec<Arc<Pass>>,
+    /// The beginning of the pass: the structures of the update, for each face.
+    begin: TransformCost,
     transformed: PrimitiveCounts,
 }
 
 impl CubePass {
-    /// One TRANSFORM of the primitives of a share that the update's memory holds, for six faces.
+    /// One TRANSFORM of the primitives of a share that the update's memory holds, for six faces, with its vertices where
+    /// [`CubePass::placed`] has them.
     #[must_use]
     pub fn new(config: &CubeControlConfig, share: &Share, update: &Arc<FaceUpdate>) -> Self {
         let ahead = update.view.eyes.first();
         let faces = CubeFace::ALL.iter().flat_map(|face| ahead.map(|ahead| face_view(ahead, *face)));
         let view = FrameView { eyes: faces.collect(), ..update.view.clone() };
-        let share = &placed(config, share, update);
+        let share = &Self::placed(config, share, update);
         let pass = |face: usize| share.transform_chosen(&view, face, config.faces.picture, &update.structures);
         let faces: Vec<Arc<Pass>> = (0..view.eyes.len()).map(pass).collect();
         let held = share.chosen_counts(&update.structures);
@@ -53,7 +58,15 @@ impl CubePass {
             triangles: transformed(&faces, 0, held.triangles),
             spheres: transformed(&faces, 1, held.spheres),
         };
-        Self { update: Arc::clone(update), faces, transformed }
+        let chosen = || share.list().structures.iter().zip(&update.structures).filter(|(_, chosen)| **chosen);
+        let begin = TransformCost::beginning((0..faces.len()).flat_map(|_| chosen()).map(|(structure, _)| structure));
+        Self { update: Arc::clone(update), context: context_of(update.number) as u8, faces, begin, transformed }
+    }
+
+    /// The share with its vertices where the update wants them.
+    #[must_use]
+    pub fn placed(config: &CubeControlConfig, share: &Share, update: &FaceUpdate) -> Share {
+        if update.warp.is_none() { share.clone() } else { share.with_list(config.warped.placed(share.list(), update)) }
     }
 
     /// The update that they are of.
@@ -95,9 +108,9 @@ impl CubePass {
     }
 }
 
-/// The share with its vertices where the update wants them.
-fn placed(config: &CubeControlConfig, share: &Share, update: &FaceUpdate) -> Share {
-    if update.warp.is_none() { share.clone() } else { share.with_list(config.warped.placed(share.list(), update)) }
+/// The bin context of an update.
+pub(crate) const fn context_of(update: PictureNumber) -> usize {
+    (update.0 % 2) as usize
 }
 
 /// Transformations of so many held primitives of a kind (triangles 0, spheres 1).
@@ -109,14 +122,17 @@ fn transformed(faces: &[Arc<Pass>], kind: usize, held: u32) -> u32 {
 }
 
 impl Work for CubePass {
-    /// The pass over the display list, each primitive once for each face that it touches, and each entry in a bin.
+    /// The pass over the display list, with its structures in their places for each face, each primitive once for each face that it
+    /// touches, and each entry in a bin.
     fn by_table(&self, timing: &GpTiming) -> Span {
-        let cost = TransformCost { entries: self.all_entries(), ..TransformCost::pass_over(self.transformed) };
-        cost.span(timing)
+        let PrimitiveCounts { triangles, spheres } = self.transformed;
+        let primitives = TransformCost { triangles: triangles.into(), spheres: spheres.into(), ..self.begin };
+        TransformCost { entries: self.all_entries(), ..primitives }.span(timing)
     }
 
-    /// There is no code for six faces: the table's time.
-    fn by_code(&self, timing: &GpTiming, _: &mut Processor) -> Result<Span, ProcessorFault> {
-        Ok(self.by_table(timing))
+    fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
+        let Ok(passes) = self.faces.as_slice().try_into() else { return Ok(self.by_table(timing)) };
+        let made = Surrounding { passes, context: self.context }.run_code(timing, processor)?;
+        Ok(made.map_or_else(|| self.by_table(timing), |made| made.span))
     }
 }

@@ -15,8 +15,8 @@
 //! # What is different
 //!
 //! - **Faces.** The host sends the eye's position and never an orientation. Each slave makes the six axis-aligned views of it
-//!   ([`face_view`]), and transforms a primitive once for each face that it touches: what lies beyond a side of a face is dropped by
-//!   comparisons of coordinates, whose time is not charged (assumed).
+//!   ([`face_view`]), and transforms a primitive once for each face that it touches. What lies beyond a side of a face is dropped by
+//!   comparisons of coordinates: the table charges no time for them (assumed), by code they take theirs ([`pphigs::Surrounding`]).
 //! - **Depth.** A pixel's depth is what the renderers hold for it: z/w along the axis of the face, 24 bits, 0 at the near plane, all
 //!   ones where nothing is drawn. Near and far plane are the same in all views, so depths of different memories compare. A region is
 //!   copied as two words a texel in 32 messages, through two blocks of the backing store; or as 16 + 16 bits in 16 messages.
@@ -32,8 +32,8 @@
 //!
 //! # Not modelled
 //!
-//! Code of the i860 for the six transformations (the table's times are used at every level); attribute traversal beyond a
-//! cost per edit; the time of moving vertices, some twenty floating-point operations beside the thousand of a triangle.
+//! Attribute traversal beyond a cost per edit; the time of moving vertices, some twenty floating-point operations beside the thousand
+//! of a triangle, for which there is no code either.
 //!
 //! Sources: TR94 for the firmware; Chow, Pose and Regan 2005 for memories, updates and groups. Nobody has built the whole.
 

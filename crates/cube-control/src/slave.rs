@@ -1,13 +1,12 @@
 //! A slave GP: EDIT and TRANSFORM for six faces in the foreground, tokens in the background.
 
 use crate::config::CubeControlConfig;
-use crate::faces::CubePass;
+use crate::faces::{CubePass, context_of};
 use crate::master::copy_order;
 use crate::protocol::{Token, UpdateOrder};
 use crate::update::FaceUpdate;
-use pphigs::{PROGRAM_BYTES, RegionEnvelope, Share, region_messages};
+use pphigs::{DisplayList, Editing, Handing, PROGRAM_BYTES, RegionEnvelope, Share, region_messages};
 use pxpl5_gp::{Account, Fault, Gp, Priority, Stage};
-use pxpl5_sim::Span;
 use pxpl5_wire::{Body, CommandList, NodeId, PictureNumber, SurfaceId};
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -39,11 +38,6 @@ impl SlaveState {
 }
 
 type SharedSlaveState = Rc<RefCell<SlaveState>>;
-
-/// The bin context of an update.
-const fn context_of(update: PictureNumber) -> usize {
-    (update.0 % 2) as usize
-}
 
 /// The programs of slave number `index`, for both levels of its board.
 ///
@@ -79,21 +73,33 @@ async fn transform_program(
 ) -> Result<(), Fault> {
     gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
     gp.reserve(Account::DisplayList, share.bytes(), None)?;
+    gp.install(|processor| share.install(processor))?;
+    let mut installed = Arc::clone(share.list());
     loop {
-        let update = Arc::new(edit(&gp, &config, &state).await);
+        let update = Arc::new(edit(&gp, &config, &state).await?);
+        place_vertices(&gp, &CubePass::placed(&config, &share, &update), &mut installed)?;
         transform(&gp, &config, &share, &state, &update).await?;
     }
 }
 
+/// Vertices of a warped update stand in the board's memory where it wants them; moving them takes no time.
+fn place_vertices(gp: &Gp, share: &Share, installed: &mut Arc<DisplayList>) -> Result<(), Fault> {
+    if !Arc::ptr_eq(installed, share.list()) {
+        gp.install(|processor| share.install(processor))?;
+        *installed = Arc::clone(share.list());
+    }
+    Ok(())
+}
+
 /// EDIT: applies the edits of the next update and tells the master.
-async fn edit(gp: &Gp, config: &CubeControlConfig, state: &SharedSlaveState) -> FaceUpdate {
+async fn edit(gp: &Gp, config: &CubeControlConfig, state: &SharedSlaveState) -> Result<FaceUpdate, Fault> {
     let update = gp.until("SEND of an update and leave to EDIT", || next_edit(&mut state.borrow_mut())).await;
     let number = update.number;
     gp.begin(Stage::Edit, number, None);
-    gp.spend(Span::from_ns(gp.timing().edit_ns) * update.view.edits.len() as u64).await;
+    gp.work(&Editing(&update.view)).await?;
     gp.end(Stage::Edit, number, None);
     tell_master(gp, config, &UpdateOrder::Edited(number)).await;
-    update
+    Ok(update)
 }
 
 fn next_edit(state: &mut SlaveState) -> Option<FaceUpdate> {
@@ -149,7 +155,7 @@ async fn token_program(gp: Gp, config: CubeControlConfig, index: usize, state: S
             UpdateOrder::Send(update) => state.borrow_mut().updates.push_back(update),
             UpdateOrder::Edit(update) => state.borrow_mut().next_edit = update.next(),
             UpdateOrder::Token(token) => {
-                walk(&gp, &config, index, &state, token).await;
+                walk(&gp, &config, index, &state, token).await?;
                 free_bins(&gp, &state, token)?;
             }
             other => return Err(Fault::Protocol { node: gp.node(), found: format!("at a slave: {other:?}") }),
@@ -158,28 +164,53 @@ async fn token_program(gp: Gp, config: CubeControlConfig, index: usize, state: S
 }
 
 /// Sends this slave's bin of the token's region, then passes the token on.
-async fn walk(gp: &Gp, config: &CubeControlConfig, index: usize, state: &SharedSlaveState, token: Token) {
+async fn walk(
+    gp: &Gp,
+    config: &CubeControlConfig,
+    index: usize,
+    state: &SharedSlaveState,
+    token: Token,
+) -> Result<(), Fault> {
     let renderer = config.renderers[usize::from(token.renderer)];
+    hand_over(gp, config, state, token).await?;
     for list in bin_messages(config, state, token) {
         gp.clump_buffer_free().await;
         gp.send(renderer, list.words(), Body::Commands(list)).await;
     }
     gp.send_batch(vec![passed_on(config, index, token)]).await;
+    Ok(())
 }
 
-/// What this slave has for the token's region: the first slave begins the region, the last one ends it.
+/// Makes messages of the bin of the token's region.
+async fn hand_over(gp: &Gp, config: &CubeControlConfig, state: &SharedSlaveState, token: Token) -> Result<(), Fault> {
+    let context = context_of(token.update);
+    let (face, region) = config.faces.on_face(token.region);
+    let found = state.borrow().bins[context].as_ref().and_then(|pass| {
+        let envelope = envelope(config, pass.update(), token);
+        Some((Arc::clone(pass.face(face)?), envelope))
+    });
+    let Some((pass, envelope)) = found else { return Ok(()) };
+    gp.work(&Handing { pass: &pass, context: context as u8, view: face as u8, region, envelope }).await
+}
+
+/// What this slave has for the token's region.
 fn bin_messages(config: &CubeControlConfig, state: &SharedSlaveState, token: Token) -> Vec<CommandList> {
     let state = state.borrow();
     let Some(pass) = &state.bins[context_of(token.update)] else { return Vec::new() };
     let (face, region) = config.faces.on_face(token.region);
+    let envelope = envelope(config, pass.update(), token);
+    pass.face(face).map_or_else(Vec::new, |pass| region_messages(pass, region, 0, envelope))
+}
+
+/// The first slave begins the region, the last one ends it.
+fn envelope(config: &CubeControlConfig, update: &FaceUpdate, token: Token) -> RegionEnvelope {
     let last = token.slaves_left == 1;
-    let target = config.faces.target(pass.update(), token.region);
-    let envelope = RegionEnvelope {
+    let target = config.faces.target(update, token.region);
+    RegionEnvelope {
         begin: usize::from(token.slaves_left) == config.slaves.len(),
         shade: last,
         copy: (last && token.copies).then(|| copy_order(config, target)),
-    };
-    pass.face(face).map_or_else(Vec::new, |pass| region_messages(pass, region, 0, envelope))
+    }
 }
 
 /// What tells the next slave, or the master, of a token.

@@ -29,6 +29,9 @@
 //!
 //! The reference that evaluates the view at each pixel's own moment is mathematics, not firmware.
 //!
+//! At the cycle level TRANSFORM of the whole list is i860 code, that of a pipeline that sends everything everywhere; what is found and
+//! interpolated for a strip or a block, and the master's part of a field, take the times of the table.
+//!
 //! **Not modelled:** culling of the display list by line (a slave transforms every primitive for each strip), transforms
 //! shared among slaves, Phong shading. Frameless pixels come in square blocks: one pixel alone would pay 16 words of
 //! overhead on the ring. A triangle that a corner takes out of the guard band has no place on the screen at T0 or T1;
@@ -44,6 +47,7 @@ mod pieces;
 mod protocol;
 mod slave;
 pub mod timing;
+mod whole;
 
 pub use config::{Beam, BlockOrder, DrawingSchedule, Interpolation, JitpConfig, JitpConfigError, Viewpoint, Wanted};
 pub use host::host;

@@ -2,7 +2,7 @@
 
 use crate::config::{DrawingSchedule, JitpConfig, Viewpoint, Wanted};
 use crate::protocol::DrawingOrder;
-use pphigs::{FrameView, PROGRAM_BYTES, PrimitiveCounts, TransformCost};
+use pphigs::{FrameView, PROGRAM_BYTES, TransformCost};
 use pxpl5_display::LightSpan;
 use pxpl5_gp::{Account, Fault, Firmware, Gp, Priority, Stage};
 use pxpl5_sim::{Span, Time};
@@ -17,20 +17,20 @@ struct MasterState {
     done: RefCell<VecDeque<u32>>,
 }
 
-/// The programs of the master for both levels of its board. `counts` are the primitives of the whole display list;
+/// The programs of the master for both levels of its board. `pass` is a slave's over the whole display list;
 /// `view_of` predicts.
 ///
 /// They fail with [`Fault::Protocol`] for a message that no board sends.
 pub fn master(
     gp: &Gp,
     config: &JitpConfig,
-    counts: PrimitiveCounts,
+    pass: TransformCost,
     view_of: impl FnMut(Wanted) -> FrameView + 'static,
 ) -> Vec<(Priority, Firmware)> {
     let state = Rc::new(MasterState::default());
     let listening = listen(gp.at_priority(Priority::Interrupt), Rc::clone(&state));
     let foreground = gp.at_priority(Priority::Foreground);
-    let master = DrawingMaster { gp: foreground, config: config.clone(), counts, view_of, state };
+    let master = DrawingMaster { gp: foreground, config: config.clone(), pass, view_of, state };
     vec![(Priority::Interrupt, Box::pin(listening)), (Priority::Foreground, Box::pin(master.run()))]
 }
 
@@ -48,7 +48,7 @@ async fn listen(gp: Gp, state: Rc<MasterState>) -> Result<(), Fault> {
 struct DrawingMaster<V> {
     gp: Gp,
     config: JitpConfig,
-    counts: PrimitiveCounts,
+    pass: TransformCost,
     view_of: V,
     state: Rc<MasterState>,
 }
@@ -91,7 +91,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
     /// When slaves must begin to transform for a field: half again as early as that takes, since they draw meanwhile.
     fn preparation_at(&self, field: PeriodNumber, viewpoint: Viewpoint, ahead: Span) -> Time {
         let views = if viewpoint == Viewpoint::Field { 1 } else { 2 };
-        let span = TransformCost::pass_over(self.counts).span(&self.gp.timing()) * views;
+        let span = self.pass.span(&self.gp.timing()) * views;
         before(self.config.deadline(field, 0), ahead + span + span / 2)
     }
 

@@ -10,7 +10,7 @@ use pxpl5_wire::{
     RegionId, Word,
 };
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// The pixels of a region.
 pub(crate) fn window(config: &JitpConfig, viewport: &Viewport, region: RegionId) -> Window {
@@ -88,7 +88,15 @@ pub(crate) fn messages(
     target: CopyTarget,
 ) -> Vec<CommandList> {
     let [left, top, _, _] = config.grid().rectangle(target.region).map(|v| v as u16);
-    let origin = SelectRegion { context: 0, left, top };
+    let words = RegionWords {
+        drawing: Arc::clone(drawing),
+        layout: config.layout,
+        window,
+        origin: SelectRegion { context: 0, left, top },
+        target,
+        primitives: OnceLock::new(),
+    };
+    let words = Arc::new(words);
     let lists = parts(counts).into_iter().map(|part| {
         let runs = part.runs();
         let copies = if part.last {
@@ -102,49 +110,64 @@ pub(crate) fn messages(
         } else {
             Vec::new()
         };
-        let words = PieceWords { drawing: Arc::clone(drawing), layout: config.layout, window, origin, target, part };
-        let content = config.pixels.then(|| Arc::new(words) as Arc<dyn CommandWords>);
+        let piece = PieceWords { region: Arc::clone(&words), part };
+        let content = config.pixels.then(|| Arc::new(piece) as Arc<dyn CommandWords>);
         CommandList { runs, context: 0, copies, content }
     });
     lists.collect()
 }
 
-/// Makes the words of one message.
+/// Makes the words of a region; those of its primitives once for all its messages.
 #[derive(Debug)]
-struct PieceWords {
+struct RegionWords {
     drawing: Arc<DrawnList>,
     layout: Layout,
     window: Window,
     origin: SelectRegion,
     target: CopyTarget,
+    /// Triangles, and spheres.
+    primitives: OnceLock<[Vec<Word>; 2]>,
+}
+
+impl RegionWords {
+    fn primitives(&self) -> &[Vec<Word>; 2] {
+        self.primitives.get_or_init(|| {
+            let [mut triangles, mut spheres] = [const { Vec::new() }; 2];
+            self.drawing.triangle_commands(&self.window, |command| self.append(command, &mut triangles));
+            self.drawing.sphere_commands(&self.window, |command| self.append(command, &mut spheres));
+            [triangles, spheres]
+        })
+    }
+
+    /// A layout that lacks what a command needs is refused when the machine is configured.
+    fn append(&self, command: Command, out: &mut Vec<Word>) {
+        let encoded = command.encode(&self.layout, out);
+        debug_assert!(encoded.is_ok(), "{encoded:?}");
+    }
+}
+
+/// The words of one message.
+#[derive(Debug)]
+struct PieceWords {
+    region: Arc<RegionWords>,
     part: Part,
 }
 
 impl CommandWords for PieceWords {
     fn append_words(&self, out: &mut Vec<Word>) {
-        if self.part.first {
-            self.append(Command::SelectRegion(self.origin), out);
-            let [r, g, b] = self.drawing.background().map(u32::from);
-            self.append(Command::Clear(Clear { colour: r << 16 | g << 8 | b }), out);
+        let Self { region, part } = self;
+        if part.first {
+            region.append(Command::SelectRegion(region.origin), out);
+            let [r, g, b] = region.drawing.background().map(u32::from);
+            region.append(Command::Clear(Clear { colour: r << 16 | g << 8 | b }), out);
         }
-        if !self.part.triangles.is_empty() {
-            let mut numbers = 0..;
-            self.drawing.triangle_commands(&self.window, |command| {
-                if numbers.next().is_some_and(|number| self.part.triangles.contains(&number)) {
-                    self.append(command, out);
-                }
-            });
+        if !part.triangles.is_empty() || !part.spheres.is_empty() {
+            let [triangles, spheres] = region.primitives();
+            out.extend_from_slice(words_of(triangles, &part.triangles, CommandKind::Triangle));
+            out.extend_from_slice(words_of(spheres, &part.spheres, CommandKind::Sphere));
         }
-        if !self.part.spheres.is_empty() {
-            let mut numbers = 0..;
-            self.drawing.sphere_commands(&self.window, |command| {
-                if numbers.next().is_some_and(|number| self.part.spheres.contains(&number)) {
-                    self.append(command, out);
-                }
-            });
-        }
-        if self.part.last {
-            self.append(Command::CopyRegion(CopyRegion { target: self.target }), out);
+        if part.last {
+            region.append(Command::CopyRegion(CopyRegion { target: region.target }), out);
         }
     }
 
@@ -154,12 +177,11 @@ impl CommandWords for PieceWords {
     }
 }
 
-impl PieceWords {
-    /// A layout that lacks what a command needs is refused when the machine is configured.
-    fn append(&self, command: Command, out: &mut Vec<Word>) {
-        let encoded = command.encode(&self.layout, out);
-        debug_assert!(encoded.is_ok(), "{encoded:?}");
-    }
+/// The words of some commands among those of all of their kind.
+fn words_of<'a>(all: &'a [Word], numbers: &Range<u32>, kind: CommandKind) -> &'a [Word] {
+    let [begin, end] = [numbers.start, numbers.end].map(|number| (number * kind.words()) as usize);
+    debug_assert!(end <= all.len(), "as many commands as were counted");
+    all.get(begin..end).unwrap_or_default()
 }
 
 #[cfg(test)]

@@ -4,7 +4,8 @@ use crate::config::{DrawingSchedule, JitpConfig, Viewpoint};
 use crate::drawing::{DrawnList, Ends};
 use crate::pieces::{messages, window};
 use crate::protocol::DrawingOrder;
-use pphigs::{DisplayList, FrameView, PROGRAM_BYTES, PrimitiveCounts, Share, TransformCost};
+use crate::whole::WholeList;
+use pphigs::{DisplayList, FrameView, PROGRAM_BYTES, Share, TransformCost};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{Account, Fault, Firmware, Gp, Priority, Stage, Ticket};
 use pxpl5_sim::{Span, Time};
@@ -78,9 +79,8 @@ pub fn slave(
     let [drawing, preparing] = [Priority::Interrupt, Priority::Foreground].map(|level| Slave {
         gp: gp.at_priority(level),
         config: config.clone(),
-        list: Arc::clone(list),
-        counts: share.counts(),
-        bytes: share.bytes(),
+        share: share.clone(),
+        pass: TransformCost::pass_over(list, share.counts()),
         state: Rc::clone(&state),
         transforms: transforms.clone(),
         index,
@@ -91,9 +91,9 @@ pub fn slave(
 struct Slave {
     gp: Gp,
     config: JitpConfig,
-    list: Arc<DisplayList>,
-    counts: PrimitiveCounts,
-    bytes: u64,
+    /// All of the display list.
+    share: Share,
+    pass: TransformCost,
     state: SharedFields,
     transforms: Transforms,
     index: usize,
@@ -103,13 +103,16 @@ impl Slave {
     /// Takes orders and draws.
     async fn draw(self) -> Result<(), Fault> {
         self.gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
-        self.gp.reserve(Account::DisplayList, self.bytes, None)?;
+        self.gp.reserve(Account::DisplayList, self.share.bytes(), None)?;
+        self.gp.install(|processor| self.share.install(processor))?;
         loop {
             let received = self.gp.receive().await;
             match DrawingOrder::read(&received, self.gp.node())? {
                 DrawingOrder::Field { field, views } => self.state.borrow_mut().ordered.push_back((field, views)),
-                DrawingOrder::Strip { field, strip, deadline, view } => self.strip(field, strip, deadline, view).await,
-                DrawingOrder::Blocks { update, step, view } => self.blocks(update, step, &view).await,
+                DrawingOrder::Strip { field, strip, deadline, view } => {
+                    self.strip(field, strip, deadline, view).await?
+                }
+                DrawingOrder::Blocks { update, step, view } => self.blocks(update, step, &view).await?,
                 other => return Err(Fault::Protocol { node: self.gp.node(), found: format!("at a slave: {other:?}") }),
             }
         }
@@ -119,7 +122,7 @@ impl Slave {
     async fn prepare(self) -> Result<(), Fault> {
         loop {
             let (field, views) = self.gp.until("the order of a field", || self.take_newest_order()).await;
-            self.gp.spend(TransformCost::pass_over(self.counts).span(&self.gp.timing()) * views.len() as u64).await;
+            self.transform_all(&views, PictureNumber::drawn_for(field)).await?;
             self.gp.end(Stage::Transform, PictureNumber::drawn_for(field), None);
             let ready = self.transforms.known_or_made(field, || self.transform(field, views));
             let state = &mut *self.state.borrow_mut();
@@ -130,6 +133,13 @@ impl Slave {
         }
     }
 
+    /// TRANSFORM of the whole display list for each of some views of a picture.
+    async fn transform_all(&self, views: &[FrameView], picture: PictureNumber) -> Result<(), Fault> {
+        let Self { share, pass, config, .. } = self;
+        let viewport = config.extent(picture).0;
+        self.gp.work(&WholeList { share, pass: *pass, views, viewport, layout: config.layout }).await
+    }
+
     /// The newest field ordered; older ones are left out.
     fn take_newest_order(&self) -> Option<(PeriodNumber, Vec<FrameView>)> {
         self.state.borrow_mut().ordered.drain(..).next_back()
@@ -137,29 +147,35 @@ impl Slave {
 
     fn transform(&self, field: PeriodNumber, views: Vec<FrameView>) -> Field {
         let viewport = self.config.extent(PictureNumber::drawn_for(field)).0;
-        let whole = Arc::new(DrawnList::from_view(&self.list, &views[0], viewport));
-        Field { ends: Ends::new(&self.list, views, viewport), whole }
+        let whole = Arc::new(DrawnList::from_view(self.share.list(), &views[0], viewport));
+        Field { ends: Ends::new(self.share.list(), views, viewport), whole }
     }
 
     /// Draws a strip, unless its beam has passed.
-    async fn strip(&self, field: PeriodNumber, strip: u32, deadline: Time, view: Option<FrameView>) {
+    async fn strip(
+        &self,
+        field: PeriodNumber,
+        strip: u32,
+        deadline: Time,
+        view: Option<FrameView>,
+    ) -> Result<(), Fault> {
         if self.gp.now() >= deadline {
-            return;
+            return Ok(());
         }
         let picture = PictureNumber::drawn_for(field);
         let viewport = self.config.extent(picture).0;
         let stands_for_field = self.config.is_middle(strip);
         let drawing = match &view {
             Some(view) => {
-                self.gp.spend(TransformCost::pass_over(self.counts).span(&self.gp.timing())).await;
+                self.transform_all(std::slice::from_ref(view), picture).await?;
                 if stands_for_field {
                     self.gp.end(Stage::Transform, picture, None);
                 }
-                Some(Arc::new(DrawnList::from_view(&self.list, view, viewport)))
+                Some(Arc::new(DrawnList::from_view(self.share.list(), view, viewport)))
             }
             None => self.drawing_of_field(field, strip, viewport).await,
         };
-        let Some(drawing) = drawing.filter(|_| self.gp.now() < deadline) else { return };
+        let Some(drawing) = drawing.filter(|_| self.gp.now() < deadline) else { return Ok(()) };
         if stands_for_field {
             self.gp.begin(Stage::Render, picture, None);
         }
@@ -167,6 +183,7 @@ impl Slave {
         if stands_for_field {
             self.gp.end_when_accepted(sent, Stage::Render, picture);
         }
+        Ok(())
     }
 
     /// Whether a field or a later one is transformed.
@@ -182,7 +199,7 @@ impl Slave {
         Some(match self.dual() {
             Some(interpolation) if ready.ends.views.len() == 2 => {
                 let part = self.config.part(field, strip);
-                Arc::new(DrawnList::between(&self.list, &ready.ends, part, interpolation, viewport))
+                Arc::new(DrawnList::between(self.share.list(), &ready.ends, part, interpolation, viewport))
             }
             _ => Arc::clone(&ready.whole),
         })
@@ -196,18 +213,19 @@ impl Slave {
     }
 
     /// Draws the next blocks of the random order and asks for more.
-    async fn blocks(&self, update: PictureNumber, step: u64, view: &FrameView) {
-        let DrawingSchedule::Roam { batch, order, .. } = &self.config.schedule else { return };
+    async fn blocks(&self, update: PictureNumber, step: u64, view: &FrameView) -> Result<(), Fault> {
+        let DrawingSchedule::Roam { batch, order, .. } = &self.config.schedule else { return Ok(()) };
         let viewport = self.config.extent(update).0;
-        self.gp.spend(TransformCost::pass_over(self.counts).span(&self.gp.timing())).await;
+        self.transform_all(std::slice::from_ref(view), update).await?;
         self.gp.end(Stage::Transform, update, None);
-        let drawing = Arc::new(DrawnList::from_view(&self.list, view, viewport));
+        let drawing = Arc::new(DrawnList::from_view(self.share.list(), view, viewport));
         let regions: Vec<_> = (0..u64::from(*batch)).map(|i| order.at(step + i)).collect();
         self.gp.begin(Stage::Render, update, None);
         let sent = self.send(update, &regions, &viewport, &drawing).await;
         self.gp.end_when_accepted(sent, Stage::Render, update);
         let (words, body) = DrawingOrder::Done { slave: self.index as u32 }.message();
         self.gp.send(self.config.master, words, body).await;
+        Ok(())
     }
 
     /// Bins, and sends all regions as one chain of messages. All slaves draw in the same region context of a renderer, so

@@ -5,7 +5,7 @@
 //! from outside, equal in every word (tests/begin.rs).
 
 use crate::cost::TransformCost;
-use crate::layout::{BEGIN_CODE, BIN_TABLE, LISTS, MESSAGE, MODELS, PARAMETERS, SPHERE_PARAMETERS, STACK};
+use crate::layout::{BEGIN_CODE, BIN_TABLE, MESSAGE, MODELS, MODELS_END, PARAMETERS, SPHERE_PARAMETERS, STACK};
 use crate::list::{DisplayList, Share};
 use crate::picture::{Picture, RegionBinning};
 use crate::placed::PlacedStructure;
@@ -21,8 +21,8 @@ use pxpl5_sim::Span;
 use pxpl5_wire::Word;
 use std::sync::{Arc, LazyLock};
 
-/// Structures whose matrices there is room for, before the lists of messages.
-const MOST_STRUCTURES: u32 = (LISTS - MODELS) / MATRIX_BYTES;
+/// Structures whose matrices there is room for.
+const MOST_STRUCTURES: u32 = (MODELS_END - MODELS) / MATRIX_BYTES;
 const MATRIX_BYTES: u32 = 64;
 /// Words of an edit: the structure's number and its matrix.
 const EDIT_WORDS: u32 = 17;
@@ -68,6 +68,8 @@ pub struct Beginning {
     eyes: Vec<Arc<[PlacedStructure]>>,
     /// Bins that are reset for each eye; none where there are no bins.
     bins: u32,
+    /// The structures that are put in place, by their places in the display list; `None` for all.
+    chosen: Option<Arc<[bool]>>,
 }
 
 impl Share {
@@ -86,13 +88,26 @@ impl Beginning {
             RegionBinning::All if list.spheres.is_empty() => 0,
             RegionBinning::All | RegionBinning::Touched => picture.viewport.grid().regions(),
         };
-        Self { list: Arc::clone(list), eyes, bins }
+        Self { list: Arc::clone(list), eyes, bins, chosen: None }
+    }
+
+    /// The same of some structures.
+    pub(crate) fn of_chosen(self, chosen: Option<&[bool]>) -> Self {
+        Self { chosen: chosen.map(Arc::from), ..self }
+    }
+
+    /// The structures of an eye that are put in place; what cannot be drawn is not.
+    fn begun<'a>(&'a self, placed: &'a [PlacedStructure]) -> impl Iterator<Item = &'a PlacedStructure> {
+        let is_chosen = |number: usize| self.chosen.as_ref().is_none_or(|chosen| chosen.get(number) == Some(&true));
+        let chosen = placed.iter().enumerate().filter(move |(number, _)| is_chosen(*number)).map(|(_, place)| place);
+        chosen.filter(|place| place.transform.is_some())
     }
 }
 
 impl Work for Beginning {
     fn by_table(&self, timing: &GpTiming) -> Span {
-        TransformCost::PASS.span(timing)
+        let begun = self.eyes.iter().flat_map(|placed| self.begun(placed));
+        TransformCost::beginning(begun.map(|place| &place.structure)).span(timing)
     }
 
     fn by_code(&self, _: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
@@ -103,12 +118,18 @@ impl Work for Beginning {
                 let registers = [(16, MESSAGE), (17, self.bins), (19, BIN_TABLE)];
                 span += processor.call(&PROGRAM, "reset", &registers, BUDGET)?;
             }
-            for place in placed.iter().filter(|place| place.transform.is_some()) {
+            for place in self.begun(placed) {
                 span += place.run_code(&self.list, processor)?;
             }
         }
         Ok(span)
     }
+}
+
+/// The beginning of a pass for some eyes by the table; what cannot be drawn is not put in place.
+pub(crate) fn beginning<'a>(eyes: impl IntoIterator<Item = &'a [PlacedStructure]>) -> TransformCost {
+    let drawn = |place: &&PlacedStructure| place.transform.is_some();
+    TransformCost::beginning(eyes.into_iter().flatten().filter(drawn).map(|place| &place.structure))
 }
 
 impl PlacedStructure {

@@ -3,12 +3,10 @@
 //! The code is that of [`pxpl5_geometry::kernel`] for triangles and of [`pxpl5_geometry::sphere_kernel`] for spheres; each structure of
 //! the display list is one call of either. All triangles come first, so that bins hold commands in the order in which they are sent.
 
-use crate::begin::Beginning;
+use crate::begin::{Beginning, beginning};
 use crate::cost::TransformCost;
 use crate::counts::PrimitiveCounts;
-use crate::layout::{
-    BIN_BOUNDS_BYTES, BIN_TABLE, BINS, CODE, DISPLAY_LIST, PARAMETERS, SPHERE_CODE, SPHERE_PARAMETERS, STACK,
-};
+use crate::layout::{BIN_TABLE, CODE, DISPLAY_LIST, PARAMETERS, SPHERE_CODE, SPHERE_PARAMETERS, STACK, bins};
 use crate::list::Share;
 use crate::pass::Pass;
 use crate::picture::{RegionBinning, Shading};
@@ -30,8 +28,8 @@ use std::ops::Range;
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 /// Bytes of a triangle in it, and of a sphere behind the triangles.
-const TRIANGLE_BYTES: u32 = 4 * TRIANGLE_WORDS as u32;
-const SPHERE_BYTES: u32 = 4 * SPHERE_WORDS as u32;
+pub(crate) const TRIANGLE_BYTES: u32 = 4 * TRIANGLE_WORDS as u32;
+pub(crate) const SPHERE_BYTES: u32 = 4 * SPHERE_WORDS as u32;
 
 /// Pieces that clipping makes of a triangle at most: six planes leave nine corners.
 const MOST_PIECES: u32 = 7;
@@ -39,6 +37,11 @@ const MOST_PIECES: u32 = 7;
 /// Instructions after which a kernel is taken to be endless: many times what a primitive needs, and its prologue.
 const BUDGET_OF_PRIMITIVE: u64 = 100_000;
 const BUDGET: u64 = 10_000;
+
+/// Instructions for some primitives.
+pub(crate) const fn budget(primitives: u32) -> u64 {
+    BUDGET + BUDGET_OF_PRIMITIVE * primitives as u64
+}
 
 /// The TRANSFORM of a share for one eye, or for both one after the other.
 #[derive(Clone, Copy, Debug)]
@@ -99,8 +102,12 @@ impl Work for Transforming<'_> {
 }
 
 impl Transforming<'_> {
-    const fn begin(&self, timing: &GpTiming) -> Span {
-        if self.begins { TransformCost::PASS.span(timing) } else { Span::ZERO }
+    fn begin(&self, timing: &GpTiming) -> Span {
+        if !self.begins {
+            return Span::ZERO;
+        }
+        let eyes: Vec<_> = self.passes.iter().map(|pass| pass.placed()).collect();
+        beginning(eyes.iter().map(|placed| &placed[..])).span(timing)
     }
 }
 
@@ -123,20 +130,59 @@ impl Share {
     }
 
     /// Where the spheres begin in memory.
-    fn place_of_spheres(&self) -> u32 {
+    pub(crate) fn place_of_spheres(&self) -> u32 {
         DISPLAY_LIST + self.all_triangles().len() as u32 * TRIANGLE_BYTES
     }
 
     /// Where the display list ends in memory.
-    fn end_of_list(&self) -> u32 {
+    pub(crate) fn end_of_list(&self) -> u32 {
         self.place_of_spheres() + self.all_spheres().len() as u32 * SPHERE_BYTES
     }
 }
 
-/// Places of one context's output.
+/// The bytes that a view's output takes: of commands, and entries of each bin.
+pub(crate) struct Needs {
+    commands: u32,
+    entries: Vec<u32>,
+}
+
+impl Needs {
+    pub(crate) fn bytes(&self) -> u32 {
+        self.commands + 4 * self.entries.iter().sum::<u32>()
+    }
+
+    fn places(&self, begin: u32) -> Places {
+        let mut next = begin + self.commands;
+        let bin = |entries: &u32| {
+            let begin = next;
+            next += 4 * entries;
+            begin
+        };
+        Places { commands: begin, bins: self.entries.iter().map(bin).collect() }
+    }
+}
+
+/// Places of a view's output.
 struct Places {
     commands: u32,
     bins: Vec<u32>,
+}
+
+/// Where a view's output goes: its bin context, which of the views that share it, and where the commands begin.
+#[derive(Clone, Copy)]
+pub(crate) struct Destination {
+    pub(crate) context: u8,
+    pub(crate) view: u8,
+    pub(crate) begin: u32,
+}
+
+/// Words that say which of the held primitives a view is given: those with its bit.
+#[derive(Clone, Copy)]
+pub(crate) struct Marks {
+    /// The word of the first triangle that the GP holds, and of the first sphere.
+    pub(crate) triangles: u32,
+    pub(crate) spheres: u32,
+    pub(crate) bit: Word,
 }
 
 impl Pass {
@@ -155,15 +201,29 @@ impl Pass {
     /// [`ProcessorFault`] when the code does not come to its end, or its data do not fit.
     pub fn run_code(&self, processor: &mut Processor, context: u8) -> Result<Option<KernelOutput>, ProcessorFault> {
         let Some(kernel) = self.kernel(processor.version()) else { return Ok(None) };
-        let places = self.places(processor, kernel, context)?;
+        let needs = self.needs(kernel, self.transformed());
+        let begin = processor.place_output(context, self.share().end_of_list(), needs.bytes())?;
+        self.run_kernels(processor, kernel, &needs, Destination { context, view: 0, begin }, None).map(Some)
+    }
+
+    /// The same for those primitives that are marked, or for all, to a place that is taken.
+    pub(crate) fn run_kernels(
+        &self,
+        processor: &mut Processor,
+        kernel: Kernel,
+        needs: &Needs,
+        to: Destination,
+        marks: Option<Marks>,
+    ) -> Result<KernelOutput, ProcessorFault> {
+        let places = needs.places(to.begin);
         processor.write(BIN_TABLE, &places.bins)?;
-        let (of_triangles, spheres) = self.run_triangles(processor, kernel, places.commands)?;
-        let (of_spheres, end) = self.run_spheres(processor, sphere_kernel(kernel), spheres)?;
+        let (of_triangles, spheres) = self.run_triangles(processor, kernel, places.commands, marks)?;
+        let (of_spheres, end) = self.run_spheres(processor, sphere_kernel(kernel), spheres, marks)?;
         let tails = processor.read(BIN_TABLE, places.bins.len())?;
         let bins: Vec<Range<u32>> = places.bins.iter().zip(tails).map(|(head, tail)| *head..tail).collect();
-        note_bins(processor, context, spheres, &bins)?;
+        note_bins(processor, to, spheres, &bins)?;
         let span = of_triangles + of_spheres;
-        Ok(Some(KernelOutput { span, of_spheres, commands: places.commands..end, spheres, bins }))
+        Ok(KernelOutput { span, of_spheres, commands: places.commands..end, spheres, bins })
     }
 
     /// Time of the triangles, and where their commands end.
@@ -172,19 +232,22 @@ impl Pass {
         processor: &mut Processor,
         kernel: Kernel,
         mut command: u32,
+        marks: Option<Marks>,
     ) -> Result<(Span, u32), ProcessorFault> {
         let heads = self.heads();
         let mut span = Span::ZERO;
-        for (place, transform, held) in self.calls(|structure| &structure.triangles, Share::held_places) {
+        for (place, transform, held) in self.calls_of_triangles() {
             let kernel = Kernel { culls: place.structure.culling != Culling::None, ..kernel };
-            let program = program(kernel);
+            let program = program(kernel, marks.is_some());
             let light = &place.light;
             let clipper = program.symbol("clipper").unwrap_or_default();
             let parameters: [Word; PARAMETER_WORDS] = kernel.parameters(transform, light, &heads, clipper);
             processor.write(PARAMETERS, &parameters)?;
             let first = DISPLAY_LIST + held.start as u32 * TRIANGLE_BYTES;
             let call = Call { first, count: held.len() as u32, command, parameters: PARAMETERS };
-            span += processor.call(&program, "start", &call.registers(), call.budget())?;
+            let marked =
+                marks.map(|Marks { triangles, bit, .. }| [triangles + 4 * held.start as u32, bit, TRIANGLE_BYTES]);
+            span += call.run(processor, &program, "start", marked)?;
             command = processor.register(18);
         }
         Ok((span, command))
@@ -196,6 +259,7 @@ impl Pass {
         processor: &mut Processor,
         kernel: SphereKernel,
         mut command: u32,
+        marks: Option<Marks>,
     ) -> Result<(Span, u32), ProcessorFault> {
         let blank = match kernel.surface {
             KernelSurface::Gouraud => Command::Sphere(SphereCommand::default()),
@@ -203,28 +267,25 @@ impl Pass {
         };
         let blank = self.encoded(&blank);
         let mut span = Span::ZERO;
-        for (place, transform, held) in self.calls(|structure| &structure.spheres, Share::held_places_of_spheres) {
+        for (place, transform, held) in self.calls_of_spheres() {
             let Some(parameters) = kernel.parameters(transform, &place.light, &blank) else { continue };
             processor.write(SPHERE_PARAMETERS, &parameters)?;
             let first = self.share().place_of_spheres() + held.start as u32 * SPHERE_BYTES;
             let call = Call { first, count: held.len() as u32, command, parameters: SPHERE_PARAMETERS };
-            span += processor.call(&sphere_program(kernel), "spheres", &call.registers(), call.budget())?;
+            let marked = marks.map(|Marks { spheres, bit, .. }| [spheres + 4 * held.start as u32, bit, SPHERE_BYTES]);
+            span += call.run(processor, &sphere_program(kernel, marks.is_some()), "spheres", marked)?;
             command = processor.register(18);
         }
         Ok((span, command))
     }
 
-    fn kernel(&self, version: CodeVersion) -> Option<Kernel> {
+    pub(crate) fn kernel(&self, version: CodeVersion) -> Option<Kernel> {
         let schedule = match version {
             CodeVersion::Unoptimised => Schedule::Straight,
             CodeVersion::Compiled => Schedule::Compiled,
             CodeVersion::Scheduled => Schedule::Dual,
         };
-        let surface = match self.picture().shading {
-            Shading::Gouraud => KernelSurface::Gouraud,
-            Shading::Phong => KernelSurface::Phong,
-        };
-        Kernel::for_picture(schedule, surface, &self.picture().viewport, self.is_binned())
+        self.picture().kernel(schedule)
     }
 
     /// Words of the commands of a triangle and of a sphere in the bins that code has filled; `None` where no code fills bins of both.
@@ -243,7 +304,7 @@ impl Pass {
     }
 
     /// What is alike in all triangle commands, read off one of zeros.
-    fn heads(&self) -> Heads {
+    pub(crate) fn heads(&self) -> Heads {
         let blank = match self.picture().shading {
             Shading::Gouraud => Command::Triangle(TriangleCommand::default()),
             Shading::Phong => Command::PhongTriangle(PhongTriangleCommand::default()),
@@ -259,7 +320,16 @@ impl Pass {
         words
     }
 
-    /// Structures with their primitives of a kind, counted in those that the GP holds.
+    /// Structures with their triangles, counted in those that the GP holds.
+    pub(crate) fn calls_of_triangles(&self) -> impl Iterator<Item = (&PlacedStructure, &Transform, Range<usize>)> {
+        self.calls(|structure| &structure.triangles, Share::held_places)
+    }
+
+    /// The same of spheres.
+    pub(crate) fn calls_of_spheres(&self) -> impl Iterator<Item = (&PlacedStructure, &Transform, Range<usize>)> {
+        self.calls(|structure| &structure.spheres, Share::held_places_of_spheres)
+    }
+
     fn calls(
         &self,
         of: impl Fn(&DisplayStructure) -> &Range<usize>,
@@ -270,38 +340,33 @@ impl Pass {
         calls.filter(|call| !call.2.is_empty())
     }
 
-    /// Context 0 lies behind the display list, context 1 at the end of memory. The kernel needs a place for a command of
-    /// every primitive, seen or not, for as many as a clipped triangle may have pieces, and for the one being made, which may
-    /// be dropped: more than the accounts of [`pxpl5_gp::Memory`], which know what will be seen.
-    fn places(&self, processor: &mut Processor, kernel: Kernel, context: u8) -> Result<Places, ProcessorFault> {
+    /// The kernel needs a place for a command of every primitive that it is given, seen or not, for as many as a clipped triangle may
+    /// have pieces, and for the one being made, which may be dropped: more than the accounts of [`pxpl5_gp::Memory`], which know
+    /// what will be seen.
+    pub(crate) fn needs(&self, kernel: Kernel, given: PrimitiveCounts) -> Needs {
         let regions = self.picture().viewport.grid().regions() as u16;
         let entries = (0..regions).map(|region| {
             let counts = self.counts(RegionId(region));
             if self.is_binned() { counts.total() } else { counts.spheres }
         });
-        let entries: Vec<u32> = entries.collect();
+        let entries = entries.collect();
         let more_pieces = (MOST_PIECES - 1) * self.stats().clipped as u32;
-        let PrimitiveCounts { triangles, spheres } = self.transformed();
         let sphere_bytes = 4 * sphere_kernel(kernel).command_words() as u32;
-        let commands = kernel.command_bytes() * (triangles + more_pieces + 1) + sphere_bytes * spheres;
-        let list = self.share().end_of_list();
-        let bytes = commands + 4 * entries.iter().sum::<u32>();
-        let begin = processor.place_output(context, list, bytes)?;
-        let mut next = begin + commands;
-        let mut bins = Vec::with_capacity(entries.len());
-        for entries in entries {
-            bins.push(next);
-            next += 4 * entries;
-        }
-        Ok(Places { commands: begin, bins })
+        let commands = kernel.command_bytes() * (given.triangles + more_pieces + 1) + sphere_bytes * given.spheres;
+        Needs { commands, entries }
     }
 }
 
 /// Leaves where the bins of a context begin and end for the tokens of its regions, while the other context's table is in use.
-fn note_bins(processor: &mut Processor, context: u8, spheres: u32, bins: &[Range<u32>]) -> Result<(), ProcessorFault> {
-    let bounds = bins.iter().flat_map(|bin| [bin.start, bin.end]);
-    let words: Vec<Word> = std::iter::once(spheres).chain(bounds).take(BIN_BOUNDS_BYTES as usize / 4).collect();
-    processor.write(BINS + u32::from(context % 2) * BIN_BOUNDS_BYTES, &words)
+fn note_bins(
+    processor: &mut Processor,
+    to: Destination,
+    spheres: u32,
+    filled: &[Range<u32>],
+) -> Result<(), ProcessorFault> {
+    let bounds = filled.iter().flat_map(|bin| [bin.start, bin.end]);
+    let words: Vec<Word> = std::iter::once(spheres).chain(bounds).collect();
+    processor.write(bins(to.context, to.view), &words)
 }
 
 /// A call of a kernel for some primitives.
@@ -317,14 +382,27 @@ impl Call {
         [(16, self.first), (17, self.count), (18, self.command), (2, STACK), (19, BIN_TABLE), (20, self.parameters)]
     }
 
-    fn budget(&self) -> u64 {
-        BUDGET + BUDGET_OF_PRIMITIVE * u64::from(self.count)
+    /// Calls a program's kernel for all of them, or for the runs of those that are marked: the address of their words, the bit of a word
+    /// that counts, and the bytes of a primitive.
+    fn run(
+        &self,
+        processor: &mut Processor,
+        program: &Arc<Program>,
+        kernel: &str,
+        marked: Option<[Word; 3]>,
+    ) -> Result<Span, ProcessorFault> {
+        let Some([words, bit, step]) = marked else {
+            return processor.call(program, kernel, &self.registers(), budget(self.count));
+        };
+        let entry = program.symbol(kernel).unwrap_or_default();
+        let of_runs = [(21, words), (22, bit), (23, entry), (24, step)];
+        processor.call(program, "runs", &[self.registers().as_slice(), &of_runs].concat(), budget(self.count))
     }
 }
 
 /// The spheres' kernel beside one of triangles.
-const fn sphere_kernel(kernel: Kernel) -> SphereKernel {
-    SphereKernel { surface: kernel.surface, field: kernel.field }
+pub(crate) const fn sphere_kernel(kernel: Kernel) -> SphereKernel {
+    SphereKernel { surface: kernel.surface, picture: kernel.picture }
 }
 
 /// Programs that were asked for.
@@ -335,50 +413,62 @@ fn kept<K: Copy + Eq + Hash>(programs: &Programs<K>, kernel: K, assembled: impl 
     Arc::clone(programs.entry(kernel).or_insert_with(|| Arc::new(assembled(kernel))))
 }
 
-/// A kernel's program with its clipper, assembled when first asked for.
-fn program(kernel: Kernel) -> Arc<Program> {
-    static PROGRAMS: Programs<Kernel> = LazyLock::new(Mutex::default);
-    kept(&PROGRAMS, kernel, assembled)
+/// What calls a kernel for runs of primitives.
+const RUNS: (&str, &str) = ("runs", include_str!("../kernels/runs.s"));
+
+/// A kernel's program with its clipper, assembled when first asked for; with what calls it for runs of primitives if wanted.
+fn program(kernel: Kernel, by_runs: bool) -> Arc<Program> {
+    static PROGRAMS: Programs<(Kernel, bool)> = LazyLock::new(Mutex::default);
+    kept(&PROGRAMS, (kernel, by_runs), assembled)
 }
 
-fn assembled(kernel: Kernel) -> Program {
+fn assembled((kernel, by_runs): (Kernel, bool)) -> Program {
     let source = match i860::linear::schedule(&kernel.source()) {
         Ok(source) => source,
         Err(error) => unreachable!("every kernel is scheduled by the tests: {error}"),
     };
-    match i860::link(CODE, &[("kernel", &source), ("clipper", &kernel.clipper_source())]) {
+    let clipper = kernel.clipper_source();
+    let sources = [("kernel", source.as_str()), ("clipper", &clipper), RUNS];
+    match i860::link(CODE, if by_runs { &sources } else { &sources[..2] }) {
         Ok(program) => program,
         Err(errors) => unreachable!("every kernel is assembled by the tests: {errors}"),
     }
 }
 
 /// The same of a kernel for spheres.
-fn sphere_program(kernel: SphereKernel) -> Arc<Program> {
-    static PROGRAMS: Programs<SphereKernel> = LazyLock::new(Mutex::default);
-    kept(&PROGRAMS, kernel, |kernel| match i860::assemble("sphere", SPHERE_CODE, &kernel.source()) {
-        Ok(program) => program,
-        Err(errors) => unreachable!("every kernel is assembled by the tests: {errors}"),
+fn sphere_program(kernel: SphereKernel, by_runs: bool) -> Arc<Program> {
+    static PROGRAMS: Programs<(SphereKernel, bool)> = LazyLock::new(Mutex::default);
+    kept(&PROGRAMS, (kernel, by_runs), |(kernel, by_runs)| {
+        let source = kernel.source();
+        let sources = [("sphere", source.as_str()), RUNS];
+        match i860::link(SPHERE_CODE, if by_runs { &sources } else { &sources[..1] }) {
+            Ok(program) => program,
+            Err(errors) => unreachable!("every kernel is assembled by the tests: {errors}"),
+        }
     })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::layout::{BEGIN_CODE, MESSAGE, TOKEN_CODE};
-    use crate::{begin, handing};
-    use pxpl5_geometry::kernel::KernelList;
+    use crate::layout::{BEGIN_CODE, MESSAGE, SORT_CODE, TOKEN_CODE};
+    use crate::{begin, handing, surrounding};
+    use pxpl5_geometry::kernel::{KernelList, KernelPicture};
 
     const SURFACES: [KernelSurface; 2] = [KernelSurface::Gouraud, KernelSurface::Phong];
     const BOTH: [bool; 2] = [false, true];
+    const PICTURES: [KernelPicture; 3] = [KernelPicture::Frame, KernelPicture::Field, KernelPicture::Grid];
 
     fn kernels() -> impl Iterator<Item = Kernel> {
         let schedules = [Schedule::Straight, Schedule::Compiled, Schedule::Dual];
         let kinds = schedules.into_iter().flat_map(|schedule| SURFACES.map(|surface| (schedule, surface)));
-        let pictures = BOTH.into_iter().flat_map(|field| BOTH.map(|binned| (field, binned)));
-        let pictures: Vec<_> = pictures.flat_map(|(field, binned)| BOTH.map(|culls| (field, binned, culls))).collect();
+        let pictures = PICTURES.into_iter().flat_map(|picture| BOTH.map(|binned| (picture, binned)));
+        let pictures = pictures.filter(|(picture, binned)| *binned || *picture != KernelPicture::Grid);
+        let pictures: Vec<_> =
+            pictures.flat_map(|(picture, binned)| BOTH.map(|culls| (picture, binned, culls))).collect();
         kinds.flat_map(move |(schedule, surface)| {
             let list = KernelList::Triangles;
-            let kernel = move |(field, binned, culls)| Kernel { schedule, surface, list, field, binned, culls };
+            let kernel = move |(picture, binned, culls)| Kernel { schedule, surface, list, picture, binned, culls };
             pictures.clone().into_iter().map(kernel)
         })
     }
@@ -391,15 +481,18 @@ mod tests {
     #[test]
     fn no_two_programs_of_a_board_lie_in_the_same_place() {
         for kernel in kernels() {
-            let program = program(kernel);
-            assert!(program.base == CODE && end(&program) <= BEGIN_CODE, "{kernel:?} ends at {:#x}", end(&program));
+            let program = program(kernel, true);
+            assert!(program.base == CODE && end(&program) <= SORT_CODE, "{kernel:?} ends at {:#x}", end(&program));
         }
+        let sort = surrounding::program();
+        assert!(sort.base == SORT_CODE && end(&sort) <= BEGIN_CODE, "{:#x}", end(&sort));
         let token = handing::program();
         assert!(token.base == TOKEN_CODE && end(&token) <= MESSAGE, "{:#x}", end(&token));
         let begin = begin::program();
         assert!(begin.base == BEGIN_CODE && end(&begin) <= SPHERE_CODE, "{:#x}", end(&begin));
-        for kernel in SURFACES.into_iter().flat_map(|surface| BOTH.map(|field| SphereKernel { surface, field })) {
-            let program = sphere_program(kernel);
+        for kernel in SURFACES.into_iter().flat_map(|surface| PICTURES.map(|picture| SphereKernel { surface, picture }))
+        {
+            let program = sphere_program(kernel, true);
             assert!(program.base == SPHERE_CODE && end(&program) <= PARAMETERS, "{kernel:?}: {:#x}", end(&program));
         }
     }

@@ -5,10 +5,10 @@ use crate::encoder::Encoder;
 use crate::list::DisplayList;
 use crate::pass::{BinEntry, Pass};
 use crate::picture::Shading;
-use crate::placed::{PlacedStructure, Vertices};
+use crate::placed::PlacedStructure;
 use pxpl5_geometry::{
-    GouraudSphere, GouraudTriangle, LANES, Light, PhongSphere, PhongTriangle, SetupStats, SphereSetup, Transform,
-    TriangleLanes, VertexSurface,
+    GouraudSphere, GouraudTriangle, LANES, Light, PhongSphere, PhongTriangle, SetupStats, SphereSetup, SurfaceVertex,
+    Transform, TriangleLanes,
 };
 use pxpl5_renderer::{
     Clear, Command, CommandKind, CopyRegion, Layout, PhongSphereCommand, PhongTriangleCommand, PhongTriangleEncoder,
@@ -256,8 +256,13 @@ impl RegionWords {
         let picture = self.pass.picture();
         let mut stats = SetupStats::default();
         let vertices = place.vertices(list, transform);
-        let surfaces = vertices.colours(list, transform, &place.light);
-        let mut batches = SetupBatches { entries, vertices, list, surfaces, lanes: TriangleLanes::default() };
+        let mut batches = SetupBatches {
+            entries,
+            list,
+            first: vertices.first,
+            vertices: vertices.colours(list, transform, &place.light),
+            lanes: TriangleLanes::default(),
+        };
         while let Some(some) = batches.next() {
             match some {
                 SetupBatch::Unclipped(entries, lanes) => {
@@ -289,8 +294,13 @@ impl RegionWords {
         let picture = self.pass.picture();
         let mut stats = SetupStats::default();
         let vertices = place.vertices(list, transform);
-        let surfaces = vertices.normals(list, transform);
-        let mut batches = SetupBatches { entries, vertices, list, surfaces, lanes: TriangleLanes::default() };
+        let mut batches = SetupBatches {
+            entries,
+            list,
+            first: vertices.first,
+            vertices: vertices.normals(list, transform),
+            lanes: TriangleLanes::default(),
+        };
         while let Some(some) = batches.next() {
             match some {
                 SetupBatch::Unclipped(entries, lanes) => {
@@ -364,39 +374,41 @@ pub fn shade(light: Option<&Light>) -> Shade {
 /// Entries of a bin in order.
 struct SetupBatches<'a> {
     entries: &'a [BinEntry],
-    vertices: &'a Vertices,
     list: &'a DisplayList,
-    /// Colours or normals of all vertices.
-    surfaces: &'a [VertexSurface],
-    lanes: TriangleLanes,
+    /// The structure's vertices with their colours or normals, and the number of the first of them.
+    vertices: &'a [SurfaceVertex],
+    first: usize,
+    lanes: TriangleLanes<'a>,
 }
 
 enum SetupBatch<'a> {
     /// Some that are set up together; those of which nothing is seen are among them.
-    Unclipped(&'a [BinEntry], &'a TriangleLanes),
+    Unclipped(&'a [BinEntry], &'a TriangleLanes<'a>),
     /// A piece of a triangle that was clipped.
     Clipped(&'a BinEntry),
 }
 
 impl SetupBatches<'_> {
     fn next(&mut self) -> Option<SetupBatch<'_>> {
-        let lanes = &mut self.lanes;
-        lanes.clear();
+        self.lanes.clear();
         for entry in self.entries.iter().take(LANES) {
-            let at = self.vertices.corners(self.list, entry.triangle as usize);
-            match (entry.piece, self.vertices.unclipped(&at)) {
-                (None, _) => lanes.push_nothing(),
-                (Some(_), Some(triangle)) => lanes.push(&triangle, at.among(self.surfaces)),
-                (Some(_), None) if lanes.is_empty() => {
-                    self.entries = &self.entries[1..];
-                    return Some(SetupBatch::Clipped(entry));
-                }
-                (Some(_), None) => break,
+            if entry.piece.is_none() {
+                self.lanes.push_nothing();
+                continue;
+            }
+            let [a, b, c] = self.list.triangles[entry.triangle as usize].map(|number| number as usize - self.first);
+            if !self.lanes.push([&self.vertices[a], &self.vertices[b], &self.vertices[c]]) {
+                break;
             }
         }
-        let (now, later) = self.entries.split_at(self.lanes.len());
+        // Where the first needs clipping, it comes alone.
+        let (now, later) = self.entries.split_at(self.lanes.len().max(1).min(self.entries.len()));
         self.entries = later;
-        (!now.is_empty()).then_some(SetupBatch::Unclipped(now, &self.lanes))
+        match now {
+            [] => None,
+            [alone, ..] if self.lanes.is_empty() => Some(SetupBatch::Clipped(alone)),
+            some => Some(SetupBatch::Unclipped(some, &self.lanes)),
+        }
     }
 }
 

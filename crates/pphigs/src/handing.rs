@@ -1,10 +1,10 @@
 //! A bin handed over with its token, as work of a board: the messages that its region's commands make, as lists of pieces.
 //!
 //! The code is kernels/token.s. It walks through the entries that TRANSFORM's code left in the bin; the commands stay where they are.
-//! By the timing table it takes nothing, because `message_ns` holds it.
+//! By the timing table each entry takes `token_entry_ns`.
 
 use crate::commands::RegionEnvelope;
-use crate::layout::{BIN_BOUNDS_BYTES, BINS, ENVELOPES, LISTS, LISTS_END, PIECES, TOKEN_CODE, TOKEN_PARAMETERS};
+use crate::layout::{ENVELOPES, LISTS, LISTS_END, PIECES, TOKEN_CODE, TOKEN_PARAMETERS, bins};
 use crate::pass::Pass;
 use i860::Program;
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
@@ -20,6 +20,8 @@ pub struct Handing<'a> {
     pub pass: &'a Pass,
     /// Its bin context, 0 or 1.
     pub context: u8,
+    /// Which of the views that share the context, 0 where there is one.
+    pub view: u8,
     /// The region.
     pub region: RegionId,
     /// What encloses its primitives.
@@ -34,14 +36,15 @@ const PIECE_BYTES: u32 = 8;
 const MESSAGE_BYTES: u32 = 16;
 /// Pieces that there is room for, besides what encloses a message: two for each of the messages, which hold 20 commands and more.
 const MOST_ENTRIES: u32 = (LISTS_END - PIECES) / PIECE_BYTES * 9 / 10;
+const _: () = assert!((MOST_ENTRIES / 20 + 2) * MESSAGE_BYTES <= PIECES - LISTS, "room for the messages of so many");
 
 /// Instructions after which the code is taken to be endless: many times what it needs.
 const BUDGET: u64 = 10_000;
 const BUDGET_OF_ENTRY: u64 = 1_000;
 
 impl Work for Handing<'_> {
-    fn by_table(&self, _: &GpTiming) -> Span {
-        Span::ZERO
+    fn by_table(&self, timing: &GpTiming) -> Span {
+        Span::from_ns(timing.token_entry_ns) * u64::from(self.pass.counts(self.region).total())
     }
 
     fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
@@ -59,7 +62,7 @@ impl Work for Handing<'_> {
         }
         let parameters = [&[triangle, sphere], self.enclosing().as_slice()].concat();
         processor.write(TOKEN_PARAMETERS, &parameters)?;
-        let bins = BINS + u32::from(self.context % 2) * BIN_BOUNDS_BYTES;
+        let bins = bins(self.context, self.view);
         let registers = [(16, self.region.0.into()), (17, bins), (18, PIECES), (19, LISTS), (20, TOKEN_PARAMETERS)];
         processor.call(&PROGRAM, "token", &registers, BUDGET + BUDGET_OF_ENTRY * u64::from(entries))
     }

@@ -16,6 +16,7 @@
 //!   wants pixels, from the same transformed vertices.
 //! - [`TransformCost`]: what a TRANSFORM does, counted, and its time by table.
 //! - [`Transforming`]: the same as work of a board, in time by table or by i860 code that makes the same words.
+//! - [`Surrounding`]: six of them around an eye, as code.
 //! - [`Handing`]: a region's bin handed over to the ring, as such work.
 //!
 //! **Not modelled:** traversal of nested structures, picking, text, and PPHIGS's other primitives.
@@ -37,6 +38,7 @@ mod placed;
 mod placing;
 mod sending;
 mod structure;
+mod surrounding;
 mod view;
 
 pub use begin::{Beginning, Editing};
@@ -54,4 +56,5 @@ pub use placed::{PlacedStructure, RecentViews};
 pub use placing::place_all;
 pub use sending::send_as_tracked;
 pub use structure::{DisplayStructure, ModelFrame};
+pub use surrounding::{Surrounding, SurroundingOutput};
 pub use view::{EyeView, FrameView, MAX_EDITS, ModelEdit, ViewWordsError};

@@ -32,11 +32,41 @@ pub struct DisplayList {
     pub diffuse: f32,
     /// Red, green, blue where nothing is drawn.
     pub background: [u8; 3],
-    /// What many graphics processors compute alike, kept for the next one; empty at first.
+    /// What many graphics processors compute alike, kept for the next one; empty at first. Who changes the list empties it.
     pub recent: RecentViews,
 }
 
 impl DisplayList {
+    /// The same list with each structure's vertices in a row, in the order in which its triangles first name them: what is drawn together
+    /// stands together in memory. A vertex that several structures name is there for each, one that none names is not.
+    ///
+    /// # Panics
+    ///
+    /// If a structure or a triangle names what does not exist.
+    #[must_use]
+    pub fn with_vertices_in_order(mut self) -> Self {
+        let mut order: Vec<usize> = Vec::with_capacity(self.positions.len());
+        // By old number, of the structure that named it last.
+        let mut renumbered = vec![0; self.positions.len()];
+        for structure in &self.structures {
+            let first = order.len();
+            for corner in self.triangles[structure.triangles.clone()].as_flattened_mut() {
+                let old = *corner as usize;
+                let is_known = renumbered[old] >= first && order.get(renumbered[old]) == Some(&old);
+                if !is_known {
+                    renumbered[old] = order.len();
+                    order.push(old);
+                }
+                *corner = renumbered[old] as u32;
+            }
+        }
+        self.positions = order.iter().map(|old| self.positions[*old]).collect();
+        self.normals = order.iter().map(|old| self.normals[*old]).collect();
+        self.colours = order.iter().map(|old| self.colours[*old]).collect();
+        self.recent = RecentViews::default();
+        self
+    }
+
     /// A triangle with everything at its corners.
     ///
     /// # Panics
@@ -210,6 +240,8 @@ fn part(range: &Range<usize>, from: usize, to: usize) -> Range<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::structure::ModelFrame;
+    use pxpl5_geometry::Culling;
 
     #[test]
     fn shares_hold_every_primitive_once() {
@@ -221,6 +253,25 @@ mod tests {
             assert_eq!(held, range.collect::<Vec<_>>());
         }
         assert_eq!(shares.iter().map(|share| share.counts().triangles).sum::<u32>(), 417);
+    }
+
+    #[test]
+    fn vertices_in_order_leave_all_triangles_as_they_were() {
+        let structure =
+            |triangles| DisplayStructure { triangles, spheres: 0..0, frame: ModelFrame::World, culling: Culling::None };
+        // Vertex 0 is named last, 3 and 4 by both structures, 5 by none.
+        let list = DisplayList {
+            positions: (0..7).map(|i| Vec3::splat(i as f32)).collect(),
+            normals: (0..7).map(|i| Vec3::splat(-i as f32)).collect(),
+            colours: (0..7).map(|i| [i; 3]).collect(),
+            triangles: vec![[6, 3, 4], [4, 3, 1], [3, 2, 4], [2, 0, 3]],
+            structures: vec![structure(0..2), structure(2..4)],
+            ..DisplayList::default()
+        };
+        let ordered = list.clone().with_vertices_in_order();
+        assert!((0..4).all(|number| ordered.triangle(number) == list.triangle(number)));
+        assert_eq!(ordered.triangles, [[0, 1, 2], [2, 1, 3], [4, 5, 6], [5, 7, 4]]);
+        assert_eq!((ordered.positions.len(), ordered.normals.len(), ordered.colours.len()), (8, 8, 8));
     }
 
     #[test]

@@ -72,48 +72,85 @@ trait Take {
 struct Found {
     /// By region.
     counts: Vec<PrimitiveCounts>,
-    binning: RegionBinning,
     on_screen: PrimitiveCounts,
     /// Triangles and spheres that are in some bin; of chosen structures only.
     touching: Option<[Vec<u32>; 2]>,
 }
 
-impl Found {
+/// Primitives being counted.
+struct Counting {
+    /// By region, triangles that touch it alone.
+    alone: [u32; RegionMask::CAPACITY as usize],
+    /// By region, all else.
+    counts: Vec<PrimitiveCounts>,
+    on_screen: PrimitiveCounts,
+    binning: RegionBinning,
+}
+
+impl Counting {
+    fn of(picture: &Picture) -> Self {
+        let counts = vec![PrimitiveCounts::default(); picture.viewport.grid().regions() as usize];
+        let alone = [0; RegionMask::CAPACITY as usize];
+        Self { alone, counts, on_screen: PrimitiveCounts::default(), binning: picture.binning }
+    }
+
     fn in_region(&mut self, region: RegionId) -> &mut PrimitiveCounts {
         &mut self.counts[usize::from(region.0)]
     }
 
-    /// A triangle (kind 0) or sphere (1) is in some bin.
-    #[inline(always)]
-    fn note_touching(&mut self, kind: usize, number: u32) {
-        if let Some(touching) = &mut self.touching {
-            touching[kind].push(number);
+    fn found(mut self, touching: Option<[Vec<u32>; 2]>) -> Found {
+        for (counts, alone) in self.counts.iter_mut().zip(self.alone) {
+            counts.triangles += alone;
+            self.on_screen.triangles += alone;
         }
+        if self.binning == RegionBinning::All {
+            self.counts.iter_mut().for_each(|counts| counts.triangles = self.on_screen.triangles);
+        }
+        Found { counts: self.counts, on_screen: self.on_screen, touching }
     }
 }
 
-impl Take for Found {
+impl Take for Counting {
     #[inline(always)]
-    fn triangle_in(&mut self, region: RegionId, triangle: u32) {
-        self.in_region(region).triangles += 1;
-        self.on_screen.triangles += 1;
-        self.note_touching(0, triangle);
+    fn triangle_in(&mut self, region: RegionId, _: u32) {
+        self.alone[usize::from(region.0)] += 1;
     }
 
-    fn piece(&mut self, touched: RegionMask, entry: BinEntry) {
+    fn piece(&mut self, touched: RegionMask, _: BinEntry) {
         if self.binning == RegionBinning::Touched {
             touched.iter().for_each(|region| self.in_region(region).triangles += 1);
         }
         self.on_screen.triangles += 1;
+    }
+
+    fn sphere(&mut self, regions: RegionMask, _: u32) {
+        regions.iter().for_each(|region| self.in_region(region).spheres += 1);
+        self.on_screen.spheres += 1;
+    }
+}
+
+/// The same, and the numbers of triangles and of spheres that are in some bin are kept.
+struct Noting {
+    counting: Counting,
+    touching: [Vec<u32>; 2],
+}
+
+impl Take for Noting {
+    fn triangle_in(&mut self, region: RegionId, triangle: u32) {
+        self.counting.triangle_in(region, triangle);
+        self.touching[0].push(triangle);
+    }
+
+    fn piece(&mut self, touched: RegionMask, entry: BinEntry) {
+        self.counting.piece(touched, entry);
         if entry.piece == Some(0) {
-            self.note_touching(0, entry.triangle);
+            self.touching[0].push(entry.triangle);
         }
     }
 
     fn sphere(&mut self, regions: RegionMask, number: u32) {
-        regions.iter().for_each(|region| self.in_region(region).spheres += 1);
-        self.on_screen.spheres += 1;
-        self.note_touching(1, number);
+        self.counting.sphere(regions, number);
+        self.touching[1].push(number);
     }
 }
 
@@ -166,10 +203,15 @@ impl Take for Touching {
 }
 
 impl Walk {
+    /// The structures whose primitives are taken.
+    fn taken(&self) -> impl Iterator<Item = &PlacedStructure> {
+        let is_chosen = |structure: usize| self.chosen.as_ref().is_none_or(|all| all.get(structure) == Some(&true));
+        self.placed.iter().enumerate().filter(move |(structure, _)| is_chosen(*structure)).map(|(_, place)| place)
+    }
+
     fn go(&self, take: &mut impl Take) -> SetupStats {
         let mut stats = SetupStats::default();
-        let is_chosen = |structure: usize| self.chosen.as_ref().is_none_or(|all| all.get(structure) == Some(&true));
-        for (_, place) in self.placed.iter().enumerate().filter(|(structure, _)| is_chosen(*structure)) {
+        for place in self.taken() {
             let Some(transform) = &place.transform else { continue };
             self.triangles(place, transform, take, &mut stats);
             for number in self.share.held_spheres(&place.structure.spheres) {
@@ -185,11 +227,11 @@ impl Walk {
         let list = &self.share.list;
         let first = place.structure.triangles.start;
         let touched = place.touched(list, transform);
+        let binned = self.picture.binning == RegionBinning::Touched;
         let mut in_one_region = 0;
         for number in self.share.held_triangles(&place.structure.triangles) {
-            let touch = touched.get(number - first);
             let triangle = number as u32;
-            if let (Touch::Region(region), RegionBinning::Touched) = (touch, self.picture.binning) {
+            if binned && let Some(region) = touched.only_region(number - first) {
                 in_one_region += 1;
                 take.triangle_in(region, triangle);
                 continue;
@@ -199,7 +241,7 @@ impl Walk {
                 take.piece(mask, BinEntry { triangle, piece: Some(pieces) });
                 pieces += 1;
             };
-            match touch {
+            match touched.get(number - first) {
                 Touch::NeedsClipping => transform.bin(&list.corners(number), stats, put),
                 whole => {
                     stats.triangles += 1;
@@ -234,19 +276,15 @@ impl Share {
 
 impl Pass {
     fn new(share: Share, view: &FrameView, eye: usize, picture: Picture, chosen: Option<&[bool]>) -> Self {
-        let regions = picture.viewport.grid().regions();
         let placed = place_once(&share.list, view, eye, picture.viewport);
         let walk = Walk { share, placed, picture, chosen: chosen.map(Box::from) };
-        let mut found = Found {
-            counts: vec![PrimitiveCounts::default(); regions as usize],
-            binning: picture.binning,
-            on_screen: PrimitiveCounts::default(),
-            touching: chosen.map(|_| Default::default()),
+        let mut counting = Counting::of(&picture);
+        let (stats, found) = if walk.chosen.is_none() {
+            (walk.go(&mut counting), counting.found(None))
+        } else {
+            let mut noting = Noting { counting, touching: Default::default() };
+            (walk.go(&mut noting), noting.counting.found(Some(noting.touching)))
         };
-        let stats = walk.go(&mut found);
-        if picture.binning == RegionBinning::All {
-            found.counts.iter_mut().for_each(|counts| counts.triangles = found.on_screen.triangles);
-        }
         let encoder = picture.pixels.then(|| Encoder::for_picture(&picture)).flatten();
         Self { walk, found, stats, bins: OnceLock::new(), touching: OnceLock::new(), encoder }
     }
@@ -356,10 +394,11 @@ impl Pass {
 
     /// Structures in order, with their transforms.
     pub(crate) fn drawn(&self) -> impl Iterator<Item = (&PlacedStructure, &Transform)> {
-        drawn(&self.walk.placed)
+        self.walk.taken().filter_map(|place| Some((place, place.transform.as_ref()?)))
     }
-}
 
-fn drawn(placed: &[PlacedStructure]) -> impl Iterator<Item = (&PlacedStructure, &Transform)> {
-    placed.iter().filter_map(|place| Some((place, place.transform.as_ref()?)))
+    /// The places of the structures in the display list that are drawn; `None` for all.
+    pub(crate) fn chosen(&self) -> Option<&[bool]> {
+        self.walk.chosen.as_deref()
+    }
 }

@@ -1,6 +1,7 @@
 //! Pictures: what is made of a view.
 
 use pxpl5_geometry::Viewport;
+use pxpl5_geometry::kernel::{Kernel, KernelSurface, Schedule};
 use pxpl5_renderer::Layout;
 
 /// Where colours are computed.
@@ -35,4 +36,15 @@ pub struct Picture {
     pub layout: Layout,
     /// Whether somebody may want the command words.
     pub pixels: bool,
+}
+
+impl Picture {
+    /// The kernel of its triangles; `None` where there is no i860 code for its TRANSFORM, which takes the time of the table then.
+    pub(crate) fn kernel(&self, schedule: Schedule) -> Option<Kernel> {
+        let surface = match self.shading {
+            Shading::Gouraud => KernelSurface::Gouraud,
+            Shading::Phong => KernelSurface::Phong,
+        };
+        Kernel::for_picture(schedule, surface, &self.viewport, self.binning == RegionBinning::Touched)
+    }
 }

@@ -3,7 +3,7 @@
 use crate::structure::DisplayStructure;
 use crate::view::{EyeView, ModelEdit};
 use glam::Mat4;
-use pxpl5_geometry::{Light, ScreenVertex, Touched, Transform, VertexSurface, Viewport};
+use pxpl5_geometry::{Light, ScreenVertex, SurfaceVertex, Touched, Transform, Viewport};
 use std::collections::VecDeque;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -30,20 +30,8 @@ pub struct PlacedStructure {
 pub(crate) struct Vertices {
     pub(crate) first: usize,
     pub(crate) on_screen: Vec<ScreenVertex>,
-    pub(crate) normals: OnceLock<Vec<VertexSurface>>,
-    pub(crate) colours: OnceLock<Vec<VertexSurface>>,
-}
-
-/// Where a triangle's corners stand among a structure's vertices.
-pub(crate) struct Corners(pub(crate) [usize; 3]);
-
-impl Corners {
-    /// What belongs to the three corners, among that of all vertices.
-    #[inline(always)]
-    pub(crate) fn among<'a, T>(&self, all: &'a [T]) -> [&'a T; 3] {
-        let [a, b, c] = self.0;
-        [&all[a], &all[b], &all[c]]
-    }
+    pub(crate) normals: OnceLock<Vec<SurfaceVertex>>,
+    pub(crate) colours: OnceLock<Vec<SurfaceVertex>>,
 }
 
 /// Views of a display list that graphics processors asked for lately. All of them ask for the same ones, and get the

@@ -1,11 +1,11 @@
 //! The display list as one eye sees it: structures in place, vertices transformed once for all who share them.
 
 use crate::list::DisplayList;
-use crate::placed::{Corners, PlacedStructure, Vertices, ViewKey};
+use crate::placed::{PlacedStructure, Vertices, ViewKey};
 use crate::structure::{DisplayStructure, ModelFrame};
 use crate::view::{EyeView, FrameView, product};
 use glam::{Mat4, Vec3};
-use pxpl5_geometry::{Light, Touched, Transform, UnclippedTriangle, VertexSurface, ViewTransform, Viewport};
+use pxpl5_geometry::{Light, SurfaceVertex, Touched, Transform, ViewTransform, Viewport};
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
@@ -16,12 +16,14 @@ const UNMOVED: Mat4 = Mat4::IDENTITY;
 ///
 /// # Panics
 ///
-/// If the view has no eye.
+/// If the view has no eye; if the list has other structures than when it was first placed, and its
+/// [`recent`](DisplayList::recent) is the same.
 #[must_use]
 pub fn place_all(list: &DisplayList, view: &FrameView, eye: usize, viewport: Viewport) -> Vec<PlacedStructure> {
     let eye = eye_of(view, eye);
-    let named = list.recent.named(|| named(list)).iter().cloned();
-    let structures = list.structures.iter().zip(named).enumerate();
+    let named = list.recent.named(|| named(list));
+    assert_eq!(named.len(), list.structures.len(), "a list that is changed wants an empty `recent`");
+    let structures = list.structures.iter().zip(named.iter().cloned()).enumerate();
     structures.map(|(i, (s, named))| place(list, s, named, model(view, i), eye, viewport)).collect()
 }
 
@@ -101,41 +103,30 @@ impl PlacedStructure {
     pub(crate) fn touched(&self, list: &DisplayList, transform: &Transform) -> &Touched {
         self.touched.get_or_init(|| {
             let vertices = self.vertices(list, transform);
-            let triangles = self.structure.triangles.clone();
-            transform.touched(&vertices.on_screen, triangles.map(|number| vertices.corners(list, number).0))
+            let triangles = &list.triangles[self.structure.triangles.clone()];
+            transform.touched(&vertices.on_screen, vertices.first as u32, triangles)
         })
     }
 }
 
 impl Vertices {
-    /// Places of a triangle's corners among the vertices.
-    #[inline(always)]
-    pub(crate) fn corners(&self, list: &DisplayList, triangle: usize) -> Corners {
-        let [a, b, c] = list.triangles[triangle];
-        Corners([a as usize - self.first, b as usize - self.first, c as usize - self.first])
+    fn named(&self) -> Range<usize> {
+        self.first..self.first + self.on_screen.len()
     }
 
-    /// A triangle's corners on the screen; `None` where it needs clipping.
-    #[inline(always)]
-    pub(crate) fn unclipped(&self, at: &Corners) -> Option<UnclippedTriangle> {
-        UnclippedTriangle::new(at.among(&self.on_screen))
+    /// All vertices with their normals.
+    pub(crate) fn normals(&self, list: &DisplayList, transform: &Transform) -> &[SurfaceVertex] {
+        let find =
+            || transform.vertex_normals(&self.on_screen, &list.positions[self.named()], &list.normals[self.named()]);
+        self.normals.get_or_init(find)
     }
 
-    /// The normals of all vertices.
-    pub(crate) fn normals(&self, list: &DisplayList, transform: &Transform) -> &[VertexSurface] {
-        self.normals.get_or_init(|| {
-            let all = self.first..self.first + self.on_screen.len();
-            let positions = &list.positions[all.clone()];
-            let normals = &list.normals[all];
-            positions.iter().zip(normals).map(|(p, n)| transform.vertex_normal(*p, *n)).collect()
-        })
-    }
-
-    /// The lit colours of all vertices.
-    pub(crate) fn colours(&self, list: &DisplayList, transform: &Transform, light: &Light) -> &[VertexSurface] {
+    /// All vertices with their lit colours.
+    pub(crate) fn colours(&self, list: &DisplayList, transform: &Transform, light: &Light) -> &[SurfaceVertex] {
         self.colours.get_or_init(|| {
-            let all = self.first..self.first + self.on_screen.len();
-            transform.vertex_colours(light, all.map(|i| (list.positions[i], list.normals[i], list.colours[i])))
+            let all = self.named();
+            let [positions, normals] = [&list.positions, &list.normals].map(|all_of_them| &all_of_them[all.clone()]);
+            transform.vertex_colours(light, &self.on_screen, positions, normals, &list.colours[all])
         })
     }
 }

@@ -212,7 +212,7 @@ fn a_pass_by_code_takes_the_same_time_whatever_the_table_says() {
 #[test]
 fn a_picture_without_a_kernel_takes_the_time_of_the_table() {
     let share = Share::new(list(30), 0, 1);
-    let grid = pxpl5_wire::RegionGrid { width: 320, height: 240, region_width: 128, region_height: 128 };
+    let grid = pxpl5_wire::RegionGrid { width: 320, height: 240, region_width: 64, region_height: 64 };
     let viewport = Viewport::new(grid, pxpl5_wire::Lines::Frame).expect("a valid picture");
     let passes = [share.transform(&view(), 0, picture(viewport, Shading::Phong, RegionBinning::Touched))];
     let work = Transforming { passes: &passes, context: 0, begins: false };

@@ -6,7 +6,7 @@ use pphigs::{
     RegionEnvelope, Shading, Share, region_messages,
 };
 use pxpl5_geometry::{Culling, Viewport, WorldSphere};
-use pxpl5_gp::{CodeVersion, GpTiming, Processor, Work};
+use pxpl5_gp::{CodeVersion, GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::{Span, SplitMix64};
 use pxpl5_wire::{
@@ -77,7 +77,7 @@ fn compare(
     region: RegionId,
     envelope: RegionEnvelope,
 ) -> usize {
-    let handing = Handing { pass, context, region, envelope };
+    let handing = Handing { pass, context, view: 0, region, envelope };
     let span = handing.by_code(&GpTiming::PAPERS, processor).expect("it returns");
     assert!(span > Span::ZERO);
     let found = Handing::listed(processor).expect("in memory");
@@ -126,13 +126,40 @@ fn pieces_hold_the_words_of_the_native_firmwares_messages() {
     }
 }
 
+/// The list of pieces has room for 44,236 entries of a bin. A board of 8 MB never holds so many, one of more may.
 #[test]
-fn by_the_table_it_is_part_of_a_message() {
+fn a_bin_of_more_entries_than_the_list_of_pieces_holds_is_a_fault() {
+    let triangles: usize = 44_300;
+    let mut list = DisplayList { towards_light: Vec3::Z, ambient: 0.2, diffuse: 0.8, ..DisplayList::default() };
+    list.positions = [Vec3::ZERO, Vec3::X, Vec3::Y].map(|at| at * 0.01 - Vec3::Z * 6.0).to_vec();
+    list.normals = vec![Vec3::Z; 3];
+    list.colours = vec![[200; 3]; 3];
+    list.triangles = vec![[0, 1, 2]; triangles];
+    let (frame, culling) = (ModelFrame::World, Culling::None);
+    list.structures = vec![DisplayStructure { triangles: 0..triangles, spheres: 0..0, frame, culling }];
+    let share = Share::new(Arc::new(list), 0, 1);
+    let pass = pass(&share, 0.1, Shading::Gouraud, Layout::slats(), RegionBinning::Touched);
+    let full = (0..20).map(RegionId).find(|region| pass.counts(*region).total() as usize == triangles).expect("in one");
+    let mut processor = Processor::new(NodeId(7), 64 << 20, CodeVersion::Scheduled, i860::Config::cycle());
+    let handing = Handing { pass: &pass, context: 1, view: 0, region: full, envelope: RegionEnvelope::default() };
+    let fault = handing.by_code(&GpTiming::PAPERS, &mut processor).expect_err("too many");
+    let (needed_bytes, available_bytes) = (8 * triangles as u32, 8 * 44_236);
+    assert_eq!(fault, ProcessorFault::NoRoom { gp: NodeId(7), context: 1, needed_bytes, available_bytes });
+}
+
+#[test]
+fn by_the_published_table_it_is_part_of_a_message() {
     let share = share(30, 0);
     let layout = Layout::rendering_control_phong();
     let pass = pass(&share, 0.0, Shading::Phong, layout, RegionBinning::Touched);
-    let handing = Handing { pass: &pass, context: 0, region: RegionId(9), envelope: RegionEnvelope::default() };
+    let regions = (0..20).map(RegionId);
+    let region = regions.max_by_key(|region| pass.counts(*region).total()).expect("twenty");
+    let handing = Handing { pass: &pass, context: 0, view: 0, region, envelope: RegionEnvelope::default() };
     assert_eq!(handing.by_table(&GpTiming::PAPERS), Span::ZERO);
+    let entries = u64::from(pass.counts(region).total());
+    assert!(entries > 0);
+    let timing = GpTiming { token_entry_ns: 700, ..GpTiming::PAPERS };
+    assert_eq!(handing.by_table(&timing), Span::from_ns(700 * entries));
 }
 
 #[test]
@@ -140,6 +167,7 @@ fn without_bins_of_code_nothing_is_handed_over() {
     let share = share(30, 0);
     let pass = pass(&share, 0.0, Shading::Gouraud, Layout::slats(), RegionBinning::All);
     let mut processor = Processor::new(NodeId(1), 8 << 20, CodeVersion::Scheduled, i860::Config::cycle());
-    let handing = Handing { pass: &pass, context: 0, region: RegionId(9), envelope: RegionEnvelope::default() };
+    let handing =
+        Handing { pass: &pass, context: 0, view: 0, region: RegionId(9), envelope: RegionEnvelope::default() };
     assert_eq!(handing.by_code(&GpTiming::PAPERS, &mut processor), Ok(Span::ZERO));
 }

@@ -5,10 +5,10 @@ mod kernel;
 use glam::{Mat4, Vec3, Vec4};
 use i860::Config;
 use kernel::{Bench, Output, Strip, frame, native, strips, triangles, triangles_of};
-use pxpl5_geometry::kernel::{Kernel, KernelList, KernelSurface, Schedule};
+use pxpl5_geometry::kernel::{Kernel, KernelList, KernelPicture, KernelSurface, Schedule};
 use pxpl5_geometry::{Triangle, ViewTransform, Viewport};
 use pxpl5_sim::SplitMix64;
-use pxpl5_wire::FieldParity;
+use pxpl5_wire::{FieldParity, Lines, REGION_SIZE, RegionGrid};
 
 /// Small, middling and large triangles, among them ones outside the guard band.
 fn mixture() -> Vec<Triangle> {
@@ -128,7 +128,7 @@ fn kernels_that_cull_give_the_native_words_and_bins() {
 
 /// Triangles all around the eye, from far outside to across several planes at once, some with a corner on a plane of the guard band as
 /// nearly as singles can say; seen through matrices that mirror and others.
-fn around_the_eye(seed: u64, mirrored: bool) -> (ViewTransform, Vec<Triangle>) {
+fn around_the_eye(seed: u64, mirrored: bool, viewport: Viewport) -> (ViewTransform, Vec<Triangle>) {
     let mut all = triangles(1000, 1.0, seed);
     let mut numbers = SplitMix64::new(seed);
     let mut view = kernel::view();
@@ -144,9 +144,10 @@ fn around_the_eye(seed: u64, mirrored: bool) -> (ViewTransform, Vec<Triangle>) {
         let centre = eye + ahead * numbers.unit() * 30.0;
         triangle.positions = triangle.positions.map(|p| centre + (p - triangle.positions[0] * 0.5) * size);
         if n % 3 == 0 {
-            // 4,095 px from the middle of pixel 0, in each direction of a picture of 640 x 480.
+            // 4,095 px from the middle of pixel 0, in each direction of the picture.
             let w = 0.5 + 30.0 * numbers.unit();
-            let [x, y] = [(4095.0 - 320.0) / 320.0, (4095.0 - 240.0) / 240.0];
+            let [width, height] = [viewport.grid().width, viewport.frame_lines()].map(|size| size as f32 / 2.0);
+            let [x, y] = [(4095.0 - width) / width, (4095.0 - height) / height];
             let sign = if numbers.unit() < 0.5 { -1.0 } else { 1.0 };
             let [cx, cy] = if numbers.unit() < 0.5 { [sign * x, 0.3] } else { [0.3, sign * y] };
             let nudge = 1.0 + (numbers.unit() - 0.5) * 1e-6;
@@ -163,7 +164,7 @@ fn around_the_eye(seed: u64, mirrored: bool) -> (ViewTransform, Vec<Triangle>) {
     // Steep planes of what is not clipped are the kernels' affair, which do not flatten them.
     let kernel = frame(Schedule::Dual);
     all.retain(|triangle| {
-        let (_, stats) = native(kernel, &view, Viewport::FRAME, std::slice::from_ref(triangle));
+        let (_, stats) = native(kernel, &view, viewport, std::slice::from_ref(triangle));
         stats.clipped > 0 || stats.flattened_planes == 0
     });
     (view, all)
@@ -174,7 +175,7 @@ fn the_clipper_gives_the_native_words_and_bins_of_triangles_all_around_the_eye()
     let mut flattened = 0;
     for (seed, schedule) in (20..).zip([Schedule::Straight, Schedule::Compiled, Schedule::Dual]) {
         for mirrored in [false, true] {
-            let (view, input) = around_the_eye(seed, mirrored);
+            let (view, input) = around_the_eye(seed, mirrored, Viewport::FRAME);
             for surface in [KernelSurface::Gouraud, KernelSurface::Phong] {
                 for (viewport, culls) in PICTURES.into_iter().flat_map(|picture| [(picture, false), (picture, true)]) {
                     let kernel = Kernel::for_picture(schedule, surface, &viewport, true).expect("frames and fields");
@@ -190,6 +191,70 @@ fn the_clipper_gives_the_native_words_and_bins_of_triangles_all_around_the_eye()
         }
     }
     assert!(flattened > 0, "steep planes are among them");
+}
+
+/// Frames that are no NTSC frame: faces of a cube from one region to 121, as many regions as there may be, and two whose last regions are
+/// cut off.
+fn other_frames() -> impl Iterator<Item = Viewport> {
+    let sizes = [(128, 128), (256, 256), (512, 512), (1408, 1408), (2048, 1024), (700, 500), (1280, 1000)];
+    sizes.into_iter().map(|(width, height)| {
+        let grid = RegionGrid { width, height, region_width: REGION_SIZE, region_height: REGION_SIZE };
+        Viewport::new(grid, Lines::Frame).expect("at most 128 regions")
+    })
+}
+
+#[test]
+fn the_kernels_of_other_frames_give_the_native_words_and_bins() {
+    for viewport in other_frames() {
+        for schedule in [Schedule::Straight, Schedule::Compiled, Schedule::Dual] {
+            for surface in [KernelSurface::Gouraud, KernelSurface::Phong] {
+                let kernel = Kernel::for_picture(schedule, surface, &viewport, true).expect("regions of 128 x 128");
+                assert_eq!(kernel.picture, KernelPicture::Grid);
+                assert_same_words(schedule, surface, viewport);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_kernels_of_strips_of_other_frames_give_the_native_words_and_bins() {
+    for viewport in other_frames() {
+        assert_same_words_of_strips(Schedule::Compiled, KernelSurface::Gouraud, viewport);
+        assert_same_words_of_strips(Schedule::Dual, KernelSurface::Phong, viewport);
+    }
+}
+
+#[test]
+fn the_clipper_gives_the_native_words_and_bins_of_other_frames() {
+    let schedules = [Schedule::Straight, Schedule::Compiled, Schedule::Dual];
+    for (n, (viewport, seed)) in other_frames().zip(40..).enumerate() {
+        let (view, input) = around_the_eye(seed, n % 2 == 1, viewport);
+        for surface in [KernelSurface::Gouraud, KernelSurface::Phong] {
+            let kernel = Kernel::for_picture(schedules[n % 3], surface, &viewport, true).expect("it has one");
+            for kernel in [kernel, Kernel { culls: true, ..kernel }] {
+                let (expected, stats) = native(kernel, &view, viewport, &input);
+                assert!(stats.clipped > 200 && stats.screen_triangles > 100, "{stats:?}");
+                let mut bench = Bench::in_view(kernel, &view, viewport, &input);
+                bench.run();
+                assert_same_output(&bench.output(), &expected, kernel);
+            }
+        }
+    }
+}
+
+/// Fields of other sizes, regions of other sizes, and frames without bins.
+#[test]
+fn pictures_that_no_code_knows_have_no_kernel() {
+    let kernel = |grid, lines, binned| {
+        let viewport = Viewport::new(grid, lines).expect("a valid picture");
+        Kernel::for_picture(Schedule::Compiled, KernelSurface::Phong, &viewport, binned)
+    };
+    let small = RegionGrid { width: 320, height: 240, ..RegionGrid::FRAME };
+    assert!(kernel(small, Lines::Frame, true).is_some());
+    assert_eq!(kernel(small, Lines::Frame, false), None);
+    assert_eq!(kernel(small, Lines::Field(FieldParity::Even), true), None);
+    assert_eq!(kernel(RegionGrid { region_width: 64, ..small }, Lines::Frame, true), None);
+    assert_eq!(kernel(RegionGrid { region_height: 120, ..small }, Lines::Frame, true), None);
 }
 
 /// Corners that are no numbers, or larger than clip coordinates may be: nothing is drawn.
@@ -211,8 +276,10 @@ fn triangles_that_cannot_be_represented_are_left_out() {
 
 #[test]
 fn each_loop_of_the_dual_kernel_fits_the_instruction_cache() {
-    for (surface, field) in [(KernelSurface::Gouraud, false), (KernelSurface::Phong, true)] {
-        let program = kernel::program(Kernel { surface, field, ..frame(Schedule::Dual) });
+    use KernelPicture::{Field, Frame, Grid};
+    use KernelSurface::{Gouraud, Phong};
+    for (surface, picture) in [(Gouraud, Frame), (Phong, Field), (Gouraud, Grid), (Phong, Grid)] {
+        let program = kernel::program(Kernel { surface, picture, ..frame(Schedule::Dual) });
         let [corners, again, finished] =
             ["corners", "again", "finished"].map(|label| program.symbol(label).expect("label"));
         let loops = [again - corners, finished - again];

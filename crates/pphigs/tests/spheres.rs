@@ -9,7 +9,7 @@ use pxpl5_geometry::{Culling, SetupStats, Viewport, WorldSphere};
 use pxpl5_gp::{CodeVersion, Processor};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::SplitMix64;
-use pxpl5_wire::{FieldParity, NodeId, RegionId, ViewNumber, Word};
+use pxpl5_wire::{FieldParity, Lines, NodeId, RegionGrid, RegionId, ViewNumber, Word};
 use std::sync::Arc;
 
 struct Numbers(SplitMix64);
@@ -134,14 +134,20 @@ fn add(sum: &mut SetupStats, of: SetupStats) {
 fn spheres_of_the_code_are_those_of_the_native_firmware_in_words_and_bins() {
     let mut numbers = Numbers(SplitMix64::new(41));
     let mut all = SetupStats::default();
-    let pictures = [Viewport::FRAME, Viewport::field(FieldParity::Even), Viewport::field(FieldParity::Odd)];
+    let frame = |width, height| {
+        let grid = RegionGrid { width, height, ..RegionGrid::FRAME };
+        Viewport::new(grid, Lines::Frame).expect("at most 128 regions")
+    };
+    let ntsc = [Viewport::FRAME, Viewport::field(FieldParity::Even), Viewport::field(FieldParity::Odd)];
+    // Faces of a cube, and a frame whose last regions are cut off.
+    let pictures = [ntsc.as_slice(), &[frame(256, 256), frame(1408, 1408), frame(700, 500)]].concat();
     for n in 0..8 {
         let list = list(&mut numbers, 2000);
         let view = view(&mut numbers, n);
         let share = Share::new(Arc::clone(&list), n % 2, 2);
         let mut processor = Processor::new(NodeId(1), 8 << 20, CodeVersion::Scheduled, i860::Config::functional());
         share.install(&mut processor).expect("it fits");
-        for viewport in pictures {
+        for viewport in pictures.iter().copied() {
             for (shading, words) in [(Shading::Gouraud, 53), (Shading::Phong, 38)] {
                 let layout = Layout::rendering_control_phong();
                 let picture = Picture { viewport, shading, binning: RegionBinning::Touched, layout, pixels: true };

@@ -208,7 +208,7 @@ async fn walk(
     let context = (token.drawing.0 % 2) as u8;
     let pass = state.borrow().bins[usize::from(context)].clone();
     if let Some(pass) = &pass {
-        gp.work(&Handing { pass, context, region: token.region, envelope: envelope(config, token) }).await?;
+        gp.work(&Handing { pass, context, view: 0, region: token.region, envelope: envelope(config, token) }).await?;
     }
     for list in pass.map_or_else(Vec::new, |pass| region_messages(&pass, token.region, 0, envelope(config, token))) {
         gp.clump_buffer_free().await;

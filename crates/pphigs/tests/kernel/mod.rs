@@ -5,7 +5,9 @@
 
 use glam::{Mat4, Vec3};
 use i860::{Config, Cpu, Profile, Program, Ram, RunEnd, linear, link};
-use pxpl5_geometry::kernel::{Heads, Kernel, KernelList, KernelSurface, Schedule, display_list_words, vertex_words};
+use pxpl5_geometry::kernel::{
+    Heads, Kernel, KernelList, KernelPicture, KernelSurface, Schedule, display_list_words, vertex_words,
+};
 use pxpl5_geometry::{Culling, Light, SetupStats, Transform, Triangle, ViewTransform, Viewport};
 use pxpl5_renderer::{Command, Layout};
 use pxpl5_sim::SplitMix64;
@@ -20,13 +22,20 @@ const STACK: u32 = 0x1_1400;
 const TRIANGLES: u32 = 0x2_0000;
 const COMMANDS: u32 = 0x20_0000;
 const BINS: u32 = 0x60_0000;
-const BIN_BYTES: u32 = 0x1_8000;
+
+/// Room for each bin: of an NTSC frame's 20 what the figures were measured with.
+const fn bin_bytes(regions: u32) -> u32 {
+    let share = (MEMORY as u32 - BINS) / regions / 32 * 32;
+    if share < 0x1_8000 { share } else { 0x1_8000 }
+}
+
 const RETURN: u32 = 0x0800;
 
 /// The kernel of a schedule for Gouraud triangles in bins of a frame, which the report is about.
 pub(crate) const fn frame(schedule: Schedule) -> Kernel {
     let list = KernelList::Triangles;
-    Kernel { schedule, surface: KernelSurface::Gouraud, list, field: false, binned: true, culls: false }
+    let picture = KernelPicture::Frame;
+    Kernel { schedule, surface: KernelSurface::Gouraud, list, picture, binned: true, culls: false }
 }
 
 /// The kernel and its clipper, assembled.
@@ -245,7 +254,7 @@ impl Bench {
         assert!(4 * data.len() < (COMMANDS - TRIANGLES) as usize);
         ram.load_words(TRIANGLES, data).expect("fits");
         let regions = viewport.grid().regions();
-        let bins: Vec<u32> = (0..regions).map(|n| BINS + n * BIN_BYTES).collect();
+        let bins: Vec<u32> = (0..regions).map(|n| BINS + n * bin_bytes(regions)).collect();
         ram.load_words(BIN_TABLE, &bins).expect("fits");
         let step = (4 * data.len() / count) as u32;
         let command_bytes = kernel.command_bytes();
@@ -290,7 +299,7 @@ impl Bench {
         let mut by_command: BTreeMap<u32, Vec<u16>> = BTreeMap::new();
         let tails = self.ram.words(BIN_TABLE, self.regions as usize).expect("inside");
         for (n, tail) in (0..).zip(tails) {
-            let head = BINS + u32::from(n) * BIN_BYTES;
+            let head = BINS + u32::from(n) * bin_bytes(self.regions);
             for command in self.ram.words(head, (tail - head) as usize / 4).expect("inside") {
                 by_command.entry((command - COMMANDS) / self.command_bytes).or_default().push(n);
             }

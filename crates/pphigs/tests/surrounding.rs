@@ -1,0 +1,210 @@
+//! Six views around an eye by code: each view's words and bins are those of the native firmware, and few primitives are given to a view
+//! that does not see them.
+
+use glam::{Mat4, Quat, Vec3, Vec4};
+use pphigs::{
+    DisplayList, DisplayStructure, EyeView, FrameView, Handing, ModelEdit, ModelFrame, Pass, Picture, RegionBinning,
+    RegionEnvelope, Shading, Share, Surrounding, SurroundingOutput, region_messages,
+};
+use pxpl5_geometry::{Culling, Viewport, WorldSphere};
+use pxpl5_gp::{CodeVersion, GpTiming, Processor, ProcessorFault, Work};
+use pxpl5_renderer::Layout;
+use pxpl5_sim::{Span, SplitMix64};
+use pxpl5_wire::{Lines, NodeId, RegionGrid, RegionId, ViewNumber, Word};
+use std::sync::Arc;
+
+const VERSIONS: [CodeVersion; 3] = [CodeVersion::Unoptimised, CodeVersion::Compiled, CodeVersion::Scheduled];
+
+struct Numbers(SplitMix64);
+
+impl Numbers {
+    /// -1 to 1.
+    fn next(&mut self) -> f32 {
+        2.0 * self.0.unit() - 1.0
+    }
+
+    fn vector(&mut self, size: f32) -> Vec3 {
+        Vec3::new(self.next(), self.next(), self.next()) * size
+    }
+
+    /// Around the eye, near and far.
+    fn place(&mut self) -> Vec3 {
+        self.vector(1.0).normalize_or(Vec3::X) * 20.0_f32.powf(0.9 * self.next())
+    }
+}
+
+/// Triangles and spheres all around the origin, most small beside their distance, some large, in five structures: one fixed to the head,
+/// one that is not drawn, one that leaves out what faces away.
+fn list(numbers: &mut Numbers, triangles: u32, spheres: usize) -> Arc<DisplayList> {
+    let mut list = DisplayList { towards_light: Vec3::Y, ambient: 0.25, diffuse: 0.75, ..DisplayList::default() };
+    for number in 0..triangles {
+        let centre = numbers.place();
+        let size = centre.length() * if number % 11 == 0 { 2.0 } else { 0.1 };
+        for corner in 0..3 {
+            list.positions.push(centre + numbers.vector(size));
+            list.normals.push(numbers.vector(1.0));
+            list.colours.push([corner * 100; 3]);
+        }
+        list.triangles.push([3 * number, 3 * number + 1, 3 * number + 2]);
+    }
+    let sphere = |_| {
+        let centre = numbers.place();
+        WorldSphere { centre, radius: centre.length() * (0.3 * numbers.next()).abs(), colour: [200, 100, 50] }
+    };
+    list.spheres = (0..spheres).map(sphere).collect();
+    let fifth = |all: usize, n: usize| all * n / 5..all * (n + 1) / 5;
+    list.structures = (0..5)
+        .map(|n| DisplayStructure {
+            triangles: fifth(triangles as usize, n),
+            spheres: fifth(spheres, n),
+            frame: if n == 1 { ModelFrame::Head } else { ModelFrame::World },
+            culling: if n == 3 { Culling::Back } else { Culling::None },
+        })
+        .collect();
+    Arc::new(list)
+}
+
+const CHOSEN: [bool; 5] = [true, true, false, true, true];
+
+/// The six views, along +x, -x, +y, -y, +z, -z, of an eye whose axes are nearly the world's.
+fn views(numbers: &mut Numbers, scale: f32) -> FrameView {
+    let ahead =
+        Mat4::from_translation(numbers.vector(0.5)) * Mat4::from_quat(Quat::from_scaled_axis(numbers.vector(0.1)));
+    let (near, far) = (0.1, 60.0);
+    let deep = far / (near - far);
+    let projection = Mat4::from_cols(
+        Vec4::new(scale, 0.0, 0.0, 0.0),
+        Vec4::new(0.0, scale, 0.0, 0.0),
+        Vec4::new(0.0, 0.0, deep, -1.0),
+        Vec4::new(0.0, 0.0, near * deep, 0.0),
+    );
+    // Rows: to the right, up, and against the direction of the view.
+    let turns = [
+        [Vec3::Z, Vec3::Y, Vec3::NEG_X],
+        [Vec3::NEG_Z, Vec3::Y, Vec3::X],
+        [Vec3::X, Vec3::NEG_Z, Vec3::NEG_Y],
+        [Vec3::X, Vec3::Z, Vec3::Y],
+        [Vec3::NEG_X, Vec3::Y, Vec3::NEG_Z],
+        [Vec3::X, Vec3::Y, Vec3::Z],
+    ];
+    let eyes = turns.map(|[right, up, back]| {
+        let turn = Mat4::from_cols(right.extend(0.0), up.extend(0.0), back.extend(0.0), Vec4::W).transpose();
+        EyeView { world_to_eye: turn * ahead, head_to_eye: turn, projection }
+    });
+    let model = |numbers: &mut Numbers, mirror: f32| {
+        let turn = Quat::from_scaled_axis(numbers.vector(3.0));
+        Mat4::from_rotation_translation(turn, numbers.vector(1.0)) * Mat4::from_scale(Vec3::new(mirror, 1.0, 1.0) * 1.5)
+    };
+    let edits = vec![
+        ModelEdit { structure: 3, model: model(numbers, 1.0) },
+        ModelEdit { structure: 4, model: model(numbers, -1.0) },
+    ];
+    FrameView { number: ViewNumber::FIRST, eyes: eyes.into(), edits }
+}
+
+fn face(texels: u32) -> Viewport {
+    let grid = RegionGrid { width: texels, height: texels, ..RegionGrid::FRAME };
+    Viewport::new(grid, Lines::Frame).expect("at most 128 regions")
+}
+
+fn passes(share: &Share, view: &FrameView, shading: Shading, viewport: Viewport) -> [Arc<Pass>; 6] {
+    let layout = Layout::rendering_control_phong();
+    let picture = Picture { viewport, shading, binning: RegionBinning::Touched, layout, pixels: true };
+    std::array::from_fn(|eye| share.transform_chosen(view, eye, picture, &CHOSEN))
+}
+
+fn board(version: CodeVersion, share: &Share) -> Processor {
+    let mut processor = Processor::new(NodeId(1), 8 << 20, version, i860::Config::cycle());
+    share.install(&mut processor).expect("it fits");
+    processor
+}
+
+fn run(processor: &mut Processor, passes: &[Arc<Pass>; 6], context: u8) -> SurroundingOutput {
+    let surrounding = Surrounding { passes, context };
+    surrounding.run_code(&GpTiming::PAPERS, processor).expect("it returns").expect("it has kernels")
+}
+
+/// The words of a region's primitives as the native firmware makes them.
+fn native(pass: &Arc<Pass>, region: RegionId) -> Vec<Word> {
+    let mut words = Vec::new();
+    for list in region_messages(pass, region, 0, RegionEnvelope::default()) {
+        list.content.expect("pixels are wanted").append_words(&mut words);
+    }
+    words
+}
+
+/// The same as a token hands them over.
+fn handed_over(processor: &mut Processor, pass: &Pass, context: u8, view: u8, region: RegionId) -> Vec<Word> {
+    let handing = Handing { pass, context, view, region, envelope: RegionEnvelope::default() };
+    handing.by_code(&GpTiming::PAPERS, processor).expect("it returns");
+    let messages = Handing::listed(processor).expect("in memory");
+    let words = |[at, words]: [Word; 2]| processor.read(at, words as usize).expect("in memory");
+    messages.into_iter().flatten().flat_map(words).collect()
+}
+
+#[test]
+fn each_view_gets_the_words_and_bins_of_the_native_firmware() {
+    let mut numbers = Numbers(SplitMix64::new(51));
+    for (n, (texels, scale)) in [(128, 0.98), (256, 1.0), (512, 0.9), (1408, 0.99), (256, 0.99)].into_iter().enumerate()
+    {
+        let list = list(&mut numbers, 700, 200);
+        let view = views(&mut numbers, scale);
+        let share = Share::new(list, n % 2, 2);
+        for version in VERSIONS {
+            let mut processor = board(version, &share);
+            let shading = if n % 2 == 0 { Shading::Phong } else { Shading::Gouraud };
+            let passes = passes(&share, &view, shading, face(texels));
+            // Both contexts are in use at once; the second has another eye.
+            let other = self::passes(&share, &views(&mut numbers, scale), shading, face(texels));
+            let made = run(&mut processor, &passes, 0);
+            run(&mut processor, &other, 1);
+            assert!(made.of_sorting > Span::ZERO && made.of_beginning > Span::ZERO);
+            let mut drawn = 0;
+            for (context, passes) in [(0, &passes), (1, &other)] {
+                for (view, pass) in (0..).zip(passes) {
+                    for region in (0..pass.picture().viewport.grid().regions() as u16).map(RegionId) {
+                        let expected = native(pass, region);
+                        drawn += usize::from(!expected.is_empty());
+                        let found = handed_over(&mut processor, pass, context, view, region);
+                        assert!(found == expected, "{region:?} of view {view}, {texels} texels, {version:?}");
+                    }
+                }
+            }
+            assert!(drawn >= 12, "{drawn} regions are drawn in");
+        }
+    }
+}
+
+/// What is given and not seen lies within the margin, is large, or faces away.
+#[test]
+fn few_primitives_are_given_to_a_view_that_does_not_see_them() {
+    let mut numbers = Numbers(SplitMix64::new(52));
+    let mut list = Arc::unwrap_or_clone(list(&mut numbers, 2000, 500));
+    list.structures.iter_mut().for_each(|structure| structure.culling = Culling::None);
+    let share = Share::new(Arc::new(list), 0, 1);
+    let passes = passes(&share, &views(&mut numbers, 1.0), Shading::Phong, face(512));
+    let made = run(&mut board(CodeVersion::Scheduled, &share), &passes, 0);
+    let mut totals = [0, 0];
+    for (pass, given) in passes.iter().zip(&made.given) {
+        let [triangles, spheres] = pass.touching().expect("of chosen structures");
+        let seen = [triangles.len() as u32, spheres.len() as u32];
+        assert!(given.triangles >= seen[0] && given.spheres >= seen[1], "{given:?} for {seen:?}");
+        totals[0] += given.total();
+        totals[1] += seen[0] + seen[1];
+    }
+    let held = share.chosen_counts(&CHOSEN).total();
+    assert!(totals[1] > held * 9 / 10 && totals[0] < totals[1] * 3 / 2, "{totals:?} of {held}");
+}
+
+#[test]
+fn views_without_room_for_all_of_them_are_refused() {
+    let mut numbers = Numbers(SplitMix64::new(53));
+    let share = Share::new(list(&mut numbers, 500, 0), 0, 1);
+    let passes = passes(&share, &views(&mut numbers, 1.0), Shading::Phong, face(256));
+    let memory = (1 << 20) + share.bytes() + 4 * 500 + 1000;
+    let mut small = Processor::new(NodeId(4), memory, CodeVersion::Compiled, i860::Config::cycle());
+    share.install(&mut small).expect("it fits");
+    let surrounding = Surrounding { passes: &passes, context: 0 };
+    let fault = surrounding.run_code(&GpTiming::PAPERS, &mut small).expect_err("a thousand bytes for all commands");
+    assert!(matches!(fault, ProcessorFault::NoRoom { context: 0, .. }), "{fault}");
+}
