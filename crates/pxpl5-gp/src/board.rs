@@ -118,10 +118,13 @@ impl GpBoard {
         }
     }
 
-    /// Has the time of [`Work`](crate::Work) come from this code on such a core from now on, whatever the timing table says.
-    pub fn run_code(&mut self, version: CodeVersion, core: i860::Config) {
+    /// Has the time of [`Work`](crate::Work) come from this code on such a core from now on, whatever the timing table says; what is
+    /// known of its programs is shared with the boards of the same shelf.
+    pub fn run_code(&mut self, version: CodeVersion, core: i860::Config, shelf: &Rc<RefCell<i860::Shelf>>) {
         let shared = &mut *self.shared.borrow_mut();
-        shared.processor = Some(Box::new(Processor::new(shared.node, shared.timing.memory_bytes, version, core)));
+        let mut processor = Processor::new(shared.node, shared.timing.memory_bytes, version, core);
+        processor.share(shelf);
+        shared.processor = Some(Box::new(processor));
     }
 
     /// Has the processor that runs code memoise nothing; to be called before programs run.
@@ -149,6 +152,7 @@ impl GpBoard {
 
     /// Loads a program; there is one for each priority.
     pub fn load(&mut self, priority: Priority, firmware: Firmware) {
+        self.shared.borrow_mut().waits[priority as usize] = Wait::TO_BEGIN;
         self.tasks.push(Task { firmware, priority });
         self.tasks.sort_by_key(|task| task.priority);
     }

@@ -40,7 +40,6 @@ impl Cpu {
         self.busy += elapsed;
         let left = self.remaining[priority as usize].map_or(Span::ZERO, |left| left - elapsed);
         self.remaining[priority as usize] = (left > Span::ZERO).then_some(left);
-        self.running = (left > Span::ZERO).then_some((priority, now));
         self.dispatch(now);
     }
 

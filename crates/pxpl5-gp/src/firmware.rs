@@ -117,11 +117,16 @@ pub(crate) enum Cause {
     Acceptance,
     /// A message, a retrace, a status line, or the board's other program.
     Arrival,
+    /// Nothing: there is no program.
+    Nothing,
 }
 
 impl Wait {
+    /// Where no program is loaded.
+    pub(crate) const NONE: Self = Self { what: "", ended_by: Cause::Nothing };
+
     /// Before a program has run for the first time.
-    pub(crate) const NONE: Self = Self { what: "", ended_by: Cause::Arrival };
+    pub(crate) const TO_BEGIN: Self = Self { what: "", ended_by: Cause::Arrival };
 }
 
 impl Shared {

@@ -160,7 +160,7 @@ mod tests {
     fn board(message_ns: u64, code: bool) -> GpBoard {
         let mut board = GpBoard::new(NodeId(9), GpTiming { message_ns, ..GpTiming::PAPERS }, Span(25_000));
         if code {
-            board.run_code(CodeVersion::Compiled, i860::Config::cycle());
+            board.run_code(CodeVersion::Compiled, i860::Config::cycle(), &std::rc::Rc::default());
         }
         let gp = board.handle_for(Priority::Interrupt);
         board.load(Priority::Interrupt, Box::pin(echo(gp)));

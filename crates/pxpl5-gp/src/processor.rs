@@ -1,13 +1,15 @@
 //! The board's i860 with its memory, where programs run and clocks are counted.
 
 use crate::window;
-use i860::{Bus, Cpu, Program, Ram, RunEnd, State, Trap, Unmapped};
+use i860::{Bus, Cpu, Program, Ram, RunEnd, Shelf, State, Trap, Unmapped};
 use pxpl5_sim::Span;
 use pxpl5_wire::{NodeId, Word};
 use serde::{Deserialize, Serialize};
+use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::fmt;
 use std::ops::Range;
+use std::rc::Rc;
 use std::sync::Arc;
 
 /// Which code a board runs, where the time of its work comes from code.
@@ -141,6 +143,10 @@ pub struct Processor {
     cpu: Cpu,
     memory: Memory,
     loaded: Option<Arc<Program>>,
+    /// Whether memory holds that one as it was loaded.
+    is_as_loaded: bool,
+    /// What is known of programs, by other boards as well.
+    shelf: Rc<RefCell<Shelf>>,
     /// All that were ever loaded.
     programs: Vec<Arc<Program>>,
     /// Places of the output of both bin contexts.
@@ -190,11 +196,18 @@ impl Processor {
             cpu: Cpu::new(core),
             memory,
             loaded: None,
+            is_as_loaded: false,
+            shelf: Rc::default(),
             programs: Vec::new(),
             outputs: [None, None],
             breakpoints: BTreeSet::new(),
             hits: Vec::new(),
         }
+    }
+
+    /// Shares what it knows of programs with others of the same core from now on, which changes no time.
+    pub fn share(&mut self, shelf: &Rc<RefCell<Shelf>>) {
+        self.shelf = Rc::clone(shelf);
     }
 
     /// Resets it to a processor that memoises nothing; every time stays the same.
@@ -227,7 +240,13 @@ impl Processor {
     ///
     /// [`ProcessorFault::Unmapped`] when they do not fit; nothing is written then.
     pub fn write(&mut self, address: u32, words: &[Word]) -> Result<(), ProcessorFault> {
-        self.memory.0.load_words(address, words).map_err(|_| self.unmapped(address, words.len()))
+        self.memory.0.load_words(address, words).map_err(|_| self.unmapped(address, words.len()))?;
+        let end = address.saturating_add(4 * words.len() as u32);
+        self.is_as_loaded &= self.loaded.as_ref().is_none_or(|loaded| {
+            let taken = extent(loaded);
+            end <= taken.start || taken.end <= address
+        });
+        Ok(())
     }
 
     /// Reads words of memory as code has left them.
@@ -237,6 +256,12 @@ impl Processor {
     /// [`ProcessorFault::Unmapped`] when they are not all there.
     pub fn read(&self, address: u32, words: usize) -> Result<Vec<Word>, ProcessorFault> {
         self.memory.0.words(address, words).map_err(|_| self.unmapped(address, words))
+    }
+
+    /// Reads one of them.
+    pub(crate) fn word(&self, address: u32) -> Result<Word, ProcessorFault> {
+        let bytes = self.memory.0.bytes().get(address as usize..).and_then(<[u8]>::first_chunk);
+        bytes.map(|bytes| Word::from_le_bytes(*bytes)).ok_or_else(|| self.unmapped(address, 1))
     }
 
     fn unmapped(&self, address: u32, words: usize) -> ProcessorFault {
@@ -295,16 +320,27 @@ impl Processor {
         for (number, value) in registers {
             state.r[*number] = *value;
         }
-        let end = if self.breakpoints.is_empty() {
-            self.cpu.run(&mut self.memory, Some(RETURN), budget)
-        } else {
-            self.run_watched(begin, budget)
-        };
+        let end = self.run(program, begin, budget);
         match end {
             RunEnd::Stopped => Ok(Self::CLOCK * (self.cpu.clocks() - begin)),
             RunEnd::Trapped(trap) => Err(ProcessorFault::Trap { gp, trap }),
             RunEnd::Exhausted => Err(ProcessorFault::Endless { gp, address: self.cpu.state.pc, budget }),
         }
+    }
+
+    /// Runs what was loaded with what is known of it, until it returns.
+    fn run(&mut self, program: &Arc<Program>, begin: u64, budget: u64) -> RunEnd {
+        let shelf = Rc::clone(&self.shelf);
+        let shelf = &mut *shelf.borrow_mut();
+        let known = self.is_as_loaded.then_some(program);
+        self.cpu.open(shelf, known);
+        let end = if self.breakpoints.is_empty() {
+            self.cpu.run(&mut self.memory, Some(RETURN), budget)
+        } else {
+            self.run_watched(begin, budget)
+        };
+        self.is_as_loaded = self.cpu.close(shelf, known);
+        end
     }
 
     /// Runs one instruction (or pair, or branch with its slot) after the other, and keeps what it finds at breakpoints.
@@ -363,13 +399,15 @@ impl Processor {
         if self.loaded.as_ref().is_some_and(|loaded| Arc::ptr_eq(loaded, program)) {
             return Ok(());
         }
-        let previous = self.loaded.take().filter(|previous| self.holds(previous));
-        let previous = previous.map(|previous| (self.number(&previous), extent(&previous)));
-        let unmapped = self.unmapped(program.base, program.bytes.len() / 4);
-        self.memory.0.load(program.base, &program.bytes).map_err(|_| unmapped)?;
-        let next = self.number(program);
-        self.cpu.exchange_code(previous, next);
+        if !self.holds(program) {
+            let unmapped = self.unmapped(program.base, program.bytes.len() / 4);
+            self.memory.0.load(program.base, &program.bytes).map_err(|_| unmapped)?;
+        }
+        if !self.programs.iter().any(|known| Arc::ptr_eq(known, program)) {
+            self.programs.push(Arc::clone(program));
+        }
         self.loaded = Some(Arc::clone(program));
+        self.is_as_loaded = true;
         Ok(())
     }
 
@@ -378,84 +416,7 @@ impl Processor {
         let Range { start, end } = extent(program);
         self.memory.0.bytes().get(start as usize..end as usize) == Some(program.bytes.as_slice())
     }
-
-    /// The number by which the core knows a program.
-    fn number(&mut self, program: &Arc<Program>) -> usize {
-        let known = self.programs.iter().position(|known| Arc::ptr_eq(known, program));
-        known.unwrap_or_else(|| {
-            self.programs.push(Arc::clone(program));
-            self.programs.len() - 1
-        })
-    }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn processor() -> Processor {
-        Processor::new(NodeId(3), 1 << 16, CodeVersion::Scheduled, i860::Config::cycle())
-    }
-
-    fn program(source: &str) -> Arc<Program> {
-        Arc::new(i860::assemble("test", 0x1000, source).expect("it assembles"))
-    }
-
-    #[test]
-    fn a_call_returns_with_its_result_and_takes_its_clocks() {
-        let mut processor = processor();
-        let double = program("start: adds r16, r16, r17\n bri r1\n nop");
-        let cold = processor.call(&double, "start", &[(16, 21)], 10).expect("it returns");
-        assert_eq!(processor.register(17), 42);
-        let warm = processor.call(&double, "start", &[(16, 5)], 10).expect("it returns");
-        assert_eq!(processor.register(17), 10);
-        // Three instructions and the clock of an indirect branch.
-        assert_eq!(warm, Processor::CLOCK * 4);
-        assert!(cold > warm, "the first call fills the instruction cache");
-    }
-
-    #[test]
-    fn a_trap_names_the_board_and_the_address() {
-        let wild = program("start: nop\n ld.l 0(r16), r17\n bri r1\n nop");
-        let error = processor().call(&wild, "start", &[(16, 0x2002)], 10).expect_err("unaligned");
-        assert_eq!(
-            error.to_string(),
-            "graphics processor at node 3: trap at 0x00001004: 0x00002002 is not a multiple of 4"
-        );
-    }
-
-    #[test]
-    fn an_endless_loop_ends_with_its_budget() {
-        let forever = program("start: br start\n nop");
-        let error = processor().call(&forever, "start", &[], 1_000).expect_err("endless");
-        assert!(matches!(error, ProcessorFault::Endless { gp: NodeId(3), budget: 1_000, .. }), "{error}");
-    }
-
-    #[test]
-    fn a_program_that_changed_itself_is_as_new_when_it_is_loaded_again() {
-        let mut processor = processor();
-        // Stores the word of `other` over that of `here`, which it executes afterwards.
-        let changing = program(
-            "start: orh 0, r0, r18\n or 0x1018, r18, r18\n ld.l 0(r18), r19\n bri r1\n adds 1, r17, r17\n nop\n\
-             other: adds 5, r17, r17\n change: orh 0, r0, r18\n or 0x1010, r18, r18\n st.l r19, 0(r18)\n bri r1\n nop",
-        );
-        let other = program("start: adds r16, r16, r17\n bri r1\n nop");
-        for _ in 0..3 {
-            processor.call(&changing, "start", &[(17, 10)], 20).expect("it returns");
-            assert_eq!(processor.register(17), 11, "as it was loaded");
-            processor.call(&changing, "change", &[], 20).expect("it returns");
-            processor.call(&changing, "start", &[(17, 10)], 20).expect("it returns");
-            assert_eq!(processor.register(17), 15, "as it changed itself");
-            processor.call(&other, "start", &[(16, 21)], 10).expect("it returns");
-            assert_eq!(processor.register(17), 42);
-        }
-    }
-
-    #[test]
-    fn what_memory_does_not_hold_is_refused() {
-        let mut processor = processor();
-        assert!(processor.write(0xFFFC, &[1]).is_ok());
-        let error = processor.write(0xFFFC, &[1, 2]).expect_err("one word too many");
-        assert_eq!(error.to_string(), "graphics processor at node 3: no memory for 2 words at 0x0000fffc");
-    }
-}
+mod tests;

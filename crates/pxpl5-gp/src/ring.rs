@@ -26,6 +26,8 @@ const STACK: u32 = 0xF_3000;
 const REQUESTS: u32 = STACK;
 const BUFFERS: u32 = WINDOW + 0x3000;
 
+// Sizes of rings, queue and buffers are assumed, as the interface is (kernels/ring_rules.md, its last table).
+
 /// Buffers of messages that have arrived, and their descriptors.
 const RX_COUNT: u32 = 8;
 const RX: u32 = WINDOW + 256;
@@ -136,12 +138,12 @@ fn deliver(
     words: &[Word],
 ) -> Result<(Span, Result<Taken, Refusal>), ProcessorFault> {
     install(processor)?;
-    let descriptor = word(processor, RX_NEXT)?;
-    let buffer = word(processor, descriptor + 4)?;
+    let descriptor = processor.word(RX_NEXT)?;
+    let buffer = processor.word(descriptor + 4)?;
     let room = (BUFFER_BYTES / 4 - 2) as usize;
     let receiver = Word::from(processor.node().0);
-    let held = [&[receiver << 16 | Word::from(source.0), header], &words[..words.len().min(room)]].concat();
-    processor.write(buffer, &held)?;
+    processor.write(buffer, &[receiver << 16 | Word::from(source.0), header])?;
+    processor.write(buffer + 8, &words[..words.len().min(room)])?;
     processor.write(descriptor, &[1])?;
     processor.write(CAUSE, &[1])?;
     let span = processor.call(&PROGRAM, "receive", &[(2, STACK)], BUDGET)?;
@@ -157,7 +159,7 @@ fn chain(
 ) -> Result<(Span, Option<usize>), ProcessorFault> {
     install(processor)?;
     processor.write(REQUESTS, requests.as_flattened())?;
-    let sent = word(processor, ISSUED)?;
+    let sent = processor.word(ISSUED)?;
     processor.write(DONE, &[sent])?;
     let count = requests.len() as Word;
     let registers = [(2, STACK), (16, REQUESTS), (17, count), (18, ticket)];
@@ -165,13 +167,9 @@ fn chain(
     Ok((span, (processor.register(16) != 0).then(|| processor.register(17) as usize)))
 }
 
-fn word(processor: &Processor, address: u32) -> Result<Word, ProcessorFault> {
-    Ok(processor.read(address, 1)?.first().copied().unwrap_or_default())
-}
-
 /// Puts empty queues, descriptors and the table of handlers into a memory that has none yet.
 fn install(processor: &mut Processor) -> Result<(), ProcessorFault> {
-    if word(processor, RX_NEXT)? != 0 {
+    if processor.word(RX_NEXT)? != 0 {
         return Ok(());
     }
     let handler = |label: &str| PROGRAM.symbol(label).unwrap_or_default();

@@ -13,3 +13,14 @@ pub(crate) const WINDOW: u32 = 0xF_4000;
 pub(crate) const fn is_cacheable(address: u32) -> bool {
     address < WINDOW || address >= RING_MEMORY.end
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_window_is_from_its_first_byte_to_the_end_of_the_softwares_memory() {
+        let addresses = [0, WINDOW - 1, WINDOW, RING_MEMORY.end - 1, RING_MEMORY.end, u32::MAX];
+        assert_eq!(addresses.map(is_cacheable), [true, true, false, false, true, true]);
+    }
+}

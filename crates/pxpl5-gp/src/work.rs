@@ -76,7 +76,7 @@ mod tests {
     fn run(timing: GpTiming, code: Option<CodeVersion>, turns: Option<u32>) -> GpBoard {
         let mut board = GpBoard::new(NodeId(5), timing, Span(25_000));
         if let Some(version) = code {
-            board.run_code(version, i860::Config::cycle());
+            board.run_code(version, i860::Config::cycle(), &std::rc::Rc::default());
         }
         let gp = board.handle_for(Priority::Foreground);
         board.load(Priority::Foreground, Box::pin(async move { gp.work(&Turns(turns)).await }));
@@ -118,5 +118,36 @@ mod tests {
         let board = run(GpTiming::PAPERS, SCHEDULED, None);
         let fault = board.fault().expect("it trapped").to_string();
         assert_eq!(fault, "graphics processor at node 5: trap at 0x00001010: trap instruction");
+    }
+
+    /// Installs an image at an address and reads it back.
+    async fn install(gp: Gp, address: u32) -> Result<(), crate::Fault> {
+        gp.install(|processor| processor.write(address, &[7]))?;
+        gp.install(|processor| {
+            assert_eq!(processor.read(address, 1)?, [7]);
+            Ok(())
+        })
+    }
+
+    #[test]
+    fn an_image_is_put_where_there_is_a_processor_and_does_not_fit_anywhere() {
+        for (code, address, fault) in [
+            (SCHEDULED, 0x2000, None),
+            (SCHEDULED, 8 << 20, Some("graphics processor at node 5: no memory for 1 words at 0x00800000")),
+            (None, 8 << 20, None),
+        ] {
+            let mut board = GpBoard::new(NodeId(5), GpTiming::PAPERS, Span(25_000));
+            if let Some(version) = code {
+                board.run_code(version, i860::Config::cycle(), &std::rc::Rc::default());
+            }
+            let gp = board.handle_for(Priority::Foreground);
+            board.load(Priority::Foreground, Box::pin(install(gp, address)));
+            let mut bench: TestBench<GpEvent, crate::GpOutput> = TestBench::new();
+            bench.feed(pxpl5_sim::Time::ZERO, Phase::Work, GpEvent::Poll);
+            bench.run(|event, context| board.handle(event, context));
+            assert_eq!(board.fault().map(ToString::to_string).as_deref(), fault);
+            let installed = board.with_processor(|processor| processor.read(0x2000, 1) == Ok(vec![7]));
+            assert_eq!(installed, code.map(|_| fault.is_none()));
+        }
     }
 }

@@ -172,7 +172,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     }
 
     fn unfinished(&self, until: Time) -> RingError {
-        let delivered = self.carried.iter().flatten().count();
+        let delivered = self.carried.iter().flatten().filter(|message| message.released > message.granted).count();
         RingError::Unfinished { delivered, of: self.carried.len(), until }
     }
 
@@ -180,7 +180,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
         for (message, traffic) in self.traffic.iter().enumerate().filter(|(_, t)| t.at == now) {
             let source = usize::from(traffic.source.0);
             let (queue, since) = &mut self.queues[source];
-            if queue.is_empty() && self.sending[source] < self.timing.source_channels {
+            if queue.is_empty() {
                 *since = now;
             }
             queue.push_back(message);

@@ -3,8 +3,8 @@
 mod support;
 
 use proptest::prelude::*;
-use pxpl5_ring::reference::{CarriedMessage, PlannedMessage, SteppedRing};
-use pxpl5_ring::{Ring, RingTiming};
+use pxpl5_ring::reference::{CarriedMessage, Elastic, PlannedMessage, SteppedRing};
+use pxpl5_ring::{Ring, RingError, RingTiming};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::NodeId;
 use support::{Receiver, Stepped, Times, run_fast, run_prepared};
@@ -128,6 +128,52 @@ proptest! {
             prop_assert_eq!(&shuffled, &times);
         }
     }
+}
+
+fn planned(at_ns: u64, source: u16, destination: u16, words: u32) -> PlannedMessage {
+    let (source, destination) = (NodeId(source), NodeId(destination));
+    PlannedMessage { at: Time::ZERO + Span::from_ns(at_ns), source, destination, words, hold: false }
+}
+
+/// Steps messages between elastic receivers.
+fn elastic(traffic: &[PlannedMessage], tick: Span, until_ns: u64) -> Result<Vec<CarriedMessage>, RingError> {
+    let ring = SteppedRing::new(RingTiming::PAPERS, 20, traffic, Elastic).expect("valid");
+    ring.run(tick, Time::ZERO + Span::from_ns(until_ns))
+}
+
+/// Seven messages to elastic receivers at once, where six channels are for receivers that are not.
+#[test]
+fn word_by_word_elastic_receivers_take_each_word_as_it_comes_on_any_channel() {
+    let traffic: Vec<_> = (0..7).map(|i| planned(3_000, 2 * i, 2 * i + 1, 100)).collect();
+    let carried = elastic(&traffic, Span::from_ns(50), 100_000).expect("delivered");
+    let end = Time::ZERO + Span::from_ns(3_000 + (16 + 100) * 50);
+    for (channel, message) in carried.iter().enumerate() {
+        let granted = Time::ZERO + Span::from_ns(3_000);
+        let last_word_at = end + Span::from_ns(50);
+        assert_eq!(*message, CarriedMessage { channel, granted, last_word_at, released: end });
+    }
+}
+
+#[test]
+fn word_by_word_what_ends_when_time_is_up_is_delivered_and_what_ends_later_is_not() {
+    let traffic = [planned(0, 0, 1, 10), planned(3_000, 2, 3, 10)];
+    let tick = Span::from_ns(50);
+    let end_ns = 3_000 + (16 + 10) * 50;
+    assert!(elastic(&traffic, tick, end_ns).is_ok());
+    let until = Time::ZERO + Span::from_ns(end_ns - 50);
+    assert_eq!(elastic(&traffic, tick, end_ns - 50), Err(RingError::Unfinished { delivered: 1, of: 2, until }));
+}
+
+#[test]
+fn word_by_word_every_time_must_be_a_multiple_of_the_tick() {
+    let traffic = [planned(3_010, 0, 1, 10)];
+    let off = |what, found_ps, tick| Err(RingError::OffTick { what, found_ps, tick });
+    let long = Span::from_ns(20);
+    assert_eq!(elastic(&traffic, long, 100_000), off("word_ns", 50_000, long));
+    assert_eq!(elastic(&traffic, Span::ZERO, 100_000), off("word_ns", 50_000, Span::ZERO));
+    let word = Span::from_ns(50);
+    assert_eq!(elastic(&traffic, word, 100_000), off("the time of a message", 3_010_000, word));
+    assert!(elastic(&traffic, Span::from_ns(10), 100_000).is_ok());
 }
 
 /// Random traffic seldom fills eight channels for long; this does. 20 boards send to their neighbours at once.

@@ -3,7 +3,7 @@
 mod support;
 
 use pxpl5_ring::reference::PlannedMessage;
-use pxpl5_ring::{Request, Ring, RingError, RingEvent, RingOutput, RingTiming, WaitReason};
+use pxpl5_ring::{OnChannel, Request, Ring, RingError, RingEvent, RingOutput, RingTiming, WaitReason};
 use pxpl5_sim::{Context, Phase, Span, TestBench, Time};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, NodeId};
 use std::collections::BTreeMap;
@@ -210,6 +210,55 @@ fn a_receiver_with_a_fifo_is_told_before_the_first_word_and_its_answer_ends_the_
     let released = us(0) + word * 116 + stall;
     assert_eq!(sent_at(&bench.outputs[3]), Some(released + word * 116 + HOP));
     assert_eq!(ring.stats().stalled, stall);
+}
+
+/// A message lies on its channel from the grant to the end of its last word's slot, which is known when the receiver has answered.
+#[test]
+fn whoever_looks_sees_what_is_on_the_channels_until_it_ends() {
+    let mut bench = bench();
+    let mut ring = ring_with_a_fifo();
+    bench.feed(us(1), Phase::Arrive, RingEvent::Request(request(1, 4, 9, 100)));
+    bench.run(|event, context| ring.handle(event, context));
+    let (source, destination) = (NodeId(4), NodeId(9));
+    let begun = OnChannel { channel: 0, source, destination, words: 100, granted: us(1), ends_at: None };
+    assert_eq!(ring.on_channels(us(1)).collect::<Vec<_>>(), [begun]);
+    assert_eq!(ring.on_channels(us(900)).collect::<Vec<_>>(), [begun], "nobody knows when it will have room");
+
+    let end = us(1) + Span::from_ns((16 + 100) * 50);
+    let accept = RingEvent::Accept { destination, last_word_at: end + HOP * 5 };
+    bench.feed(us(2), Phase::Arrive, accept);
+    let mut seen = Vec::new();
+    bench.run(|event, context| {
+        ring.handle(event, context);
+        // As of the answer, its first event.
+        if seen.is_empty() {
+            seen = [us(2), Time(end.0 - 1), end, us(900)].map(|at| ring.on_channels(at).collect::<Vec<_>>()).to_vec();
+        }
+    });
+    let answered = vec![OnChannel { ends_at: Some(end), ..begun }];
+    assert_eq!(seen, [answered.clone(), answered, Vec::new(), Vec::new()]);
+}
+
+/// Events of a ring that carries a message of a hundred words.
+fn events_of_a_message(prepare: fn(&mut Ring)) -> usize {
+    let mut bench = bench();
+    let mut ring = ring_with_a_fifo();
+    prepare(&mut ring);
+    bench.feed(us(0), Phase::Arrive, RingEvent::Request(request(1, 0, 1, 100)));
+    let mut events = 0;
+    bench.run(|event, context| {
+        events += 1;
+        ring.handle(event, context);
+    });
+    events
+}
+
+#[test]
+fn a_message_is_a_few_events_and_word_by_word_one_for_each_slot() {
+    let slots = 16 + 100;
+    let [few, all] = [events_of_a_message(|_| {}), events_of_a_message(Ring::move_every_word)];
+    assert!(few < 4, "{few} events of a message as a whole");
+    assert_eq!(all, few + slots);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use super::*;
 use crate::processor::CodeVersion;
 use pxpl5_sim::SplitMix64;
+use pxpl5_wire::{CommandList, CommandRun};
 use std::collections::VecDeque;
 
 const NODE_ID: NodeId = NodeId(37);
@@ -28,7 +29,7 @@ fn words(numbers: &mut SplitMix64, count: u32) -> Vec<Word> {
 }
 
 fn at(processor: &Processor, address: u32) -> Word {
-    word(processor, address).expect("in memory")
+    processor.word(address).expect("in memory")
 }
 
 /// Addresses of the free queue entries, in the order of their list.
@@ -228,11 +229,45 @@ fn a_chain_without_room_or_with_a_wrong_length_is_not_started() {
     assert_eq!((processor.register(16), at(&processor, ISSUED)), (0, 2));
 }
 
+/// The interface writes a header, and no more behind it than its buffer holds, however long a message claims to be.
+#[test]
+fn a_buffer_has_the_header_and_ends_where_the_next_one_begins() {
+    let mut processor = board();
+    let [first, second] = [BUFFERS, BUFFERS + BUFFER_BYTES];
+    let too_long = vec![9; BUFFER_BYTES as usize];
+    processor.receive_message(NodeId(3), &Body::Words(too_long.into())).expect_err("no message has that length");
+    assert_eq!(at(&processor, first), Word::from(NODE_ID.0) << 16 | 3);
+    assert_eq!([second - 4, second].map(|address| at(&processor, address)), [9, 0]);
+}
+
+/// So many words of commands.
+fn commands(words_each: u32) -> CommandList {
+    let runs = vec![CommandRun { opcode: 1, words_each, count: 1 }];
+    CommandList { runs, context: 0, copies: Vec::new(), content: None }
+}
+
+#[test]
+fn a_chain_says_what_each_message_is_and_whether_it_keeps_its_receiver() {
+    let mut processor = board();
+    let to = |node, words, body| Message { source: NODE_ID, destination: NodeId(node), words, body };
+    let chain = [
+        (to(4, 1, Body::Words([7].into())), true),
+        (to(5, 20, Body::Commands(commands(20))), true),
+        (to(6, 3, Body::Commands(commands(3))), false),
+    ];
+    processor.send_chain(chain.iter().map(|(message, hold)| (message, *hold))).expect("it returns");
+    // Kinds: 0 words, 1 commands. The last of a chain says so.
+    for (number, (flags, node, kind, words)) in (0..).zip([(HOLD, 4, 0, 1), (HOLD, 5, 1, 20), (4, 6, 1, 3)]) {
+        let header = [node << 16 | Word::from(NODE_ID.0), kind << 16 | words];
+        let found = processor.read(TX + number * DESCRIPTOR_BYTES, 3).expect("in memory");
+        assert_eq!(found, [flags, header[0], header[1]], "message {number}");
+    }
+}
+
 #[test]
 fn a_message_of_commands_stops_the_board_with_its_fault() {
     let mut processor = board();
-    let commands = pxpl5_wire::CommandList { runs: Vec::new(), context: 0, copies: Vec::new(), content: None };
-    let error = processor.receive_message(NodeId(3), &Body::Commands(commands)).expect_err("no handler");
+    let error = processor.receive_message(NodeId(3), &Body::Commands(commands(20))).expect_err("no handler");
     assert_eq!(error.to_string(), "node 37: unexpected message of commands or pixels at a processor");
     let long: Body = Body::Words(vec![0; 1025].into());
     let error = processor.receive_message(NodeId(3), &long).expect_err("too long");
@@ -269,4 +304,6 @@ fn interrupts_are_masked_inside_only() {
 #[test]
 fn code_and_data_lie_beside_each_other() {
     assert!(PROGRAM.base == CODE && CODE + PROGRAM.bytes.len() as u32 <= DATA, "{} bytes", PROGRAM.bytes.len());
+    // What was interrupted leaves at most all registers of both files at FRAME.
+    const { assert!(DATA + 384 + 2 * 32 * 4 <= ENTRIES) };
 }

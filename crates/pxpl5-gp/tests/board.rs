@@ -1,0 +1,417 @@
+//! What programs see of their board, and what the board tells others: each promise of [`Gp`] and [`GpBoard`] alone. Times are sums of spans
+//! that the test sets; numbers of events follow from which waits each of them can end.
+
+use pxpl5_gp::{
+    Account, CodeVersion, Fault, Gp, GpBoard, GpEvent, GpOutput, GpTiming, Mark, OutOfMemory, PLACE_BITS, Priority,
+    Processor, ProcessorFault, ProgramLook, Stage, StageEdge, WaitingMail, Work,
+};
+use pxpl5_sim::{Phase, Span, TestBench, Time};
+use pxpl5_wire::{Body, Message, NodeId, PeriodNumber, PictureNumber, RegionId, SurfaceId, ViewNumber};
+use std::cell::{Cell, RefCell};
+use std::rc::Rc;
+use std::sync::Arc;
+
+const BOARD: NodeId = NodeId(9);
+const MESSAGE_NS: u64 = 1_000;
+const CYCLE: Span = Span(25_000);
+/// What programs note: when, and a number.
+type Notes = Rc<RefCell<Vec<(Time, u64)>>>;
+
+fn note(notes: &Notes, gp: &Gp, value: u64) {
+    notes.borrow_mut().push((gp.now(), value));
+}
+
+fn ns(ns: u64) -> Time {
+    Time::ZERO + Span::from_ns(ns)
+}
+
+fn word(value: u32) -> (u32, Body) {
+    (1, Body::Words([value].into()))
+}
+
+fn message(source: u16) -> GpEvent {
+    let (words, body) = word(u32::from(source));
+    GpEvent::Delivered(Message { source: NodeId(source), destination: BOARD, words, body })
+}
+
+/// The acceptance of a message by its place in a batch.
+fn accepted(batch: u64, place: u64) -> GpEvent {
+    GpEvent::Accepted(batch << PLACE_BITS | place)
+}
+
+/// A board on its bench.
+struct Rig {
+    board: GpBoard,
+    bench: TestBench<GpEvent, GpOutput>,
+}
+
+impl Rig {
+    fn new() -> Self {
+        let timing = GpTiming { message_ns: MESSAGE_NS, memory_bytes: 1_000, bin_bytes: 300, ..GpTiming::PAPERS };
+        let mut bench = TestBench::new();
+        bench.feed(Time::ZERO, Phase::Work, GpEvent::Poll);
+        Self { board: GpBoard::new(BOARD, timing, CYCLE), bench }
+    }
+
+    /// The same with a program.
+    fn with<F>(mut self, priority: Priority, program: impl FnOnce(Gp) -> F) -> Self
+    where
+        F: Future<Output = Result<(), Fault>> + 'static,
+    {
+        let gp = self.board.handle_for(priority);
+        self.board.load(priority, Box::pin(program(gp)));
+        self
+    }
+
+    /// The same with what arrives at an instant.
+    fn fed(mut self, at_ns: u64, event: GpEvent) -> Self {
+        self.bench.feed(ns(at_ns), Phase::Arrive, event);
+        self
+    }
+
+    fn run_to(&mut self, until_ns: u64) {
+        let board = &mut self.board;
+        self.bench.run_until(ns(until_ns), |event, context| board.handle(event, context));
+    }
+
+    /// Runs until nothing is left; how many events that took.
+    fn events(&mut self) -> u64 {
+        self.run_to(1_000_000_000);
+        self.bench.queue().events_taken()
+    }
+
+    fn marks(&mut self) -> Vec<Mark> {
+        let mut marks = Vec::new();
+        self.board.drain_marks(|mark| marks.push(mark));
+        marks
+    }
+}
+
+#[test]
+fn messages_of_one_instant_are_looked_at_together_and_once() {
+    let notes = Notes::default();
+    let told = Rc::clone(&notes);
+    let mut rig = Rig::new().with(Priority::Foreground, |gp| async move {
+        loop {
+            let source = gp.next_message().await.source;
+            note(&told, &gp, source.0.into());
+        }
+    });
+    rig = rig.fed(500, message(4)).fed(500, message(2)).fed(500, message(3)).fed(800, message(1));
+    // The first look, four arrivals, and a look for each of two instants.
+    assert_eq!(rig.events(), 1 + 4 + 2);
+    assert_eq!(*notes.borrow(), [(ns(500), 2), (ns(500), 3), (ns(500), 4), (ns(800), 1)]);
+}
+
+#[test]
+fn what_ends_no_wait_is_no_reason_to_look() {
+    let mut rig = Rig::new().with(Priority::Foreground, |gp| async move {
+        gp.spend(Span::from_ns(5_000)).await;
+        gp.until("nothing", || None::<()>).await;
+        Ok(())
+    });
+    rig = rig.fed(1_000, message(1)).fed(2_000, message(2)).fed(3_000, GpEvent::Retrace(PeriodNumber(7)));
+    // The first look, three arrivals during work, and its end.
+    assert_eq!(rig.events(), 1 + 3 + 1);
+}
+
+#[test]
+fn acceptances_wake_the_board_when_the_next_chain_can_go() {
+    let mut rig = Rig::new().with(Priority::Foreground, |gp| async move {
+        let of = |value: u16| (NodeId(value), 1, word(u32::from(value)).1);
+        gp.send_batch(vec![of(1), of(2), of(3)]).await;
+        gp.send_batch(vec![of(4)]).await;
+        gp.until("nothing", || None::<()>).await;
+        Ok(())
+    });
+    rig = rig.fed(10_000, accepted(1, 2)).fed(11_000, accepted(1, 0)).fed(12_000, accepted(1, 1));
+    rig = rig.fed(20_000, accepted(2, 0));
+    // The first look, two software costs, four acceptances, and a look at the one after which the DMA is free.
+    assert_eq!(rig.events(), 1 + 2 + 4 + 1);
+    let sent: Vec<_> = rig.bench.outputs.iter().map(|(time, GpOutput::Send { ticket, .. })| (*time, *ticket)).collect();
+    let first = (0..3).map(|place| (ns(MESSAGE_NS) + CYCLE, 1 << PLACE_BITS | place));
+    assert_eq!(sent, first.chain([(ns(12_000) + CYCLE, 2 << PLACE_BITS)]).collect::<Vec<_>>());
+}
+
+/// A program that sends a chain to receivers, each of whose messages is accepted 10 us after the one before it in an order of places: when
+/// it goes on after `draining`, `accepted` and `clump_buffer_free`.
+fn waits_of_a_chain(receivers: [u16; 3], order: [u64; 3]) -> Vec<(Time, u64)> {
+    let notes = Notes::default();
+    let told = Rc::clone(&notes);
+    let mut rig = Rig::new().with(Priority::Foreground, |gp| async move {
+        let of = |value: u16| (NodeId(value), 1, word(0).1);
+        let ticket = gp.send_batch(receivers.map(of).into()).await;
+        gp.draining(ticket).await;
+        note(&told, &gp, 1);
+        gp.accepted(ticket).await;
+        note(&told, &gp, 2);
+        gp.clump_buffer_free().await;
+        note(&told, &gp, 3);
+        Ok(())
+    });
+    for (turn, place) in (1..).zip(order) {
+        rig = rig.fed(turn * 10_000, accepted(1, place));
+    }
+    rig.events();
+    notes.take()
+}
+
+#[test]
+fn a_chain_drains_when_each_receiver_has_taken_one_message_and_is_accepted_when_all_have() {
+    let [twenty, thirty] = [20_000, 30_000].map(ns);
+    let all_at_the_end = [(thirty, 1), (thirty, 2), (thirty, 3)];
+    assert_eq!(waits_of_a_chain([1, 1, 2], [0, 2, 1]), [(twenty, 1), (thirty, 2), (thirty, 3)]);
+    assert_eq!(waits_of_a_chain([1, 1, 2], [0, 1, 2]), all_at_the_end);
+    assert_eq!(waits_of_a_chain([1, 2, 3], [2, 0, 1]), all_at_the_end);
+}
+
+/// Of two programs of a board the one that interrupts is asked first; what the other one has done since, it finds at the same instant.
+#[test]
+fn what_one_program_does_for_the_other_is_found_at_once() {
+    let notes = Notes::default();
+    let (told, done) = (Rc::clone(&notes), Rc::new(Cell::new(false)));
+    let is_done = Rc::clone(&done);
+    let rig = Rig::new().with(Priority::Foreground, |gp| async move {
+        gp.spend(Span::from_ns(700)).await;
+        done.set(true);
+        gp.until("the end", || None::<()>).await;
+        Ok(())
+    });
+    let mut rig = rig.with(Priority::Interrupt, |gp| async move {
+        gp.until("the other program", || is_done.get().then_some(())).await;
+        note(&told, &gp, 1);
+        Ok(())
+    });
+    rig.events();
+    assert_eq!(*notes.borrow(), [(ns(700), 1)]);
+}
+
+#[test]
+fn stages_are_told_with_their_instants_pictures_and_views() {
+    let mut rig = Rig::new().with(Priority::Foreground, |gp| async move {
+        gp.begin(Stage::Edit, PictureNumber(3), None);
+        gp.spend(Span::from_ns(400)).await;
+        gp.end(Stage::Edit, PictureNumber(3), Some(SurfaceId(1)));
+        gp.begin_view(Stage::Transform, PictureNumber(4), ViewNumber(8));
+        gp.mark(Stage::Copy, PictureNumber(5), None, StageEdge::End, ns(100));
+        Ok(())
+    });
+    rig.run_to(1_000);
+    let mark = |time, picture, stage, edge| {
+        let picture = PictureNumber(picture);
+        Mark { time, node: BOARD, picture, surface: None, stage, edge, view: None }
+    };
+    let expected = [
+        mark(ns(0), 3, Stage::Edit, StageEdge::Begin),
+        Mark { surface: Some(SurfaceId(1)), ..mark(ns(400), 3, Stage::Edit, StageEdge::End) },
+        Mark { view: Some(ViewNumber(8)), ..mark(ns(400), 4, Stage::Transform, StageEdge::Begin) },
+        mark(ns(100), 5, Stage::Copy, StageEdge::End),
+    ];
+    assert_eq!(rig.marks(), expected);
+    assert_eq!(rig.marks(), [], "they are taken once");
+}
+
+#[test]
+fn a_stage_that_ends_with_a_chain_ends_when_that_one_is_accepted() {
+    let mut rig = Rig::new().with(Priority::Foreground, |gp| async move {
+        for picture in [1, 2] {
+            let (words, body) = word(picture);
+            let ticket = gp.send(NodeId(1), words, body).await;
+            gp.end_when_accepted(ticket, Stage::Render, PictureNumber(picture.into()));
+        }
+        Ok(())
+    });
+    rig = rig.fed(10_000, accepted(1, 0)).fed(20_000, accepted(2, 0));
+    rig.run_to(15_000);
+    let ended = |mark: &Mark| (mark.time, mark.picture, mark.stage, mark.edge);
+    let [first, second] = [(ns(10_000), 1), (ns(20_000), 2)]
+        .map(|(time, picture)| (time, PictureNumber(picture), Stage::Render, StageEdge::End));
+    assert_eq!(rig.marks().iter().map(ended).collect::<Vec<_>>(), [first]);
+    rig.run_to(30_000);
+    assert_eq!(rig.marks().iter().map(ended).collect::<Vec<_>>(), [second]);
+}
+
+#[test]
+fn a_program_sees_retraces_and_status_lines() {
+    let notes = Notes::default();
+    let told = Rc::clone(&notes);
+    let mut rig = Rig::new().with(Priority::Foreground, |gp| async move {
+        assert_eq!((gp.node(), gp.field(), gp.status(NodeId(5))), (BOARD, PeriodNumber::FIRST, 0));
+        let field = gp.retrace().await;
+        note(&told, &gp, field.0);
+        gp.until("two swaps", || (gp.status(NodeId(5)) == 2).then_some(())).await;
+        note(&told, &gp, gp.status(NodeId(6)));
+        gp.until("three swaps", || (gp.status(NodeId(5)) == 3).then_some(())).await;
+        note(&told, &gp, gp.field().0);
+        Ok(())
+    });
+    // The period that it is in already is none to wait for.
+    rig = rig.fed(50, GpEvent::Retrace(PeriodNumber::FIRST)).fed(100, GpEvent::Retrace(PeriodNumber(1)));
+    for (at, from, value) in [(200, 5, 1), (300, 6, 7), (400, 5, 2), (500, 5, 3)] {
+        rig = rig.fed(at, GpEvent::Status { from: NodeId(from), value });
+    }
+    rig.events();
+    assert_eq!(*notes.borrow(), [(ns(100), 1), (ns(400), 7), (ns(500), 1)]);
+}
+
+#[test]
+fn memory_that_does_not_fit_stops_the_program() {
+    let asked = |account, bytes| {
+        Rig::new().with(Priority::Foreground, move |gp| async move {
+            gp.reserve(Account::Program, 600, None)?;
+            assert!(gp.has_room_for_bins(0, 300) && !gp.has_room_for_bins(0, 301));
+            gp.reserve(Account::Bins(1), 200, Some(RegionId(4)))?;
+            assert!(gp.has_room_for_bins(0, 100) && !gp.has_room_for_bins(0, 101));
+            gp.reserve(account, bytes, Some(RegionId(4)))
+        })
+    };
+    let mut fits = asked(Account::Bins(0), 100);
+    fits.run_to(0);
+    assert_eq!((fits.board.fault(), fits.board.memory_peak_bytes()), (None, 900));
+    let mut is_too_much = asked(Account::DisplayList, 201);
+    is_too_much.run_to(0);
+    let fault = OutOfMemory {
+        gp: BOARD,
+        account: Account::DisplayList,
+        region: Some(RegionId(4)),
+        needed_bytes: 201,
+        available_bytes: 200,
+    };
+    assert_eq!(is_too_much.board.fault(), Some(&Fault::Memory(fault)));
+    assert_eq!(is_too_much.board.memory_peak_bytes(), 800);
+    assert!(format!("{:?}", is_too_much.board).contains("OutOfMemory"), "who prints a board sees what stopped it");
+}
+
+#[test]
+fn a_message_can_be_taken_for_nothing_and_several_be_paid_for_at_once() {
+    let notes = Notes::default();
+    let told = Rc::clone(&notes);
+    let mut rig = Rig::new().with(Priority::Interrupt, |gp| async move {
+        assert!(gp.pays_at_once() && gp.take_message().is_none());
+        gp.until("a field", || (gp.field() == PeriodNumber(1)).then_some(())).await;
+        let sources = [gp.take_message(), gp.take_message(), gp.take_message()];
+        let sources = sources.map(|received| received.map_or(0, |received| u64::from(received.source.0)));
+        sources.iter().for_each(|source| note(&told, &gp, *source));
+        gp.spend_messages(3).await;
+        note(&told, &gp, 0);
+        // A chain without messages has been accepted.
+        gp.accepted(gp.send_prepared([])).await;
+        note(&told, &gp, 1);
+        Ok(())
+    });
+    rig = rig.fed(100, message(3)).fed(200, message(8)).fed(300, GpEvent::Retrace(PeriodNumber(1)));
+    rig.events();
+    let paid = ns(300 + 3 * MESSAGE_NS);
+    assert_eq!(*notes.borrow(), [(ns(300), 3), (ns(300), 8), (ns(300), 0), (paid, 0), (paid, 1)]);
+    rig.board.pay_one_by_one();
+    assert!(!rig.board.handle_for(Priority::Interrupt).pays_at_once());
+    assert!(!Rig::new().board.handle_for(Priority::Foreground).pays_at_once(), "interrupts come between");
+}
+
+/// The foreground works 3 us from the start; a message at 1 us takes the interrupt's program 0.5 us.
+fn interrupted() -> Rig {
+    let rig = Rig::new().with(Priority::Foreground, |gp| async move {
+        gp.spend(Span::from_ns(3_000)).await;
+        gp.send_batch(vec![(NodeId(2), 1, word(0).1), (NodeId(1), 1, word(0).1)]).await;
+        gp.send(NodeId(1), 1, word(0).1).await;
+        gp.until("the end", || None::<()>).await;
+        Ok(())
+    });
+    let rig = rig.with(Priority::Interrupt, |gp| async move {
+        gp.next_message().await;
+        gp.spend(Span::from_ns(500)).await;
+        gp.until("nothing more", || None::<()>).await;
+        Ok(())
+    });
+    rig.fed(1_000, message(4))
+        .fed(1_200, message(6))
+        .fed(1_250, message(5))
+        .fed(2_000, GpEvent::Retrace(PeriodNumber(3)))
+}
+
+#[test]
+fn who_looks_sees_work_that_is_left_and_what_waits() {
+    let mut rig = interrupted();
+    let program = |priority, waits_for, left_ns: Option<u64>| ProgramLook {
+        priority,
+        waits_for,
+        work_left: left_ns.map(Span::from_ns),
+    };
+    const WORK: &str = "the end of its own work";
+    let look = rig.board.look(Time::ZERO);
+    assert_eq!(look.programs, [Priority::Interrupt, Priority::Foreground].map(|priority| program(priority, "", None)));
+
+    rig.run_to(400);
+    let programs = |rig: &Rig, at_ns| rig.board.look(ns(at_ns)).programs;
+    let waits = program(Priority::Interrupt, "a message", None);
+    assert_eq!(programs(&rig, 900), [waits, program(Priority::Foreground, WORK, Some(2_100))]);
+
+    // The foreground stands still while the interrupt's program works.
+    rig.run_to(1_260);
+    let both = [program(Priority::Interrupt, WORK, Some(200)), program(Priority::Foreground, WORK, Some(2_000))];
+    assert_eq!(programs(&rig, 1_300), both);
+    let ends = [program(Priority::Interrupt, WORK, None), program(Priority::Foreground, WORK, Some(2_000))];
+    assert_eq!(programs(&rig, 1_500), ends, "at the instant at which it ends");
+    let mail = |arrived_ns, source| WaitingMail { arrived: ns(arrived_ns), source: NodeId(source) };
+    assert_eq!(rig.board.look(ns(1_300)).inbox, [mail(1_200, 6), mail(1_250, 5)]);
+
+    rig.run_to(10_000);
+    let look = rig.board.look(ns(10_000));
+    assert_eq!((look.unaccepted, look.chains), (vec![NodeId(2), NodeId(1)], vec![1]));
+    assert_eq!((look.busy, look.period), (Span::from_ns(3_000 + 500 + 2 * MESSAGE_NS), PeriodNumber(3)));
+    assert_eq!(rig.board.busy(), look.busy);
+    let waits = program(Priority::Interrupt, "nothing more", None);
+    assert_eq!(look.programs, [waits, program(Priority::Foreground, "the end", None)]);
+    assert_eq!(rig.board.blocked("GP 9").map(|blocked| blocked.waits_for), Some("the end".to_owned()));
+}
+
+#[test]
+fn who_looks_sees_each_account_of_the_memory() {
+    let mut rig = Rig::new().with(Priority::Foreground, |gp| async move {
+        for (bytes, account) in (1..).zip(Account::ALL) {
+            gp.reserve(account, bytes, None)?;
+        }
+        // The contexts take turns: a third one is the first.
+        gp.reserve(Account::Commands(2), 30, None)?;
+        gp.reserve(Account::Bins(3), 60, None)
+    });
+    rig.run_to(0);
+    let held: Vec<u64> = rig.board.look(Time::ZERO).memory.into_iter().map(|(_, bytes)| bytes).collect();
+    assert_eq!(held, [1, 2, 30, 4, 5, 60]);
+    assert_eq!(rig.board.memory_peak_bytes(), held.iter().sum::<u64>());
+}
+
+/// Two instructions of code.
+struct Code(Arc<i860::Program>);
+
+impl Work for Code {
+    fn by_table(&self, _: &GpTiming) -> Span {
+        Span::ZERO
+    }
+
+    fn by_code(&self, _: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
+        processor.call(&self.0, "start", &[], 10)
+    }
+}
+
+#[test]
+fn breakpoints_are_met_where_there_is_a_processor() {
+    let program = Arc::new(i860::assemble("code", 0x1000, "start: bri r1\n nop").expect("it can be assembled"));
+    for code in [None, Some(CodeVersion::Compiled)] {
+        let mut board = GpBoard::new(BOARD, GpTiming::PAPERS, CYCLE);
+        if let Some(version) = code {
+            board.run_code(version, i860::Config::cycle(), &Rc::default());
+        }
+        board.break_at(&[0x1000].into());
+        let gp = board.handle_for(Priority::Foreground);
+        let work = Code(Arc::clone(&program));
+        board.load(Priority::Foreground, Box::pin(async move { gp.work(&work).await }));
+        let mut rig = Rig { board, ..Rig::new() };
+        rig.run_to(1_000_000);
+        let addresses: Vec<u32> = rig.board.take_hits().iter().map(|hit| hit.address).collect();
+        let expected: &[u32] = if code.is_some() { &[0x1000] } else { &[] };
+        assert_eq!((&addresses[..], rig.board.take_hits().len()), (expected, 0));
+        let memory = rig.board.with_processor(Processor::memory_bytes);
+        assert_eq!(memory, code.map(|_| 8 << 20), "of a board as built");
+    }
+}
