@@ -167,7 +167,8 @@ fn no_such_buffer(found: u8) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pxpl5_wire::swap_request;
+    use pxpl5_wire::{CopyTarget, Lines, NodeId, PictureNumber, RegionGrid, swap_request};
+    use std::sync::Arc;
 
     #[test]
     fn a_request_takes_effect_at_a_tick_after_it_and_not_at_its_own_instant() {
@@ -184,5 +185,78 @@ mod tests {
         let receipt = buffers.receive(Body::Words(swap_request(2)), Time(1));
         assert!(matches!(receipt, BufferReceipt::Fault));
         assert_eq!(buffers.faults(), (1, Some("expected buffer 0 or 1, found 2")));
+    }
+
+    /// Every pixel of one colour.
+    #[derive(Debug)]
+    struct Plain(Word);
+
+    impl pxpl5_wire::PixelSource for Plain {
+        fn pixels(&self) -> Arc<[Word]> {
+            vec![self.0; 64 * 32].into()
+        }
+    }
+
+    /// A message of a region of 64 x 32, two of which make it whole, on a surface of 100 x 60.
+    fn part(region: u16, part: u32, picture: u64, colour: Word) -> RegionPixels {
+        let grid = RegionGrid { width: 100, height: 60, region_width: 64, region_height: 32 };
+        let target = CopyTarget {
+            frame_buffer: NodeId(1),
+            buffer: 0,
+            lines: Lines::Frame,
+            grid,
+            region: RegionId(region),
+            picture: PictureNumber(picture),
+        };
+        RegionPixels { target, image: Arc::new(Plain(colour)), part, parts: 2 }
+    }
+
+    fn receive(buffers: &mut DoubleBuffer, pixels: RegionPixels, now: u64) -> BufferReceipt {
+        buffers.receive(Body::Pixels(pixels), Time(now))
+    }
+
+    #[test]
+    fn a_region_is_there_with_its_last_message_and_a_newer_one_takes_its_place() {
+        let mut buffers = DoubleBuffer::new(100, 60);
+        for (picture, colour) in [(1, 0x0010_2030), (2, 0x0040_5060)] {
+            assert!(matches!(receive(&mut buffers, part(0, 1, picture, colour), 10 * picture), BufferReceipt::Part));
+            let whole = receive(&mut buffers, part(0, 0, picture, colour), 10 * picture + 5);
+            let BufferReceipt::Region(pixels, first) = whole else { panic!("{whole:?}") };
+            assert_eq!((pixels.target.picture, first), (PictureNumber(picture), Time(10 * picture)));
+            let [_, red, green, blue] = colour.to_be_bytes();
+            let seen =
+                RgbImage::from_fn(100, 60, |x, y| Rgb(if x < 64 && y < 32 { [red, green, blue] } else { [0; 3] }));
+            assert_eq!(buffers.picture(), seen);
+        }
+        assert_eq!(buffers.scanned_picture(), RgbImage::new(100, 60), "no tick has been");
+        buffers.swap(Time(99));
+        assert_eq!(buffers.scanned_picture(), buffers.picture());
+    }
+
+    #[test]
+    fn what_was_begun_and_not_ended_gives_way_to_the_next_picture() {
+        let mut buffers = DoubleBuffer::new(100, 60);
+        receive(&mut buffers, part(0, 0, 1, 1), 1);
+        receive(&mut buffers, part(0, 0, 2, 2), 2);
+        let whole = receive(&mut buffers, part(0, 1, 2, 2), 3);
+        assert!(matches!(whole, BufferReceipt::Region(_, Time(2))), "{whole:?}");
+    }
+
+    #[test]
+    fn messages_that_fit_no_region_are_faults() {
+        let mut buffers = DoubleBuffer::new(100, 60);
+        receive(&mut buffers, part(0, 0, 1, 1), 1);
+        let wrong = [
+            // Twice, of another number, one that the region has not, of a buffer or a region that is not there.
+            part(0, 0, 1, 1),
+            RegionPixels { parts: 3, ..part(0, 1, 1, 1) },
+            part(0, 2, 1, 1),
+            RegionPixels { target: CopyTarget { buffer: 2, ..part(0, 1, 1, 1).target }, ..part(0, 1, 1, 1) },
+            part(4, 0, 1, 1),
+        ];
+        for (count, pixels) in (1..).zip(wrong) {
+            assert!(matches!(receive(&mut buffers, pixels, 2), BufferReceipt::Fault));
+            assert_eq!(buffers.faults(), (count, Some("message 0 of region 0 has arrived already")));
+        }
     }
 }

@@ -126,12 +126,12 @@ impl Buffer {
         }
     }
 
-    /// Regions of different cuts hide each other only in parts, so pixels decide. Only the newest can still be
-    /// arriving, since a port takes one region at a time.
+    /// Regions of different cuts hide each other only in parts, so pixels decide. What is still arriving is the newest, since a port takes
+    /// one region at a time, and nothing covers that.
     fn forget_covered(&mut self, width: u32, height: u32) {
         let mut covered = vec![false; (width * height) as usize];
-        for (age, held) in self.held.iter_mut().rev().enumerate() {
-            held.hidden = age > 0 || held.region.is_complete();
+        for held in self.held.iter_mut().rev() {
+            held.hidden = true;
             for segment in held.region.segments(Span::ZERO) {
                 let begin = (segment.y * width + segment.x) as usize;
                 for pixel in &mut covered[begin..begin + segment.length as usize] {

@@ -119,12 +119,6 @@ impl RegionWrite {
         0..self.rectangle[3]
     }
 
-    /// The last pixel of each row, counted on the frame.
-    pub(crate) const fn last_x(&self) -> u32 {
-        let [left, _, width, _] = self.rectangle;
-        left + width - 1
-    }
-
     fn segment(&self, row: u32, part: u32, words: Range<u32>, word: Span) -> Segment {
         let [left, top, width, height] = self.rectangle;
         let message_at = self.arrived[part as usize];

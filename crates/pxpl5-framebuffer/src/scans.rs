@@ -3,7 +3,7 @@
 use crate::region::RegionWrite;
 use crate::video::Video;
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::PeriodNumber;
+use pxpl5_wire::{MAX_MESSAGE_WORDS, PeriodNumber};
 use std::collections::VecDeque;
 
 /// Fields that are remembered: the newest two of either parity, of which the very last may not have reached a line.
@@ -19,13 +19,6 @@ pub(crate) struct Overwritten<'a> {
     pub(crate) newer: &'a RegionWrite,
     pub(crate) video: &'a Video,
     pub(crate) word: Span,
-}
-
-/// From the first pixel of a line, or of more than one, to the last.
-#[derive(Clone, Copy, Debug)]
-struct Interval {
-    begin: Time,
-    end: Time,
 }
 
 impl Scans {
@@ -45,57 +38,46 @@ impl Scans {
     /// Whether a field has shown the outermost of its lines, and so those between them, after the end of one write and before
     /// the begin of the other. Saves looking at each line.
     fn shows_all(&self, pair: &Overwritten<'_>) -> bool {
-        let Some(written_at) = pair.older.last_at() else { return false };
-        let Some(overwritten) = row_arrival(pair.newer, 0, pair.word) else { return false };
-        let stands = Stands {
-            written: Interval { begin: written_at, end: written_at },
-            overwritten: Interval { end: overwritten.begin, ..overwritten },
-        };
+        let Some(written) = pair.older.last_at() else { return false };
+        // No word of a message comes earlier before its last one.
+        let overwritten =
+            Time(pair.newer.first_at().0.saturating_sub((pair.word * u64::from(MAX_MESSAGE_WORDS - 1)).0));
         let rows = pair.older.rows();
         // Every second row lies in the other field, where the region is one of a frame.
         rows.clone().take(2).all(|first| {
             let last = rows.clone().skip(first as usize).step_by(2).next_back().unwrap_or(first);
-            self.0.iter().any(|field| [first, last].iter().all(|row| stands.shows(scan(*row, *field, pair))))
+            let shows = |(at, field)| scan(at, field, pair).is_some_and(|scan| written <= scan && scan < overwritten);
+            self.0.iter().any(|field| corners(pair.older, [first, last]).all(|at| shows((at, *field))))
         })
     }
 
     fn shows_row(&self, row: u32, pair: &Overwritten<'_>) -> bool {
-        let written = row_arrival(pair.older, row, pair.word);
-        let overwritten = row_arrival(pair.newer, row, pair.word);
-        let Some((written, overwritten)) = written.zip(overwritten) else { return false };
-        let stands = Stands { written, overwritten };
-        self.0.iter().any(|field| stands.shows(scan(row, *field, pair)))
+        // Of a word that arrives with the beam the new value is shown.
+        let shows = |field| {
+            let beam = |at| scan(at, field, pair);
+            let stood = ends(pair.older, row, pair.word).all(|(at, came)| beam(at).is_some_and(|scan| came <= scan));
+            stood && ends(pair.newer, row, pair.word).all(|(at, came)| beam(at).is_some_and(|scan| scan < came))
+        };
+        self.0.iter().any(|field| shows(*field))
     }
 }
 
-/// When the pixels of a row were in the buffer.
-struct Stands {
-    written: Interval,
-    overwritten: Interval,
+/// When the beam passes over a pixel in a field; `None` where it does not.
+fn scan([x, y]: [u32; 2], field: PeriodNumber, pair: &Overwritten<'_>) -> Option<Time> {
+    pair.video.when(x, y, field)
 }
 
-impl Stands {
-    /// Whether a pass of the beam shows all of them. Of a word that arrives with the beam the new value is shown. Words and
-    /// beam both advance evenly, so the ends of the row decide.
-    fn shows(&self, scan: Option<Interval>) -> bool {
-        scan.is_some_and(|scan| {
-            let after = self.written.begin <= scan.begin && self.written.end <= scan.end;
-            let before = scan.begin < self.overwritten.begin && scan.end < self.overwritten.end;
-            after && before
-        })
-    }
+/// The first pixel of the first of two rows, and the last one of the last.
+fn corners(region: &RegionWrite, [first, last]: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
+    let [first, last] = [first, last].map(|row| ends(region, row, Span::ZERO));
+    let [first, last] = [first.map(|end| end.0).next(), last.map(|end| end.0).last()];
+    first.into_iter().chain(last)
 }
 
-/// When the beam passes over a row of the older region in a field; `None` where it does not.
-fn scan(row: u32, field: PeriodNumber, pair: &Overwritten<'_>) -> Option<Interval> {
-    let segment = pair.older.row(row, Span::ZERO).next()?;
-    let begin = pair.video.when(segment.x, segment.y, field)?;
-    Some(Interval { begin, end: pair.video.when(pair.older.last_x(), segment.y, field)? })
-}
-
-/// When the first and the last pixel of a complete region's row arrived.
-fn row_arrival(region: &RegionWrite, row: u32, word: Span) -> Option<Interval> {
-    let begin = region.row(row, word).map(|segment| segment.arrival(0, word)).min()?;
-    let end = region.row(row, word).map(|segment| segment.arrival(segment.length - 1, word)).max()?;
-    Some(Interval { begin, end })
+/// The ends of what each message brought of a complete region's row, and when their words came. Words of a message and the beam both
+/// advance evenly, so the ends decide; between two messages there is a pause.
+fn ends(region: &RegionWrite, row: u32, word: Span) -> impl Iterator<Item = ([u32; 2], Time)> + '_ {
+    region.row(row, word).flat_map(move |segment| {
+        [0, segment.length - 1].map(|i| ([segment.x + i, segment.y], segment.arrival(i, word)))
+    })
 }

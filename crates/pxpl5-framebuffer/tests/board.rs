@@ -280,6 +280,17 @@ fn regions_of_other_cuts_are_forgotten_when_newer_ones_cover_them() {
 }
 
 #[test]
+fn a_region_of_the_same_picture_may_come_again_when_it_is_complete() {
+    let mut board = Board::new();
+    let target = target(0, Lines::Frame, RegionGrid::FRAME, 3, 7);
+    board.region(Time(1_000_000_000), target, &colour(RED));
+    board.region(Time(3_000_000_000), target, &colour(GREEN));
+    board.run();
+    assert_eq!((board.device.stats().regions, board.device.faults().count), (2, 0));
+    assert_eq!(word(&board.device.displayed_frame().picture(), 3 * 128 + 5, 5), GREEN);
+}
+
+#[test]
 fn what_cannot_be_done_is_a_counted_fault_that_says_what() {
     let frame = |region| target(0, Lines::Frame, RegionGrid::FRAME, region, 0);
     let huge = RegionGrid { width: u32::MAX, height: u32::MAX, region_width: 1, region_height: 1 };

@@ -1,0 +1,116 @@
+//! Lines that are overwritten before the beam has shown all of them, against a model that asks of every pixel: was its old word there when
+//! the beam came, and the new one not yet?
+
+mod support;
+
+use proptest::prelude::*;
+use pxpl5_sim::Time;
+use pxpl5_wire::{CopyTarget, FieldParity, Lines, PeriodNumber, RegionGrid};
+use support::{Board, MESSAGE, colour, n_parts, target};
+
+/// Fields that begin during a test.
+const FIELDS: u64 = 8;
+
+/// Where a region comes, and when the beam meets one of its words.
+#[derive(Clone, Copy, Debug)]
+struct Met {
+    field: u64,
+    /// Row of the region, as a part of all of them in thousandths, and whether it is the row's last pixel instead of the first.
+    row: u32,
+    last: bool,
+    /// How much later than the beam the word comes, picoseconds.
+    later: i64,
+}
+
+fn met(fields: std::ops::Range<u64>) -> impl Strategy<Value = Met> {
+    let later = prop_oneof![-2_i64..=2, -3_000_000_000_i64..3_000_000_000];
+    let all = (fields, 0..1_000_u32, any::<bool>(), later);
+    all.prop_map(|(field, row, last, later)| Met { field, row, last, later })
+}
+
+/// A region of which two pictures come one after the other.
+#[derive(Clone, Copy, Debug)]
+struct Place(CopyTarget);
+
+impl Place {
+    fn rectangle(self) -> [u32; 4] {
+        self.0.grid.rectangle(self.0.region)
+    }
+
+    /// Line of the frame.
+    fn line(self, row: u32) -> u32 {
+        let row = self.rectangle()[1] + row;
+        match self.0.lines {
+            Lines::Frame => row,
+            Lines::Field(FieldParity::Even) => 2 * row,
+            Lines::Field(FieldParity::Odd) => 2 * row + 1,
+        }
+    }
+
+    /// When the word of pixel `i` comes, picoseconds after that of the first message's last word; messages follow each other on the
+    /// ring and end with their last word, those before it 50 ns apart.
+    fn comes(self, i: u32) -> i64 {
+        let [_, _, width, height] = self.rectangle();
+        let message_end = (width * height).min((i / 1_024 + 1) * 1_024);
+        MESSAGE.0 as i64 * i64::from(i / 1_024) - 50_000 * i64::from(message_end - 1 - i)
+    }
+
+    /// When the first message of a picture is there whose word comes where a [`Met`] says.
+    fn begins(self, board: &Board, met: Met) -> i64 {
+        let [left, _, width, height] = self.rectangle();
+        let row = met.row * height / 1_000;
+        let column = if met.last { width - 1 } else { 0 };
+        let (x, y) = (left + column, self.line(row));
+        let video = board.device.video();
+        let beam = video.when(x, y, PeriodNumber(met.field)).or_else(|| video.when(x, y, PeriodNumber(met.field + 1)));
+        beam.expect("one of two fields has the line").0 as i64 + met.later - self.comes(row * width + column)
+    }
+
+    /// Rows of the older picture of which no field has shown every pixel.
+    fn never_shown(self, board: &Board, [older, newer]: [i64; 2]) -> u64 {
+        let [left, _, width, height] = self.rectangle();
+        let shows = |field, row: u32| {
+            (0..width).all(|column| {
+                let comes = self.comes(row * width + column);
+                let scanned = board.device.video().when(left + column, self.line(row), PeriodNumber(field));
+                scanned.is_some_and(|at| older + comes <= at.0 as i64 && (at.0 as i64) < newer + comes)
+            })
+        };
+        (0..height).filter(|row| !(0..FIELDS).any(|field| shows(field, *row))).count() as u64
+    }
+}
+
+fn places() -> impl Strategy<Value = Place> {
+    let cut = RegionGrid { width: 611, height: 233, region_width: 100, region_height: 67 };
+    let grids = prop_oneof![
+        Just((Lines::Frame, RegionGrid::FRAME)),
+        Just((Lines::Field(FieldParity::Even), RegionGrid::FIELD)),
+        Just((Lines::Field(FieldParity::Odd), RegionGrid::FIELD)),
+        Just((Lines::Field(FieldParity::Odd), cut)),
+    ];
+    let places = (grids, any::<prop::sample::Index>());
+    places.prop_map(|((lines, grid), region)| {
+        Place(target(0, lines, grid, region.index(grid.regions() as usize) as u16, 0))
+    })
+}
+
+proptest! {
+    #[test]
+    fn lines_never_shown_are_those_of_which_no_field_shows_every_pixel(
+        place in places(), older in met(1..4), newer in met(1..6),
+    ) {
+        let mut board = Board::new();
+        board.retraces(0..=FIELDS);
+        let begins = [older, newer].map(|met| place.begins(&board, met));
+        let length = MESSAGE.0 as i64 * i64::from(n_parts(&place.0) - 1);
+        // The port takes one region at a time.
+        prop_assume!(begins[0] > 0 && begins[0] + length + (MESSAGE.0 as i64) <= begins[1]);
+        for (picture, begin) in (0..).zip(begins) {
+            let target = CopyTarget { picture: pxpl5_wire::PictureNumber(picture), ..place.0 };
+            board.region(Time((begin + length) as u64), target, &colour(1));
+        }
+        let expected = place.never_shown(&board, begins);
+        board.run();
+        prop_assert_eq!(board.device.stats().lines_never_shown, expected);
+    }
+}
