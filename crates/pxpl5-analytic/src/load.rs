@@ -1,6 +1,6 @@
 //! What a scene asks of the machine, as numbers.
 
-use pphigs::{Picture, PrimitiveCounts, RegionBinning, Shading, Share};
+use pphigs::{Picture, PrimitiveCounts, RegionBinning, Shading, Share, TransformCost};
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::Layout;
 use pxpl5_run::{Experiment, ExperimentError, display_list, views};
@@ -18,16 +18,20 @@ pub struct Load {
     pub spheres: f64,
     /// Of the triangles, those that the clipper cuts.
     pub clipped: f64,
+    /// Structures of the display list.
+    pub structures: f64,
+    /// Of these, those that have spheres.
+    pub sphere_views: f64,
     /// Triangles and spheres in the bin of each region.
     pub bins: Vec<[f64; 2]>,
 }
 
 impl Load {
-    /// Triangles that every region gets, none of them cut by the clipper.
+    /// Triangles of one structure that every region gets, none of them cut by the clipper.
     #[must_use]
     pub fn full_screen(triangles: u32, regions: usize) -> Self {
         let triangles = f64::from(triangles);
-        Self { triangles, spheres: 0.0, clipped: 0.0, bins: vec![[triangles, 0.0]; regions] }
+        Self { triangles, structures: 1.0, bins: vec![[triangles, 0.0]; regions], ..Self::default() }
     }
 
     /// Entries of all bins.
@@ -73,11 +77,14 @@ impl Load {
 
     fn of_pass(share: &Share, pass: &pphigs::Pass) -> Self {
         let held = share.counts();
+        let begin = TransformCost::beginning(&share.list().structures);
         let regions = (0..pass.picture().viewport.grid().regions() as u16).map(RegionId);
         Self {
             triangles: f64::from(held.triangles),
             spheres: f64::from(held.spheres),
             clipped: pass.stats().clipped as f64,
+            structures: begin.structures as f64,
+            sphere_views: begin.sphere_views as f64,
             bins: regions.map(|region| bin(pass.counts(region))).collect(),
         }
     }

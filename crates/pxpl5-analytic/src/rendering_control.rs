@@ -244,7 +244,9 @@ impl StereoModel {
         let triangles = self.largest_share(load.triangles);
         let spheres = self.largest_share(load.spheres);
         let clipped = load.clipped * triangles / load.triangles.max(1.0);
-        TransformCost { passes: 1.0, triangles, spheres, clipped, entries: self.entries(load) }.ns(&self.gp)
+        let Load { structures, sphere_views, .. } = *load;
+        let entries = self.entries(load);
+        TransformCost { passes: 1.0, structures, sphere_views, triangles, spheres, clipped, entries }.ns(&self.gp)
     }
 
     /// Primitives that the slave with the most of them holds.
@@ -300,7 +302,8 @@ impl StereoModel {
     /// A token's way through all slaves.
     fn walk_ns(&self, bin: &[f64; 2]) -> f64 {
         let senders = (bin[0] + bin[1]).min(self.slaves).max(2.0_f64.min(self.slaves));
-        self.slaves * (2.0 * self.message_ns + self.transit_ns()) + senders * self.message_ns
+        let handed_over_ns = self.gp.token_entry_ns as f64 * (bin[0] + bin[1]);
+        self.slaves * (2.0 * self.message_ns + self.transit_ns()) + senders * self.message_ns + handed_over_ns
     }
 
     /// When the region's last word was accepted, and when its commands were executed.

@@ -14,12 +14,22 @@ use pxpl5_run::{
     ClosedForm, DuePictures, Estimates, Experiment, ExperimentError, PictureEnd, Pipeline, Samples, Slats, Summary,
     WARM_UP_PERIODS, WARM_UP_PICTURES,
 };
+use pxpl5_scene::Scene;
 use pxpl5_sim::Time;
 use pxpl5_wire::{FieldParity, PeriodNumber, RegionGrid};
 use slats::CLUMP;
 
 /// Field regions of both eyes.
 const REGIONS: usize = 20;
+
+/// Eyes, for each of which a structure is put in its place.
+const EYES: f64 = 2.0;
+
+/// The beginning of a pass over so many structures, of which some have spheres, for both eyes.
+fn begin_ns(gp: &GpTiming, structures: usize, sphere_views: usize) -> f64 {
+    let [structures, sphere_views] = [structures, sphere_views].map(|n| EYES * n as f64);
+    TransformCost { passes: 1.0, structures, sphere_views, ..TransformCost::default() }.ns(gp)
+}
 
 /// Slats on a machine, reduced to numbers.
 #[derive(Clone, Debug)]
@@ -28,6 +38,8 @@ pub struct SlatsModel {
     overhead_ns: f64,
     hop_ns: f64,
     gp: GpTiming,
+    /// The beginning of a pass.
+    begin_ns: f64,
     message_ns: f64,
     command: Cost,
     select: Cost,
@@ -65,7 +77,7 @@ pub struct PerTriangle {
 }
 
 impl SlatsModel {
-    /// Reduces a machine; the program's code is applied first.
+    /// Reduces a machine; the program's code is applied first. Triangles are of one structure.
     ///
     /// # Errors
     ///
@@ -93,6 +105,7 @@ impl SlatsModel {
             overhead_ns: config.ring.overhead_words as f64 * word_ns,
             hop_ns: config.ring.hop_ns as f64,
             gp: config.gp,
+            begin_ns: begin_ns(&config.gp, 1, 0),
             message_ns: config.gp.message_ns as f64,
             command: Cost::of_command(&config.renderer, CommandKind::Triangle),
             select: Cost::of_command(&config.renderer, CommandKind::SelectRegion),
@@ -107,6 +120,13 @@ impl SlatsModel {
                 .clamp(1, MOST_CHANNELS),
             split: program.copy.is_split(),
         })
+    }
+
+    /// The same for the structures of a scene.
+    #[must_use]
+    pub fn over(self, scene: &Scene) -> Self {
+        let sphere_views = scene.structures().iter().filter(|structure| !structure.spheres.is_empty()).count();
+        Self { begin_ns: begin_ns(&self.gp, scene.structures().len(), sphere_views), ..self }
     }
 
     /// A field in the steady state: renderers begin with the bottom regions of the field before.
@@ -166,7 +186,7 @@ impl SlatsModel {
 
     /// TRANSFORM of a clump of so many triangles for both eyes.
     fn clump_ns(&self, triangles: f64, each: PerTriangle) -> f64 {
-        let both_eyes = 2.0 * triangles;
+        let both_eyes = EYES * triangles;
         let [entries, clipped] = [each.entries, each.clipped].map(|n| both_eyes * n);
         TransformCost { triangles: both_eyes, entries, clipped, ..TransformCost::default() }.ns(&self.gp)
     }
@@ -289,7 +309,7 @@ fn render<const N: usize>(
     let clumps = (share / CLUMP as f64).ceil().max(1.0) as usize;
     let none = Times::all(0.0);
     let mut chain = Chain { released: [none; MOST_RENDERERS], accepted: none, draining: none };
-    let mut cpu = Times::each(|i| TransformCost { passes: 1.0, ..TransformCost::default() }.ns(&models[i].gp));
+    let mut cpu = Times::each(|i| models[i].begin_ns);
     let message = Times::each(|i| models[i].message_ns);
     for clump in 0..clumps {
         let count = (share - (clump * CLUMP) as f64).min(CLUMP as f64);
@@ -412,8 +432,8 @@ fn fields_needed(experiment: &Experiment) -> Option<u64> {
 
 fn steady_field(experiment: &Experiment) -> Result<(SlatsModel, FieldTimes), ExperimentError> {
     let pipeline: Slats = pipeline_of(experiment)?;
-    let model = SlatsModel::new(experiment.config(), pipeline)?;
     let scene = experiment.scene();
+    let model = SlatsModel::new(experiment.config(), pipeline)?.over(scene);
     let triangles = (scene.triangles().len() + scene.spheres().len()) as f64;
     let binned = pipeline.binning == RegionBinning::Touched;
     let mut each = PerTriangle { entries: 10.0, clipped: 0.0 };
@@ -463,12 +483,30 @@ mod tests {
         let [triangle_ns, message_ns, fifo_words, word_ns, hop_ns] = numbers;
         config.gp.triangle_ns = triangle_ns;
         config.gp.guard_ns = 3 * triangle_ns;
+        config.gp.structure_ns = 5 * triangle_ns;
         config.gp.message_ns = message_ns;
         config.renderer.fifo_words = fifo_words;
         config.ring.word_ns = word_ns;
         config.ring.hop_ns = hop_ns;
         let program = if split { Slats::split() } else { Slats::whole() };
         SlatsModel::new(&config, program).expect("in range")
+    }
+
+    /// The Mig has six structures, without spheres; molecules are one, with spheres. Nothing but the processor is waited for.
+    #[test]
+    fn a_structure_takes_its_time_for_both_eyes() {
+        let rendered_ns = |scene: &str, gp: GpTiming| {
+            let machine = MachineConfig { gp, ..MachineConfig::slats() };
+            let model = SlatsModel::new(&machine, Slats::whole()).expect("in range");
+            let scene = pxpl5_scene::builtin(scene).expect("built in");
+            model.over(&scene).field(30.0, PerTriangle { entries: 10.0, clipped: 0.0 }).rendered_ns
+        };
+        let published = MachineConfig::slats().gp;
+        let of_code = GpTiming { structure_ns: 90_000, sphere_view_ns: 7_000, ..published };
+        for (scene, expected_ns) in [("mig", 2.0 * 6.0 * 90_000.0), ("molecules", 2.0 * 97_000.0)] {
+            let found_ns = rendered_ns(scene, of_code) - rendered_ns(scene, published);
+            assert!((found_ns - expected_ns).abs() < 1e-3, "{scene}: {found_ns} ns");
+        }
     }
 
     fn numbers() -> impl Strategy<Value = [u64; 5]> {

@@ -19,7 +19,7 @@ pub(crate) struct CheckArgs {
 
 pub(crate) fn run(args: CheckArgs) -> Result<(), CliError> {
     let plan = args.settings.gather()?.resolve()?;
-    warn(&plan.out_of_range(), false);
+    warn(&plan.warnings(), false);
     let scene = plan.load_scene()?;
     let version = env!("CARGO_PKG_VERSION");
     let hash = plan.experiment(scene).config_hash();

@@ -51,7 +51,7 @@ enum Whose {
 
 pub(crate) fn run(args: FilmArgs) -> Result<(), CliError> {
     let plan = args.settings.gather()?.resolve()?;
-    warn(&plan.out_of_range(), args.quiet);
+    warn(&plan.warnings(), args.quiet);
     let eyes = match args.eye {
         Whose::Left => FilmOf::One(Eye::Left.into()),
         Whose::Right => FilmOf::One(Eye::Right.into()),

@@ -79,7 +79,7 @@ const LEAST_FIELDS: u64 = 10;
 impl LimitArgs {
     fn query(&self) -> Result<LimitQuery, CliError> {
         let plan = self.file()?.resolve()?;
-        warn(&plan.out_of_range(), false);
+        warn(&plan.warnings(), false);
         let query = LimitQuery::of_plan(&plan);
         let fields = self.fields.unwrap_or(query.criterion.fields);
         if fields < LEAST_FIELDS {

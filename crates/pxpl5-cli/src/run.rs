@@ -52,7 +52,7 @@ pub(crate) struct RunArgs {
 
 pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     let plan = plan(args.snapshot.experiment(args.settings.gather()?)?)?;
-    warn(&plan.out_of_range(), args.quiet);
+    warn(&plan.warnings(), args.quiet);
     let folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
     // Files list every picture; the report needs statistics only, however long the run is.
     let keep = if folder.is_some() { Keep::Everything } else { Keep::Statistics };

@@ -5,8 +5,8 @@ use crate::options::registry;
 use crate::slurm::{self, Jobs, quoted};
 use crate::terminal::{complain, print, progress, warn};
 use clap::Args;
+use pxpl5::ExperimentFile;
 use pxpl5::sweep::{ROWS_FILE, RunOptions, Shard, Store, Sweep};
-use pxpl5::{ExperimentFile, Parameter};
 use std::path::{Path, PathBuf};
 
 /// Run an experiment at every point of a space of settings.
@@ -91,10 +91,10 @@ fn write_jobs(args: &SweepArgs, sweep: &Sweep, folder: &Path) -> Result<(), CliE
     if args.quiet { Ok(()) } else { print(&written.text()) }
 }
 
-/// What no source allows at the first or the last point.
-fn supposed(sweep: &Sweep) -> Vec<Parameter> {
-    let ends = [0, sweep.space().points() - 1].map(|point| sweep.plan(point).map(|plan| plan.out_of_range()));
-    let mut all: Vec<Parameter> = ends.into_iter().flatten().flatten().collect();
+/// What cannot be taken for the machine at the first or the last point.
+fn supposed(sweep: &Sweep) -> Vec<String> {
+    let ends = [0, sweep.space().points() - 1].map(|point| sweep.plan(point).map(|plan| plan.warnings()));
+    let mut all: Vec<String> = ends.into_iter().flatten().flatten().collect();
     all.dedup();
     all
 }

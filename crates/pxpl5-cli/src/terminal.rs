@@ -2,7 +2,6 @@
 
 use crate::error::CliError;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use pxpl5::Parameter;
 use std::io::{ErrorKind, IsTerminal, Write};
 
 /// Prints a result. A reader that has gone away (`| head`) is no fault.
@@ -34,10 +33,10 @@ pub(crate) fn complain(text: &str) {
     let _ = std::io::stderr().lock().write_all(text.as_bytes());
 }
 
-/// Says which numbers of a machine no source allows, each once.
-pub(crate) fn warn(supposed: &[Parameter], quiet: bool) {
+/// Says what cannot be taken for the machine, such as numbers that no source allows, each once.
+pub(crate) fn warn(warnings: &[String], quiet: bool) {
     if !quiet {
-        supposed.iter().for_each(|parameter| complain(&format!("pxpl5: warning: {}\n", parameter.warning())));
+        warnings.iter().for_each(|warning| complain(&format!("pxpl5: warning: {warning}\n")));
     }
 }
 

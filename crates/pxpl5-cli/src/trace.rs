@@ -44,7 +44,7 @@ enum Format {
 
 pub(crate) fn run(args: TraceArgs) -> Result<(), CliError> {
     let plan = args.settings.gather()?.resolve()?;
-    warn(&plan.out_of_range(), args.quiet);
+    warn(&plan.warnings(), args.quiet);
     let file = OutputFile::open(&args.out)?;
     let bar = progress(plan.fields, "fields", args.quiet);
     let scene = plan.load_scene()?;

@@ -31,6 +31,33 @@ fn a_value_outside_its_range_is_warned_of_once_with_range_and_source() {
     assert_eq!(err(&checked).matches("warning").count(), 1);
 }
 
+/// Nothing may look as if code had given it that has none.
+#[test]
+fn times_of_the_table_at_the_cycle_level_are_warned_of() {
+    let folder = Folder::new("times-of-the-table");
+    let few = ["--scene", "full-screen:4", "--fields", "90", "--level"];
+    let run = |pipeline: &[&str], level: &str| {
+        let output = folder.run(&[&["run", "--json", "--pipeline"], pipeline, &few, &[level]].concat());
+        let warnings = json(&output)["warnings"].as_array().cloned().unwrap_or_default();
+        assert_eq!(warnings.len(), err(&output).matches("warning").count(), "{pipeline:?}: {}", err(&output));
+        assert!(warnings.iter().all(|text| err(&output).contains(text.as_str().expect("text"))));
+        warnings.iter().filter(|text| text.as_str().is_some_and(|text| text.contains("no i860 code"))).count()
+    };
+    for pipeline in ["jitp-field", "frameless", "arp-cells-warp"].map(|name| [name]) {
+        assert_eq!([run(&pipeline, "transaction"), run(&pipeline, "cycle")], [0, 1], "{pipeline:?}");
+    }
+    let by_code: [&[&str]; 5] = [
+        &["rendering-control"],
+        &["slats"],
+        &["rendering-control", "--display", "hires"],
+        &["arp-full"],
+        &["arp-cells"],
+    ];
+    for pipeline in by_code {
+        assert_eq!(run(pipeline, "cycle"), 0, "{pipeline:?}");
+    }
+}
+
 #[test]
 fn a_number_of_the_tracker_outside_its_range_is_warned_of_too() {
     let folder = Folder::new("tracker-warnings");

@@ -11,13 +11,24 @@
 //! what entries leave of the spheres' time, the mean of the means of those of the three scenes that have spheres. Triangles are measured
 //! without the spheres of their scene, whose code takes the instruction cache.
 //!
-//! A message's time is the mean over all that a board receives and sends around these passes: under PPHIGS a slave's, with the bins that
-//! it hands over with its tokens, under Slats those of fields; of the three scenes the mean again.
+//! ```text
+//!   beginning of a pass = pass + structure * (structures * eyes) + sphere view * (of these, with spheres)
+//! ```
+//!
+//! `structure` is what one more costs, in a list with some more that hold nothing, `sphere view` what a scene takes more than the same without
+//! spheres, and `pass` what is left: bins reset, and code that is not in the caches. Each is the mean of the scenes' means.
+//!
+//! A message's time is the mean over all that a board receives and sends around these passes: under PPHIGS a slave's, with what
+//! each token costs whose bin it hands over, under Slats those of fields; of the three scenes the mean again. `token entry` is the slope of
+//! the time in which a bin is handed over, over the entries in it, by least squares over all bins.
 
 mod messages;
 
 use glam::Mat4;
-use pphigs::{DisplayList, Editing, FrameView, ModelEdit, Pass, Picture, RegionBinning, Shading, Share};
+use pphigs::{
+    DisplayList, DisplayStructure, Editing, FrameView, ModelEdit, Pass, Picture, RegionBinning, Shading, Share,
+    TransformCost,
+};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{CodeVersion, GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_machine::MachineConfig;
@@ -45,6 +56,9 @@ const CLUMPS: usize = 20;
 /// Edits of a message by which their time is measured: several, of matrices that lie one behind the other.
 const EDITS: u32 = 16;
 
+/// Structures more by which the time of one is measured.
+const MORE_STRUCTURES: usize = 8;
+
 /// A board's memory (published TR94).
 const MEMORY: u64 = 8 << 20;
 
@@ -70,10 +84,16 @@ pub struct CodeTimes {
     pub entry_ns: f64,
     /// A triangle that the clipper cuts, besides: its cuts, and all pieces but one.
     pub guard_ns: f64,
-    /// The beginning of a pass over one structure, as most scenes have it: mean of the scenes' means by structure.
+    /// The beginning of a pass, but for its structures: mean of the scenes' means.
     pub pass_ns: f64,
+    /// A structure put in its place for an eye, among others: mean of the scenes' means.
+    pub structure_ns: f64,
+    /// What the spheres of a structure need of a view, besides: mean of those scenes' means.
+    pub sphere_view_ns: f64,
     /// An edit among others.
     pub edit_ns: f64,
+    /// An entry of a bin that is handed over with its token.
+    pub token_entry_ns: f64,
     /// A message, or a chain: mean of the scenes' means.
     pub message_ns: f64,
     /// The least and the greatest scene's mean.
@@ -98,6 +118,14 @@ impl CodeUse {
         Picture { viewport, shading, binning, layout: Layout::rendering_control_phong(), pixels: false }
     }
 
+    /// The eyes of each pass over the display list, one pass after the other.
+    const fn eyes_of_a_pass(self) -> &'static [&'static [usize]] {
+        match self {
+            Self::Pphigs => &[&[0], &[1]],
+            Self::Slats => &[&[0, 1]],
+        }
+    }
+
     fn parts(self, share: &Share) -> Vec<Share> {
         match self {
             Self::Pphigs => vec![share.clone()],
@@ -117,11 +145,11 @@ pub fn code_times(version: CodeVersion, of: CodeUse) -> Result<CodeTimes, Experi
         SCENES.iter().map(|scene| samples(version, of, scene, BOARDS)).collect::<Result<_, _>>()?;
     let of_spheres: Vec<Vec<SphereSample>> =
         SCENES.iter().map(|scene| sphere_samples(version, of, scene)).collect::<Result<_, _>>()?;
-    let begun: Vec<f64> = SCENES.iter().map(|scene| beginning_ns(version, of, scene)).collect::<Result<_, _>>()?;
-    let pass_ns = begun.iter().sum::<f64>() / begun.len() as f64;
+    let begun: Vec<Begun> = SCENES.iter().map(|scene| begun(version, of, scene)).collect::<Result<_, _>>()?;
     let edit_ns = edit_ns(version)?;
-    let messages: Vec<f64> =
-        SCENES.iter().map(|scene| messages::message_ns(version, of, scene)).collect::<Result<_, _>>()?;
+    let traffic: Vec<_> = SCENES.iter().map(|scene| messages::traffic(version, of, scene)).collect::<Result<_, _>>()?;
+    let token_entry_ns = messages::token_entry_ns(&traffic);
+    let messages: Vec<f64> = traffic.iter().map(|traffic| traffic.message_ns(token_entry_ns)).collect();
     let range = [0.0; 2];
     let mut times = CodeTimes {
         triangle_ns: 0.0,
@@ -129,9 +157,12 @@ pub fn code_times(version: CodeVersion, of: CodeUse) -> Result<CodeTimes, Experi
         sphere_ns: 0.0,
         entry_ns: 0.0,
         guard_ns: 0.0,
-        pass_ns,
+        pass_ns: mean(begun.iter().map(|begun| begun.pass_ns)),
+        structure_ns: mean(begun.iter().map(|begun| begun.structure_ns)),
+        sphere_view_ns: mean(begun.iter().filter_map(|begun| begun.sphere_view_ns)),
         edit_ns,
-        message_ns: messages.iter().sum::<f64>() / messages.len() as f64,
+        token_entry_ns,
+        message_ns: mean(messages.iter().copied()),
         message_range_ns: extremes(&messages),
     };
     for _ in 0..ROUNDS {
@@ -150,13 +181,13 @@ impl CodeTimes {
             self.entry_ns = solve(scenes.iter().flatten().map(uncut).map(|[uncut, n, ns]| ([n, uncut], ns)));
         }
         let entry_ns = self.entry_ns;
-        let mean = |samples: &Vec<Sample>| {
+        let of_scene = |samples: &Vec<Sample>| {
             let rows = samples.iter().map(uncut);
             let [n, ns] = rows.fold([0.0; 2], |sum, [uncut, n, ns]| [sum[0] + uncut, sum[1] + ns - entry_ns * n]);
             ns / n
         };
-        let means: Vec<f64> = scenes.iter().map(mean).collect();
-        self.triangle_ns = means.iter().sum::<f64>() / means.len() as f64;
+        let means: Vec<f64> = scenes.iter().map(of_scene).collect();
+        self.triangle_ns = mean(means.iter().copied());
         self.triangle_range_ns = extremes(&means);
         let without_entries = |[uncut, cut, n, ns]: &Sample| ([*cut, *uncut], ns - entry_ns * n);
         self.guard_ns = solve(cut.iter().map(without_entries)) - self.triangle_ns;
@@ -169,9 +200,14 @@ impl CodeTimes {
                 [n + spheres, ns + of_spheres - self.entry_ns * entries]
             })
         });
-        let means: Vec<f64> = sums.filter(|[n, _]| *n > 0.0).map(|[n, ns]| ns / n).collect();
-        means.iter().sum::<f64>() / means.len().max(1) as f64
+        mean(sums.filter(|[n, _]| *n > 0.0).map(|[n, ns]| ns / n))
     }
+}
+
+/// 0 of nothing.
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let [n, sum] = values.fold([0.0; 2], |[n, sum], value| [n + 1.0, sum + value]);
+    sum / f64::max(n, 1.0)
 }
 
 /// The least and the greatest.
@@ -209,11 +245,7 @@ impl Rig {
 
     /// The same without spheres.
     fn of_triangles(version: CodeVersion, scene: &str, boards: usize) -> Result<Self, ExperimentError> {
-        Self::of_list(version, scene, boards, |mut list| {
-            list.spheres.clear();
-            list.structures.iter_mut().for_each(|structure| structure.spheres = 0..0);
-            list
-        })
+        Self::of_list(version, scene, boards, without_spheres)
     }
 
     fn of_list(
@@ -266,13 +298,49 @@ fn measured<S>(
     Ok(samples)
 }
 
-/// Mean time in which a pass begins, by structure: of each eye, or of both where one follows the other.
-fn beginning_ns(version: CodeVersion, of: CodeUse, scene: &str) -> Result<f64, ExperimentError> {
-    let eyes: &[&[usize]] = match of {
-        CodeUse::Pphigs => &[&[0], &[1]],
-        CodeUse::Slats => &[&[0, 1]],
-    };
-    let mut rig = Rig::new(version, scene, BOARDS)?;
+fn without_spheres(mut list: DisplayList) -> DisplayList {
+    list.spheres.clear();
+    list.structures.iter_mut().for_each(|structure| structure.spheres = 0..0);
+    list
+}
+
+/// The same with some structures more, which hold nothing.
+fn with_more_structures(list: DisplayList) -> DisplayList {
+    let mut list = without_spheres(list);
+    let end = list.triangles.len();
+    let more = list.structures.last().cloned();
+    let more = more.map(|last| DisplayStructure { triangles: end..end, spheres: 0..0, ..last });
+    list.structures.extend(std::iter::repeat_n(more, MORE_STRUCTURES).flatten());
+    list
+}
+
+/// Parts of the beginning of a pass over a scene.
+struct Begun {
+    pass_ns: f64,
+    structure_ns: f64,
+    /// None of scenes without spheres.
+    sphere_view_ns: Option<f64>,
+}
+
+fn begun(version: CodeVersion, of: CodeUse, scene: &str) -> Result<Begun, ExperimentError> {
+    let rig = |part: fn(DisplayList) -> DisplayList| Rig::of_list(version, scene, BOARDS, part);
+    let whole = rig(|list| list)?;
+    let TransformCost { structures, sphere_views, .. } = TransformCost::beginning(&whole.share.list().structures);
+    let whole_ns = beginning_ns(of, whole)?;
+    let plain_ns = beginning_ns(of, rig(without_spheres)?)?;
+    let more_ns = beginning_ns(of, rig(with_more_structures)?)?;
+    let eyes = of.eyes_of_a_pass()[0].len() as f64;
+    let structure_ns = (more_ns - plain_ns) / (MORE_STRUCTURES as f64 * eyes);
+    Ok(Begun {
+        pass_ns: plain_ns - structure_ns * structures as f64 * eyes,
+        structure_ns,
+        sphere_view_ns: (sphere_views > 0).then(|| (whole_ns - plain_ns) / (sphere_views as f64 * eyes)),
+    })
+}
+
+/// Mean time in which a pass begins: of each eye, or of both where one follows the other.
+fn beginning_ns(of: CodeUse, mut rig: Rig) -> Result<f64, ExperimentError> {
+    let eyes = of.eyes_of_a_pass();
     let mut all_ns = 0.0;
     for number in 0..VIEWS {
         let view = rig.view(number);
@@ -287,8 +355,7 @@ fn beginning_ns(version: CodeVersion, of: CodeUse, scene: &str) -> Result<f64, E
             all_ns += span.0 as f64 / 1e3;
         }
     }
-    let structures = rig.share.list().structures.len().max(1);
-    Ok(all_ns / (VIEWS * eyes.len() as u64) as f64 / structures as f64)
+    Ok(all_ns / (VIEWS * eyes.len() as u64) as f64)
 }
 
 /// Time of an edit: of one more in a message.
@@ -330,6 +397,9 @@ mod tests {
             entry_ns: 3.0,
             guard_ns: 0.0,
             pass_ns: 0.0,
+            structure_ns: 0.0,
+            sphere_view_ns: 0.0,
+            token_entry_ns: 0.0,
             edit_ns: 0.0,
             message_ns: 0.0,
             message_range_ns: [0.0; 2],

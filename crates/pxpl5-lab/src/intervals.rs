@@ -9,8 +9,10 @@
 //! Parameters that were fitted to a figure stay what they are, except the two times per triangle of Slats, which move
 //! within the range that gives the figure exactly. So the interval of a fitted figure says how much it would be off
 //! if nothing were fitted anew.
+//!
+//! Of the figure that the pendulum rig measures, which needs events, the photodiode's place and the readings are moved, and nothing else.
 
-use crate::figures::{Bench, FIGURES, FigureRow, Reading, WITHOUT_CLOSED_FORM};
+use crate::figures::{Bench, FIGURES, FigureRow, PHOTODIODE_LINE, Reading, WITHOUT_CLOSED_FORM};
 use parameters::Standing;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::Level;
@@ -55,7 +57,7 @@ pub struct Effect {
 pub struct Interval {
     /// Number of the figure, as in [`FIGURES`].
     pub id: &'static str,
-    /// At the presets, at the analytic level.
+    /// At the presets, at the analytic level; of what has no closed form, with events.
     pub nominal: f64,
     /// Least and greatest over the ends of every range, one parameter at a time.
     pub one_at_a_time: [f64; 2],
@@ -145,7 +147,36 @@ pub fn intervals(bench: &Bench) -> Vec<Interval> {
         interval.add_readings(&bench.reading, values);
         intervals.push(interval);
     }
+    intervals.extend(of_rig(&bench));
     intervals
+}
+
+/// The figure that is measured from outside.
+const OF_RIG: &str = "17";
+
+/// What the photodiode's place on the screen and other readings do to the figure that it sees, with events.
+fn of_rig(bench: &Bench) -> Option<Interval> {
+    let value = |bench: Bench| Some(bench.measure(OF_RIG).ok()?.value);
+    let variations = [photodiode_line()?];
+    let nominal = value(bench.clone())?;
+    let [Variation { range: (low, high), .. }] = variations;
+    let ends = crate::parallel::map(&[low, high], |line| {
+        let changes = bench.changes.iter().cloned().chain([(PHOTODIODE_LINE.to_owned(), *line)]).collect();
+        value(Bench { changes, ..bench.clone() }).unwrap_or(nominal)
+    });
+    let mut interval = interval(OF_RIG, nominal, &ends, vec![nominal], &variations);
+    let neighbours = bench.reading.neighbours();
+    let read = crate::parallel::map(&neighbours, |reading| value(bench.with(*reading)));
+    let values = neighbours.into_iter().zip(read).filter_map(|(reading, value)| Some((reading, value?)));
+    interval.add_readings(&bench.reading, values);
+    Some(interval)
+}
+
+/// The line of the screen under the photodiode: assumed.
+fn photodiode_line() -> Option<Variation> {
+    let line = crate::tracking_parameters().into_iter().find(|parameter| parameter.path == PHOTODIODE_LINE)?;
+    let (value, range) = (line.value.whole()?, line.info.whole_range()?);
+    Some(Variation { path: line.path, value, range, standing: line.info.standing })
 }
 
 /// What both designs say of one figure: its values at the ends of every range in turn, and in the joint sample.
@@ -216,11 +247,12 @@ impl Effect {
     }
 }
 
-/// Puts the intervals into the rows, as they were computed; a figure without a closed form has none.
+/// Puts the intervals into the rows, as they were computed; a figure without a closed form has no value at the analytic level.
 pub fn fill(rows: &mut [FigureRow], intervals: &[Interval]) {
     for row in rows {
         let interval = intervals.iter().find(|interval| interval.id == row.id);
-        row.analytic = interval.map(|interval| interval.nominal);
+        let of_model = interval.filter(|interval| !WITHOUT_CLOSED_FORM.contains(&interval.id));
+        row.analytic = of_model.map(|interval| interval.nominal);
         row.interval = interval.map(Interval::bounds);
     }
 }
@@ -273,6 +305,21 @@ mod tests {
         fill(&mut rows, &[]);
         assert_eq!((rows[0].interval, rows[0].analytic), (None, None));
         assert!(!rows[0].is_out_of_reach());
+    }
+
+    /// A field is scanned line by line: 63.56 us between two of them, 239 from the first to the last.
+    #[test]
+    fn the_figure_of_the_rig_moves_with_the_photodiode_as_the_beam_does() {
+        let interval = of_rig(&Bench::new(Level::Analytic)).expect("it is measured");
+        let [low, high] = interval.one_at_a_time;
+        assert!((high - low - 239.0 * 0.063_556).abs() < 0.01, "{low} to {high}");
+        assert!(low < interval.nominal && interval.nominal < high);
+        let mut rows = [FigureRow::new(
+            FIGURES.iter().find(|figure| figure.id == OF_RIG).expect("listed"),
+            FigureValue::from(interval.nominal),
+        )];
+        fill(&mut rows, std::slice::from_ref(&interval));
+        assert_eq!((rows[0].interval, rows[0].analytic), (Some(interval.bounds()), None));
     }
 
     #[test]

@@ -1,6 +1,6 @@
-//! Independent runs on all of the host's threads, with results in the order of the inputs.
+//! Independent runs on all of the host's threads, with results in the order of the inputs. Runs may have runs inside them.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
+use rayon::prelude::*;
 
 /// Applies `run` to every item.
 ///
@@ -8,36 +8,30 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 ///
 /// When `run` does.
 pub(crate) fn map<I: Sync, O: Send>(items: &[I], run: impl Fn(&I) -> O + Sync) -> Vec<O> {
-    let next = AtomicUsize::new(0);
-    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(items.len().max(1));
-    let mut all: Vec<(usize, O)> = std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(|| work(&next, items, &run))).collect();
-        workers.into_iter().flat_map(|worker| worker.join().expect("a run panicked")).collect()
-    });
-    all.sort_by_key(|(index, _)| *index);
-    all.into_iter().map(|(_, output)| output).collect()
+    items.par_iter().with_max_len(1).map(&run).collect()
 }
 
-/// What one thread does: it takes items until there are no more.
-fn work<I, O>(next: &AtomicUsize, items: &[I], run: impl Fn(&I) -> O) -> Vec<(usize, O)> {
-    let mut done = Vec::new();
-    while let Some((index, item)) = take(next, items) {
-        done.push((index, run(item)));
-    }
-    done
-}
-
-fn take<'a, I>(next: &AtomicUsize, items: &'a [I]) -> Option<(usize, &'a I)> {
-    let index = next.fetch_add(1, Ordering::Relaxed);
-    items.get(index).map(|item| (index, item))
+/// Does both, at the same time if a thread is free.
+pub(crate) fn both<A: Send, B: Send>(one: impl FnOnce() -> A + Send, other: impl FnOnce() -> B + Send) -> (A, B) {
+    rayon::join(one, other)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::{both, map};
+
     #[test]
     fn results_keep_the_order_of_their_inputs() {
         let inputs: Vec<u64> = (0..1_000).collect();
-        assert_eq!(super::map(&inputs, |n| n * n), inputs.iter().map(|n| n * n).collect::<Vec<_>>());
-        assert!(super::map(&[0u8; 0], |n| *n).is_empty());
+        assert_eq!(map(&inputs, |n| n * n), inputs.iter().map(|n| n * n).collect::<Vec<_>>());
+        assert!(map(&[0u8; 0], |n| *n).is_empty());
+    }
+
+    #[test]
+    fn runs_within_runs_come_to_an_end_and_keep_their_order() {
+        let tens: Vec<u64> = (0..40).collect();
+        let of_tens = |ten: &u64| map(&[0, 1, 2, 3, 4, 5, 6, 7, 8, 9], |one| 10 * ten + one);
+        let (all, last) = both(|| map(&tens, of_tens), || of_tens(&40));
+        assert_eq!(all.concat().into_iter().chain(last).collect::<Vec<_>>(), (0..410).collect::<Vec<_>>());
     }
 }

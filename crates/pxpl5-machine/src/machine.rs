@@ -29,6 +29,7 @@ use pxpl5_ring::{Request, Ring, RingEvent, RingOutput};
 use pxpl5_sim::{Blocked, Clock, Context, Cycles, EventQueue, Phase, Span, Time};
 use pxpl5_wire::{Body, Message, NodeId, PeriodNumber, SurfaceId};
 use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
 
 /// A whole machine at work: its boards and what was observed of them ([`Record`]), programs, and what is going to happen.
 #[derive(Debug)]
@@ -131,7 +132,8 @@ impl Machine {
     pub fn run_code(&mut self) {
         if let Some(version) = self.record.config.code {
             let core = self.record.config.i860;
-            self.processors.iter_mut().skip(1).for_each(|board| board.run_code(version, core));
+            let shelf = Rc::default();
+            self.processors.iter_mut().skip(1).for_each(|board| board.run_code(version, core, &shelf));
         }
     }
 

@@ -7,7 +7,7 @@ use crate::latency::{NamedStatistics, SurfaceStatistics, latency_by_surface, lat
 use crate::too_heavy::TooHeavy;
 use parameters::Value;
 use pxpl5_display::Counter;
-use pxpl5_machine::{LateRegion, Parameter, Record};
+use pxpl5_machine::{LateRegion, Record};
 use pxpl5_run::{Aim, DefinedStatistics, DuePictures, Head, Outcome, Raster};
 use pxpl5_sim::{Time, TraceHash};
 use serde::Serialize;
@@ -187,7 +187,7 @@ impl Report {
                 .join(" "),
             display: record.display().name().to_owned(),
             overrides: config.overrides(),
-            warnings: experiment.out_of_range().iter().map(Parameter::warning).collect(),
+            warnings: experiment.warnings(),
             display_faults: faults(record).collect(),
             n_gps: config.n_gps,
             n_renderers: config.n_renderers,

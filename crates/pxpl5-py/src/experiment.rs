@@ -79,9 +79,9 @@ impl Experiment {
         Ok(hash)
     }
 
-    /// What no source allows: parameters outside of their range, each with range and source.
+    /// What no source allows: parameters outside of their range, each with range and source; and what has no code at the cycle level.
     fn warnings(&self) -> Vec<String> {
-        self.native.out_of_range().iter().map(pxpl5::Parameter::warning).collect()
+        self.native.warnings()
     }
 
     /// Paths of all parameters with their values, units and sources, those of the tracker included.

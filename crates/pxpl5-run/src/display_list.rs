@@ -32,7 +32,7 @@ pub fn display_list(scene: &Scene) -> Result<DisplayList, String> {
     };
     let sphere = |s: &pxpl5_scene::Sphere| WorldSphere { centre: s.centre, radius: s.radius, colour: s.colour };
     let light = scene.lighting();
-    Ok(DisplayList {
+    let list = DisplayList {
         positions: scene.vertices().iter().map(|v| v.position).collect(),
         normals: scene.vertices().iter().map(|v| v.normal).collect(),
         colours: scene.vertices().iter().map(|v| v.colour).collect(),
@@ -44,7 +44,8 @@ pub fn display_list(scene: &Scene) -> Result<DisplayList, String> {
         diffuse: light.diffuse,
         background: light.background,
         recent: RecentViews::default(),
-    })
+    };
+    Ok(list.with_vertices_in_order())
 }
 
 /// The view of a scene at a time from a pose, through the papers' head-mounted display.

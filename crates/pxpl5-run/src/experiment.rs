@@ -42,6 +42,16 @@ pub fn out_of_range(config: &MachineConfig, pipeline: &dyn Pipeline) -> Vec<Para
     config.out_of_range().into_iter().filter(|parameter| !usual.contains(parameter)).collect()
 }
 
+/// What has no i860 code although clocks of code are asked for: a sentence, or `None` where all is code or none is asked for.
+#[must_use]
+pub fn times_of_table(level: Level, config: &MachineConfig, pipeline: &dyn Pipeline) -> Option<String> {
+    let what = (level == Level::Cycle).then(|| pipeline.without_code(config)).flatten()?;
+    let name = pipeline.name();
+    Some(format!(
+        "{name} at the cycle level: there is no i860 code for {what}: that takes the times of the table (gp.*)"
+    ))
+}
+
 /// What is to be run.
 #[derive(Clone, Debug)]
 pub struct Experiment {
@@ -253,6 +263,14 @@ impl Experiment {
     pub fn out_of_range(&self) -> Vec<Parameter> {
         let of_head = self.head.iter().flat_map(|head| head.suppositions()).cloned();
         out_of_range(&self.config, self.pipeline.as_ref()).into_iter().chain(of_head).collect()
+    }
+
+    /// What cannot be taken for the machine: see [`out_of_range`] and [`times_of_table`].
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        let supposed = self.out_of_range();
+        let of_table = times_of_table(self.level, &self.config, self.pipeline.as_ref());
+        supposed.iter().map(Parameter::warning).chain(of_table).collect()
     }
 
     /// The scene that is drawn.

@@ -58,7 +58,7 @@ pub use display_list::{display_list, views};
 pub use due::{DuePictures, PictureEnd, WARM_UP_PERIODS, WINDOW_DEFINITION};
 pub use error::ExperimentError;
 pub use estimator::{Cause, Estimator};
-pub use experiment::{Estimates, Experiment, FIELDS_RANGE, Pixels, WARM_UP_PICTURES, out_of_range};
+pub use experiment::{Estimates, Experiment, FIELDS_RANGE, Pixels, WARM_UP_PICTURES, out_of_range, times_of_table};
 pub use face_notes::{FaceNote, FaceNotes};
 pub use faces::{FaceHistory, ShownMemory};
 pub use fingerprint::Fingerprint;

@@ -137,6 +137,12 @@ pub trait Pipeline: Any + Debug + Send + Sync {
         Ok(None)
     }
 
+    /// What its graphics processors do without i860 code, in a few words; `None` where all of it is code. At the cycle level that takes the
+    /// times of the table.
+    fn without_code(&self, _config: &MachineConfig) -> Option<&'static str> {
+        Some("what its firmware does besides messages")
+    }
+
     /// Loads its programs onto the boards.
     ///
     /// # Errors

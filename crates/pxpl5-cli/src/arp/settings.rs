@@ -79,7 +79,7 @@ impl WalkArgs {
             plan = plan.behind(lens, file);
         }
         plan.settings()?;
-        warn(&out_of_range(&plan), self.quiet);
+        warn(&warnings(&plan), self.quiet);
         Ok((load(self.scene.as_deref().unwrap_or(&scene))?, plan))
     }
 
@@ -126,9 +126,11 @@ fn read_lens(path: &Path, plan: &Plan) -> Result<Lens, CliError> {
     Lens::read(BufReader::new(file), &plan.picture()).map_err(|error| failed(&error))
 }
 
-fn out_of_range(plan: &Plan) -> Vec<Parameter> {
+fn warnings(plan: &Plan) -> Vec<String> {
     let numbers = plan.numbers().into_iter().filter(|(_, entry)| !entry.is_in_range());
-    numbers.map(|(path, entry)| Parameter { path, info: *entry.info, value: entry.value, read_only: false }).collect()
+    let parameters =
+        numbers.map(|(path, entry)| Parameter { path, info: *entry.info, value: entry.value, read_only: false });
+    parameters.map(|parameter| parameter.warning()).collect()
 }
 
 fn load(name: &str) -> Result<Arc<Scene>, CliError> {

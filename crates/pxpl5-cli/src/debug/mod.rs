@@ -43,7 +43,7 @@ pub(crate) struct DebugArgs {
 pub(crate) fn run(args: DebugArgs) -> Result<(), CliError> {
     let script = script(args.commands, args.do_file)?;
     let plan = args.settings.gather()?.resolve()?;
-    warn(&plan.out_of_range(), args.quiet);
+    warn(&plan.warnings(), args.quiet);
     let experiment = plan.experiment(plan.load_scene()?).host(Workstation::new()).record_traffic(true);
     let session = Session::new(experiment.stepper()?);
     match script {

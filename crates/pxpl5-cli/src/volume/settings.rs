@@ -93,7 +93,7 @@ impl SettingOptions {
         if settings.renderer == RendererKind::PixelPlanes {
             supported(&settings)?;
         }
-        warn(&out_of_range(&settings), self.quiet);
+        warn(&warnings(&settings), self.quiet);
         Ok(settings)
     }
 
@@ -104,9 +104,11 @@ impl SettingOptions {
     }
 }
 
-fn out_of_range(settings: &VolumeSettings) -> Vec<Parameter> {
+fn warnings(settings: &VolumeSettings) -> Vec<String> {
     let numbers = settings.numbers().into_iter().filter(|(_, entry)| !entry.is_in_range());
-    numbers.map(|(path, entry)| Parameter { path, info: *entry.info, value: entry.value, read_only: false }).collect()
+    let parameters =
+        numbers.map(|(path, entry)| Parameter { path, info: *entry.info, value: entry.value, read_only: false });
+    parameters.map(|parameter| parameter.warning()).collect()
 }
 
 impl VolumeSettingArgs {

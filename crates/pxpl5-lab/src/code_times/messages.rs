@@ -1,6 +1,6 @@
-//! Mean time of a message's software: what a board receives and sends around the passes over a scene.
+//! Mean time of a message's software: what a board receives and sends around the passes over a scene, but for entries handed over.
 
-use super::{BOARDS, CodeUse, Rig, VIEWS};
+use super::{BOARDS, CodeUse, Rig, VIEWS, solve};
 use pphigs::{FrameView, Handing, Pass, RegionEnvelope, region_messages};
 use pxpl5_gp::{CodeVersion, Fault, GpTiming, Processor, Work};
 use pxpl5_machine::MachineConfig;
@@ -19,12 +19,26 @@ const OTHER: NodeId = NodeId(2);
 
 /// Time of the messages of a board, and how many there were: each received, or sent as a chain of its own.
 #[derive(Default)]
-struct Traffic {
+pub(super) struct Traffic {
     span: Span,
     messages: u64,
+    /// Of each bin handed over: entries, nanoseconds.
+    handed: Vec<[f64; 2]>,
+}
+
+/// Time of an entry that is handed over, in nanoseconds: the slope over all bins; 0 where none is.
+pub(super) fn token_entry_ns(scenes: &[Traffic]) -> f64 {
+    let mut handed = scenes.iter().flat_map(|traffic| &traffic.handed).peekable();
+    if handed.peek().is_none() { 0.0 } else { solve(handed.map(|[entries, ns]| ([*entries, 1.0], *ns))) }
 }
 
 impl Traffic {
+    /// Mean time of a message in nanoseconds, without the entries that are handed over at so many each.
+    pub(super) fn message_ns(&self, token_entry_ns: f64) -> f64 {
+        let [entries, ns] = self.handed.iter().fold([0.0; 2], |[n, sum], [entries, ns]| [n + entries, sum + ns]);
+        (self.span.0 as f64 / 1e3 + ns - token_entry_ns * entries) / self.messages as f64
+    }
+
     fn receive(&mut self, processor: &mut Processor, words: u32) -> Result<(), Fault> {
         let body = Body::Words(vec![0; words as usize].into());
         self.messages += 1;
@@ -51,8 +65,8 @@ fn commands(list: CommandList) -> (u32, Body) {
     (list.words(), Body::Commands(list))
 }
 
-/// Mean time of a message of a board under a scene, in nanoseconds.
-pub(super) fn message_ns(version: CodeVersion, of: CodeUse, scene: &str) -> Result<f64, ExperimentError> {
+/// The messages of a board under a scene.
+pub(super) fn traffic(version: CodeVersion, of: CodeUse, scene: &str) -> Result<Traffic, ExperimentError> {
     let mut rig = Rig::new(version, scene, BOARDS)?;
     let mut traffic = Traffic::default();
     for number in 0..VIEWS {
@@ -67,7 +81,7 @@ pub(super) fn message_ns(version: CodeVersion, of: CodeUse, scene: &str) -> Resu
             traffic = Traffic::default();
         }
     }
-    Ok(traffic.span.0 as f64 / 1e3 / traffic.messages as f64)
+    Ok(traffic)
 }
 
 /// A frame of a slave: the host's view, leave for EDIT and TRANSFORM, reports of both, and of each eye the token of every region.
@@ -100,7 +114,8 @@ fn token(
 ) -> Result<(), Fault> {
     let envelope = RegionEnvelope::default();
     traffic.receive(processor, TOKEN)?;
-    traffic.span += Handing { pass, context, region, envelope }.by_code(&GpTiming::PAPERS, processor)?;
+    let span = Handing { pass, context, view: 0, region, envelope }.by_code(&GpTiming::PAPERS, processor)?;
+    traffic.handed.push([pass.counts(region).total().into(), span.0 as f64 / 1e3]);
     for list in region_messages(pass, region, context, envelope) {
         traffic.send(processor, &[commands(list)])?;
     }

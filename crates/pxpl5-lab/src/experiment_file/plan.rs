@@ -12,7 +12,7 @@ use pxpl5_machine::{ConfigError, MachineConfig, Parameter};
 use pxpl5_measure::{Measure, Results};
 use pxpl5_run::{
     Experiment, ExperimentError, FIELDS_RANGE, FIELDS_WITH_HEAD, Key, KeyValue, KeyValues, Level, LimitCriterion,
-    Pipeline, PipelineEntry, PipelineSettings, Pixels, Registry, check_faces, out_of_range,
+    Pipeline, PipelineEntry, PipelineSettings, Pixels, Registry, check_faces, out_of_range, times_of_table,
 };
 use pxpl5_scene::Scene;
 use std::sync::Arc;
@@ -304,6 +304,13 @@ impl Plan {
     pub fn out_of_range(&self) -> Vec<Parameter> {
         let of_head = self.head.iter().flat_map(|head| head.head().suppositions().to_vec());
         out_of_range(&self.machine, self.pipeline.as_ref()).into_iter().chain(of_head).collect()
+    }
+
+    /// What cannot be taken for the machine: parameters that no source allows, and times of a table where code is asked for.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        let of_table = times_of_table(self.level, &self.machine, self.pipeline.as_ref());
+        self.out_of_range().iter().map(Parameter::warning).chain(of_table).collect()
     }
 
     /// Name of the level of modelling.

@@ -20,12 +20,18 @@ type LoadsOfSeeds = Arc<Vec<Vec<Load>>>;
 /// Regions kept, the master's rule, and changed parameters.
 pub(super) type RigKey = (u64, FinishedRegions, Vec<(String, u64)>);
 
+/// What one key stands for, if it has been made.
+type Place<T> = Arc<Mutex<Option<Arc<T>>>>;
+
+/// What all keys that were asked for stand for.
+type Places<K, T> = Mutex<BTreeMap<K, Place<T>>>;
+
 /// What was made so far.
 #[derive(Debug, Default)]
 pub(crate) struct Applications {
-    scenes: Mutex<BTreeMap<Key, Arc<Scene>>>,
-    loads: Mutex<BTreeMap<LoadsKey, LoadsOfSeeds>>,
-    rigs: Mutex<BTreeMap<RigKey, Arc<FigureValue>>>,
+    scenes: Places<Key, Scene>,
+    loads: Places<LoadsKey, Vec<Vec<Load>>>,
+    rigs: Places<RigKey, FigureValue>,
 }
 
 impl Applications {
@@ -49,17 +55,19 @@ impl Applications {
     }
 }
 
-/// Others who ask for the same wait until it is made.
-fn find_or_make<K: Ord, T>(
-    all: &Mutex<BTreeMap<K, Arc<T>>>,
-    key: K,
-    make: impl FnOnce() -> Result<Arc<T>>,
-) -> Result<Arc<T>> {
-    let mut all: MutexGuard<'_, _> = all.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(known) = all.get(&key) {
+/// Others who ask for the same wait until it is made. What makes it must not run anything on other threads: who waits for them could be given
+/// work that asks for the same.
+fn find_or_make<K: Ord, T>(all: &Places<K, T>, key: K, make: impl FnOnce() -> Result<Arc<T>>) -> Result<Arc<T>> {
+    let place = Arc::clone(locked(all).entry(key).or_default());
+    let mut known = locked(&place);
+    if let Some(known) = &*known {
         return Ok(Arc::clone(known));
     }
     let made = make()?;
-    all.insert(key, Arc::clone(&made));
+    *known = Some(Arc::clone(&made));
     Ok(made)
+}
+
+fn locked<T>(all: &Mutex<T>) -> MutexGuard<'_, T> {
+    all.lock().unwrap_or_else(PoisonError::into_inner)
 }

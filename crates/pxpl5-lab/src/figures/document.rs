@@ -181,7 +181,8 @@ fn head(text: &mut String, rows: &[FigureRow]) {
          its distance from *simulated* is the level's own error. A figure is *out of reach* when it lies outside of the\n\
          interval even if this is widened by that distance on both sides: an error of the model's rules, not of a number.\n\
          A figure that is *not varied* is a property of the scenes, which no parameter moves, or has a head before the machine,\n\
-         of which there is no closed form.\n\n\
+         of which there is no closed form. The interval of figure 17 is measured with events; the photodiode's place on the screen and the\n\
+         readings are all that moves in it.\n\n\
          {} figures, {free} of them free checks with a mean absolute error of {:.1} %; {missed} are missed.\n\n\
          | # | figure | published | simulated | error | analytic | interval | standing |\n\
          |---|---|---|---|---|---|---|---|\n",

@@ -12,9 +12,10 @@ use tracking::predict::PredictorKind;
 use tracking::rig::Latency;
 use tracking::tracker::TrackerConfig;
 
-/// Figure 17: the mean that is seen from outside.
-pub(super) fn rig(machine: &MachineConfig, pipeline: RenderingControl) -> Result<FigureValue> {
-    let rig = Rig::assumed(TrackerConfig::optical_ceiling());
+/// Figure 17: the mean that is seen from outside, with the photodiode on a line that was said.
+pub(super) fn rig(machine: &MachineConfig, pipeline: RenderingControl, line: Option<u64>) -> Result<FigureValue> {
+    let mut rig = Rig::assumed(TrackerConfig::optical_ceiling());
+    rig.rig.photodiode_line = line.map_or(rig.rig.photodiode_line, |line| line as u32);
     let measured = rig.measure(machine, Arc::new(pipeline));
     let measured = measured.map_err(|error| ExperimentError::Scene(error.to_string()))?;
     let Latency { mean_s, least_s, greatest_s, .. } = measured.outside.rendering;

@@ -6,6 +6,7 @@ use super::measured::{FigureValue, Result, detail, scene_named};
 use super::reading::{Reading, Samples};
 use crate::levels::summarise;
 use crate::limit::LimitQuery;
+use crate::parallel;
 use parameters::{ParameterTable, Value};
 use pphigs::{BIN_ENTRY_BYTES, Picture, RegionBinning, Shading, Share, TransformCost};
 use pxpl5_analytic::{StereoModel, stereo_loads};
@@ -26,7 +27,7 @@ pub struct Bench {
     /// The level of modelling at which every figure is measured.
     pub level: Level,
     /// Parameters by path that differ from the presets. A path that begins with a preset's name and a colon changes
-    /// that one only; the times of PPHIGS code do not change the machines that run Slats.
+    /// that one only; the times of PPHIGS code do not change the machines that run Slats. [`PHOTODIODE_LINE`] is the rig's.
     pub changes: Vec<(String, u64)>,
     /// Seeds of the head motion of figure 7.
     pub seeds: u64,
@@ -39,6 +40,9 @@ pub struct Bench {
 
 /// TRANSFORM and RENDER of figure 6 (milliseconds): a spread of lengths, because the swap waits for a retrace.
 const LONG_STAGES_MS: [u64; 7] = [22, 23, 24, 25, 26, 27, 28];
+
+/// The visible line of the screen under the photodiode of figure 17, as a change of a bench.
+pub const PHOTODIODE_LINE: &str = "tracking.rig.photodiode_line";
 
 /// Fields of figures 16b and 16c, whose frames take about 30 each.
 const FIELDS_OF_FULL_BINS: u64 = 600;
@@ -141,6 +145,7 @@ impl Bench {
             match path.split_once(':') {
                 Some((only, path)) if only == preset => machine.set(path, *value)?,
                 Some(_) => {}
+                None if path == PHOTODIODE_LINE => {}
                 None if preset.starts_with("slats") && PPHIGS_CODE.contains(&path.as_str()) => {}
                 None => machine.set(path, *value)?,
             }
@@ -182,7 +187,8 @@ impl Bench {
     /// Figure 3: everything but COPY is free.
     fn copy_alone(&self) -> Result<FigureValue> {
         let mut machine = self.machine("small-hmd")?;
-        let gp = ["message_ns", "triangle_ns", "bin_entry_ns", "edit_ns", "pass_ns"].map(|name| format!("gp.{name}"));
+        let gp = ["message", "triangle", "guard", "bin_entry", "token_entry", "edit", "pass", "structure"];
+        let gp = gp.map(|name| format!("gp.{name}_ns"));
         machine.code = None;
         let array = ["triangle", "phong_triangle", "select", "clear", "shade"];
         let array = array.map(|name| format!("renderer.{name}_clocks"));
@@ -205,14 +211,15 @@ impl Bench {
     fn rig(&self) -> Result<FigureValue> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
         let key = (self.reading.kept, self.reading.finished, self.changes.clone());
-        self.applications.rig(key, || heads::rig(&machine, self.reading.pipeline()))
+        let line = self.changes.iter().rev().find(|(path, _)| path == PHOTODIODE_LINE).map(|(_, line)| *line);
+        self.applications.rig(key, || heads::rig(&machine, self.reading.pipeline(), line))
     }
 
     /// A triangle that takes `ms` of TRANSFORM on its GP, and twelve of which take `ms` of RENDER.
     fn stages_of(&self, ms: f64) -> Result<MachineConfig> {
         let mut machine = self.machine("small-hmd")?;
         let regions = 20_u64.div_ceil(machine.n_renderers as u64) as f64;
-        let rest_ns = TransformCost { entries: 20, ..TransformCost::PASS }.ns(&machine.gp);
+        let rest_ns = TransformCost { structures: 1, entries: 20, ..TransformCost::PASS }.ns(&machine.gp);
         machine.set("gp.triangle_ns", (ms * 1e6) as u64 - rest_ns)?;
         machine.code = None;
         let clocks = ms * 1e-3 / regions / 12.0 * machine.renderer.clock_hz as f64;
@@ -241,13 +248,14 @@ impl Bench {
 
     /// Figures 7, 7b and 7c: a fly-through of an application scene, with one seed for so many of figure 7.
     fn application(&self, scene: &'static str, seeds_of_one: u64) -> Result<FigureValue> {
-        let mut latencies = Vec::new();
         let samples_a_frame = if self.reading.samples == Samples::EachEye { 2 } else { 1 };
-        for seed in 1..=self.seeds.div_ceil(seeds_of_one) {
-            let summary = self.fly_through(scene, seed, self.seeds.div_ceil(seeds_of_one))?;
+        let seeds: Vec<u64> = (1..=self.seeds.div_ceil(seeds_of_one)).collect();
+        let latencies = parallel::map(&seeds, |seed| {
+            let summary = self.fly_through(scene, *seed, seeds.len() as u64)?;
             let samples = self.reading.latencies_ms(&summary).iter().take(samples_a_frame * self.frames as usize);
-            latencies.extend(samples.map(|ms| self.reading.fields_of(*ms, summary.field_ms)));
-        }
+            Ok(samples.map(|ms| self.reading.fields_of(*ms, summary.field_ms)).collect())
+        });
+        let latencies = latencies.into_iter().collect::<Result<Vec<Vec<f64>>>>()?.concat();
         let samples = latencies.len() as f64;
         let all = Statistics::of(latencies.into_iter());
         let details = vec![

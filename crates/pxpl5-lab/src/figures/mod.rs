@@ -23,13 +23,14 @@ mod table;
 
 pub use document::markdown;
 pub use family::FigureFamily;
-pub use measure::Bench;
+pub use measure::{Bench, PHOTODIODE_LINE};
 pub use measured::{Detail, FigureValue};
 pub use reading::{FieldCount, ROOM, Reading, Samples};
 pub use row::{FigureRow, MISS_PERCENT, mean_error_percent};
 pub use table::{Basis, FIGURES, Figure, WITHOUT_CLOSED_FORM};
 
 use crate::intervals::{Interval, fill, intervals};
+use crate::parallel;
 use crate::readings::{self, Readings};
 use serde::Serialize;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -83,24 +84,38 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
     let steps = FIGURES.len() as u64 + 4;
     let done = AtomicU64::new(0);
     let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
-    let rows = crate::parallel::map(&FIGURES, |figure| {
+    let with_step = |figure: &Figure| {
         let row = row_of(bench, figure);
         step();
         row
-    });
-    let mut rows = rows.into_iter().collect::<Result<Vec<_>, _>>()?;
-    let by_code = bench.clone().with_times_of_code();
-    let of_code = crate::parallel::map(&FIGURES, |figure| row_of(&by_code, figure));
-    let of_code = of_code.into_iter().collect::<Result<Vec<_>, _>>()?;
-    step();
-    let intervals = intervals(bench);
-    step();
+    };
+    let rows = || parallel::map(&FIGURES, with_step).into_iter().collect::<Result<Vec<_>, _>>();
+    let of_code = || {
+        let by_code = bench.clone().with_times_of_code();
+        let rows = parallel::map(&FIGURES, |figure| row_of(&by_code, figure));
+        step();
+        rows.into_iter().collect::<Result<Vec<_>, _>>()
+    };
+    let intervals = || {
+        let intervals = intervals(bench);
+        step();
+        intervals
+    };
+    let readings = || {
+        let readings = readings::run(&bench.clone().with_mig(SEEDS, FRAMES), 0, |_, _| {});
+        step();
+        readings.map_err(|error| FigureError { id: "7".to_owned(), reason: error.to_string() })
+    };
+    let families = || {
+        let families = FigureFamily::address_recalculation(bench);
+        step();
+        families
+    };
+    let of_machine = || parallel::both(rows, of_code);
+    let of_models = || parallel::both(|| parallel::both(readings, intervals), families);
+    let ((rows, of_code), ((readings, intervals), families)) = parallel::both(of_machine, of_models);
+    let (mut rows, of_code, readings, families) = (rows?, of_code?, readings?, vec![families?]);
     fill(&mut rows, &intervals);
-    let readings = readings::run(&bench.clone().with_mig(SEEDS, FRAMES), 0, |_, _| {});
-    let readings = readings.map_err(|error| FigureError { id: "7".to_owned(), reason: error.to_string() })?;
-    step();
-    let families = vec![FigureFamily::address_recalculation(bench)?];
-    step();
     Ok(Figures { rows, of_code, intervals, families, readings })
 }
 

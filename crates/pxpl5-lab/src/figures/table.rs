@@ -268,7 +268,8 @@ pub const FIGURES: [Figure; 26] = [
     .because(
         "frames on demand find every stage idle. TRANSFORM and RENDER of two triangles are short, COPY of both eyes takes 31 ms, the \
          retrace is waited for half a field and the beam reaches the photodiode half a field later. The printed range is that of \
-         figure 4, where the pipeline is full; what else a frame of the pendulum's program did is not published",
+         figure 4, where the pipeline is full; what else a frame of the pendulum's program did is not published, nor where on the screen the \
+         photodiode was: here it is in the middle, and under the last line the time would be within the printed range",
     ),
     figure(
         "18",

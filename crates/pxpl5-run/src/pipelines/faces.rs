@@ -5,7 +5,7 @@ use super::face_keys::{IDEAL_NAMES, NAMES, POLICIES, POLICY, SEGMENT, WARP};
 use super::face_objects::ByObjects;
 use super::face_plan::{Cycles, Full, Plan, Updates};
 use super::ideal_faces::{All, IdealFaces, seen_next};
-use super::{shading_value, swapped_in};
+use super::{region_has_room, shading_value, swapped_in};
 use crate::cut::CutScene;
 use crate::due::PictureEnd;
 use crate::keys::KeyValue;
@@ -100,11 +100,12 @@ impl FacePipeline {
             .map_err(|error| ConfigError::Board(format!("arp.face_texels: {error}")))?;
         let picture =
             Picture { viewport, shading: self.shading, binning: RegionBinning::Touched, layout: self.layout(), pixels };
-        Ok(Faces {
-            memories: machine.ports().display()[..display.timing.display_memories as usize].to_vec(),
-            picture,
-            content: if display.format().words() == 1 { CopyContent::Packed } else { CopyContent::ColourAndDepth },
-        })
+        let content = if display.format().words() == 1 { CopyContent::Packed } else { CopyContent::ColourAndDepth };
+        if self.source == FaceSource::PixelPlanes {
+            region_has_room(machine.record(), content.words().into())?;
+        }
+        let memories = machine.ports().display()[..display.timing.display_memories as usize].to_vec();
+        Ok(Faces { memories, picture, content })
     }
 
     /// What the host does when it is ready for an update.
@@ -272,6 +273,12 @@ impl Pipeline for FacePipeline {
         let side_m = priority_timing(config)?.cell_m;
         let cut = if self.segmented { CutScene::segmented(scene, side_m) } else { CutScene::whole(scene, side_m) };
         cut.map(Some).map_err(refused)
+    }
+
+    /// That vertices of warped cells move takes no time at any level; an ideal source has no graphics processors.
+    fn without_code(&self, _: &MachineConfig) -> Option<&'static str> {
+        let is_warped = self.source == FaceSource::PixelPlanes && self.policy == FacePolicy::CellsWarped;
+        is_warped.then_some("moving the vertices of warped cells (0 in the table)")
     }
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {

@@ -1,15 +1,15 @@
 //! Frameless rendering on the emulated machine.
 
-use super::jitp::{TABLES, config, load};
+use super::jitp::{TABLES, config, load, whole_pass};
 use super::{ntsc, samples};
 use crate::due::PictureEnd;
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::pipeline::{PictureTimes, Pipeline, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use jitp::{BlockOrder, DrawingSchedule, JitpConfig};
-use pphigs::{PrimitiveCounts, Share, TransformCost};
+use pphigs::TransformCost;
 use pxpl5_framebuffer::Video;
-use pxpl5_machine::{Arrival, ConfigError, Machine, Record};
+use pxpl5_machine::{Arrival, ConfigError, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, PictureNumber, RegionGrid, RegionId, ViewNumber};
@@ -38,14 +38,14 @@ impl Frameless {
     }
 
     /// While a slave transforms for one batch the others' blocks pass the frame buffer's port.
-    fn batch(&self, record: &Record, counts: PrimitiveCounts) -> u32 {
+    fn batch(&self, record: &Record, pass: TransformCost) -> u32 {
         if self.batch > 0 {
             return self.batch;
         }
         let ports = record.ports();
         let ring = record.ring().timing();
         let timing = record.config().gp;
-        let slave_ns = TransformCost::pass_over(counts).ns(&timing) + 3 * timing.message_ns;
+        let slave_ns = pass.ns(&timing) + 3 * timing.message_ns;
         let block_ns = ring.occupancy(self.block * self.block).0 / 1_000;
         let slaves = ports.gps.len().saturating_sub(1).max(1) as u64;
         (slave_ns / (slaves * block_ns)).clamp(LEAST_BATCH, MOST_BATCH) as u32
@@ -110,12 +110,16 @@ impl Pipeline for Frameless {
         true
     }
 
+    fn without_code(&self, _: &MachineConfig) -> Option<&'static str> {
+        Some("finding what meets a block, and how many blocks are a batch")
+    }
+
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
         if !(4..=128).contains(&self.block) {
             let what = "block of frameless rendering, pixels".to_owned();
             return Err(ConfigError::Value { what, expected: (4, 128), found: u64::from(self.block) });
         }
-        let batch = self.batch(machine.record(), Share::new(Arc::clone(&setup.list), 0, 1).counts());
+        let batch = self.batch(machine.record(), whole_pass(setup));
         let schedule = DrawingSchedule::Roam { block: self.block, batch, order: self.order()? };
         let config = config(machine.record(), schedule, self.layout(), setup.pixels)?;
         let config = JitpConfig { aim: setup.aim, ..config };

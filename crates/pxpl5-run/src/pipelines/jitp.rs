@@ -6,11 +6,11 @@ use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::pipeline::{PictureTimes, Pipeline, Setup, Source};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use jitp::{Beam, DrawingSchedule, JitpConfig, JitpTiming, Transforms, Wanted, host, master, slave};
-use pphigs::Share;
+use pphigs::{Share, TransformCost};
 use pxpl5_display::Aim;
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::Priority;
-use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, NamedTable, Record};
+use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, NamedTable, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, FieldParity, PictureNumber, RegionGrid, RegionId, ViewNumber};
@@ -96,6 +96,11 @@ fn beam(video: Video) -> Beam {
     Beam::new(at, move |field| video.retrace(field))
 }
 
+/// A slave's pass: each holds the whole display list.
+pub(super) fn whole_pass(setup: &Setup) -> TransformCost {
+    TransformCost::pass_over(&setup.list, Share::new(Arc::clone(&setup.list), 0, 1).counts())
+}
+
 /// Loads host, master and slaves.
 pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
     let gp = machine.processor(config.host, Priority::Foreground);
@@ -104,9 +109,9 @@ pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
     machine.load(config.host, Priority::Foreground, Box::pin(program));
     let gp = machine.processor(config.master, Priority::Foreground);
     let views = Arc::clone(&setup.wanted);
-    let counts = Share::new(Arc::clone(&setup.list), 0, 1).counts();
+    let pass = whole_pass(setup);
     let view_of = move |wanted: Wanted| views(wanted.number, wanted.known, wanted.shown_at);
-    for (level, program) in master(&gp, config, counts, view_of) {
+    for (level, program) in master(&gp, config, pass, view_of) {
         machine.load(config.master, level, program);
     }
     let transforms = Transforms::default();
@@ -160,6 +165,14 @@ impl Pipeline for Jitp {
 
     fn knows_when_seen(&self) -> bool {
         true
+    }
+
+    fn without_code(&self, _: &MachineConfig) -> Option<&'static str> {
+        Some(match self.viewpoint {
+            Viewpoint::Strip => "finding what meets a strip",
+            Viewpoint::Field => "finding what meets a strip, and the master's part of a field",
+            Viewpoint::Dual(_) => "interpolating, finding what meets a strip, and the master's part of a field",
+        })
     }
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {

@@ -37,6 +37,19 @@ pub(crate) fn entries() -> Vec<PipelineEntry> {
     all
 }
 
+/// A finished region is copied through so many blocks of its renderer's backing store, or it could never leave.
+fn region_has_room(record: &Record, blocks: u64) -> Result<(), ConfigError> {
+    let renderer = &record.config().renderer;
+    if renderer.backing_regions() >= blocks {
+        return Ok(());
+    }
+    let (needed, found) = (blocks.saturating_mul(renderer.kept_bits), renderer.backing_bits);
+    let what = format!("{blocks} blocks of {} bits (renderer.kept_bits) for a finished region", renderer.kept_bits);
+    Err(ConfigError::Board(format!(
+        "renderer.backing_bits: expected {needed} at least, room for {what}, found {found}"
+    )))
+}
+
 /// The display of a pipeline that is written for interlaced fields of the papers' size.
 fn ntsc<'a>(record: &'a Record, pipeline: &str) -> Result<&'a NtscDisplay, ConfigError> {
     let display: &NtscDisplay = (record.display() as &dyn Any).downcast_ref().ok_or_else(|| {

@@ -1,6 +1,6 @@
 //! Rendering Control on the emulated machine.
 
-use super::{SHADING, shading_or, shading_value, swapped_in};
+use super::{SHADING, region_has_room, shading_or, shading_value, swapped_in};
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::pipeline::{PictureTimes, Pipeline, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
@@ -9,7 +9,7 @@ use pphigs::{Picture, RegionBinning, Shading};
 use pxpl5_display::Surface;
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::Priority;
-use pxpl5_machine::{Arrival, ConfigError, Machine, Record};
+use pxpl5_machine::{Arrival, ConfigError, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Lines, MAX_MESSAGE_WORDS, PictureNumber, RegionId, SurfaceId};
@@ -75,18 +75,21 @@ impl RenderingControl {
         Self { mono: true, ..Self::stereo() }
     }
 
+    /// What is drawn for an eye on a display of some surfaces.
+    fn drawn(self, surfaces: &[Surface], pixels: bool) -> Result<Picture, ConfigError> {
+        let grid = surfaces.first().map_or(Viewport::FRAME.grid(), |surface| surface.grid());
+        let viewport = Viewport::new(grid, Lines::Frame).map_err(|error| ConfigError::Board(error.to_string()))?;
+        Ok(Picture { viewport, shading: self.shading, binning: RegionBinning::Touched, layout: self.layout(), pixels })
+    }
+
     fn config(self, machine: &Machine, pixels: bool) -> Result<RenderingControlConfig, ConfigError> {
         let ports = machine.ports();
         let [master, slaves @ ..] = &ports.gps[..] else { return Err(too_few_gps(0)) };
         if slaves.is_empty() {
             return Err(too_few_gps(1));
         }
-        let display = machine.record().display();
-        let surface = display.surfaces().first();
-        let grid = surface.map_or(Viewport::FRAME.grid(), |surface| surface.grid());
-        let viewport = Viewport::new(grid, Lines::Frame).map_err(|error| ConfigError::Board(error.to_string()))?;
-        let picture =
-            Picture { viewport, shading: self.shading, binning: RegionBinning::Touched, layout: self.layout(), pixels };
+        region_has_room(machine.record(), 1)?;
+        let picture = self.drawn(machine.record().display().surfaces(), pixels)?;
         Ok(RenderingControlConfig {
             host: ports.host,
             master: *master,
@@ -127,6 +130,11 @@ impl Pipeline for RenderingControl {
 
     fn shading(&self) -> Shading {
         self.shading
+    }
+
+    /// All of it is code, on every display: there are kernels for all frames in regions of 128 x 128.
+    fn without_code(&self, _: &MachineConfig) -> Option<&'static str> {
+        None
     }
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {

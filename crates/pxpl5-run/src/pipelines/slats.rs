@@ -123,6 +123,10 @@ impl Pipeline for Slats {
         MachineConfig { gp, code: Some(code.version()), ..config }
     }
 
+    fn without_code(&self, _: &MachineConfig) -> Option<&'static str> {
+        None
+    }
+
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
         ntsc(machine.record(), self.name())?;
         let config = self.config(machine, setup.pixels);

@@ -1,6 +1,7 @@
 //! Six faces drawn by Pixel-Planes 5 for a display that turns with the head: when, how fast, and whether they are right.
 
 mod cells;
+mod code;
 mod ideal;
 mod turning;
 
