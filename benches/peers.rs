@@ -1,4 +1,4 @@
-//! The head of 59,592 triangles, one eye, 640 x 480, Gouraud, Z-buffered: the software renderer `euc` beside the pixels
+//! The head of 59,592 triangles, one eye, 640 x 480, Gouraud, Z-buffered: the software renderers `euc` and `retrofire` beside the pixels
 //! of the emulated machine, without its times, by both pixel arrays, of which the bit-serial one works in two ways. An
 //! element is a picture.
 
@@ -7,7 +7,7 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use pxpl5::scene;
 use pxpl5_renderer::{BitSerial, Lanes};
-use support::{Euc, Ours, views};
+use support::{Euc, Ours, Retrofire, views};
 
 #[path = "support/peers.rs"]
 mod support;
@@ -19,16 +19,20 @@ fn peers(criterion: &mut Criterion) {
     let mut ours = Ours::new(&head, Lanes::new);
     let mut skipping = Ours::new(&head, |layout| BitSerial::new(layout).skipping());
     let mut literal = Ours::new(&head, BitSerial::new);
+    let mut retrofire = Retrofire::new(&head);
     euc.draw(&head, &views[0]);
+    retrofire.draw(&head, &views[0]);
     ours.draw(&views[0]);
-    let theirs = euc.covered() as f64;
     let own = ours.covered() as f64;
-    assert!(own > 10_000.0 && (theirs / own - 1.0).abs() < 0.02, "not the same picture: {theirs} and {own} pixels");
+    for theirs in [euc.covered(), retrofire.covered()].map(|pixels| pixels as f64) {
+        assert!(own > 10_000.0 && (theirs / own - 1.0).abs() < 0.02, "not the same picture: {theirs} and {own} pixels");
+    }
     let mut group = criterion.benchmark_group("peers/head, one eye");
     group.throughput(Throughput::Elements(1));
     let mut turn = views.iter().cycle();
     let mut next = || turn.next().unwrap_or(&views[0]);
     group.bench_function("euc 0.5", |b| b.iter(|| euc.draw(&head, next())));
+    group.bench_function("retrofire 0.4", |b| b.iter(|| retrofire.draw(&head, next())));
     group.bench_function("ours", |b| b.iter(|| ours.draw(next())));
     group.bench_function("ours, bit serial, skipping", |b| b.iter(|| skipping.draw(next())));
     group.bench_function("ours, bit serial, literal", |b| b.iter(|| literal.draw(next())));

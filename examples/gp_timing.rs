@@ -13,7 +13,7 @@ use parameters::{ParameterTable, Value};
 use pxpl5::lab::code_times::{CodeUse, code_times};
 use pxpl5::limit::{LimitQuery, test_scene};
 use pxpl5::{CodeVersion, Experiment, Level, MachineConfig, PictureNumber, Pixels, Slats, TestScene};
-use pxpl5_geometry::kernel::{Kernel, KernelList, KernelSurface, Schedule};
+use pxpl5_geometry::kernel::{Kernel, KernelList, KernelPicture, KernelSurface, Schedule};
 use pxpl5_geometry::sphere_kernel::SphereKernel;
 use pxpl5_geometry::{Triangle, Viewport};
 use pxpl5_gp::{GpTiming, Stage};
@@ -434,7 +434,10 @@ fn table_of_code() -> Result<(), Box<dyn std::error::Error>> {
         "sphere, us",
         "entry in a bin, us",
         "beginning of a pass, us",
+        "a structure of it and eye, us",
+        "spheres of a structure and eye, besides, us",
         "edit, us",
+        "entry handed over, us",
         "message or chain, us",
         "scenes, us",
         "table, triangle, us",
@@ -456,7 +459,10 @@ fn table_of_code() -> Result<(), Box<dyn std::error::Error>> {
             us(times.sphere_ns),
             us(times.entry_ns),
             us(times.pass_ns),
+            us(times.structure_ns),
+            us(times.sphere_view_ns),
             us(times.edit_ns),
+            us(times.token_entry_ns),
             us(times.message_ns),
             format!("{least_message} to {greatest_message}"),
             us(table.triangle_ns as f64),
@@ -478,7 +484,7 @@ fn sizes() {
     let end = at("clipper");
     row(&["clipper".into(), (program.base + program.bytes.len() as u32 - end).to_string()]);
     for (surface, name) in [(KernelSurface::Gouraud, "spheres, Gouraud"), (KernelSurface::Phong, "spheres, Phong")] {
-        let source = SphereKernel { surface, field: false }.source();
+        let source = SphereKernel { surface, picture: KernelPicture::Frame }.source();
         let program = i860::assemble("sphere", 0, &source).expect("the tests assemble it");
         row(&[name.into(), program.bytes.len().to_string()]);
     }
@@ -507,9 +513,12 @@ Spheres (centre and radius to the eye, near and far plane, conic, bounding box, 
 and the beginning of a pass (bins reset, matrices of each structure multiplied and turned round, light) are code in the same
 manner. Messages and chains are received and sent by crates/pxpl5-gp/kernels/ring.s, and the bins of tokens are
 handed over by crates/pphigs/kernels/token.s; the original's operating software is not published, and ring_rules.md says what this
-one stands for. Not in code: what a master decides, and the six transformations of cube maps. What the ring's interface does of
-a message (its DMA, its FIFOs) is no code at any level: it is simulated word by word. So a figure of the whole program is expected to
-be larger than these.
+one stands for. The kernels of these tables know the size of an NTSC frame or field; those of other frames in regions of 128 x 128
+(faces of a cube, other displays) read it from their parameter block (kernels/grid.s). Which of six faces a primitive may touch is found by
+crates/pphigs/kernels/sort.s (sort_rules.md). Not in code: what a master decides, moving vertices where cells are warped, and of just-in-time
+pixels and frameless rendering what is done for a strip or a block besides TRANSFORM: their runs at the cycle level say so. What the ring's
+interface does of a message (its DMA, its FIFOs) is no code at any level: it is simulated word by word. So a figure of the whole program is
+expected to be larger than these.
 
 Input of the tables before the last but one: 1,000 triangles of about 30 pixels, each corner with its own position,
 normal and colour, streamed from memory. Processor: 40 MHz, the freeze rules and the memory of

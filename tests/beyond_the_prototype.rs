@@ -5,7 +5,10 @@ mod support;
 
 use pxpl5::limit::LimitQuery;
 use pxpl5::scene::builtin;
-use pxpl5::{Experiment, MachineConfig, Measured, Outcome, Pixels, RegionBinning, RenderingControl, Slats, TestScene};
+use pxpl5::{
+    Experiment, ExperimentFile, MachineConfig, Measured, Outcome, Pixels, RegionBinning, RenderingControl, Slats,
+    TestScene,
+};
 use support::boards;
 
 fn run(slats: Slats, scene: &str) -> Outcome {
@@ -52,6 +55,25 @@ fn typical_triangles_sent_only_where_they_touch_raise_the_limit() {
     let all = limit(1, 5, Slats::split(), TestScene::Typical);
     let touched = limit(1, 5, touched, TestScene::Typical);
     assert!(touched > all, "{touched} and {all}");
+}
+
+/// A finished region leaves through the backing store: colours are a block of 32 bits, depths another one.
+#[test]
+fn a_backing_store_has_room_for_a_finished_region_or_is_refused() {
+    for (pipeline, bits) in [("rendering-control", 32), ("arp-full", 64)] {
+        let with = |bits: u64| {
+            let text = format!(
+                "pipeline = \"{pipeline}\"\nscene = \"sphere:60\"\nfields = 40\n[machine.renderer]\nbacking_bits = {bits}\n"
+            );
+            let plan = ExperimentFile::parse(&text, "test").expect("TOML").resolve().expect("it has a meaning");
+            plan.experiment(plan.load_scene().expect("built in")).pixels(Pixels::Off)
+        };
+        let error = with(bits - 1).build().map(drop).expect_err("no region would ever leave").to_string();
+        let expected = format!("renderer.backing_bits: expected {bits} at least");
+        assert!(error.contains(&expected) && error.ends_with(&format!("found {}", bits - 1)), "{error}");
+        let outcome = with(bits).run().expect("it runs");
+        assert!(outcome.pictures().iter().any(|times| times.is_shown()), "{pipeline} with {bits} bits");
+    }
 }
 
 #[test]

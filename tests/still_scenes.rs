@@ -11,10 +11,10 @@ use pxpl5::oracle::IdealPicture;
 use pxpl5::scene::config::FIT_DISTANCE_RADII;
 use pxpl5::scene::{self, HeadMotion, HeadPath, Scene, Sway};
 use pxpl5::{
-    Experiment, ExperimentError, KeyValue, MachineConfig, Measured, Outcome, PipelineEntry, PipelineSettings, Report,
-    SurfaceId, Time, registry,
+    Experiment, ExperimentError, KeyValue, Level, MachineConfig, Measured, Outcome, PipelineEntry, PipelineSettings,
+    Report, SurfaceId, Time, registry,
 };
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -93,19 +93,30 @@ fn machine(entry: &PipelineEntry, (gps, renderers): (usize, usize)) -> MachineCo
     config
 }
 
-/// Strips of eight lines: of one line, a single slave could not draw any in time.
-fn settings(entry: &PipelineEntry) -> PipelineSettings {
-    let mut settings = PipelineSettings::default();
-    if entry.family == "jitp" {
-        settings.set("strip_rows", KeyValue::Whole(8));
-    }
-    settings
+/// Strips of eight lines: of one line, a single slave could not draw any in time. By code it takes longer: a sphere 78 us, the beginning
+/// of each pass more than 100 us (docs/gp-timing.md); so strips have 32 lines where levels are compared, and 2.0 ms each.
+fn settings(entry: &PipelineEntry, lines: u64) -> PipelineSettings {
+    if entry.family == "jitp" { with_strips(lines) } else { PipelineSettings::default() }
+}
+
+/// Lines of a strip where pictures are held against the oracle, and where they are compared between levels.
+const LINES: u64 = 8;
+const LINES_AT_BOTH_LEVELS: u64 = 32;
+
+fn run(entry: &PipelineEntry, size: (usize, usize), scene: &Arc<Scene>, fields: u64) -> Outcome {
+    run_at(Level::Transaction, (entry, LINES), size, scene, fields)
 }
 
 /// Some pictures may never be complete: what is seen at the end counts here, not when it came.
-fn run(entry: &PipelineEntry, size: (usize, usize), scene: &Arc<Scene>, fields: u64) -> Outcome {
-    let pipeline = (entry.build)(&settings(entry));
-    match Experiment::with(machine(entry, size), pipeline, Arc::clone(scene)).fields(fields).run() {
+fn run_at(
+    level: Level,
+    (entry, lines): (&PipelineEntry, u64),
+    size: (usize, usize),
+    scene: &Arc<Scene>,
+    fields: u64,
+) -> Outcome {
+    let pipeline = (entry.build)(&settings(entry, lines));
+    match Experiment::with(machine(entry, size), pipeline, Arc::clone(scene)).fields(fields).level(level).run() {
         Ok(outcome) => outcome,
         Err(ExperimentError::TooShort { partial, .. }) => *partial,
         Err(error) => panic!("{} on {size:?} with {}: {error}", entry.name, scene.name()),
@@ -179,6 +190,39 @@ fn slats_and_frameless_rendering_show_what_the_oracle_draws() {
 #[test]
 fn just_in_time_pixels_show_what_the_oracle_draws() {
     all_sizes(|entry| entry.family == "jitp");
+}
+
+/// Primitives of which pictures are compared between levels: few, so that code keeps up with the beam.
+const AT_BOTH_LEVELS: usize = 30;
+
+/// Other times, and the same pictures to the bit. One slave draws, so that ties fall as in the display list. Of the variants of one
+/// family that draws faces the first stands for all.
+#[test]
+fn every_pipeline_shows_the_same_pictures_at_the_cycle_level() {
+    let registry = registry();
+    let molecules = scene::builtin("molecules").expect("built in");
+    let mut families = BTreeSet::new();
+    for entry in registry.pipelines() {
+        if !families.insert(entry.family) && !draws_pictures(entry) {
+            continue;
+        }
+        let size = if entry.family == "slats" { (1, 5) } else { (2, 20) };
+        let (most, fields) = load(entry.name, size, false);
+        let scene = Arc::new(still(&molecules, most.min(AT_BOTH_LEVELS)));
+        let began = std::time::Instant::now();
+        let drawn = (entry, LINES_AT_BOTH_LEVELS);
+        let [table, code] =
+            [Level::Transaction, Level::Cycle].map(|level| run_at(level, drawn, size, &scene, fields.min(60)));
+        assert_ne!(table.report().trace_hash, code.report().trace_hash, "{} takes other times", entry.name);
+        for surface in (0..table.pipeline().eyes() as u16).map(SurfaceId) {
+            let [expected, found] = [&table, &code].map(|outcome| outcome.picture(surface).expect("pixels are on"));
+            let background = expected.get_pixel(0, 0);
+            assert!(expected.pixels().any(|pixel| pixel != background), "{}: something is drawn", entry.name);
+            let other = expected.pixels().zip(found.pixels()).filter(|(a, b)| a != b).count();
+            assert_eq!(other, 0, "{}: pixels of surface {}", entry.name, surface.index());
+        }
+        println!("{} {:?}", entry.name, began.elapsed());
+    }
 }
 
 /// Whether a pipeline draws pictures of what an eye sees. Faces of a cube are held against the oracle face by face, in

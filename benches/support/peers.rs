@@ -1,4 +1,4 @@
-//! One eye's picture of a scene by the software renderer `euc`, and by what the emulated machine computes without its times.
+//! One eye's picture of a scene by the software renderers `euc` and `retrofire`, and by what the emulated machine computes without its times.
 
 use euc::buffer::Buffer2d;
 use euc::rasterizer::{BackfaceCullingDisabled, Triangles};
@@ -13,6 +13,12 @@ use pxpl5::scene::{Hmd, HmdConfig, Scene, View};
 use pxpl5_geometry::{Culling, Viewport};
 use pxpl5_renderer::{Layout, PixelArray};
 use pxpl5_wire::{RegionId, Word};
+use retrofire_core::geom::{Tri, tri, vertex};
+use retrofire_core::math::mat::viewport;
+use retrofire_core::math::{Color3f, Mat4 as RetrofireMatrix, ProjVec3, pt2, rgb, rgba};
+use retrofire_core::render::{Colorbuf, Context, Frag, Framebuf, Ndc, Screen, render, shader};
+use retrofire_core::util::pixfmt::Xrgb8888;
+use retrofire_core::util::{Buf2, Dims};
 use std::sync::Arc;
 
 const WIDTH: usize = 640;
@@ -101,6 +107,63 @@ impl Euc {
     }
 }
 
+/// A vertex of `retrofire`: its number.
+type Numbered = u32;
+
+pub(crate) struct Retrofire {
+    triangles: Vec<Tri<usize>>,
+    numbers: Vec<Numbered>,
+    target: Framebuf<Colorbuf<Buf2<u32>, Xrgb8888>, Buf2<f32>>,
+    to_screen: RetrofireMatrix<Ndc, Screen>,
+}
+
+impl Retrofire {
+    pub(crate) fn new(head: &Scene) -> Self {
+        let size = (WIDTH as u32, HEIGHT as u32);
+        Self {
+            triangles: head
+                .triangles()
+                .iter()
+                .map(|corners| corners.map(|i| i as usize))
+                .map(|[a, b, c]| tri(a, b, c))
+                .collect(),
+            numbers: (0..head.vertices().len() as u32).collect(),
+            target: Framebuf {
+                color_buf: Colorbuf::new(Buf2::new(Dims(size.0, size.1))),
+                depth_buf: Buf2::new(Dims(size.0, size.1)),
+            },
+            to_screen: viewport(pt2(0, 0)..pt2(size.0, size.1)),
+        }
+    }
+
+    pub(crate) fn draw(&mut self, head: &Scene, view: &EyeView) {
+        let matrix = view.projection * view.world_to_eye;
+        let light = head.lighting();
+        let gouraud = shader::new(
+            |number: Numbered, (): ()| {
+                let corner = &head.vertices()[number as usize];
+                let intensity = light.ambient + light.diffuse * corner.normal.dot(light.towards_light).max(0.0);
+                let [red, green, blue] = corner.colour.map(|part| f32::from(part) / 255.0 * intensity.min(1.0));
+                let place: Vec4 = matrix * corner.position.extend(1.0);
+                vertex(ProjVec3::new(place.to_array()), rgb(red, green, blue))
+            },
+            |pixel: Frag<Color3f>, (): ()| {
+                let [red, green, blue] = pixel.var.0.map(|part| (part * 255.0) as u8);
+                rgba(red, green, blue, 255)
+            },
+        );
+        // Depths are reciprocals: nothing is at 0.
+        self.target.color_buf.buf.fill(0);
+        self.target.depth_buf.fill(0.0);
+        let context = Context { face_cull: None, ..Context::default() };
+        render(&self.triangles, &self.numbers, &gouraud, (), self.to_screen, &mut self.target, &context);
+    }
+
+    pub(crate) fn covered(&self) -> usize {
+        self.target.depth_buf.data().iter().filter(|depth| **depth != 0.0).count()
+    }
+}
+
 /// One GP that holds everything, and one pixel array for all regions in turn.
 pub(crate) struct Ours<A> {
     share: Share,
@@ -138,7 +201,7 @@ impl<A: PixelArray> Ours<A> {
         let shading = Shading::Gouraud;
         let binning = RegionBinning::Touched;
         Self {
-            share: Share::new(Arc::new(list), 0, 1),
+            share: Share::new(Arc::new(list.with_vertices_in_order()), 0, 1),
             picture: Picture { viewport, shading, binning, layout, pixels: true },
             array: array(&layout),
             words: Vec::new(),
@@ -156,6 +219,7 @@ impl<A: PixelArray> Ours<A> {
             for list in pphigs::region_messages(&pass, region, 0, envelope) {
                 self.array.draw(&*list.content.expect("pixels are wanted"), &mut self.words);
             }
+            assert_eq!(self.array.faults(), 0, "all commands are legal");
             let [_, _, width, height] = grid.rectangle(region);
             self.pixels.push(self.array.read_colour(width, height));
         }

@@ -1,6 +1,7 @@
 //! What is measured, and what was aimed at (the project's own goals).
 
-use crate::peers::{Euc, Ours, views};
+use crate::opengl::OpenGl;
+use crate::peers::{Euc, Ours, Retrofire, views};
 use crate::timing::{Fallible, Measured, Way, in_turns};
 use pxpl5::{
     Experiment, Level, MachineConfig, NtscDisplay, PeriodNumber, Pixels, RenderingControl, Saving, Slats, Workstation,
@@ -135,9 +136,9 @@ pub(crate) fn chosen(rows: &[Row]) -> Vec<Row> {
 }
 
 /// All lines of the table of goals.
-pub(crate) fn goals(rounds: usize) -> Fallible<Vec<Row>> {
+pub(crate) fn goals(rounds: usize, opengl: Option<&str>) -> Fallible<Vec<Row>> {
     let mut rows = heads(rounds)?;
-    rows.extend(pictures(rounds)?);
+    rows.extend(pictures(rounds, opengl)?);
     rows.extend(aircraft(rounds)?);
     rows.extend(growth(rounds)?);
     rows.extend(looks(rounds)?);
@@ -158,35 +159,52 @@ fn heads(rounds: usize) -> Fallible<Vec<Row>> {
     ])
 }
 
-/// One eye without the machine, beside `euc`.
-fn pictures(rounds: usize) -> Fallible<Vec<Row>> {
+/// One eye without the machine, beside `euc` and `retrofire`, and beside the OpenGL that is installed if there is a program for it.
+fn pictures(rounds: usize, opengl: Option<&str>) -> Fallible<Vec<Row>> {
     let head = scene::builtin("head")?;
     let views = views(&head);
     let mut euc = Euc::new(&head);
+    let mut retrofire = Retrofire::new(&head);
     let mut ours = Ours::new(&head, Lanes::new);
+    let mut opengl = opengl.map(|program| OpenGl::new(program, &head, &views)).transpose()?;
     let each = views.len() as f64;
-    let measured = in_turns(
-        rounds,
-        vec![
-            Way::new("euc", || {
-                views.iter().for_each(|view| euc.draw(&head, view));
-                Ok(each)
-            }),
-            Way::new("ours", || {
-                views.iter().for_each(|view| ours.draw(view));
-                Ok(each)
-            }),
-        ],
-    )?;
-    let agree = (euc.covered() as f64 / ours.covered() as f64 - 1.0).abs() < 0.02;
-    if !agree {
-        return Err(format!("euc covers {} pixels, we {}", euc.covered(), ours.covered()).into());
-    }
-    Ok(vec![
+    let mut ways = vec![
+        Way::new("euc", || {
+            views.iter().for_each(|view| euc.draw(&head, view));
+            Ok(each)
+        }),
+        Way::new("ours", || {
+            views.iter().for_each(|view| ours.draw(view));
+            Ok(each)
+        }),
+        Way::new("retrofire", || {
+            views.iter().for_each(|view| retrofire.draw(&head, view));
+            Ok(each)
+        }),
+    ];
+    ways.extend(opengl.as_mut().map(|opengl| Way::elsewhere("opengl", || opengl.draw())));
+    let measured = in_turns(rounds, ways)?;
+    agree("euc", euc.covered() as f64, ours.covered() as f64)?;
+    agree("retrofire", retrofire.covered() as f64, ours.covered() as f64)?;
+    let mut rows = vec![
         time_ms("one eye of the head, `euc` 0.5", None, &measured[0]),
         time_ms("the same, ours, without the machine", None, &measured[1]),
         chosen_row(ratio("ours in parts of `euc`", Some(0.42), &measured[1], &measured[0])),
-    ])
+        time_ms("the same, `retrofire` 0.4", None, &measured[2]),
+        ratio("ours in parts of `retrofire`", None, &measured[1], &measured[2]),
+    ];
+    if let Some((opengl, measured_there)) = opengl.zip(measured.get(3)) {
+        agree(&opengl.renderer, opengl.covered, ours.covered() as f64)?;
+        rows.push(time_ms(&format!("the same, OpenGL on one thread, {}", opengl.renderer), None, measured_there));
+        rows.push(ratio("ours in parts of that", Some(0.22), &measured[1], measured_there));
+    }
+    Ok(rows)
+}
+
+/// Both draw the same picture, if they cover as many pixels within 2 %.
+fn agree(peer: &str, theirs: f64, own: f64) -> Fallible<()> {
+    let is_same = (theirs / own - 1.0).abs() < 0.02;
+    is_same.then_some(()).ok_or_else(|| format!("{peer} covers {theirs} pixels, we {own}").into())
 }
 
 /// The Mig: on the large machine, under Slats, and with code on the i860s.

@@ -1,11 +1,13 @@
 //! Measures the speed of whole machines and writes the tables of docs/speed.md and README.md that lie between
 //! `<!-- speed: NAME -->` and `<!-- end of speed -->`: nothing of them is typed. `scripts/speed` builds and runs it.
 //!
-//! Times are CPU time of the process. What a table compares is measured in one process, in turns, and the best of some rounds
-//! counts: beside other work that is what swings least. `cargo run --release --example speed [-- --check]`, which only
-//! measures one round and prints.
+//! Times are CPU time of the process, but where threads are compared. What a table compares is measured in one process, in turns, and the best of some rounds
+//! counts: beside other work that is what swings least. `cargo run --release --example speed [-- --check] [-- --opengl PROGRAM]`: the first only
+//! measures one round and prints, the second has the program of scripts/llvmpipe draw beside us.
 
 mod cases;
+mod cores;
+mod opengl;
 mod page;
 #[path = "../../benches/support/peers.rs"]
 #[allow(dead_code, reason = "the bench draws with more arrays")]
@@ -20,10 +22,12 @@ use std::path::Path;
 const ROUNDS: usize = 7;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let is_check = std::env::args().nth(1).is_some_and(|argument| argument == "--check");
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let is_check = arguments.iter().any(|argument| argument == "--check");
+    let opengl = arguments.iter().skip_while(|argument| *argument != "--opengl").nth(1);
     let rounds = if is_check { 1 } else { ROUNDS };
     let begin = page::load_average();
-    let goals = cases::goals(rounds)?;
+    let goals = cases::goals(rounds, opengl.map(String::as_str))?;
     let savings = cases::savings(rounds.min(3))?;
     let threads = workers::table()?;
     let conditions = page::conditions(rounds, &begin);
@@ -31,6 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("goals", format!("{conditions}\n\n{}", page::of_goals(&goals))),
         ("savings", page::of_savings(&savings)),
         ("threads", threads),
+        ("cores", cores::table(rounds.min(3))?),
     ];
     if is_check {
         for (name, table) in &tables {

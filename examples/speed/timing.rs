@@ -5,15 +5,21 @@ use std::error::Error;
 
 pub(crate) type Fallible<T> = Result<T, Box<dyn Error>>;
 
-/// What is measured: a name, and what does it once and says how many of its elements that were.
+/// What is measured: a name, and what does it once and says how many of its elements that were; or, of work that another process does, how many
+/// seconds of CPU time an element took there.
 pub(crate) struct Way<'a> {
     pub(crate) name: String,
     pub(crate) run: Box<dyn FnMut() -> Fallible<f64> + 'a>,
+    is_elsewhere: bool,
 }
 
 impl<'a> Way<'a> {
     pub(crate) fn new(name: impl Into<String>, run: impl FnMut() -> Fallible<f64> + 'a) -> Self {
-        Self { name: name.into(), run: Box::new(run) }
+        Self { name: name.into(), run: Box::new(run), is_elsewhere: false }
+    }
+
+    pub(crate) fn elsewhere(name: impl Into<String>, run: impl FnMut() -> Fallible<f64> + 'a) -> Self {
+        Self { is_elsewhere: true, ..Self::new(name, run) }
     }
 }
 
@@ -40,8 +46,8 @@ pub(crate) fn in_turns(rounds: usize, mut ways: Vec<Way<'_>>) -> Fallible<Vec<Me
     for round in 0..=rounds {
         for (way, measured) in ways.iter_mut().zip(&mut all) {
             let begin = ProcessTime::try_now()?;
-            let elements = (way.run)().map_err(|error| format!("{}: {error}", way.name))?;
-            let seconds = begin.try_elapsed()?.as_secs_f64() / elements;
+            let done = (way.run)().map_err(|error| format!("{}: {error}", way.name))?;
+            let seconds = if way.is_elsewhere { done } else { begin.try_elapsed()?.as_secs_f64() / done };
             if round > 0 {
                 measured.seconds.push(seconds);
             }

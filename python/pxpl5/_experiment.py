@@ -233,7 +233,7 @@ class Experiment:
 
     @property
     def warnings(self) -> list[str]:
-        """Parameters that no source allows, each with range and source."""
+        """Parameters that no source allows, each with range and source; and what has no code at the cycle level."""
         return self._native.warnings()
 
     @property
