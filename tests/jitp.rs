@@ -271,36 +271,6 @@ fn errors_of_pipelines_are_as_their_latencies_from_head_to_light() {
 }
 
 #[test]
-fn stages_from_head_to_light_add_up() {
-    for pipeline in [
-        Arc::new(RenderingControl::mono()) as Arc<dyn Pipeline>,
-        Arc::new(Slats::split()),
-        Arc::new(Jitp::new(Viewpoint::Strip, true)),
-        Arc::new(Frameless::new()),
-    ] {
-        let outcome = Experiment::with(MachineConfig::small_hmd(), Arc::clone(&pipeline), Arc::new(small()))
-            .head(head(Synthetic::recorded_use(1), TrackerConfig::fastrak(), PredictorKind::None))
-            .fields(90)
-            .run()
-            .expect("the scene is small");
-        let budget = Budget::of(&outcome);
-        let measured: BTreeMap<_, _> =
-            outcome.head().expect("a head").sampled().iter().filter_map(|s| Some((s.number, s.measured_at?))).collect();
-        let ages: Vec<f64> = outcome
-            .complete_pictures()
-            .filter(|times| times.copied_at.is_some())
-            .filter_map(|times| {
-                Some(pipeline.light(outcome.record(), times).since(*measured.get(&times.view)?).as_ms())
-            })
-            .collect();
-        let mean = ages.iter().sum::<f64>() / ages.len() as f64;
-        assert!(ages.len() > 10 && (mean - budget.total_ms).abs() < 1e-6, "{}: {mean}", pipeline.name());
-        // 3.75 ms to the first character, and 47 bytes at 115,200 baud.
-        assert!((budget.tracking_ms - 3.75 - 4.08).abs() < 0.01, "{}", budget.tracking_ms);
-    }
-}
-
-#[test]
 fn a_perfect_tracker_and_a_still_head_leave_no_error() {
     let outcome = run(Slats::split(), perfect(Still(Pose::at(DVec3::new(0.3, 0.1, 0.2)))), 60);
     let errors = PixelErrors::of(&outcome);

@@ -217,7 +217,7 @@ impl<A: PixelArray> Ours<A> {
         for region in (0..grid.regions() as u16).map(RegionId) {
             let envelope = RegionEnvelope { begin: true, ..RegionEnvelope::default() };
             for list in pphigs::region_messages(&pass, region, 0, envelope) {
-                self.array.draw(&*list.content.expect("pixels are wanted"), &mut self.words);
+                self.array.draw(&list.content.expect("pixels are wanted"), &mut self.words);
             }
             assert_eq!(self.array.faults(), 0, "all commands are legal");
             let [_, _, width, height] = grid.rectangle(region);

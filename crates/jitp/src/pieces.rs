@@ -6,8 +6,8 @@ use pphigs::PrimitiveCounts;
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::{Clear, Command, CommandKind, CopyRegion, Layout, SelectRegion};
 use pxpl5_wire::{
-    CommandList, CommandRun, CommandSink, CommandWords, CopyContent, CopyOrder, CopyTarget, CopyWay, MAX_MESSAGE_WORDS,
-    RegionId, Word,
+    CommandContent, CommandList, CommandRun, CommandSink, CommandWords, CopyContent, CopyOrder, CopyTarget, CopyWay,
+    MAX_MESSAGE_WORDS, RegionId, Word,
 };
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
@@ -66,6 +66,10 @@ fn take_run(remaining: Range<u32>, words_each: u32, room_words: &mut u32) -> Ran
 }
 
 impl Part {
+    fn draws(&self) -> bool {
+        !self.triangles.is_empty() || !self.spheres.is_empty()
+    }
+
     fn runs(&self) -> Vec<CommandRun> {
         let all = [
             (CommandKind::SelectRegion, u32::from(self.first)),
@@ -88,16 +92,18 @@ pub(crate) fn messages(
     target: CopyTarget,
 ) -> Vec<CommandList> {
     let [left, top, _, _] = config.grid().rectangle(target.region).map(|v| v as u16);
-    let words = RegionWords {
+    let parts = parts(counts);
+    let words = || RegionWords {
         drawing: Arc::clone(drawing),
         layout: config.layout,
         window,
         origin: SelectRegion { context: 0, left, top },
         target,
+        parts: parts.clone(),
         primitives: OnceLock::new(),
     };
-    let words = Arc::new(words);
-    let lists = parts(counts).into_iter().map(|part| {
+    let words = config.pixels.then(|| Arc::new(words()) as Arc<dyn CommandWords>);
+    let lists = (0..).zip(&parts).map(|(number, part)| {
         let runs = part.runs();
         let copies = if part.last {
             vec![CopyOrder {
@@ -110,14 +116,13 @@ pub(crate) fn messages(
         } else {
             Vec::new()
         };
-        let piece = PieceWords { region: Arc::clone(&words), part };
-        let content = config.pixels.then(|| Arc::new(piece) as Arc<dyn CommandWords>);
+        let content = words.as_ref().map(|words| CommandContent::new(Arc::clone(words), number));
         CommandList { runs, context: 0, copies, content }
     });
     lists.collect()
 }
 
-/// Makes the words of a region; those of its primitives once for all its messages.
+/// Makes the words of a region's messages; those of its primitives once for all of them.
 #[derive(Debug)]
 struct RegionWords {
     drawing: Arc<DrawnList>,
@@ -125,6 +130,8 @@ struct RegionWords {
     window: Window,
     origin: SelectRegion,
     target: CopyTarget,
+    /// What each message holds.
+    parts: Vec<Part>,
     /// Triangles, and spheres.
     primitives: OnceLock<[Vec<Word>; 2]>,
 }
@@ -146,34 +153,27 @@ impl RegionWords {
     }
 }
 
-/// The words of one message.
-#[derive(Debug)]
-struct PieceWords {
-    region: Arc<RegionWords>,
-    part: Part,
-}
-
-impl CommandWords for PieceWords {
-    fn append_words(&self, out: &mut Vec<Word>) {
-        let Self { region, part } = self;
+impl CommandWords for RegionWords {
+    fn append_words(&self, part: u32, out: &mut Vec<Word>) {
+        let Some(part) = self.parts.get(part as usize) else { return };
         if part.first {
-            region.append(Command::SelectRegion(region.origin), out);
-            let [r, g, b] = region.drawing.background().map(u32::from);
-            region.append(Command::Clear(Clear { colour: r << 16 | g << 8 | b }), out);
+            self.append(Command::SelectRegion(self.origin), out);
+            let [r, g, b] = self.drawing.background().map(u32::from);
+            self.append(Command::Clear(Clear { colour: r << 16 | g << 8 | b }), out);
         }
-        if !part.triangles.is_empty() || !part.spheres.is_empty() {
-            let [triangles, spheres] = region.primitives();
+        if part.draws() {
+            let [triangles, spheres] = self.primitives();
             out.extend_from_slice(words_of(triangles, &part.triangles, CommandKind::Triangle));
             out.extend_from_slice(words_of(spheres, &part.spheres, CommandKind::Sphere));
         }
         if part.last {
-            region.append(Command::CopyRegion(CopyRegion { target: region.target }), out);
+            self.append(Command::CopyRegion(CopyRegion { target: self.target }), out);
         }
     }
 
-    fn append_touching(&self, out: &mut dyn CommandSink) -> bool {
-        self.append_words(out.words());
-        !self.part.triangles.is_empty() || !self.part.spheres.is_empty()
+    fn append_touching(&self, part: u32, out: &mut dyn CommandSink) -> bool {
+        self.append_words(part, out.words());
+        self.parts.get(part as usize).is_some_and(Part::draws)
     }
 }
 

@@ -15,7 +15,8 @@ use pxpl5_renderer::{
     SelectRegion, Shade, SphereBody, SphereCommand, TriangleCommand, TriangleEncoder,
 };
 use pxpl5_wire::{
-    CommandList, CommandRun, CommandSink, CommandWords, CopyOrder, Linear, MAX_MESSAGE_WORDS, RegionId, Word,
+    CommandContent, CommandList, CommandRun, CommandSink, CommandWords, CopyOrder, Linear, MAX_MESSAGE_WORDS, RegionId,
+    Word,
 };
 use std::ops::Range;
 use std::sync::Arc;
@@ -34,13 +35,16 @@ pub struct RegionEnvelope {
 /// The messages that hold a region's bin in its envelope, as few as their length allows.
 #[must_use]
 pub fn region_messages(pass: &Arc<Pass>, region: RegionId, context: u8, envelope: RegionEnvelope) -> Vec<CommandList> {
-    let counts = pass.counts(region);
-    let mut packer = Packer { pass, region, context, part: RegionPart::default(), words: 0, lists: Vec::new() };
-    packer.select(envelope.begin);
-    packer.primitives(pass.triangle_kind(), counts.triangles, |part| &mut part.triangles);
-    packer.primitives(pass.sphere_kind(), counts.spheres, |part| &mut part.spheres);
-    packer.end(envelope);
-    packer.lists
+    let parts = (0..).zip(Parts::new(pass, region, envelope));
+    let words = || Arc::new(RegionWords { pass: Arc::clone(pass), region, context, envelope }) as Arc<dyn CommandWords>;
+    let words = pass.picture().pixels.then(words);
+    let list = |(number, part): (u32, RegionPart)| CommandList {
+        runs: part.runs(pass, envelope),
+        context,
+        copies: envelope.copy.into_iter().filter(|_| part.ends).collect(),
+        content: words.as_ref().map(|words| CommandContent::new(Arc::clone(words), number)),
+    };
+    parts.map(list).collect()
 }
 
 /// A message that only copies regions, each from its context.
@@ -49,7 +53,7 @@ pub fn copy_message(layout: Layout, copies: Vec<CopyOrder>, pixels: bool) -> Com
     let runs =
         copies.iter().flat_map(|_| [run(CommandKind::SelectRegion, 1), run(CommandKind::CopyRegion, 1)]).collect();
     let context = copies.first().map_or(0, |order| order.context);
-    let content = pixels.then(|| Arc::new(CopyWords { layout, copies: copies.clone() }) as Arc<dyn CommandWords>);
+    let content = pixels.then(|| CommandContent::new(Arc::new(CopyWords { layout, copies: copies.clone() }), 0));
     CommandList { runs, context, copies, content }
 }
 
@@ -64,87 +68,79 @@ struct RegionPart {
     clear: bool,
     triangles: Range<u32>,
     spheres: Range<u32>,
-    shade: bool,
-    copy: Option<CopyOrder>,
+    /// Whether what ends the region is in it: shading, the copy.
+    ends: bool,
 }
 
-/// Fills messages one after the other.
-struct Packer<'a> {
-    pass: &'a Arc<Pass>,
-    region: RegionId,
-    context: u8,
-    part: RegionPart,
-    words: u32,
-    lists: Vec<CommandList>,
+/// Fills messages one after the other: all triangles, then all spheres.
+struct Parts {
+    /// Primitives that no message holds yet, and the words of one.
+    triangles: Range<u32>,
+    spheres: Range<u32>,
+    words_each: [u32; 2],
+    /// Whether each message selects its context.
+    selects: bool,
+    clears_next: bool,
+    ending_words: u32,
+    has_ended: bool,
 }
 
-impl Packer<'_> {
-    fn select(&mut self, clear: bool) {
-        let selecting = clear || self.pass.picture().layout.plan().contexts > 1;
-        self.part.select = selecting;
-        self.part.clear = clear;
-        self.words = CommandKind::SelectRegion.words() * u32::from(selecting);
-        self.words += CommandKind::Clear.words() * u32::from(clear);
-    }
-
-    fn primitives(&mut self, kind: CommandKind, count: u32, range: impl Fn(&mut RegionPart) -> &mut Range<u32>) {
-        let mut sent = 0;
-        while sent < count {
-            let fits = (MAX_MESSAGE_WORDS - self.words) / kind.words();
-            if fits == 0 {
-                self.finish();
-                continue;
-            }
-            let n = fits.min(count - sent);
-            *range(&mut self.part) = sent..sent + n;
-            self.words += n * kind.words();
-            sent += n;
+impl Parts {
+    fn new(pass: &Pass, region: RegionId, envelope: RegionEnvelope) -> Self {
+        let PrimitiveCounts { triangles, spheres } = pass.counts(region);
+        Self {
+            triangles: 0..triangles,
+            spheres: 0..spheres,
+            words_each: [pass.triangle_kind(), pass.sphere_kind()].map(CommandKind::words),
+            selects: pass.picture().layout.plan().contexts > 1,
+            clears_next: envelope.begin,
+            ending_words: pass.ending_words(envelope),
+            has_ended: false,
         }
     }
+}
 
-    fn end(&mut self, envelope: RegionEnvelope) {
-        let shade = envelope.shade && self.pass.picture().shading == Shading::Phong;
-        let words = CommandKind::Shade.words() * u32::from(shade)
-            + CommandKind::CopyRegion.words() * u32::from(envelope.copy.is_some());
-        if self.words + words > MAX_MESSAGE_WORDS {
-            self.finish();
-        }
-        self.part.shade = shade;
-        self.part.copy = envelope.copy;
-        self.words += words;
-        self.finish();
-    }
+impl Iterator for Parts {
+    type Item = RegionPart;
 
-    /// Closes a message, unless it would only select.
-    fn finish(&mut self) {
-        let part = std::mem::take(&mut self.part);
-        let selected = CommandKind::SelectRegion.words() * u32::from(part.select);
-        if self.words > selected {
-            self.lists.push(self.list(part));
-        }
-        self.select(false);
+    /// The next message, unless it would only select.
+    fn next(&mut self) -> Option<RegionPart> {
+        let clear = std::mem::take(&mut self.clears_next);
+        let select = clear || self.selects;
+        let mut room_words = MAX_MESSAGE_WORDS
+            - CommandKind::SelectRegion.words() * u32::from(select)
+            - CommandKind::Clear.words() * u32::from(clear);
+        let triangles = take_run(&mut self.triangles, self.words_each[0], &mut room_words);
+        let spheres = if self.triangles.is_empty() {
+            take_run(&mut self.spheres, self.words_each[1], &mut room_words)
+        } else {
+            0..0
+        };
+        let holds_all = self.triangles.is_empty() && self.spheres.is_empty();
+        let ends = holds_all && !self.has_ended && self.ending_words <= room_words;
+        let says_something = clear || !triangles.is_empty() || !spheres.is_empty() || (ends && self.ending_words > 0);
+        self.has_ended |= ends;
+        says_something.then_some(RegionPart { select, clear, triangles, spheres, ends })
     }
+}
 
-    fn list(&self, part: RegionPart) -> CommandList {
-        let pass = Arc::clone(self.pass);
-        let region = self.region;
-        let runs = part.runs(&pass);
-        let copies = part.copy.into_iter().collect();
-        let words = RegionWords { pass, region, context: self.context, part };
-        let content = words.pass.picture().pixels.then(|| Arc::new(words) as Arc<dyn CommandWords>);
-        CommandList { runs, context: self.context, copies, content }
-    }
+/// As many of the remaining primitives, of `words_each` words, as have room.
+fn take_run(remaining: &mut Range<u32>, words_each: u32, room_words: &mut u32) -> Range<u32> {
+    let end = remaining.start + (remaining.end - remaining.start).min(*room_words / words_each);
+    let taken = std::mem::replace(&mut remaining.start, end)..end;
+    *room_words -= (taken.end - taken.start) * words_each;
+    taken
 }
 
 impl RegionPart {
-    fn runs(&self, pass: &Pass) -> Vec<CommandRun> {
+    fn runs(&self, pass: &Pass, envelope: RegionEnvelope) -> Vec<CommandRun> {
         let all = [
             (CommandKind::SelectRegion, u32::from(self.select)),
             (CommandKind::Clear, u32::from(self.clear)),
             (pass.triangle_kind(), self.triangles.len() as u32),
             (pass.sphere_kind(), self.spheres.len() as u32),
-            (CommandKind::Shade, u32::from(self.shade)),
-            (CommandKind::CopyRegion, u32::from(self.copy.is_some())),
+            (CommandKind::Shade, u32::from(self.ends && pass.shades(envelope))),
+            (CommandKind::CopyRegion, u32::from(self.ends && envelope.copy.is_some())),
         ];
         all.into_iter().filter(|(_, count)| *count > 0).map(|(kind, count)| run(kind, count)).collect()
     }
@@ -163,6 +159,17 @@ impl Pass {
             Shading::Gouraud => CommandKind::Sphere,
             Shading::Phong => CommandKind::PhongSphere,
         }
+    }
+
+    /// Whether all pixels of a region in this envelope are shaded at its end.
+    fn shades(&self, envelope: RegionEnvelope) -> bool {
+        envelope.shade && self.picture().shading == Shading::Phong
+    }
+
+    /// Length of what ends a region in this envelope.
+    fn ending_words(&self, envelope: RegionEnvelope) -> u32 {
+        CommandKind::Shade.words() * u32::from(self.shades(envelope))
+            + CommandKind::CopyRegion.words() * u32::from(envelope.copy.is_some())
     }
 
     /// Bytes of the renderer commands of all screen primitives, each held once (TR94: bins point to them).
@@ -184,48 +191,55 @@ fn bytes(kind: CommandKind, count: u32) -> u64 {
     4 * u64::from(kind.words()) * u64::from(count)
 }
 
-/// Makes the words of one message.
+/// Makes the words of a region's messages.
 #[derive(Debug)]
 struct RegionWords {
     pass: Arc<Pass>,
     region: RegionId,
     context: u8,
-    part: RegionPart,
+    envelope: RegionEnvelope,
 }
 
 impl CommandWords for RegionWords {
-    fn append_words(&self, out: &mut Vec<Word>) {
-        self.append_with(self.pass.triangles_in(self.region, &self.part.triangles), out);
+    fn append_words(&self, part: u32, out: &mut Vec<Word>) {
+        let part = self.part(part);
+        self.append_with(&part, self.pass.triangles_in(self.region, &part.triangles), out);
     }
 
-    fn append_touching(&self, out: &mut dyn CommandSink) -> bool {
-        let triangles = self.pass.triangles_touching(self.region, &self.part.triangles);
-        let draws = !triangles.is_empty() || !self.part.spheres.is_empty();
-        if draws || self.part.clear || self.part.shade || self.part.copy.is_some() {
-            self.append_with(&triangles, out);
+    fn append_touching(&self, part: u32, out: &mut dyn CommandSink) -> bool {
+        let part = self.part(part);
+        let triangles = self.pass.triangles_touching(self.region, &part.triangles);
+        let draws = !triangles.is_empty() || !part.spheres.is_empty();
+        if draws || part.clear || (part.ends && self.pass.ending_words(self.envelope) > 0) {
+            self.append_with(&part, &triangles, out);
         }
         draws
     }
 }
 
 impl RegionWords {
-    /// All commands, with some of the triangles.
-    fn append_with(&self, triangles: &[BinEntry], out: &mut dyn CommandSink) {
+    /// What a message holds: nothing where there are not so many.
+    fn part(&self, number: u32) -> RegionPart {
+        Parts::new(&self.pass, self.region, self.envelope).nth(number as usize).unwrap_or_default()
+    }
+
+    /// All commands of a message, with some of the triangles.
+    fn append_with(&self, part: &RegionPart, triangles: &[BinEntry], out: &mut dyn CommandSink) {
         let picture = self.pass.picture();
-        if self.part.select {
+        if part.select {
             let [left, top, _, _] = picture.viewport.grid().rectangle(self.region);
             let select = SelectRegion { context: self.context, left: left as u16, top: top as u16 };
             append(&Command::SelectRegion(select), &picture.layout, out.words());
         }
-        if self.part.clear {
+        if part.clear {
             append(&Command::Clear(Clear { colour: rgb(self.pass.background()) }), &picture.layout, out.words());
         }
         self.triangles(triangles, out);
-        self.spheres(out.words());
-        if self.part.shade {
+        self.spheres(&part.spheres, out.words());
+        if part.ends && self.pass.shades(self.envelope) {
             append(&Command::Shade(shade(self.pass.light())), &picture.layout, out.words());
         }
-        if let Some(order) = &self.part.copy {
+        if let Some(order) = self.envelope.copy.filter(|_| part.ends) {
             append(&Command::CopyRegion(CopyRegion { target: order.target }), &picture.layout, out.words());
         }
     }
@@ -325,11 +339,11 @@ impl RegionWords {
         }
     }
 
-    fn spheres(&self, out: &mut Vec<Word>) {
-        if self.part.spheres.is_empty() {
+    fn spheres(&self, spheres: &Range<u32>, out: &mut Vec<Word>) {
+        if spheres.is_empty() {
             return;
         }
-        let range = self.part.spheres.start as usize..self.part.spheres.end as usize;
+        let range = spheres.start as usize..spheres.end as usize;
         let mut numbers = &self.pass.bin(self.region).spheres[range];
         let picture = self.pass.picture();
         let list = self.pass.share().list();
@@ -482,7 +496,7 @@ struct CopyWords {
 }
 
 impl CommandWords for CopyWords {
-    fn append_words(&self, out: &mut Vec<Word>) {
+    fn append_words(&self, _: u32, out: &mut Vec<Word>) {
         for order in &self.copies {
             let [left, top, _, _] = order.target.grid.rectangle(order.target.region);
             let select = SelectRegion { context: order.context, left: left as u16, top: top as u16 };

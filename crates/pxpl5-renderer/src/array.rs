@@ -1,7 +1,7 @@
 //! What every pixel array does, whatever its inside.
 
 use crate::isa::{DecodeErrorKind, Operand};
-use pxpl5_wire::{CommandWords, CopyTarget, REGION_SIZE, Word};
+use pxpl5_wire::{CommandContent, CopyTarget, REGION_SIZE, Word};
 use std::sync::Arc;
 
 /// Pixels of the array: 128 x 128 (F89).
@@ -26,7 +26,7 @@ pub trait PixelArray {
 
     /// Executes what of a list touches the region, and gives what was copied. A fault stops it, as on the hardware; what was drawn
     /// before stays. What pixel memory holds is as after [`Self::execute`], Enable is not. `room` is for words.
-    fn draw(&mut self, commands: &dyn CommandWords, room: &mut Vec<Word>) -> Vec<OutputRegion> {
+    fn draw(&mut self, commands: &CommandContent, room: &mut Vec<Word>) -> Vec<OutputRegion> {
         room.clear();
         commands.append_touching(room);
         self.execute(room).map_or_else(|_| Vec::new(), |executed| executed.outputs)

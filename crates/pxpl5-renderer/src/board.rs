@@ -9,7 +9,7 @@ use crate::timing::RendererTiming;
 use crate::{Lanes, PixelArray};
 use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
 use pxpl5_wire::{
-    Body, COPY_ACKNOWLEDGEMENT_WORDS, CommandList, CommandRun, CommandWords, CopyOrder, CopyTarget, CopyWay,
+    Body, COPY_ACKNOWLEDGEMENT_WORDS, CommandContent, CommandList, CommandRun, CopyOrder, CopyTarget, CopyWay,
     MAX_MESSAGE_WORDS, Message, NodeId, PixelSource, RegionPixels,
 };
 use std::collections::VecDeque;
@@ -94,7 +94,20 @@ pub struct Renderer {
 #[derive(Clone, Debug, Default)]
 struct ContextLog {
     cleared: bool,
-    lists: Vec<Arc<dyn CommandWords>>,
+    /// Shared with the pixels of regions that were copied.
+    lists: Arc<Vec<CommandContent>>,
+}
+
+impl ContextLog {
+    /// What was sent before is seen no more, unless it was copied.
+    fn clear(&mut self) {
+        self.cleared = true;
+        match Arc::get_mut(&mut self.lists) {
+            Some(lists) => lists.clear(),
+            // As much room: the next picture's region is much like this one's.
+            None => self.lists = Arc::new(Vec::with_capacity(self.lists.len())),
+        }
+    }
 }
 
 /// A copy command in the FIFO, with what its region holds when it executes.
@@ -178,10 +191,10 @@ impl Renderer {
     fn take(&mut self, list: CommandList) {
         let log = &mut self.logs[usize::from(list.context) % MAX_CONTEXTS];
         if begins_with_clear(&list.runs) {
-            *log = ContextLog { cleared: true, ..ContextLog::default() };
+            log.clear();
         }
-        if changes_pixels(&list.runs) {
-            log.lists.extend(list.content.clone());
+        if let Some(content) = list.content.filter(|_| changes_pixels(&list.runs)) {
+            Arc::make_mut(&mut log.lists).push(content);
         }
         for order in &list.copies {
             let image = self.image(order);
@@ -346,7 +359,7 @@ impl Renderer {
             return None;
         }
         let mut array = Lanes::new(self.pool.layout());
-        for list in self.logs.iter().flat_map(|log| &log.lists) {
+        for list in self.logs.iter().flat_map(|log| log.lists.iter()) {
             let mut words = Vec::new();
             list.append_words(&mut words);
             // A fault stops the list, as on the hardware; what was drawn before stays.

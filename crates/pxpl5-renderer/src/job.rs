@@ -2,7 +2,7 @@
 
 use crate::{Command, Lanes, Layout, OutputRegion, PixelArray};
 use pxpl5_wire::format::Z_BITS;
-use pxpl5_wire::{CommandWords, CopyContent, CopyTarget, PixelSource, Word};
+use pxpl5_wire::{CommandContent, CopyContent, CopyTarget, PixelSource, Word};
 use std::collections::HashMap;
 use std::fmt;
 use std::slice::Iter;
@@ -83,7 +83,7 @@ impl ArrayPool {
 #[derive(Debug)]
 pub(crate) struct PixelJob {
     pub(crate) pool: Arc<ArrayPool>,
-    pub(crate) lists: Vec<Arc<dyn CommandWords>>,
+    pub(crate) lists: Arc<Vec<CommandContent>>,
     /// Whether the first list overwrites whatever the array held.
     pub(crate) cleared: bool,
     /// Whether what touches no pixel is left out, and a region without primitives kept.
@@ -133,14 +133,14 @@ impl PixelJob {
     }
 
     /// Executes some words, and the lists behind them.
-    fn draw(&self, array: &mut Lanes, words: &mut Vec<Word>, lists: Iter<'_, Arc<dyn CommandWords>>) -> Arc<[Word]> {
+    fn draw(&self, array: &mut Lanes, words: &mut Vec<Word>, lists: Iter<'_, CommandContent>) -> Arc<[Word]> {
         if !self.cleared {
             array.reset();
         }
         let mut copied = self.execute(array, words);
         for list in lists {
             copied = if self.saves {
-                self.copied(array.draw(&**list, words))
+                self.copied(array.draw(list, words))
             } else {
                 words.clear();
                 list.append_words(words);
@@ -197,19 +197,19 @@ impl PixelSource for NoPixels {
 mod tests {
     use super::*;
     use crate::{Clear, CopyRegion, SelectRegion};
-    use pxpl5_wire::{CommandSink, PictureNumber};
+    use pxpl5_wire::{CommandSink, CommandWords, PictureNumber};
     use pxpl5_wire::{Lines, NodeId, RegionGrid, RegionId};
 
     #[derive(Debug)]
     struct GivenWords(Vec<Word>);
 
     impl CommandWords for GivenWords {
-        fn append_words(&self, out: &mut Vec<Word>) {
+        fn append_words(&self, _: u32, out: &mut Vec<Word>) {
             out.extend_from_slice(&self.0);
         }
 
-        fn append_touching(&self, out: &mut dyn CommandSink) -> bool {
-            self.append_words(out.words());
+        fn append_touching(&self, part: u32, out: &mut dyn CommandSink) -> bool {
+            self.append_words(part, out.words());
             false
         }
     }
@@ -228,7 +228,7 @@ mod tests {
         let commands = [select, Command::Clear(Clear { colour }), Command::CopyRegion(CopyRegion { target })];
         let mut words = Vec::new();
         commands.iter().for_each(|command| command.encode(&pool.layout, &mut words).expect("it fits"));
-        let lists: Vec<Arc<dyn CommandWords>> = vec![Arc::new(GivenWords(words))];
+        let lists = Arc::new(vec![CommandContent::new(Arc::new(GivenWords(words)), 0)]);
         PixelJob {
             pool: Arc::clone(pool),
             lists,

@@ -21,7 +21,7 @@ use crate::layout::Layout;
 use crate::simd::{PresentVectors, Vectors};
 use columns::{ContextColumns, PixelColumns};
 use enable::Enable;
-use pxpl5_wire::{CommandSink, CommandWords, REGION_SIZE, TriangleBatch, Word};
+use pxpl5_wire::{CommandContent, CommandSink, REGION_SIZE, TriangleBatch, Word};
 use std::sync::Arc;
 use template::Templates;
 
@@ -159,7 +159,7 @@ impl PixelArray for Lanes {
         self.run(words).inspect_err(|_| self.faults += 1)
     }
 
-    fn draw(&mut self, commands: &dyn CommandWords, room: &mut Vec<Word>) -> Vec<OutputRegion> {
+    fn draw(&mut self, commands: &CommandContent, room: &mut Vec<Word>) -> Vec<OutputRegion> {
         room.clear();
         let mut drawing = Drawing { array: self, words: room, outputs: Ok(Vec::new()) };
         commands.append_touching(&mut drawing);
@@ -206,7 +206,7 @@ mod tests {
     use super::*;
     use crate::command::{Clear, Command, CommandKind, PhongTriangleCommand, SelectRegion, TriangleCommand};
     use crate::conformance::Random;
-    use pxpl5_wire::{LANES, LinearLanes};
+    use pxpl5_wire::{CommandWords, LANES, LinearLanes};
 
     const WHOLE: [CommandKind; 6] = [
         CommandKind::Clear,
@@ -298,13 +298,13 @@ mod tests {
     }
 
     impl CommandWords for SomeTriangles {
-        fn append_words(&self, out: &mut Vec<Word>) {
+        fn append_words(&self, _: u32, out: &mut Vec<Word>) {
             self.begin(out);
             (0..LANES).for_each(|i| self.append(self.triangle(i), out));
             self.append(self.triangle(3), out);
         }
 
-        fn append_touching(&self, out: &mut dyn CommandSink) -> bool {
+        fn append_touching(&self, _: u32, out: &mut dyn CommandSink) -> bool {
             self.begin(out.words());
             let batch = TriangleBatch { len: LANES, edges: &self.edges, planes: &self.planes, colours: self.colours };
             assert!(out.triangles(&batch), "the layout has such triangles");
@@ -320,7 +320,7 @@ mod tests {
         for round in 0..40 {
             let with_normals = round % 2 == 1;
             let layout = if with_normals { Layout::rendering_control_phong() } else { Layout::slats() };
-            let list = SomeTriangles::random(layout, &mut random, with_normals);
+            let list = CommandContent::new(Arc::new(SomeTriangles::random(layout, &mut random, with_normals)), 0);
             let mut words = Vec::new();
             list.append_words(&mut words);
             for vectors in Vectors::available() {

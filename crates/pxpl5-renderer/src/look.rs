@@ -3,9 +3,8 @@
 use crate::contents::{MAX_CONTEXTS, begins_with_clear, changes_pixels};
 use crate::{Lanes, Layout, PixelArray};
 use pxpl5_sim::Span;
-use pxpl5_wire::{Body, CommandWords, CopyOrder, Message};
+use pxpl5_wire::{Body, CommandContent, CopyOrder, Message};
 use std::collections::VecDeque;
-use std::sync::Arc;
 
 /// What a renderer does at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +33,7 @@ struct SentList {
     /// Words that were sent before it, since the start.
     first_word: u64,
     clears: bool,
-    content: Arc<dyn CommandWords>,
+    content: CommandContent,
 }
 
 impl SentLists {

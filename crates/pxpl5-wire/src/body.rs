@@ -39,7 +39,32 @@ pub struct CommandList {
     /// One order for every command that copies a region, in their order.
     pub copies: Vec<CopyOrder>,
     /// The command words, produced on demand; `None` where nobody will look at pixels.
-    pub content: Option<Arc<dyn CommandWords>>,
+    pub content: Option<CommandContent>,
+}
+
+/// The words of a message's commands, produced on demand. Messages that belong together, those of a region, share who makes them.
+#[derive(Clone, Debug)]
+pub struct CommandContent {
+    words: Arc<dyn CommandWords>,
+    part: u32,
+}
+
+impl CommandContent {
+    /// One part, numbered from 0, of what somebody makes.
+    #[must_use]
+    pub const fn new(words: Arc<dyn CommandWords>, part: u32) -> Self {
+        Self { words, part }
+    }
+
+    /// Appends the words, always the same ones.
+    pub fn append_words(&self, out: &mut Vec<Word>) {
+        self.words.append_words(self.part, out);
+    }
+
+    /// Hands over the commands that can touch their region ([`CommandWords::append_touching`]).
+    pub fn append_touching(&self, out: &mut dyn CommandSink) -> bool {
+        self.words.append_touching(self.part, out)
+    }
 }
 
 /// What a copy command asks for.
@@ -133,13 +158,13 @@ pub struct CommandRun {
 
 /// Produces the words of commands when somebody needs them.
 pub trait CommandWords: Debug + Send + Sync {
-    /// Appends the words to `out`, always the same ones.
-    fn append_words(&self, out: &mut Vec<Word>);
+    /// Appends the words of a part, one of so many messages, to `out`: always the same ones.
+    fn append_words(&self, part: u32, out: &mut Vec<Word>);
 
     /// Hands the same commands to somebody, or without primitives that touch no pixel of the region that they are sent to; says
     /// whether a primitive is among them. Whole commands, of which each that draws sets Enable first.
-    fn append_touching(&self, out: &mut dyn CommandSink) -> bool {
-        self.append_words(out.words());
+    fn append_touching(&self, part: u32, out: &mut dyn CommandSink) -> bool {
+        self.append_words(part, out.words());
         true
     }
 }
@@ -163,8 +188,9 @@ impl CommandSink for Vec<Word> {
     }
 }
 
+/// Words that are given; they have one part.
 impl CommandWords for Vec<Word> {
-    fn append_words(&self, out: &mut Vec<Word>) {
+    fn append_words(&self, _: u32, out: &mut Vec<Word>) {
         out.extend_from_slice(self);
     }
 }

@@ -25,9 +25,9 @@ mod number;
 mod region;
 
 pub use body::{
-    Body, COPY_ACKNOWLEDGEMENT, COPY_ACKNOWLEDGEMENT_WORDS, CommandList, CommandRun, CommandSink, CommandWords,
-    CopyContent, CopyOrder, CopyTarget, CopyWay, FieldParity, Lines, Message, PixelSource, RegionPixels, SWAP_REQUEST,
-    read_swap_request, swap_request,
+    Body, COPY_ACKNOWLEDGEMENT, COPY_ACKNOWLEDGEMENT_WORDS, CommandContent, CommandList, CommandRun, CommandSink,
+    CommandWords, CopyContent, CopyOrder, CopyTarget, CopyWay, FieldParity, Lines, Message, PixelSource, RegionPixels,
+    SWAP_REQUEST, read_swap_request, swap_request,
 };
 pub use expression::{LANES, Linear, LinearLanes, Quadratic, TriangleBatch};
 pub use number::{PeriodNumber, PictureNumber, ViewNumber};
