@@ -58,11 +58,12 @@ pub(crate) fn replace(path: &Path, name: &str, table: &str) -> Fallible<()> {
 /// Who measured when, and beside what.
 pub(crate) fn conditions(rounds: usize, load_before: &str) -> String {
     format!(
-        "Measured by `scripts/speed` on {}: {}, {}; CPU time of the process, best of {rounds} rounds in turns. Load average of the machine \
+        "Measured by `scripts/speed` on {}: {}, {}, profile {}; CPU time of the process, best of {rounds} rounds in turns. Load average of the machine \
          {load_before} when it began, {} when it ended, the measuring process included.",
         date(),
         machine(),
         compiler(),
+        profile(),
         load_average()
     )
 }
@@ -82,6 +83,12 @@ fn machine() -> String {
 
 fn compiler() -> String {
     said_by("rustc", "--version")
+}
+
+/// Cargo's profile, by the folder that this was built into: `target/PROFILE/examples`.
+fn profile() -> String {
+    let name = std::env::current_exe().ok().and_then(|path| Some(path.parent()?.parent()?.file_name()?.to_owned()));
+    name.map_or_else(|| "unknown".to_owned(), |name| format!("`{}`", name.display()))
 }
 
 /// Today, UTC.

@@ -92,6 +92,13 @@ impl RingChannels {
         Some(self.first_end).filter(|end| *end != UNKNOWN)
     }
 
+    /// The earliest known end of a message to one of some destinations.
+    pub(crate) fn first_end_at(&self, is_one: impl Fn(NodeId) -> bool) -> Option<Time> {
+        let flights = self.ends_at.iter().zip(&self.flights).filter(|(end, _)| **end != UNKNOWN);
+        let ends = flights.filter(|(_, flight)| flight.as_ref().is_some_and(|flight| is_one(flight.destination)));
+        ends.map(|(end, _)| *end).min()
+    }
+
     /// The end of the message on a channel, if it is known.
     pub(crate) fn end(&self, channel: usize) -> Option<Time> {
         Some(self.ends_at[channel]).filter(|end| *end != UNKNOWN)

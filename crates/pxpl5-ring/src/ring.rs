@@ -21,6 +21,8 @@ pub struct Ring {
     to_fifos: u64,
     /// The first messages of their sources, in the order of grants.
     heads: Vec<QueueHead>,
+    /// Heads for receivers with a FIFO.
+    heads_to_fifos: u32,
     /// Sources that send on as many channels as they can.
     at_limit: usize,
     /// Instants for which arbitration is scheduled.
@@ -51,6 +53,8 @@ struct DestinationPort {
     elastic: bool,
     channel: Option<usize>,
     reserved_for: Option<NodeId>,
+    /// Heads that wait for it.
+    heads: u32,
 }
 
 /// A message that is first at its source and waits. The order of grants is that of the first two fields.
@@ -81,6 +85,7 @@ impl Ring {
             channels: RingChannels::new(n_channels),
             to_fifos: 0,
             heads: Vec::new(),
+            heads_to_fifos: 0,
             at_limit: 0,
             arbitrations: Vec::new(),
             watched: false,
@@ -209,7 +214,9 @@ impl Ring {
         if !new_first || source.in_flight >= most {
             return;
         }
-        self.heads.retain(|head| head.source != id);
+        if let Some(place) = self.heads.iter().position(|head| head.source == id) {
+            self.take_head(place);
+        }
         self.add_head(now, id);
         self.arbitrate_at(now, context);
     }
@@ -225,23 +232,22 @@ impl Ring {
     /// The end of a message matters only if somebody waits for just that one.
     fn arbitrate_at_next_end(&mut self, context: &mut RingContext) {
         let any_end = self.watched || self.at_limit > 0;
-        let next = if any_end || (!self.heads.is_empty() && !self.channels.has_free()) {
+        let next = if any_end || self.lacks_channel() {
             self.channels.first_end()
+        } else if self.heads.is_empty() {
+            None
         } else {
-            self.heads.iter().filter_map(|head| self.awaited_end(head.destination)).min()
+            self.channels.first_end_at(|destination| self.destinations[usize::from(destination.0)].heads > 0)
         };
         if let Some(end) = next {
             self.arbitrate_at(end.max(context.now()), context);
         }
     }
 
-    /// When a message that waits for a destination could be granted at the earliest, if that is known. A destination that
-    /// is reserved waits for a request.
-    fn awaited_end(&self, destination: NodeId) -> Option<Time> {
-        if !self.has_channel_to(destination) {
-            return self.channels.first_end();
-        }
-        self.destinations[usize::from(destination.0)].channel.and_then(|channel| self.channels.end(channel))
+    /// Whether a head waits for a channel, whoever leaves one.
+    fn lacks_channel(&self) -> bool {
+        (!self.heads.is_empty() && !self.channels.has_free())
+            || (self.heads_to_fifos > 0 && self.to_fifos >= self.timing.fifo_channels)
     }
 
     fn refuse(&mut self, request: &Request, error: RingError, context: &mut RingContext) {
@@ -257,6 +263,16 @@ impl Ring {
         let head = QueueHead { since, source, destination: first.request.message.destination };
         let later = self.heads.iter().rev().take_while(|&&h| h > head).count();
         self.heads.insert(self.heads.len() - later, head);
+        let destination = &mut self.destinations[usize::from(head.destination.0)];
+        destination.heads += 1;
+        self.heads_to_fifos += u32::from(!destination.elastic);
+    }
+
+    fn take_head(&mut self, place: usize) {
+        let head = self.heads.remove(place);
+        let destination = &mut self.destinations[usize::from(head.destination.0)];
+        destination.heads -= 1;
+        self.heads_to_fifos -= u32::from(!destination.elastic);
     }
 
     /// Frees channels and ports of all messages that have ended by `now`. The ring does it by itself before it grants;
@@ -287,7 +303,7 @@ impl Ring {
         while self.channels.has_free() && place < self.heads.len() {
             let QueueHead { source, destination, .. } = self.heads[place];
             if self.destinations[usize::from(destination.0)].takes_from(source) && self.has_channel_to(destination) {
-                self.heads.remove(place);
+                self.take_head(place);
                 self.grant(source, context);
             } else {
                 place += 1;
@@ -361,17 +377,18 @@ impl Ring {
             context.schedule(context.now() + self.word, Phase::Arrive, RingEvent::Slot { channel });
         }
         let elastic = self.is_elastic(flight.destination);
-        if (flight.slots_left == 0 || !elastic)
-            && let Some(message) = flight.message.take()
-        {
-            if elastic {
+        let message = if flight.slots_left == 0 || !elastic { flight.message.take() } else { None };
+        match message {
+            Some(message) if elastic => {
                 let now = context.now();
                 self.deliver(&flight, *message, now, context);
+                self.channels.put_back(channel, flight);
                 self.channels.ends(channel, now);
                 self.arbitrate_at_next_end(context);
-            } else {
-                self.announce(&flight, *message, context);
+                return;
             }
+            Some(message) => self.announce(&flight, *message, context),
+            None => {}
         }
         self.channels.put_back(channel, flight);
     }
@@ -463,7 +480,7 @@ impl SourcePort {
 
 impl DestinationPort {
     const fn new(elastic: bool) -> Self {
-        Self { elastic, channel: None, reserved_for: None }
+        Self { elastic, channel: None, reserved_for: None, heads: 0 }
     }
 
     fn takes_from(&self, source: NodeId) -> bool {
