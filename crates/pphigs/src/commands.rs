@@ -105,6 +105,9 @@ impl Iterator for Parts {
 
     /// The next message, unless it would only select.
     fn next(&mut self) -> Option<RegionPart> {
+        if self.has_ended {
+            return None;
+        }
         let clear = std::mem::take(&mut self.clears_next);
         let select = clear || self.selects;
         let mut room_words = MAX_MESSAGE_WORDS
@@ -117,9 +120,9 @@ impl Iterator for Parts {
             0..0
         };
         let holds_all = self.triangles.is_empty() && self.spheres.is_empty();
-        let ends = holds_all && !self.has_ended && self.ending_words <= room_words;
+        self.has_ended = holds_all && self.ending_words <= room_words;
+        let ends = self.has_ended;
         let says_something = clear || !triangles.is_empty() || !spheres.is_empty() || (ends && self.ending_words > 0);
-        self.has_ended |= ends;
         says_something.then_some(RegionPart { select, clear, triangles, spheres, ends })
     }
 }
