@@ -32,8 +32,8 @@ pub struct SeenLateRegion {
     pub first_line: u32,
     /// Number of such lines in this field.
     pub lines: u32,
-    /// Longest time between the scan of a pixel and its arrival; for a pixel that did not come in this field the
-    /// time to its end.
+    /// Longest time between the scan of a pixel and its arrival; for a pixel whose message did not end in this field the
+    /// time to the field's end.
     pub lateness: Span,
 }
 
@@ -111,11 +111,14 @@ impl SeenField {
         self.lateness(segment, i) == Some(Span::ZERO)
     }
 
-    /// How much later than the beam a pixel's word came; `None` where the field scans no pixel.
+    /// How much later than the beam a pixel's word came; `None` where the field scans no pixel. Words of a message that is under way when the
+    /// field ends have not come: the board learns of whole messages. On a ring whose words come faster than the beam goes over pixels, as the
+    /// published one's do, no such word is in time anyhow.
     fn lateness(&self, segment: &Segment, i: u32) -> Option<Span> {
         let scanned_at = self.video.when(segment.x + i, segment.y, self.field)?;
-        let arrived = segment.arrival(i, self.word);
-        Some(arrived.min(self.ends_at).since(scanned_at))
+        let has_come = segment.message_at < self.ends_at;
+        let arrived = if has_come { segment.arrival(i, self.word) } else { self.ends_at };
+        Some(arrived.since(scanned_at))
     }
 
     fn late(&self, region: &RegionWrite) -> Option<SeenLateRegion> {

@@ -21,6 +21,8 @@ struct Copied {
     /// When message 0 arrived.
     first_at: u64,
     gap: u64,
+    /// Of 50 ns, the time of a word.
+    slowness: u64,
 }
 
 impl Copied {
@@ -32,12 +34,16 @@ impl Copied {
         }
     }
 
-    /// When the word of pixel `i` arrived: the last word of its message came with it, those before 50 ns apart.
+    /// When the word of pixel `i` arrived: the last word of its message came with it, those before a word's time apart. Of a message that is
+    /// under way at the end of the field the board knows nothing.
     fn arrival(&self, i: u32) -> u64 {
         let [_, _, width, height] = self.target.grid.rectangle(self.target.region);
         let message_end = (width * height).min((i / 1_024 + 1) * 1_024);
         let message_at = self.first_at + self.gap * u64::from(i / 1_024);
-        message_at - 50_000 * u64::from(message_end - 1 - i)
+        if message_at >= ENDS {
+            return ENDS;
+        }
+        message_at - 50_000 * self.slowness * u64::from(message_end - 1 - i)
     }
 
     /// Calls with column, frame line and number of each pixel.
@@ -65,22 +71,24 @@ fn copies() -> impl Strategy<Value = Vec<Copied>> {
         Just((Lines::Field(FieldParity::Odd), odd_cut)),
     ];
     let copy = (grids, any::<u16>(), 0u64..2_000_000_000, MESSAGE.0..150_000_000);
-    prop::collection::vec(copy, 1..24).prop_map(|copies| {
+    let slowness = prop_oneof![Just(1), Just(2), Just(4)];
+    (prop::collection::vec(copy, 1..24), slowness).prop_map(|(copies, slowness)| {
         let mut begins = BEGINS - 3_000_000_000;
         let copy = |(picture, ((lines, grid), region, pause, gap)): (u64, ((Lines, RegionGrid), u16, u64, u64))| {
+            let gap = gap * slowness;
             let region = region % grid.regions() as u16;
             let target = target(0, lines, grid, region, picture);
-            let first_at = begins + pause + MESSAGE.0;
+            let first_at = begins + pause + MESSAGE.0 * slowness;
             begins = first_at + gap * u64::from(n_parts(&target));
             let image = source((picture as u32 + 1) << 16, 1, 128 * 128);
-            Copied { target, image, first_at, gap }
+            Copied { target, image, first_at, gap, slowness }
         };
         (0..).zip(copies).map(copy).collect()
     })
 }
 
 fn seen(copies: &[Copied], shuffle: u64) -> SeenField {
-    let mut board = Board::new();
+    let mut board = Board::slow(copies[0].slowness);
     board.bench.queue().shuffle_ties(shuffle);
     for copy in copies {
         for part in 0..n_parts(&copy.target) {
@@ -110,7 +118,7 @@ fn model_late(copy: &Copied) -> Option<SeenLateRegion> {
     let mut lines = Vec::new();
     let mut lateness = 0;
     copy.each_pixel(|x, y, i| {
-        if let Some(late) = scanned_at(x, y).and_then(|scan| copy.arrival(i).min(ENDS).checked_sub(scan))
+        if let Some(late) = scanned_at(x, y).and_then(|scan| copy.arrival(i).checked_sub(scan))
             && late > 0
         {
             lines.push(y);
@@ -248,13 +256,41 @@ fn a_field_knows_which_buffer_was_scanned_and_the_last_one_is_the_last_scanned()
 /// A region that came whole before its field, or began after it, is not late in it; the one between is.
 #[test]
 fn late_is_what_came_while_its_field_was_scanned() {
-    for (last, is_late) in [(BEGINS, false), (BEGINS + MESSAGE.0 * 60, true), (ENDS + MESSAGE.0 * 16, false)] {
+    // The first of its 16 messages comes 15 before the last: where that is the end of the field, either may come first.
+    let begins_at_the_end = ENDS + MESSAGE.0 * 15;
+    let cases = [(BEGINS, false), (BEGINS + MESSAGE.0 * 60, true), (begins_at_the_end, false)];
+    for ((last, is_late), shuffle) in cases.into_iter().flat_map(|case| (0..8).map(move |shuffle| (case, shuffle))) {
         let mut board = remembering();
+        board.bench.queue().shuffle_ties(shuffle);
         board.retraces(0..=FIELD + 2);
         let top = support::field_target(0, FieldParity::Odd, 0, 0);
         board.region(Time(last), top, &support::colour(RED));
         board.run();
         let seen = board.device.seen(PeriodNumber(FIELD)).expect("remembered");
         assert_eq!(!seen.late_regions().is_empty(), is_late, "{last}");
+    }
+}
+
+/// The second of a region's two messages comes at the very end of the field: whichever comes first, its words were not there.
+#[test]
+fn a_message_that_comes_with_the_end_of_a_field_has_not_come() {
+    let grid = RegionGrid { region_height: 16, ..RegionGrid::FIELD };
+    let image = source(1, 1, 128 * 16);
+    for shuffle in 0..16 {
+        let mut board = remembering();
+        board.bench.queue().shuffle_ties(shuffle);
+        board.retraces(0..=FIELD + 2);
+        let target = target(0, Lines::Field(FieldParity::Odd), grid, 0, 0);
+        board.part(Time(BEGINS), target, &image, 0);
+        board.part(Time(ENDS), target, &image, 1);
+        board.run();
+        let late = board.device.seen(PeriodNumber(FIELD)).expect("remembered").late_regions();
+        // Row 8 is line 17 of the frame.
+        let lateness = Span(ENDS - scanned_at(0, 17).expect("an odd line"));
+        assert_eq!(
+            late,
+            [SeenLateRegion { target, arrived_at: None, first_line: 17, lines: 8, lateness }],
+            "{shuffle}"
+        );
     }
 }

@@ -2,7 +2,7 @@
 
 #![allow(dead_code, reason = "each test binary uses a part")]
 
-use pxpl5_framebuffer::{FrameBuffer, FrameBufferConfig, FrameBufferEvent, FrameBufferOutput};
+use pxpl5_framebuffer::{FrameBuffer, FrameBufferConfig, FrameBufferEvent, FrameBufferOutput, PortTiming};
 use pxpl5_sim::{Phase, Span, TestBench, Time};
 use pxpl5_wire::{
     CopyTarget, FieldParity, Lines, MAX_MESSAGE_WORDS, NodeId, PeriodNumber, PictureNumber, PixelSource, RegionGrid,
@@ -57,6 +57,8 @@ pub(crate) fn n_parts(target: &CopyTarget) -> u32 {
 pub(crate) struct Board {
     pub(crate) device: FrameBuffer,
     pub(crate) bench: TestBench<FrameBufferEvent, FrameBufferOutput>,
+    /// Of 50 ns, the time of a word.
+    pub(crate) slowness: u64,
 }
 
 impl Board {
@@ -65,7 +67,14 @@ impl Board {
     }
 
     pub(crate) fn with(config: FrameBufferConfig) -> Self {
-        Self { device: FrameBuffer::new(config, NODE).expect("valid"), bench: TestBench::new() }
+        let device = FrameBuffer::new(config, NODE).expect("valid");
+        Self { device, bench: TestBench::new(), slowness: config.port.word_ns / 50 }
+    }
+
+    /// Behind a ring whose words take so many times 50 ns: from twice on they come more slowly than the beam goes over pixels.
+    pub(crate) fn slow(slowness: u64) -> Self {
+        let port = PortTiming { word_ns: 50 * slowness, ..PortTiming::PAPERS };
+        Self::with(FrameBufferConfig { port, ..FrameBufferConfig::NTSC })
     }
 
     pub(crate) fn feed(&mut self, at: Time, event: FrameBufferEvent) {
@@ -94,7 +103,7 @@ impl Board {
     pub(crate) fn region(&mut self, last: Time, target: CopyTarget, image: &Arc<Counted>) {
         let parts = n_parts(&target);
         for part in 0..parts {
-            let before = MESSAGE * u64::from(parts - 1 - part);
+            let before = MESSAGE * self.slowness * u64::from(parts - 1 - part);
             self.part(Time(last.0 - before.0), target, image, part);
         }
     }
