@@ -73,7 +73,7 @@ impl Board {
 
     /// Behind a ring whose words take so many times 50 ns: from twice on they come more slowly than the beam goes over pixels.
     pub(crate) fn slow(slowness: u64) -> Self {
-        let port = PortTiming { word_ns: 50 * slowness, ..PortTiming::PAPERS };
+        let port = PortTiming { word_ns: 50 * slowness };
         Self::with(FrameBufferConfig { port, ..FrameBufferConfig::NTSC })
     }
 
