@@ -7,8 +7,7 @@ use glam::DVec3;
 #[must_use]
 pub fn angle_to_face(view: DVec3, face: DVec3) -> f64 {
     let view = view.normalize();
-    let along = view.dot(face);
-    if along > 0.0 && view.abs().max_element() <= along {
+    if view.abs().max_element() <= view.dot(face) {
         return 0.0;
     }
     let up = DVec3::new(face.y.abs(), face.z.abs(), face.x.abs());
@@ -18,13 +17,15 @@ pub fn angle_to_face(view: DVec3, face: DVec3) -> f64 {
     edges.fold(f64::INFINITY, f64::min)
 }
 
-/// The angle between a direction and the nearest one of the arc between two others.
+/// The angle between a direction (of unit length) and the nearest one of the arc between two others.
 fn angle_to_arc(view: DVec3, from: DVec3, to: DVec3) -> f64 {
     let normal = from.cross(to).normalize();
-    let foot = view - normal * view.dot(normal);
+    let across = view.dot(normal);
+    let foot = view - normal * across;
     let is_between = from.cross(foot).dot(normal) >= 0.0 && foot.cross(to).dot(normal) >= 0.0;
-    if is_between && foot.length() > 0.0 {
-        return angle_between(view, foot);
+    if is_between {
+        // Of a direction across the whole arc the foot is what rounding leaves: its length says so, its direction nothing.
+        return libm::atan2(across.abs(), foot.length());
     }
     angle_between(view, from).min(angle_between(view, to))
 }

@@ -104,6 +104,31 @@ fn the_angle_to_a_face_is_the_least_of_all_its_directions() {
     }
 }
 
+/// The corners of the cube, the middles of its edges and of its faces, as places.
+fn places_of_the_cube() -> impl Iterator<Item = DVec3> {
+    let steps = [-1.0, 0.0, 1.0];
+    let all = steps.into_iter().flat_map(move |x| steps.map(|y| steps.map(|z| DVec3::new(x, y, z))).concat());
+    all.filter(|place| *place != DVec3::ZERO)
+}
+
+/// From a corner, the middle of an edge or that of a face the nearest direction of any face is one of the same kinds, as the cube is
+/// symmetric. From the middle of an edge the faces opposite to it are a right angle away, whose edges lie across the view.
+#[test]
+fn angles_from_places_that_the_symmetry_of_the_cube_tells() {
+    for view in places_of_the_cube() {
+        for face in places_of_the_cube().filter(|place| place.length() == 1.0) {
+            let of_face = places_of_the_cube().filter(|place| place.dot(face) == 1.0);
+            let cosine = of_face.map(|place| view.normalize().dot(place.normalize())).fold(-1.0, f64::max);
+            let found = angle_to_face(view, face);
+            near(found, cosine.min(1.0).acos(), 5e-8);
+            assert_eq!(found == 0.0, view.dot(face) > 0.0, "{view} {face}: {found}");
+        }
+    }
+    let opposite = angle_to_face(DVec3::new(1.0, 0.0, 1.0), DVec3::NEG_Z);
+    near(opposite.to_degrees(), 90.0, 1e-9);
+    near(angle_to_face(DVec3::ONE, DVec3::NEG_X), (1.0_f64 / 3.0).acos(), 1e-12);
+}
+
 fn dealing() -> Dealing {
     Dealing { home: Cell { x: 0, z: 0 }, side_m: 5.0, inner_rings: 1, memories: 4 }
 }

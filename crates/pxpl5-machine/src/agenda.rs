@@ -71,3 +71,79 @@ pub(crate) fn schedule_requests(
     }
     put(at, first, &mut more);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pxpl5_wire::{Body, NodeId};
+
+    fn message(source: u16) -> Message {
+        Message { source: NodeId(source), destination: NodeId(9), words: 1, body: Body::Words([1].into()) }
+    }
+
+    /// What is in the queue: when, and of which kind and source.
+    fn queued(mut queue: EventQueue<Event>) -> Vec<(u64, &'static str, u16)> {
+        let mut all = Vec::new();
+        while let Some((time, phase, event)) = queue.next_event() {
+            assert_eq!(phase, Phase::Arrive);
+            let (kind, source) = match event {
+                Event::FromRing(RingOutput::Delivered(message)) => ("delivered", message.source),
+                Event::FromRing(RingOutput::Sent { source, .. }) => ("sent", source),
+                Event::DeliveredAndSent(message, 77) => ("both", message.source),
+                Event::Ring(RingEvent::Request(request)) => ("request", request.message.source),
+                Event::Requests(requests) if requests.len() == 2 => ("two requests", requests[0].message.source),
+                other => panic!("{other:?}"),
+            };
+            all.push((time.0, kind, source.0));
+        }
+        all
+    }
+
+    fn brought(outputs: &[(u64, bool, u16)], joint: bool) -> Vec<(u64, &'static str, u16)> {
+        let mut queue = EventQueue::new();
+        let mut context = Context::default();
+        for (time, is_delivery, source) in outputs {
+            let delivered = RingOutput::Delivered(message(*source));
+            let sent = RingOutput::Sent { source: NodeId(*source), ticket: 77 };
+            context.output(Time(*time), if *is_delivery { delivered } else { sent });
+        }
+        schedule_brought(&mut queue, &mut context, joint);
+        queued(queue)
+    }
+
+    #[test]
+    fn a_delivery_and_its_news_are_one_event_where_they_may_be() {
+        let both = [(5, true, 1), (5, false, 1)];
+        assert_eq!(brought(&both, true), [(5, "both", 1)]);
+        assert_eq!(brought(&both, false), [(5, "delivered", 1), (5, "sent", 1)]);
+    }
+
+    #[test]
+    fn a_delivery_and_news_of_another_message_stay_two() {
+        for (outputs, expected) in [
+            ([(5, true, 1), (5, false, 2)], [(5, "delivered", 1), (5, "sent", 2)]),
+            ([(5, true, 1), (6, false, 1)], [(5, "delivered", 1), (6, "sent", 1)]),
+            ([(5, false, 1), (5, true, 1)], [(5, "sent", 1), (5, "delivered", 1)]),
+            ([(5, true, 1), (6, true, 2)], [(5, "delivered", 1), (6, "delivered", 2)]),
+        ] {
+            assert_eq!(brought(&outputs, true), expected);
+        }
+    }
+
+    fn requested(times: &[u64], joint: bool) -> Vec<(u64, &'static str, u16)> {
+        let mut queue = EventQueue::new();
+        let request = |source| Request { message: message(source), ticket: None, hold: false, order: 0 };
+        let sends = times.iter().zip(1..).map(|(time, source)| (Time(*time), request(source)));
+        schedule_requests(&mut queue, sends, joint);
+        queued(queue)
+    }
+
+    #[test]
+    fn messages_of_one_instant_are_one_event_where_they_may_be() {
+        assert_eq!(requested(&[], true), []);
+        assert_eq!(requested(&[5], true), [(5, "request", 1)]);
+        assert_eq!(requested(&[5, 5, 6], true), [(5, "two requests", 1), (6, "request", 3)]);
+        assert_eq!(requested(&[5, 6, 6], true), [(5, "request", 1), (6, "two requests", 2)]);
+        assert_eq!(requested(&[5, 5], false), [(5, "request", 1), (5, "request", 2)]);
+    }
+}

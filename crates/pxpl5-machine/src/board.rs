@@ -62,19 +62,18 @@ impl fmt::Display for Happening {
 impl FromStr for Board {
     type Err = String;
 
-    /// `host`, `ring`, or `gp`, `renderer`, `display` with a number, with or without a space.
+    /// `host`, `ring`, or `gp`, `renderer`, `display` with a number, with or without a space between, in large or small letters.
     fn from_str(text: &str) -> Result<Self, String> {
-        let refused = || format!("expected host, ring, gp N, renderer N or display N, found {text:?}");
-        let letters = text.trim_end_matches(|c: char| c.is_ascii_digit());
-        let number = text[letters.len()..].parse();
-        let name = letters.trim().to_ascii_lowercase();
-        match (name.as_str(), number) {
-            ("host", Err(_)) if letters == text => Ok(Self::Host),
-            ("ring", Err(_)) if letters == text => Ok(Self::Ring),
-            ("gp", Ok(number)) => Ok(Self::Gp(number)),
-            ("renderer", Ok(number)) => Ok(Self::Renderer(number)),
-            ("display", Ok(number)) => Ok(Self::Display(number)),
-            _ => Err(refused()),
+        let refused = format!("expected host, ring, gp N, renderer N or display N, found {text:?}");
+        let text = text.to_ascii_lowercase();
+        let (name, number) = text.split_at(text.trim_end_matches(|c: char| c.is_ascii_digit()).len());
+        match (name, name.strip_suffix(' ').unwrap_or(name), number.parse()) {
+            ("host", _, Err(_)) => Ok(Self::Host),
+            ("ring", _, Err(_)) => Ok(Self::Ring),
+            (_, "gp", Ok(number)) => Ok(Self::Gp(number)),
+            (_, "renderer", Ok(number)) => Ok(Self::Renderer(number)),
+            (_, "display", Ok(number)) => Ok(Self::Display(number)),
+            _ => Err(refused),
         }
     }
 }
@@ -88,12 +87,27 @@ mod tests {
         for board in [Board::Host, Board::Gp(12), Board::Renderer(0), Board::Display(1), Board::Ring] {
             assert_eq!(board.to_string().parse(), Ok(board));
             assert_eq!(board.to_string().replace(' ', "").parse(), Ok(board));
+            assert_eq!(board.to_string().to_uppercase().parse(), Ok(board));
         }
     }
 
     #[test]
+    fn what_happens_is_told_with_its_time_and_board() {
+        let happening = Happening { time: Time(7), board: Board::Renderer(3), what: "copy command begins" };
+        assert_eq!(happening.to_string(), format!("{} renderer 3: copy command begins", Time(7)));
+    }
+
+    /// The host is at port 0, the graphics processors behind it.
+    #[test]
+    fn boards_with_processors_are_numbered_behind_the_host() {
+        assert_eq!([0, 1, 4].map(Board::of_processor), [Board::Host, Board::Gp(0), Board::Gp(3)]);
+    }
+
+    #[test]
     fn other_names_are_refused_with_what_was_expected() {
-        for wrong in ["", "gp", "host 3", "GP -1", "renderer x", "7", "display 99999999999999999999999"] {
+        let spaces = [" host", "host ", "ring ", " gp 3", "gp 3 ", "gp  3"];
+        let others = ["", "gp", "host 3", "ring0", "GP -1", "renderer x", "7", "display 99999999999999999999999"];
+        for wrong in spaces.into_iter().chain(others) {
             let error = wrong.parse::<Board>().expect_err(wrong);
             assert_eq!(error, format!("expected host, ring, gp N, renderer N or display N, found {wrong:?}"));
         }

@@ -33,3 +33,42 @@ fn surface_fact(surface: Option<SurfaceId>) -> u64 {
         Some(SurfaceId(number)) => u64::from(number) + 1,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pxpl5_gp::{Stage, StageEdge};
+    use pxpl5_sim::Time;
+    use pxpl5_wire::{CommandList, NodeId, PictureNumber};
+
+    #[test]
+    fn a_message_is_told_by_its_ports_and_its_length() {
+        let message = Message { source: NodeId(3), destination: NodeId(70), words: 9, body: Body::Words([7].into()) };
+        assert_eq!(facts(2, &message), [2, 3, 70, 9]);
+    }
+
+    #[test]
+    fn what_a_line_brings_is_told_by_its_port_and_its_words() {
+        assert_eq!(facts_of_line(6, &Body::Words([5, 4].into())), [8, 6, 5, 4]);
+        let list = CommandList { runs: Vec::new(), context: 0, copies: Vec::new(), content: None };
+        assert_eq!(facts_of_line(6, &Body::Commands(list)), [10, 6]);
+    }
+
+    /// Hashes that were published hold only as long as the numbers of surfaces stay: 2 is none, those from the third on follow.
+    #[test]
+    fn marks_are_told_with_their_surfaces_as_ever() {
+        let surfaces = [Some(0), Some(1), None, Some(2), Some(3)];
+        for (number, surface) in (0..).zip(surfaces) {
+            let mark = Mark {
+                time: Time(8),
+                node: NodeId(5),
+                picture: PictureNumber(6),
+                surface: surface.map(SurfaceId),
+                stage: Stage::Render,
+                edge: StageEdge::End,
+                view: None,
+            };
+            assert_eq!(facts_of(&mark), [4, 5, 6, number, 4, 1], "the fifth stage, its end");
+        }
+    }
+}

@@ -172,6 +172,7 @@ impl Observation {
             last.entry(swap.port).and_modify(|last| *last = swap.number.max(*last)).or_insert(swap.number);
         }
         self.swaps.retain(|swap| !is_old(swap) || last[&swap.port] == swap.number);
+        // Room for as much again stays: a run that gives up now and then takes it soon.
         self.marks.shrink_to(2 * self.marks.len());
         self.arrivals.shrink_to(2 * self.arrivals.len());
         self.forgotten = Forgotten { before: instant, first_swap, most_regions };
@@ -237,5 +238,80 @@ mod tests {
         observation.forget_before(Time(1_000_000), tick);
         let left: Vec<(SurfaceId, u64)> = observation.swaps.iter().map(|swap| (swap.surface, swap.number)).collect();
         assert_eq!(left, EYES.map(|surface| (surface, 19)));
+    }
+
+    fn arrival(surface: u16, picture: u64, first: u64, last: u64) -> Arrival {
+        let grid = pxpl5_wire::RegionGrid::FRAME;
+        let target = CopyTarget {
+            frame_buffer: NodeId(10),
+            buffer: 0,
+            lines: pxpl5_wire::Lines::Frame,
+            grid,
+            region: pxpl5_wire::RegionId(0),
+            picture: PictureNumber(picture),
+        };
+        Arrival { surface: SurfaceId(surface), target, first_part_at: Time(first), last_part_at: Time(last) }
+    }
+
+    fn mark(time: u64, picture: u64, edge: StageEdge) -> Mark {
+        let (node, picture) = (NodeId(1), PictureNumber(picture));
+        Mark { time: Time(time), node, picture, surface: None, stage: Stage::Render, edge, view: None }
+    }
+
+    #[test]
+    fn a_stage_lasts_from_the_first_board_that_begins_to_the_last_that_ends() {
+        let marks = [(30, 1), (20, 1), (25, 2), (35, 1)].map(|(time, picture)| mark(time, picture, StageEdge::Begin));
+        let ends = [(40, 1), (60, 1), (50, 1)].map(|(time, picture)| mark(time, picture, StageEdge::End));
+        let arrivals = vec![arrival(1, 1, 70, 90), arrival(0, 1, 65, 80), arrival(1, 1, 68, 85)];
+        let observation = Observation { marks: [&marks[..], &ends].concat(), arrivals, ..Observation::default() };
+        let span = |picture, surface: Option<u16>, stage, begin, end: Option<u64>| StageSpan {
+            picture: PictureNumber(picture),
+            surface: surface.map(SurfaceId),
+            stage,
+            begin: Time(begin),
+            end: end.map(Time),
+        };
+        let expected = [
+            span(1, None, Stage::Render, 20, Some(60)),
+            span(1, Some(0), Stage::Copy, 65 - 8, Some(80)),
+            span(1, Some(1), Stage::Copy, 68 - 8, Some(90)),
+            span(2, None, Stage::Render, 25, None),
+        ];
+        assert_eq!(observation.stages(Span(8)), expected, "messages take 8");
+        assert_eq!(observation.records(), 7 + 3);
+        assert_eq!(observation.most_regions_of_a_picture(), 3);
+    }
+
+    #[test]
+    fn what_lies_at_the_instant_stays_and_room_for_as_much_again() {
+        let mut observation = stereo();
+        observation.marks = (0..1_000).map(|n| mark(n, n, StageEdge::Begin)).collect();
+        observation.arrivals = (0..1_000).map(|n| arrival(0, n / 2, n, n)).collect();
+        observation.forget_before(Time(900), tick);
+        assert!(observation.marks.iter().map(|mark| mark.time.0).eq(900..1_000));
+        assert!(observation.arrivals.iter().map(|arrival| arrival.last_part_at.0).eq(900..1_000));
+        for capacity in [observation.marks.capacity(), observation.arrivals.capacity()] {
+            assert!((200..1_000).contains(&capacity), "{capacity}");
+        }
+        // Swaps at 900 (the second eye's, whose period 9 begins then) and later, and the last one of each eye before.
+        let of = |surface| observation.swaps_of(surface).map(|swap| swap.tick.0).collect::<Vec<_>>();
+        assert_eq!(of(EYES[0])[..2], [8, 10]);
+        assert_eq!(of(EYES[1])[..3], [7, 9, 11]);
+        assert_eq!(observation.records(), 100 + 100 + of(EYES[0]).len() + of(EYES[1]).len());
+        assert_eq!(observation.forgotten.before, Time(900));
+        assert_eq!(observation.most_regions_of_a_picture(), 2);
+        observation.arrivals.clear();
+        assert_eq!(observation.most_regions_of_a_picture(), 2, "it stays known");
+    }
+
+    #[test]
+    fn the_first_swap_is_the_earliest_of_all_surfaces() {
+        let mut observation = stereo();
+        assert_eq!(Observation::default().first_swap(), None);
+        observation.swaps.retain(|swap| swap.number > 3);
+        observation.swaps.reverse();
+        assert_eq!(observation.first_swap(), Some(PeriodNumber(8)));
+        assert_eq!(observation.frames(1).len(), 16);
+        assert_eq!(observation.frames(3).len(), 0, "a third surface never swapped");
     }
 }

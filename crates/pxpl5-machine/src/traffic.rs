@@ -129,4 +129,99 @@ mod tests {
         assert!(traffic.fifo_words(1).is_empty(), "what came had gone");
         assert_eq!(traffic.records(), 6);
     }
+
+    fn message(words: u32) -> Message {
+        let body = pxpl5_wire::Body::Words([0].into());
+        Message { source: NodeId(1), destination: NodeId(2), words, body }
+    }
+
+    #[test]
+    fn words_come_one_after_the_other_up_to_the_end_of_a_message() {
+        let mut traffic = Traffic::default();
+        traffic.deliver(&message(4), Time(1_000), Span(50));
+        assert_eq!((traffic.transfers[0].begin, traffic.transfers[0].end), (Time(800), Time(1_000)));
+    }
+
+    #[test]
+    fn a_message_to_a_fifo_is_a_transfer_when_it_was_accepted() {
+        let mut traffic = Traffic::default();
+        traffic.announce(&message(4), Time(800));
+        assert_eq!(traffic.records(), 0, "it is on its way");
+        traffic.accept(NodeId(3), Time(900));
+        traffic.accept(NodeId(2), Time(1_100));
+        traffic.accept(NodeId(2), Time(1_200));
+        let expected = transfer(&message(4), Time(800), Time(1_100));
+        assert_eq!(traffic.transfers, [expected], "of its receiver, and once");
+        assert_eq!((expected.source, expected.destination, expected.words), (NodeId(1), NodeId(2), 4));
+    }
+
+    #[test]
+    fn what_lies_at_the_instant_stays_with_the_state_before_it() {
+        let busy_channels = vec![(Time(10), 1), (Time(15), 2), (Time(20), 1)];
+        let mut traffic = Traffic { busy_channels, fifo_changes: vec![(0, Time(20), 5)], ..Traffic::default() };
+        traffic.forget_before(Time(20));
+        assert_eq!(traffic.busy_channels, [(Time(15), 2), (Time(20), 1)]);
+        assert_eq!(traffic.fifo_changes, [(0, Time(20), 5)]);
+    }
+
+    /// What a history says of an instant: that of the last entry that is not after it.
+    fn at<T: Copy>(history: &[(Time, T)], instant: u64) -> Option<T> {
+        history.iter().rev().find(|(time, _)| time.0 <= instant).map(|(_, state)| *state)
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn channels_are_noted_when_their_number_changes(
+            told in proptest::collection::vec((0u64..3, 0u32..3), 1..20),
+        ) {
+            let mut traffic = Traffic::default();
+            let mut now = 0;
+            let mut all = Vec::new();
+            for (wait, busy) in told {
+                now += wait;
+                all.push((Time(now), busy));
+                traffic.channels(Time(now), busy);
+            }
+            (0..=now).for_each(|instant| assert_eq!(at(&traffic.busy_channels, instant), at(&all, instant)));
+            assert!(traffic.busy_channels.is_sorted_by(|a, b| a.0 < b.0), "{:?}", traffic.busy_channels);
+            let changes = all.windows(2).filter(|pair| pair[0].1 != pair[1].1).count();
+            assert!(traffic.busy_channels.len() <= 1 + changes, "{all:?}: {:?}", traffic.busy_channels);
+        }
+
+        #[test]
+        fn nothing_that_is_known_from_an_instant_on_is_given_up(
+            busy in proptest::collection::btree_map(0u64..40, 0u32..9, 1..20),
+            changes in proptest::collection::vec((0usize..2, 0u64..40, -9i64..9), 0..20),
+            ends in proptest::collection::vec(0u64..40, 0..9),
+            instant in 1u64..40,
+        ) {
+            let mut traffic = Traffic {
+                transfers: ends.iter().map(|end| transfer(&message(1), Time::ZERO, Time(*end))).collect(),
+                busy_channels: busy.into_iter().map(|(time, busy)| (Time(time), busy)).collect(),
+                fifo_changes: changes.into_iter().map(|(renderer, time, words)| (renderer, Time(time), words)).collect(),
+                announced: BTreeMap::new(),
+            };
+            let before = traffic.clone();
+            traffic.forget_before(Time(instant));
+            assert_eq!(traffic.transfers.len(), ends.iter().filter(|end| **end >= instant).count());
+            assert_eq!(
+                traffic.records(),
+                traffic.transfers.len() + traffic.busy_channels.len() + traffic.fifo_changes.len()
+            );
+            for later in instant..40 {
+                assert_eq!(at(&traffic.busy_channels, later), at(&before.busy_channels, later));
+                for renderer in 0..2 {
+                    let held = |traffic: &Traffic| -> i64 {
+                        let of = traffic.fifo_changes.iter().filter(|(of, time, _)| *of == renderer && time.0 <= later);
+                        of.map(|(_, _, words)| words).sum()
+                    };
+                    assert_eq!(held(&traffic), held(&before));
+                    assert_eq!(at(&traffic.fifo_words(renderer), later).unwrap_or(0), held(&before));
+                }
+            }
+            let old = traffic.fifo_changes.iter().filter(|(_, time, _)| time.0 < instant).count();
+            assert!(old <= 2, "a renderer's words in one number");
+            assert!(traffic.busy_channels.iter().filter(|(time, _)| time.0 < instant).count() <= 1);
+        }
+    }
 }

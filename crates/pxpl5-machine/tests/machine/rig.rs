@@ -1,0 +1,317 @@
+//! A machine of two graphics processors and two renderers, a display that does what messages say, and a line to it.
+
+use image::RgbImage;
+use parameters::ParameterTable;
+use pxpl5_display::{
+    Counter, Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput, Surface,
+};
+use pxpl5_gp::{Fault, Gp, GpTiming, Priority};
+use pxpl5_machine::{Board, HostLine, Machine, MachineConfig};
+use pxpl5_renderer::{CommandKind, Layout};
+use pxpl5_sim::{Phase, Span, Time};
+use pxpl5_wire::{
+    Body, CommandList, CommandRun, CopyContent, CopyOrder, CopyTarget, CopyWay, Lines, NodeId, PeriodNumber,
+    PictureNumber, RegionGrid, RegionId,
+};
+use std::cell::RefCell;
+use std::rc::Rc;
+
+/// Software of a message of the machine's processors.
+pub(crate) const MESSAGE: Span = Span::from_us(1);
+
+parameters::parameter_table! {
+    /// The numbers of the display.
+    pub(crate) struct ScreenNumbers {
+        /// From one tick to the next.
+        period_us: 100, "us", Assumed, 50..=200 in 1..=1_000_000, "made up";
+    }
+}
+
+/// A display of so many surfaces; one of no surface is refused.
+#[derive(Clone, Debug)]
+pub(crate) struct ScreenConfig {
+    pub(crate) name: &'static str,
+    pub(crate) surfaces: usize,
+    pub(crate) numbers: ScreenNumbers,
+}
+
+impl ScreenConfig {
+    pub(crate) fn new(surfaces: usize) -> Self {
+        Self { name: "screen", surfaces, numbers: ScreenNumbers::PAPERS }
+    }
+}
+
+impl DisplayConfig for ScreenConfig {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+
+    fn about(&self) -> &'static str {
+        "does what messages say"
+    }
+
+    fn tables(&self) -> Vec<(&'static str, &dyn ParameterTable)> {
+        vec![("screen", &self.numbers)]
+    }
+
+    fn tables_mut(&mut self) -> Vec<(&'static str, &mut dyn ParameterTable)> {
+        vec![("screen", &mut self.numbers)]
+    }
+
+    fn check(&self) -> Result<(), DisplayError> {
+        if self.surfaces > 0 { Ok(()) } else { Err(DisplayError("a screen has a surface at least".to_owned())) }
+    }
+
+    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError> {
+        self.check()?;
+        let surface = Surface { label: self.name, title: self.name, width: 4, height: 2 };
+        let surfaces = vec![surface; self.surfaces];
+        let period = Span::from_us(self.numbers.period_us);
+        Ok(Box::new(Screen { period, nodes: nodes.to_vec(), surfaces, pixels: 0 }))
+    }
+
+    fn boxed(&self) -> Box<dyn DisplayConfig> {
+        Box::new(self.clone())
+    }
+}
+
+/// A display that puts out what it is told to.
+#[derive(Debug)]
+pub(crate) struct Screen {
+    period: Span,
+    nodes: Vec<NodeId>,
+    surfaces: Vec<Surface>,
+    pixels: u64,
+}
+
+/// What the display is told.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Say {
+    /// A region of this picture has arrived at a surface and a port, its first message so many microseconds ago.
+    Arrived { surface: u32, port: u32, picture: u32, first_us_ago: u32 },
+    /// A surface swaps with a tick.
+    Swapped { surface: u32, tick: u32 },
+    /// What is behind a port of a surface swaps with a tick.
+    Updated { surface: u32, port: u32, tick: u32 },
+    /// A region of this picture has arrived at the first surface and port, so many microseconds from now.
+    Later { us: u32, picture: u32 },
+}
+
+impl Say {
+    pub(crate) fn body(self) -> Body {
+        let words = match self {
+            Self::Arrived { surface, port, picture, first_us_ago } => [0, surface, port, picture, first_us_ago],
+            Self::Swapped { surface, tick } => [1, surface, tick, 0, 0],
+            Self::Updated { surface, port, tick } => [2, surface, port, tick, 0],
+            Self::Later { us, picture } => [3, us, picture, 0, 0],
+        };
+        Body::Words(words.into())
+    }
+}
+
+impl Screen {
+    fn arrived(&self, [surface, port, picture, first_us_ago]: [u32; 4], now: Time) -> DisplayOutput {
+        DisplayOutput::RegionArrived {
+            surface: surface as usize,
+            target: target(self.nodes[port as usize], picture),
+            first_part_at: Time(now.0 - Span::from_us(first_us_ago.into()).0),
+            last_part_at: now,
+        }
+    }
+
+    fn take(&self, words: &[u32], context: &mut DisplayContext) {
+        let now = context.now();
+        let tick = |number: u32| PeriodNumber(number.into());
+        let output = match *words {
+            [0, surface, port, picture, ago] => self.arrived([surface, port, picture, ago], now),
+            [1, surface, number, ..] => {
+                DisplayOutput::Swapped { surface: surface as usize, buffer: 1, tick: tick(number) }
+            }
+            [2, surface, port, number, _] => {
+                let port = self.nodes[port as usize];
+                DisplayOutput::Updated { surface: surface as usize, port, buffer: 1, tick: tick(number) }
+            }
+            [3, us, picture, ..] => {
+                let event = DisplayEvent::Timer(picture.into());
+                return context.schedule(now + Span::from_us(us.into()), Phase::Work, event);
+            }
+            _ => return,
+        };
+        context.output(now, output);
+    }
+}
+
+impl Display for Screen {
+    fn name(&self) -> &'static str {
+        "screen"
+    }
+
+    fn nodes(&self) -> &[NodeId] {
+        &self.nodes
+    }
+
+    fn surfaces(&self) -> &[Surface] {
+        &self.surfaces
+    }
+
+    fn tick(&self, period: PeriodNumber) -> Time {
+        Time::ZERO + self.period * period.0
+    }
+
+    fn period_at(&self, time: Time) -> PeriodNumber {
+        PeriodNumber(time.0 / self.period.0)
+    }
+
+    fn handle(&mut self, event: DisplayEvent, context: &mut DisplayContext) {
+        match event {
+            DisplayEvent::Delivered { body: Body::Words(words), .. } => self.take(&words, context),
+            DisplayEvent::Delivered { .. } => self.pixels += 1,
+            DisplayEvent::Timer(picture) => {
+                let now = context.now();
+                context.output(now, self.arrived([0, 0, picture as u32, 0], now));
+            }
+            DisplayEvent::Tick(_) => {}
+        }
+    }
+
+    fn lights(&self, _: usize, _: u32, _: u32, _: PeriodNumber) -> Option<Time> {
+        None
+    }
+
+    fn shown(&self, _: usize) -> Option<RgbImage> {
+        None
+    }
+
+    fn seen(&self, _: usize, _: PeriodNumber) -> Option<RgbImage> {
+        None
+    }
+
+    fn last_seen(&self) -> Option<PeriodNumber> {
+        None
+    }
+
+    fn counters(&self) -> Vec<Counter> {
+        vec![Counter { name: "messages of pixels", count: self.pixels }]
+    }
+
+    fn faults(&self) -> (u64, Option<String>) {
+        (0, None)
+    }
+}
+
+/// The only region of a picture of 128 x 128: sixteen messages of pixels.
+pub(crate) fn target(frame_buffer: NodeId, picture: u32) -> CopyTarget {
+    CopyTarget {
+        frame_buffer,
+        buffer: 0,
+        lines: Lines::Frame,
+        grid: RegionGrid { width: 128, height: 128, region_width: 128, region_height: 128 },
+        region: RegionId(0),
+        picture: PictureNumber(picture.into()),
+    }
+}
+
+/// A command to copy a region: its length in words, and the list.
+pub(crate) fn copy_command(way: CopyWay, target: CopyTarget) -> (u32, Body) {
+    let words = CommandKind::CopyRegion.words();
+    let order = CopyOrder { target, context: 0, way, content: CopyContent::Colour, acknowledge: None };
+    let run = CommandRun { opcode: CommandKind::CopyRegion as u8, words_each: words, count: 1 };
+    (words, Body::Commands(CommandList { runs: vec![run], context: 0, copies: vec![order], content: None }))
+}
+
+/// A line that says given things at given instants, in order of time.
+#[derive(Debug)]
+pub(crate) struct Script(pub(crate) Vec<(Time, Body)>);
+
+impl HostLine for Script {
+    fn next(&self, after: Time) -> Option<Time> {
+        self.0.iter().map(|(time, _)| *time).find(|time| *time > after)
+    }
+
+    fn messages(&mut self, now: Time) -> Vec<(usize, Body)> {
+        self.0.iter().filter(|(time, _)| *time == now).map(|(_, body)| (0, body.clone())).collect()
+    }
+}
+
+pub(crate) fn us(us: u64) -> Time {
+    Time::ZERO + Span::from_us(us)
+}
+
+/// Ports: host 0, graphics processors 1 and 2, renderers 3 and 4, then those of the displays.
+pub(crate) fn config(displays: Vec<Box<dyn DisplayConfig>>) -> MachineConfig {
+    let papers = MachineConfig::small_hmd();
+    let gp = GpTiming { message_ns: MESSAGE.0 / 1_000, ..papers.gp };
+    MachineConfig { n_gps: 2, n_renderers: 2, gp, displays, ..papers }
+}
+
+pub(crate) const FIRST_GP: NodeId = NodeId(1);
+pub(crate) const SECOND_GP: NodeId = NodeId(2);
+pub(crate) const RENDERERS: [NodeId; 2] = [NodeId(3), NodeId(4)];
+pub(crate) const SCREEN: NodeId = NodeId(5);
+
+/// A machine of that configuration for one picture, not switched on.
+pub(crate) fn build(config: &MachineConfig) -> Machine {
+    Machine::new(config, 1, Layout::slats()).expect("it is a valid machine")
+}
+
+/// With a display of one surface.
+pub(crate) fn machine() -> Machine {
+    build(&config(vec![Box::new(ScreenConfig::new(1))]))
+}
+
+/// Loads a program in the foreground of a board.
+pub(crate) fn load<F>(machine: &mut Machine, node: NodeId, program: impl FnOnce(Gp) -> F)
+where
+    F: Future<Output = Result<(), Fault>> + 'static,
+{
+    let gp = machine.processor(node, Priority::Foreground);
+    machine.load(node, Priority::Foreground, Box::pin(program(gp)));
+}
+
+/// Loads a program that sends messages one after the other and then waits for ever.
+pub(crate) fn load_sender(machine: &mut Machine, node: NodeId, messages: Vec<(NodeId, u32, Body)>) {
+    load(machine, node, |gp| async move {
+        for (destination, words, body) in messages {
+            gp.send(destination, words, body).await;
+        }
+        gp.until("nothing", || None).await
+    });
+}
+
+/// Tells the display something at given instants, past the ring.
+pub(crate) fn say(machine: &mut Machine, script: &[(u64, Say)]) {
+    let script = script.iter().map(|(at, say)| (us(*at), say.body())).collect();
+    machine.plug_host_line(Box::new(Script(script)));
+}
+
+pub(crate) fn words(words: &[u32]) -> Body {
+    Body::Words(words.into())
+}
+
+/// What happens up to an instant to boards but the programs' looks: when, to whom, and what.
+pub(crate) fn happenings(machine: &mut Machine, until: Time) -> Vec<(Time, Board, &'static str)> {
+    let mut all = Vec::new();
+    loop {
+        let next = machine.next_happening();
+        let Some(time) = machine.step_before(until).expect("it goes on") else { return all };
+        let next = next.expect("something happened");
+        assert_eq!(next.time, time, "what was told to come next came");
+        all.push((next.time, next.board, next.what));
+    }
+}
+
+/// A place where programs note what they see.
+pub(crate) type Notes<T> = Rc<RefCell<Vec<T>>>;
+
+/// Pixels of a region that count how often they are asked for.
+#[derive(Debug, Default)]
+pub(crate) struct Counted {
+    pub(crate) asked: std::sync::atomic::AtomicU64,
+}
+
+impl pxpl5_wire::PixelSource for Counted {
+    fn pixels(&self) -> std::sync::Arc<[u32]> {
+        self.asked.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        vec![0; 128 * 128].into()
+    }
+}

@@ -1,0 +1,145 @@
+//! How a machine comes to a stop, and what it says of it.
+
+use crate::rig::{
+    FIRST_GP, MESSAGE, RENDERERS, SCREEN, SECOND_GP, Say, ScreenConfig, build, config, copy_command, load, load_sender,
+    machine, say, target, us, words,
+};
+use pxpl5_gp::Fault;
+use pxpl5_machine::{DEADLOCK_TICKS, Machine, RunError};
+use pxpl5_sim::{Blocked, Span, Time};
+use pxpl5_wire::{CopyWay, NodeId};
+
+const LONG: Time = Time(100_000 * 1_000_000);
+
+/// A program that waits for what never comes.
+fn load_waiting(machine: &mut Machine, node: NodeId) {
+    load(machine, node, |gp| async move { gp.until("Godot", || None).await });
+}
+
+/// Period 0 has the looks of programs at the start; the first tick with none since the last is the second.
+#[test]
+fn programs_that_wait_for_ever_are_a_deadlock_after_so_many_ticks() {
+    let mut machine = machine();
+    load_waiting(&mut machine, FIRST_GP);
+    machine.switch_on();
+    machine.run_until(us(100 * 100 + 1)).expect("it goes on for a while");
+    assert_eq!(machine.idle_ticks(), 99);
+    let error = machine.run_until(LONG).expect_err("nothing can happen");
+    let time = us(100 * (1 + DEADLOCK_TICKS));
+    let blocked = vec![Blocked { board: "GP 0".to_owned(), waits_for: "Godot".to_owned() }];
+    assert_eq!(error, RunError::Deadlock { time, blocked });
+    let told = format!("nothing can happen any more at {time}: GP 0 waits for Godot;");
+    assert_eq!(error.to_string(), told);
+    assert_eq!(error.time(), time);
+    assert_eq!(machine.failure(), Some(&error));
+    assert_eq!(machine.step_before(LONG), Err(error), "it goes on no more");
+}
+
+#[test]
+fn waiting_for_retraces_is_no_deadlock_nor_is_a_machine_without_programs() {
+    for waits in [false, true] {
+        let mut machine = machine();
+        if waits {
+            load(&mut machine, FIRST_GP, |gp| async move {
+                loop {
+                    gp.retrace().await;
+                }
+            });
+        }
+        machine.switch_on();
+        machine.run_until(us(100 * 1_000)).expect("it goes on");
+        assert!(machine.failure().is_none());
+        assert!(machine.idle_ticks() > DEADLOCK_TICKS, "nothing but ticks");
+    }
+}
+
+/// A message in every hundredth period is something that happens; one that a line brings to the display is not.
+#[test]
+fn who_is_sent_something_now_and_then_is_not_deadlocked() {
+    let run = |works: bool| {
+        let mut machine = machine();
+        load_waiting(&mut machine, FIRST_GP);
+        if works {
+            load(&mut machine, SECOND_GP, |gp| async move {
+                loop {
+                    gp.spend(Span::from_us(100 * 100)).await;
+                    gp.send(NodeId(0), 1, words(&[1])).await;
+                }
+            });
+        }
+        let said = Say::Arrived { surface: 0, port: 0, picture: 1, first_us_ago: 0 };
+        say(&mut machine, &[1, 2, 3, 4].map(|n| (100 * 50 * n + 7, said)));
+        machine.switch_on();
+        machine.run_until(us(100 * 500))
+    };
+    assert_eq!(run(true), Ok(()));
+    assert_eq!(run(false).map_err(|error| error.time()), Err(us(100 * (1 + DEADLOCK_TICKS))));
+}
+
+#[test]
+fn everybody_who_waits_is_told_with_what_he_waits_for() {
+    let mut machine = machine();
+    load_waiting(&mut machine, NodeId(0));
+    // A region for a frame buffer of which the port is kept by another renderer: the first copy never ends.
+    let copies = RENDERERS.map(|renderer| {
+        let (length, list) = copy_command(CopyWay::FromPixelMemory, target(SCREEN, 1));
+        (renderer, length, list)
+    });
+    load_sender(&mut machine, SECOND_GP, copies.into());
+    machine.switch_on();
+    // A region takes 16 messages of (1,024 + 16) words of 50 ns: 832 us.
+    machine.run_until(us(500)).expect("it goes on");
+    let blocked = machine.blocked();
+    let found: Vec<(&str, &str)> = blocked.iter().map(|b| (&b.board[..], &b.waits_for[..])).collect();
+    let boards: Vec<&str> = found.iter().map(|(board, _)| *board).collect();
+    assert_eq!(boards[..4], ["host", "GP 1", "renderer 0", "renderer 1"], "{found:?}");
+    assert_eq!(found[..2], [("host", "Godot"), ("GP 1", "nothing")]);
+    assert_eq!(found[2].1, "frame buffer at node 5 to take region 0");
+    assert_eq!(machine.record().ring().blocked().len(), found.len() - 4, "and the ring's messages");
+    machine.run_until(us(3_000)).expect("it goes on");
+    assert_eq!(machine.blocked().len(), 2, "programs alone");
+}
+
+#[test]
+fn a_fault_of_a_program_stops_the_machine_with_its_board_and_time() {
+    let mut machine = machine();
+    let fault = Fault::Protocol { node: SECOND_GP, found: "nonsense".to_owned() };
+    let told = fault.clone();
+    load(&mut machine, SECOND_GP, |gp| async move {
+        gp.spend(Span::from_us(7)).await;
+        Err(told)
+    });
+    machine.switch_on();
+    let error = machine.run_until(LONG).expect_err("a fault");
+    assert_eq!(error, RunError::Fault { board: "GP 1".to_owned(), time: us(7), fault: fault.clone() });
+    assert_eq!(error.to_string(), format!("GP 1 stopped at {}: {fault}", us(7)));
+    assert_eq!((error.time(), machine.step_before(LONG)), (us(7), Err(error.clone())));
+}
+
+/// Messages have 1,024 words at most (TR94); there are six ports.
+#[test]
+fn a_message_that_no_ring_carries_stops_the_machine() {
+    for (receiver, length, reason) in
+        [(SECOND_GP, 1_025, "expected 1 to 1024 words, found 1025"), (NodeId(6), 1, "there is no ring port 6")]
+    {
+        let mut machine = machine();
+        load_sender(&mut machine, FIRST_GP, vec![(receiver, length, words(&[1]))]);
+        machine.switch_on();
+        let error = machine.run_until(LONG).expect_err("refused");
+        // A cycle after the software the board asks, and the ring says no a word later.
+        assert_eq!(error.time(), Time::ZERO + MESSAGE + Span::from_ns(25 + 50));
+        let RunError::Ring { reason: found, .. } = &error else { panic!("{error}") };
+        assert!(found.contains(reason), "{found}");
+        assert_eq!(error.to_string(), format!("ring, at {}: {found}", error.time()));
+    }
+}
+
+#[test]
+fn a_machine_that_cannot_be_is_not_built() {
+    let mut wrong = config(vec![Box::new(ScreenConfig::new(1))]);
+    wrong.n_gps = 0;
+    let error = Machine::new(&wrong, 1, pxpl5_renderer::Layout::slats()).expect_err("no processor");
+    assert_eq!(error.to_string(), "n_gps must be 1 to 1000, found 0");
+    let built = build(&config(vec![Box::new(ScreenConfig::new(1))]));
+    assert!(built.failure().is_none());
+}
