@@ -143,6 +143,9 @@ fn case_22_borders_ways_and_periods() {
         near((way * 60.0).ceil(), frames, 0.0);
     }
     assert_eq!(dealing().distance(eye, 0), 0.0);
+    // A memory ends where the slower one begins.
+    assert_eq!([0, 1, 2, 3].map(|k| dealing().to_slower(eye, k)), [Some(6.0), Some(11.0), Some(16.0), None]);
+    assert_eq!(dealing().to_slower(at(99.0, 1.0), 1), Some(0.0), "outside");
     assert_eq!(dealing().distance(at(99.0, 1.0), 2), 0.0, "outside");
 }
 

@@ -261,7 +261,7 @@ fn memories_whose_cells_are_the_same_need_not_be_shown_together() {
     let mut cells = Cells::new(&PAPERS, [Cell { x: 2, z: 0 }], false);
     cells.frame(at(2.5, 2.5));
     let update = cells.frame(at(7.5, 2.5));
-    assert!(update.deals_anew);
+    assert!(update.deals_anew && update.due == [true; 4], "5 m make all due, changed or not");
     assert_eq!((update.together, cells.dealing().memory(Cell { x: 2, z: 0 })), (vec![true, true, false, false], 0));
 }
 
