@@ -77,7 +77,6 @@ impl Objects {
     fn is_due(&self, memory: usize, frame: u64) -> bool {
         let next = (frame + (1 << memory)) as f64 * self.frame_s;
         let mut inside = self.objects.iter().flatten().filter(|(held_by, _)| *held_by == memory);
-        let is_first = frame == 0;
-        (is_first || frame.is_multiple_of(1 << memory)) && inside.any(|(_, right_until)| *right_until < next)
+        frame.is_multiple_of(1 << memory) && inside.any(|(_, right_until)| *right_until < next)
     }
 }

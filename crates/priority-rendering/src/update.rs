@@ -20,6 +20,6 @@ impl Update {
     /// The memories that swap together, bit k for memory k, as the display takes it.
     #[must_use]
     pub fn together_bits(&self) -> u8 {
-        (0..).zip(&self.together).fold(0, |bits, (memory, together)| bits | u8::from(*together) << memory)
+        (0..).zip(&self.together).map(|(memory, together)| u8::from(*together) << memory).sum()
     }
 }

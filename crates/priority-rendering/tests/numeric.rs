@@ -2,8 +2,8 @@
 
 use glam::{DVec3, Vec3Swizzles};
 use priority_rendering::{
-    Cell, Dealing, Falloff, PriorityTiming, RegionWarp, SeenObject, SizeRule, Threshold, Translation, angle_to_face,
-    draws_per_s, level, mean_faces_touched, saved_percent, until_in_sight_s,
+    Cell, Dealing, Distance, Falloff, PriorityTiming, RegionWarp, SeenObject, SizeRule, Threshold, Translation, Update,
+    angle_to_face, draws_per_s, level, mean_faces_touched, saved_percent, until_in_sight_s,
 };
 
 fn threshold() -> Threshold {
@@ -143,6 +143,9 @@ fn case_22_borders_ways_and_periods() {
         near((way * 60.0).ceil(), frames, 0.0);
     }
     assert_eq!(dealing().distance(eye, 0), 0.0);
+    // A memory ends where the slower one begins.
+    assert_eq!([0, 1, 2, 3].map(|k| dealing().to_slower(eye, k)), [Some(6.0), Some(11.0), Some(16.0), None]);
+    assert_eq!(dealing().to_slower(at(99.0, 1.0), 1), Some(0.0), "outside");
     assert_eq!(dealing().distance(at(99.0, 1.0), 2), 0.0, "outside");
 }
 
@@ -233,6 +236,79 @@ fn periods_of_objects() {
     let walking = threshold().period(&SeenObject { speed: 1.0, ..still });
     near(1e3 * walking.size_s, 78.5621, 1e-4);
     near(walking.least(), threshold().way(4.0), 1e-15);
+    assert_eq!(threshold().period(&SeenObject { distance_m: 1.0, ..still }).least(), 0.0, "on its surface");
+}
+
+/// Validity periods of the specification (3.6): the distance that counts for the eye's way, and an object that turns at its nearest point.
+#[test]
+fn the_distance_of_an_object_is_that_of_its_nearest_point_or_of_its_middle() {
+    let seen = SeenObject { distance_m: 5.0, radius_m: 1.0, speed: -2.0, turn: -0.5, animation_s: f64::INFINITY };
+    let theta = (90.0_f64 / 512.0).to_radians();
+    for (distance, counted) in [(Distance::Nearest, 4.0), (Distance::Centre, 5.0)] {
+        let period = Threshold { distance, ..threshold() }.period(&seen);
+        near(period.translation_s, 2.0 * counted * (theta / 2.0).sin() / 2.0, 1e-12);
+        near(period.turn_s, 2.0 / 0.5 * (4.0 * theta.sin() / 2.0).asin(), 1e-12);
+        near(period.size_s, threshold().way_of_size(5.0, 1.0) / 2.0, 1e-15);
+        assert_eq!(period.animation_s, f64::INFINITY);
+    }
+}
+
+/// Infinite from argument 1 on, and where there is nothing to turn.
+#[test]
+fn what_turns_unseen_is_right_for_ever() {
+    let right_angle = Threshold::of_degrees(90.0);
+    assert_eq!(right_angle.turn_s(2.0, 1.0, 1.0), f64::INFINITY, "2 x sin 90 / 2 is 1");
+    near(right_angle.turn_s(1.0, 1.0, 1.0), 2.0 * 0.5_f64.asin(), 1e-12);
+    assert_eq!(threshold().turn_s(0.0, 0.0, 1.0), f64::INFINITY, "a point");
+}
+
+#[test]
+fn a_frame_is_one_of_sixty_a_second() {
+    near(PriorityTiming::PAPERS.frame_s(), 1.0 / 60.0, 1e-15);
+}
+
+#[test]
+fn memories_that_were_shown_together_are_bits() {
+    let update =
+        Update { due: vec![true, false, true, true], together: vec![true, false, true, false], deals_anew: false };
+    assert_eq!(update.together_bits(), 0b0101);
+    assert!(update.memories().eq([0, 2, 3]));
+    assert_eq!(Update { together: vec![true; 8], ..update }.together_bits(), 0xFF);
+}
+
+/// A vertex that no border is near stays, and so does one beyond the falloff; half-way it is moved half.
+#[test]
+fn vertices_are_moved_by_their_distance_from_the_border() {
+    let displacement = DVec3::new(0.2, -0.1, 0.4);
+    let warp = RegionWarp::new(Falloff::Linear, 5.0, at(3.0, 4.0) + displacement, at(3.0, 4.0)).expect("a length");
+    let vertex = DVec3::new(7.0, 8.0, 9.0);
+    for (to_slower, share) in [(None, 0.0), (Some(6.0), 0.0), (Some(2.5), 0.5), (Some(0.0), 1.0)] {
+        let moved = warp.moved(vertex, to_slower);
+        assert!((moved - vertex - displacement * share).length() < 1e-12, "{to_slower:?}: {moved}");
+    }
+    for length in [0.0, -1.0, f64::INFINITY] {
+        let error = RegionWarp::new(Falloff::Linear, length, DVec3::ZERO, DVec3::ZERO).expect_err("no length");
+        assert_eq!(error.to_string(), format!("priority.falloff_m: expected a length above 0, found {length}"));
+    }
+}
+
+proptest::proptest! {
+    /// Whatever a division rounds to, and just beside a border too.
+    #[test]
+    fn a_place_lies_between_the_borders_of_its_cell(number in -1_000_000i64..1_000_000, side in 1e-3..1e3_f64, beside in -2i8..3) {
+        let border = number as f64 * side;
+        let x = match beside {
+            -2 => border - side / 3.0,
+            -1 => border.next_down(),
+            0 => border,
+            1 => border.next_up(),
+            _ => border + side / 3.0,
+        };
+        let cell = Cell::of(x, -x, side);
+        let expected = if x < border { number - 1 } else { number };
+        proptest::prop_assert_eq!(cell.x, expected);
+        proptest::prop_assert!(cell.z as f64 * side <= -x && -x < (cell.z + 1) as f64 * side);
+    }
 }
 
 #[test]

@@ -211,6 +211,60 @@ fn images_are_drawn_again_before_they_are_wrong() {
     }
 }
 
+/// 64 frames a second, so that times are exact: an image that is right for two frames, in the only memory, is drawn every second one.
+#[test]
+fn a_memory_rests_while_its_images_are_right_until_its_next_frame() {
+    let timing = PriorityTiming { frame_hz: 64.0, memories: 1, ..PAPERS };
+    let mut policy = Objects::new(&timing, 2);
+    let due: Vec<bool> = (0..6).map(|frame| policy.frame(frame, &[2.0 / 64.0; 2]).due[0]).collect();
+    assert_eq!(due, [true, false, true, false, true, false]);
+    assert_eq!(policy.counts(), [0, 3 * 2], "no object moved; both were drawn three times");
+}
+
+/// An object that comes near leaves memory 1 for memory 0 in the next even frame, and is alone in what is shown together.
+#[test]
+fn an_object_moves_when_both_memories_are_drawn() {
+    let mut policy = Objects::new(&PriorityTiming { memories: 2, ..PAPERS }, 2);
+    assert_eq!(policy.memory(0), None, "it was not drawn yet");
+    policy.frame(0, &[1.0, 1.0]);
+    assert_eq!([0, 1, 2].map(|object| policy.memory(object)), [Some(1), Some(1), None]);
+    let odd = policy.frame(1, &[0.001, 1.0]);
+    assert_eq!((odd.together, policy.memory(0), policy.counts()[0]), (vec![false; 2], Some(1), 0));
+    let even = policy.frame(2, &[0.001, 1.0]);
+    assert_eq!((even.together, policy.memory(0), policy.counts()[0]), (vec![true; 2], Some(0), 1));
+    assert_eq!(policy.memory(1), Some(1));
+}
+
+/// From the middle of a cell of 5 m the slowest memory begins 17.5 m away, and 17.5 m x 2 sin(theta / 2) are 53.7 mm.
+#[test]
+fn cells_are_dealt_anew_when_the_home_cell_is_left_and_the_slowest_memory_is_due() {
+    let mut cells = Cells::new(&PAPERS, square(8), false);
+    let first = cells.frame(at(12.5, 12.5));
+    assert!(!first.deals_anew && first.due == [true; 4], "{first:?}");
+    assert_eq!(cells.dealing().home, Cell { x: 2, z: 2 });
+    let within = cells.frame(at(12.5 + 0.054, 12.5));
+    assert!(!within.deals_anew && within.due == [true; 4], "{within:?}");
+    assert_eq!(within.together, [false; 4]);
+    let mut cells = Cells::new(&PAPERS, square(8), false);
+    cells.frame(at(14.999, 12.5));
+    let across = cells.frame(at(15.001, 12.5));
+    assert!(!across.deals_anew && !across.due[3], "{across:?}");
+    assert_eq!(cells.dealing().home, Cell { x: 2, z: 2 }, "2 mm make nothing due but the fastest");
+    let farther = cells.frame(at(15.1, 12.5));
+    assert!(farther.deals_anew && farther.due == [true; 4] && farther.together == [true; 4], "{farther:?}");
+    assert_eq!(cells.dealing().home, Cell { x: 3, z: 2 });
+}
+
+/// The only cell with something in it is two rings before the eye, in memory 1, and then one ring: in memory 0.
+#[test]
+fn memories_whose_cells_are_the_same_need_not_be_shown_together() {
+    let mut cells = Cells::new(&PAPERS, [Cell { x: 2, z: 0 }], false);
+    cells.frame(at(2.5, 2.5));
+    let update = cells.frame(at(7.5, 2.5));
+    assert!(update.deals_anew && update.due == [true; 4], "5 m make all due, changed or not");
+    assert_eq!((update.together, cells.dealing().memory(Cell { x: 2, z: 0 })), (vec![true, true, false, false], 0));
+}
+
 /// E4: point objects, uniform on a disc of 100 m around a walker: 60 x objects / draws = 6.01 at 1 m/s with four memories, 13.40 at
 /// 0.37 m/s with five.
 #[test]

@@ -48,6 +48,13 @@ proptest! {
         }
         let cut = Segmentation::new(&vertices, &OCTAHEDRON, side).expect("cut");
         prop_assert!(is_closed(&cut));
+        for (made, lies) in cut.vertices[vertices.len()..].iter().zip(&cut.cuts) {
+            let [from, to] = lies.between.map(|end| cut.vertices[end as usize]);
+            prop_assert!(lies.between[0] < lies.between[1] && lies.share > 0.0 && lies.share < 1.0, "{:?}", lies);
+            prop_assert!((from.lerp(to, lies.share) - made).length() < 1e-9, "{:?}", lies);
+            prop_assert!([made.x, made.z].iter().any(|at| (at / side).round() * side == *at), "on a border: {}", made);
+        }
+        prop_assert_eq!(cut.vertices.len(), vertices.len() + cut.cuts.len());
         let pieces = cut.segments.values().flatten().copied();
         let whole = total(&vertices, OCTAHEDRON);
         prop_assert!((total(&cut.vertices, pieces) - whole).abs() <= 1e-9 * whole);
@@ -97,10 +104,52 @@ fn what_lies_in_a_border_belongs_to_its_positive_side() {
     let cut = Segmentation::new(&corners, &[[0, 1, 2]], 5.0).expect("cut");
     assert_eq!(cut.segments.keys().copied().collect::<Vec<_>>(), [Cell { x: 1, z: 0 }]);
     assert!(cut.cuts.is_empty());
+    let before =
+        Segmentation::new(&[1.0, 4.0, 5.0].map(|x| DVec3::new(x, x * x, 2.0)), &[[0, 1, 2]], 5.0).expect("cut");
+    assert_eq!(before.segments.keys().copied().collect::<Vec<_>>(), [Cell { x: 0, z: 0 }], "it ends at the border");
     // 3 x 0.1 is more than 0.3: borders are multiples, not quotients.
     for n in -1_000..1_000_i64 {
         assert_eq!(Cell::of(n as f64 * 0.1, 0.0, 0.1).x, n);
     }
+}
+
+/// A corner on the border is a corner of both parts; the line opposite to it is cut.
+#[test]
+fn a_corner_on_a_border_is_not_made_again() {
+    let corners = [(5.0, 0.0), (1.0, 3.0), (9.0, 2.0)].map(|(x, y)| DVec3::new(x, y, 1.0));
+    for triangle in [[0, 1, 2], [2, 1, 0]] {
+        let cut = Segmentation::new(&corners, &[triangle], 5.0).expect("cut");
+        assert_eq!((cut.cuts.len(), cut.vertices[3]), (1, DVec3::new(5.0, 2.5, 1.0)));
+        assert_eq!((cut.cuts[0].between, cut.cuts[0].share), ([1, 2], 0.5));
+        assert!(cut.segments.values().map(Vec::len).eq([1, 1]), "a triangle on each side");
+    }
+}
+
+#[test]
+fn an_empty_mesh_is_in_no_memory() {
+    let dealing = Dealing { home: Cell { x: 0, z: 0 }, side_m: 5.0, inner_rings: 1, memories: 4 };
+    let mesh = |x: f64| {
+        let corners = [0.0, 1.0, 2.0].map(|along| DVec3::new(x + along, along * along, 1.0));
+        Segmentation::new(&corners, &[[0, 1, 2]], 5.0).expect("cut").fastest_memory(&dealing)
+    };
+    assert_eq!([1.0, 11.0, 16.0].map(mesh), [Some(0), Some(1), Some(2)], "0, 2 and 3 rings away");
+    assert_eq!(Segmentation::new(&[], &[], 5.0).expect("nothing").fastest_memory(&dealing), None);
+}
+
+/// Pieces are at most the cells of the rectangle around a triangle, borders included: 3,125 x 3,200 are ten million, which is allowed.
+#[test]
+fn ten_million_pieces_are_the_most() {
+    let from = DVec3::new(100.0, 0.0, -300.0);
+    let cut = |columns: f64, rows: f64| {
+        // A triangle without a surface, which has few pieces: what is counted is the rectangle.
+        let to = from + DVec3::new((columns - 1.0) * 0.5, 7.0, (rows - 1.0) * 0.5);
+        Segmentation::new(&[from, to], &[[0, 1, 1]], 0.5)
+    };
+    cut(3_125.0, 3_200.0).expect("ten million");
+    let refusal = |columns, rows| cut(columns, rows).expect_err("more").to_string();
+    let most = "priority.cell_m: expected at most 10000000 pieces, found up to";
+    assert_eq!(refusal(3_125.0, 3_201.0), format!("{most} {}", 3_125 * 3_201));
+    assert_eq!(refusal(3_126.0, 3_200.0), format!("{most} {}", 3_126 * 3_200));
 }
 
 #[test]
@@ -111,7 +160,14 @@ fn what_cannot_be_cut_is_refused() {
     let corners = [DVec3::ZERO, DVec3::X * 1e5, DVec3::Z * 1e5];
     assert_eq!(refusal(&corners, &[], f64::NAN), "priority.cell_m: expected a length above 0, found NaN");
     assert!(refusal(&[DVec3::X * 1.1e6], &[], 5.0).starts_with("scene: expected coordinates up to 1000000 m, found"));
-    assert!(refusal(&[DVec3::NAN], &[], 5.0).starts_with("scene: expected coordinates"));
+    for wrong in [DVec3::NAN, DVec3::new(f64::NAN, 0.0, 0.0), DVec3::NEG_Z * f64::INFINITY, DVec3::NEG_Y * 1.1e6] {
+        assert!(refusal(&[wrong], &[], 5.0).starts_with("scene: expected coordinates"), "{wrong}");
+    }
+    for side in [0.0, -1.0, f64::INFINITY] {
+        let expected = format!("priority.cell_m: expected a length above 0, found {side}");
+        assert_eq!(refusal(&corners, &[], side), expected);
+    }
+    Segmentation::new(&[DVec3::NEG_X * 1e6], &[], 5.0).expect("the farthest");
     assert_eq!(refusal(&corners, &[[0, 1, 3]], 5.0), "scene: expected corners below 3, found 3");
     assert!(refusal(&corners, &[[0, 1, 2]], 1.0).starts_with("priority.cell_m: expected at most 10000000 pieces"));
 }
