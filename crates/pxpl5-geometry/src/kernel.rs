@@ -83,6 +83,9 @@ pub struct Kernel {
     pub binned: bool,
     /// Whether triangles that face away are not drawn.
     pub culls: bool,
+    /// Whether it keeps the box of each command behind the table of bins' address, where there are no bins: low x, high x, low y, high y in
+    /// 1/16 px of the frame.
+    pub keeps_boxes: bool,
 }
 
 /// Instruction heads of a triangle's command, in the order of the kernel's parameter block: enable, edge, depth
@@ -114,7 +117,7 @@ impl Kernel {
     pub fn for_picture(schedule: Schedule, surface: KernelSurface, viewport: &Viewport, binned: bool) -> Option<Self> {
         let picture = KernelPicture::of(viewport).filter(|picture| binned || *picture != KernelPicture::Grid)?;
         let list = KernelList::Triangles;
-        Some(Self { schedule, surface, list, picture, binned, culls: false })
+        Some(Self { schedule, surface, list, picture, binned, culls: false, keeps_boxes: false })
     }
 
     /// The source in i860 assembly, with linear stretches where the schedule is [`Schedule::Dual`]; its entry is the label
@@ -175,7 +178,11 @@ impl Kernel {
     }
 
     const fn bins(&self) -> &'static str {
-        if self.binned { include_str!("../kernels/bins.s") } else { include_str!("../kernels/unbinned.s") }
+        match (self.binned, self.keeps_boxes) {
+            (true, _) => include_str!("../kernels/bins.s"),
+            (false, false) => include_str!("../kernels/unbinned.s"),
+            (false, true) => include_str!("../kernels/box_kept.s"),
+        }
     }
 
     const fn cull(&self) -> &'static str {
@@ -235,6 +242,10 @@ impl Kernel {
             ],
         };
         let (regions, tail) = match (self.binned, self.picture) {
+            (false, _) if self.keeps_boxes => (
+                concat!(include_str!("../kernels/regions_later.s"), "\n", include_str!("../kernels/regions_kept.s")),
+                include_str!("../kernels/tail_kept.s"),
+            ),
             (false, _) => (include_str!("../kernels/regions_later.s"), include_str!("../kernels/tail_none.s")),
             (true, KernelPicture::Field) => {
                 (include_str!("../kernels/regions_later.s"), include_str!("../kernels/tail_field.s"))
