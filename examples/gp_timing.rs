@@ -484,7 +484,7 @@ fn sizes() {
     let end = at("clipper");
     row(&["clipper".into(), (program.base + program.bytes.len() as u32 - end).to_string()]);
     for (surface, name) in [(KernelSurface::Gouraud, "spheres, Gouraud"), (KernelSurface::Phong, "spheres, Phong")] {
-        let source = SphereKernel { surface, picture: KernelPicture::Frame }.source();
+        let source = SphereKernel { surface, picture: KernelPicture::Frame, keeps_boxes: false }.source();
         let program = i860::assemble("sphere", 0, &source).expect("the tests assemble it");
         row(&[name.into(), program.bytes.len().to_string()]);
     }

@@ -1,6 +1,6 @@
 //! TRANSFORM of the whole display list as work of a board.
 
-use pphigs::{FrameView, Picture, RegionBinning, Shading, Share, TransformCost, Transforming};
+use pphigs::{FrameView, MemoryPart, Picture, RegionBinning, Shading, Share, TransformCost, Transforming};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_renderer::Layout;
@@ -19,6 +19,8 @@ pub(crate) struct WholeList<'a> {
     pub(crate) viewport: Viewport,
     /// Division of pixel memory that the commands are encoded for.
     pub(crate) layout: Layout,
+    /// Where the commands of one view are kept.
+    pub(crate) part: MemoryPart,
 }
 
 impl Work for WholeList<'_> {
@@ -26,11 +28,15 @@ impl Work for WholeList<'_> {
         self.pass.span(timing) * self.views.len() as u64
     }
 
-    /// The kernels are those of Slats, which sends everything everywhere.
+    /// The commands of one view are kept with their boxes. Of two the kernels are those of Slats, which sends everything everywhere.
     fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
-        let Self { viewport, layout, .. } = *self;
+        let Self { viewport, layout, part, .. } = *self;
         let picture =
             Picture { viewport, shading: Shading::Gouraud, binning: RegionBinning::All, layout, pixels: false };
+        if let [view] = self.views {
+            let kept = self.share.transform(view, 0, picture).keep(timing, processor, part)?;
+            return Ok(kept.unwrap_or_else(|| self.by_table(timing)));
+        }
         (0..).zip(self.views).try_fold(Span::ZERO, |all, (context, view)| {
             let passes = [self.share.transform(view, 0, picture)];
             Ok(all + Transforming { passes: &passes, context, begins: true }.by_code(timing, processor)?)

@@ -3,8 +3,9 @@
 //   windows   r16 their upper left pixels (upper half: row; lower half: column), r17 how many (at least 1), r18 where they go, r19 size of
 //             a window (upper half: rows; lower half: columns), r20 the same of the picture, r21 line of the frame that row 0 is, r22 0
 //             where each line is a row, 1 where every second one is
-//   triangles r16 first command, r17 how many (at least 1), r18 their boxes, r19 windows, r20 how many, r21 table of the lists' ends, r22 0
-//             or the picture's regions as windows, r23 how many, r24 and r25 as r21 and r22 of windows; r2 stack
+//   triangles r16 first command, r17 how many (at least 1), r18 their boxes, r19 windows, r20 how many, r21 table of lists as token.s has
+//             it, their ends where they begin, r22 0 or the picture's regions as windows, r23 how many, r24 and r25 as r21 and r22 of
+//             windows; r2 stack
 //   spheres   the same but for r22 to r25
 //
 // The rectangle around all windows stands before the first one, as a window. Lists get addresses of commands.
@@ -229,13 +230,13 @@ region: call    meets
         nop
 touching: adds  W_BYTES, r19, r14
         mov     r20, r13
-        mov     r21, r12
+        adds    8, r21, r12
 each:   call    meets
         adds    -1, r13, r13
         bte     r0, r3, other
         entered
 other:  adds    W_BYTES, r14, r14
-        adds    4, r12, r12
+        adds    8, r12, r12
         btne    r0, r13, each
 beside: adds    -1, r17, r17
         adds    BOX_BYTES, r18, r18
@@ -254,11 +255,11 @@ spheres: ld.l   0(r18), r8
         within  r19, W_FIRST_COLUMN, passed
         adds    W_BYTES, r19, r14
         mov     r20, r13
-        mov     r21, r12
+        adds    8, r21, r12
 one:    within  r14, W_FIRST_COLUMN, next
         entered
 next:   adds    W_BYTES, r14, r14
-        adds    4, r12, r12
+        adds    8, r12, r12
         adds    -1, r13, r13
         btne    r0, r13, one
 passed: adds    -1, r17, r17

@@ -168,11 +168,10 @@ impl Pipeline for Jitp {
     }
 
     fn without_code(&self, _: &MachineConfig) -> Option<&'static str> {
-        Some(match self.viewpoint {
-            Viewpoint::Strip => "finding what meets a strip",
-            Viewpoint::Field => "finding what meets a strip, and the master's part of a field",
-            Viewpoint::Dual(_) => "interpolating, finding what meets a strip, and the master's part of a field",
-        })
+        match self.viewpoint {
+            Viewpoint::Strip | Viewpoint::Field => None,
+            Viewpoint::Dual(_) => Some("interpolating what meets a strip, and finding it"),
+        }
     }
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
