@@ -1,10 +1,11 @@
 //! The cycle level: graphics processors whose time comes from i860 code over the data of every triangle.
 
+use jitp::JitpTiming;
 use pxpl5::limit::test_scene;
 use pxpl5::run::{FacePipeline, FacePolicy};
 use pxpl5::{
-    CodeVersion, Experiment, ExperimentError, Frameless, Jitp, Level, MachineConfig, Measured, Outcome, PictureNumber,
-    Pipeline, Pixels, RenderingControl, Slats, TestScene, Viewpoint, Workstation, scene,
+    CodeVersion, Experiment, ExperimentError, Frameless, Interpolation, Jitp, Level, MachineConfig, Measured, Outcome,
+    PictureNumber, Pipeline, Pixels, RenderingControl, Slats, TestScene, Viewpoint, Workstation, scene,
 };
 use pxpl5_gp::Stage;
 use std::sync::Arc;
@@ -130,13 +131,17 @@ fn no_time_comes_from_the_table_where_code_runs() {
         ("small-hmd", jitp(Viewpoint::Field, true), "molecules"),
         ("small-hmd", jitp(Viewpoint::Strip, false), "full-screen:30"),
         ("small-hmd", jitp(Viewpoint::Strip, true), "full-screen:30"),
+        ("small-hmd", jitp(Viewpoint::Dual(Interpolation::Screen), true), "mig"),
+        ("small-hmd", jitp(Viewpoint::Dual(Interpolation::View), false), "full-screen:30"),
         ("small-hmd", Arc::new(Frameless::new()), "molecules"),
     ] {
-        let own = pipeline.adapt(MachineConfig::preset(preset).expect("listed"));
+        let mut own = pipeline.adapt(MachineConfig::preset(preset).expect("listed"));
+        own.add_firmware_table("jitp", Box::new(JitpTiming::PAPERS));
         let mut other = own.clone();
         for name in TIMES_OF_CODE {
             other.set(&format!("gp.{name}_ns"), 77_777).expect("known");
         }
+        other.set("jitp.interpolate_ns", 77_777).expect("known");
         let [own, other] = [own, other].map(|machine| hash_on(&machine, Arc::clone(&pipeline), scene));
         assert_eq!(own, other, "{} with {scene}", pipeline.name());
     }

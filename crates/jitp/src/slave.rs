@@ -5,7 +5,7 @@ use crate::drawing::{DrawnList, Ends};
 use crate::finding::Finding;
 use crate::pieces::{messages, window};
 use crate::protocol::DrawingOrder;
-use crate::whole::WholeList;
+use crate::whole::{self, WholeList};
 use pphigs::{DisplayList, FrameView, MemoryPart, PROGRAM_BYTES, Searching, Share, TransformCost};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{Account, Fault, Firmware, Gp, Priority, Stage, Ticket};
@@ -19,8 +19,10 @@ use std::sync::Arc;
 /// Fields that stay transformed: the one being drawn and the next.
 const FIELDS_KEPT: usize = 3;
 
-/// Parts of a slave's memory: for these fields and for the one that is being transformed.
-const MEMORY_PARTS: u8 = FIELDS_KEPT as u8 + 1;
+/// Parts of a slave's memory: for these fields and for the one that is being transformed; and for a strip between two views.
+const PARTS_OF_FIELDS: usize = FIELDS_KEPT + 1;
+const MEMORY_PARTS: u8 = PARTS_OF_FIELDS as u8 + 1;
+const OF_STRIP: MemoryPart = MemoryPart::of(PARTS_OF_FIELDS, MEMORY_PARTS);
 
 #[derive(Default)]
 struct SlaveFields {
@@ -128,7 +130,7 @@ impl Slave {
     async fn prepare(self) -> Result<(), Fault> {
         loop {
             let (field, views) = self.gp.until("the order of a field", || self.take_newest_order()).await;
-            let part = MemoryPart::of(self.state.borrow().n_transformed, MEMORY_PARTS);
+            let part = MemoryPart::of(self.state.borrow().n_transformed % PARTS_OF_FIELDS, MEMORY_PARTS);
             self.transform_all(&views, PictureNumber::drawn_for(field), part).await?;
             self.gp.end(Stage::Transform, PictureNumber::drawn_for(field), None);
             let ready = self.transforms.known_or_made(field, || self.transform(field, views));
@@ -255,17 +257,17 @@ impl Slave {
     ) -> Result<Ticket, Fault> {
         let windows: Vec<_> = regions.iter().map(|region| window(&self.config, viewport, *region)).collect();
         let (counts, any) = drawing.count(&windows);
-        let finding = Finding {
-            searching: Searching {
-                part,
-                viewport: *viewport,
-                grid: self.config.grid(),
-                windows: regions,
-                counts: &counts,
-            },
-            interpolated: self.dual().map(|_| any),
-            interpolate_ns: self.config.timing.interpolate_ns,
+        let of_kernels = whole::picture(*viewport, self.config.layout);
+        let interpolating = drawing.interpolating(&self.share, &windows, of_kernels, [part, OF_STRIP]);
+        let searching = Searching {
+            part: if interpolating.is_some() { OF_STRIP } else { part },
+            viewport: *viewport,
+            grid: self.config.grid(),
+            windows: regions,
+            counts: &counts,
         };
+        let interpolate_ns = self.config.timing.interpolate_ns;
+        let finding = Finding { searching, interpolating, met: any, interpolate_ns };
         self.gp.work(&finding).await?;
         self.gp.clump_buffer_free().await;
         let pieces = regions.iter().zip(&windows).zip(&counts);

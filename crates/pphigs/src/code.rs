@@ -36,7 +36,7 @@ const MOST_PIECES: u32 = 7;
 
 /// Instructions after which a kernel is taken to be endless: many times what a primitive needs, and its prologue.
 const BUDGET_OF_PRIMITIVE: u64 = 100_000;
-const BUDGET: u64 = 10_000;
+pub(crate) const BUDGET: u64 = 10_000;
 
 /// Instructions for some primitives.
 pub(crate) const fn budget(primitives: u32) -> u64 {
@@ -177,7 +177,7 @@ pub(crate) struct Next {
 
 impl Next {
     /// Behind what a call of a kernel has left.
-    const fn left(self, processor: &Processor, keeps_boxes: bool) -> Self {
+    pub(crate) const fn left(self, processor: &Processor, keeps_boxes: bool) -> Self {
         let table = if keeps_boxes { processor.register(19) } else { self.table };
         Self { command: processor.register(18), table }
     }
@@ -474,7 +474,7 @@ fn sphere_program(kernel: SphereKernel, by_runs: bool) -> Arc<Program> {
 mod tests {
     use super::*;
     use crate::layout::{BEGIN_CODE, MESSAGE, ORDER_CODE, ORDER_HEAD, SORT_CODE, TOKEN_CODE, WINDOWS, WINDOWS_CODE};
-    use crate::{begin, handing, ordering, surrounding, windows};
+    use crate::{begin, handing, interpolating, ordering, surrounding, windows};
     use pxpl5_geometry::kernel::{KernelList, KernelPicture};
 
     const SURFACES: [KernelSurface; 2] = [KernelSurface::Gouraud, KernelSurface::Phong];
@@ -512,8 +512,9 @@ mod tests {
     #[test]
     fn no_two_programs_of_a_board_lie_in_the_same_place() {
         for kernel in kernels() {
-            let program = program(kernel, true);
-            assert!(program.base == CODE && end(&program) <= SORT_CODE, "{kernel:?} ends at {:#x}", end(&program));
+            for program in [program(kernel, true), interpolating::program(kernel)] {
+                assert!(program.base == CODE && end(&program) <= SORT_CODE, "{kernel:?} ends at {:#x}", end(&program));
+            }
         }
         let sort = surrounding::program();
         assert!(sort.base == SORT_CODE && end(&sort) <= BEGIN_CODE, "{:#x}", end(&sort));

@@ -31,7 +31,10 @@ pub(crate) const MODELS: u32 = 0x1_6000;
 /// As [`BINS`], of further views that share a context: of each of them both contexts.
 const MORE_BINS: u32 = 0x7_D000;
 /// Where matrices end.
-pub(crate) const MODELS_END: u32 = WINDOWS_CODE;
+pub(crate) const MODELS_END: u32 = BLENDED;
+/// Elements of matrices of two views and of one between them, and how many there is room for.
+pub(crate) const BLENDED: u32 = 0x7_5000;
+pub(crate) const BLENDED_ELEMENTS: u32 = 1024;
 /// Where the code begins that finds what meets windows.
 pub(crate) const WINDOWS_CODE: u32 = 0x7_8000;
 /// The windows that are searched for, the rectangle around them first, and the picture's regions as windows.
@@ -87,6 +90,7 @@ const _: () = {
     assert!(BIN_TABLE + 4 * regions <= SPHERE_PARAMETERS, "a bin's end for each region");
     assert!(4 * (1 + 2 * regions) <= BIN_BOUNDS_BYTES && BINS + 2 * BIN_BOUNDS_BYTES <= TOKEN_PARAMETERS);
     assert!(MORE_BINS + 2 * (MOST_VIEWS - 1) * BIN_BOUNDS_BYTES <= LISTS);
+    assert!(BLENDED + 3 * 4 * BLENDED_ELEMENTS <= WINDOWS_CODE);
     assert!(WINDOWS + WINDOW_BYTES * (1 + MOST_WINDOWS) <= REGION_WINDOWS);
     assert!(REGION_WINDOWS + WINDOW_BYTES * (1 + regions) <= WINDOW_PLACES, "a window for each region");
     assert!(WINDOW_PLACES + 4 * regions <= WINDOW_LISTS && MOST_WINDOWS <= regions);

@@ -19,6 +19,7 @@
 //! - [`Surrounding`]: six of them around an eye, as code.
 //! - [`Handing`]: a region's bin handed over to the ring, as such work.
 //! - [`Searching`]: what meets rectangles of the screen that no bin was made for, found and handed over, as such work.
+//! - [`KeepingEnds`] and [`Interpolating`]: triangles in two views, and their commands for a strip between these, as code.
 //! - [`put_together`]: an order of a master, as code.
 //!
 //! **Not modelled:** traversal of nested structures, picking, text, and PPHIGS's other primitives.
@@ -32,6 +33,7 @@ mod cost;
 mod counts;
 mod encoder;
 mod handing;
+mod interpolating;
 mod layout;
 mod list;
 mod ordering;
@@ -53,6 +55,7 @@ pub use commands::{
 pub use cost::TransformCost;
 pub use counts::PrimitiveCounts;
 pub use handing::{Handing, MessagePieces};
+pub use interpolating::{Interpolating, KeepingEnds};
 pub use list::{DisplayList, Share};
 pub use ordering::put_together;
 pub use pass::Pass;

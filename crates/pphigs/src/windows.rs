@@ -63,6 +63,22 @@ impl MemoryPart {
         begin..begin + bytes
     }
 
+    /// Where it begins, if it has so many bytes.
+    pub(crate) fn checked(
+        self,
+        processor: &Processor,
+        share: &Share,
+        needed_bytes: u32,
+    ) -> Result<u32, ProcessorFault> {
+        let place = self.place(processor, share);
+        let available_bytes = place.end - place.start;
+        if needed_bytes > available_bytes {
+            let gp = processor.node();
+            return Err(ProcessorFault::NoRoom { gp, context: self.number, needed_bytes, available_bytes });
+        }
+        Ok(place.start)
+    }
+
     const fn note(self) -> u32 {
         KEPT + self.number as u32 * KEPT_BYTES
     }
@@ -119,10 +135,27 @@ impl Pass {
     ) -> Result<Option<Span>, ProcessorFault> {
         let kernel = self.kernel(processor.version()).filter(|kernel| !kernel.binned);
         let Some(kernel) = kernel.map(|kernel| Kernel { keeps_boxes: true, ..kernel }) else { return Ok(None) };
-        let beginning = Beginning::new(self.share().list(), vec![self.placed()], *self.picture()).without_bins();
-        let beginning = beginning.by_code(timing, processor)?;
+        let beginning = self.beginning_without_bins().by_code(timing, processor)?;
+        let of_kernels = self.keep_what(processor, kernel, part, |processor, first| {
+            self.run_triangles(processor, kernel, first, None)
+        })?;
+        Ok(Some(beginning + of_kernels))
+    }
+
+    pub(crate) fn beginning_without_bins(&self) -> Beginning {
+        Beginning::new(self.share().list(), vec![self.placed()], *self.picture()).without_bins()
+    }
+
+    /// Leaves in a part of memory what `triangles` makes, and all spheres behind it.
+    pub(crate) fn keep_what(
+        &self,
+        processor: &mut Processor,
+        kernel: Kernel,
+        part: MemoryPart,
+        triangles: impl FnOnce(&mut Processor, Next) -> Result<(Span, Next), ProcessorFault>,
+    ) -> Result<Span, ProcessorFault> {
         let first = self.room(processor, kernel, part)?;
-        let (of_triangles, next) = self.run_triangles(processor, kernel, first, None)?;
+        let (of_triangles, next) = triangles(processor, first)?;
         let (of_spheres, end) = self.run_spheres(processor, sphere_kernel(kernel), next, None)?;
         let commands = |from: Next, to: Next| KeptCommands {
             first: from.command,
@@ -130,7 +163,7 @@ impl Pass {
             boxes: from.table,
         };
         Kept([commands(first, next), commands(next, end)]).note(processor, part)?;
-        Ok(Some(beginning + of_triangles + of_spheres))
+        Ok(of_triangles + of_spheres)
     }
 
     /// Where its boxes and its commands begin.
@@ -140,14 +173,8 @@ impl Pass {
         let boxes = BOX_BYTES * (triangles + given.spheres);
         let sphere_bytes = 4 * sphere_kernel(kernel).command_words() as u32;
         let commands = kernel.command_bytes() * triangles + sphere_bytes * given.spheres;
-        let place = part.place(processor, self.share());
-        let available_bytes = place.end - place.start;
-        let needed_bytes = boxes.next_multiple_of(LINE) + commands;
-        if needed_bytes > available_bytes {
-            let gp = processor.node();
-            return Err(ProcessorFault::NoRoom { gp, context: part.number, needed_bytes, available_bytes });
-        }
-        Ok(Next { command: place.start + boxes.next_multiple_of(LINE), table: place.start })
+        let begin = part.checked(processor, self.share(), boxes.next_multiple_of(LINE) + commands)?;
+        Ok(Next { command: begin + boxes.next_multiple_of(LINE), table: begin })
     }
 }
 

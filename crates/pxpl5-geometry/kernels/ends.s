@@ -3,7 +3,7 @@
 // In: r16 first triangle, r17 how many (at least 1), r18 their records, r20 parameter block, r21 0 in the first view, 48 in the second.
 
         .align  32
-ends:   mov     r16, r5
+keepends: mov   r16, r5
         adds    E_CORNERS, r18, r6
         adds    r21, r6, r6
         mov     3, r4
@@ -38,7 +38,7 @@ noted:  st.l    r3, E_INSIDE(r18)
         adds    -1, r17, r17
         adds    TRIANGLE_BYTES, r16, r16
         adds    E_BYTES, r18, r18
-        btne    r0, r17, ends
+        btne    r0, r17, keepends
         bri     r1
         nop
 beyond: br      noted

@@ -95,6 +95,13 @@ pub type Heads = [Word; 8];
 /// Words of a triangle in the display list.
 pub const TRIANGLE_WORDS: usize = 24;
 
+/// Words of the record of a triangle between two views: whether it has a place on the screen in both, the least and the greatest y, free;
+/// its corners in the first view, then in the second.
+pub const ENDS_WORDS: usize = 28;
+
+/// Words of it for the corners in one view.
+pub const ENDS_VIEW_WORDS: usize = 12;
+
 /// Words of a vertex of a strip in the display list.
 pub const VERTEX_WORDS: usize = 8;
 
@@ -138,7 +145,7 @@ impl Kernel {
         };
         let triangle = match self.schedule {
             Schedule::Straight => [self.straight(), vec![bins]].concat(),
-            Schedule::Compiled => [self.compiled(), vec![bins]].concat(),
+            Schedule::Compiled => [self.compiled(include_str!("../kernels/compiled.s")), vec![bins]].concat(),
             // What is seldom needed comes last, so that bins do not share sets of the cache with the end of the second loop.
             Schedule::Dual => {
                 [self.dual(), vec![bins_of_frames, include_str!("../kernels/scheduled_doubt.s")]].concat()
@@ -203,7 +210,31 @@ impl Kernel {
         ]
     }
 
-    fn compiled(&self) -> Vec<&'static str> {
+    /// As the compiled kernel, for triangles [between two views](Self::ends_source): their commands for a strip of lines, which are
+    /// kept with their boxes. The schedule does not matter. Its entry is the label `start`, its registers stand in kernels/between.s.
+    #[must_use]
+    pub fn between_source(&self) -> String {
+        let record = include_str!("../kernels/ends_record.s");
+        let list = include_str!("../kernels/list_triangles.s");
+        let common = [include_str!("../kernels/parameters.s"), list, self.picture.source(), self.cull(), record];
+        let triangle = self.compiled(include_str!("../kernels/between.s"));
+        [common.as_slice(), &triangle, &[include_str!("../kernels/box_kept.s")]].concat().join("\n")
+    }
+
+    /// The source of what finds where triangles are in two views, and of what interpolates their matrices: the labels `keepends` and `blend`.
+    #[must_use]
+    pub fn ends_source() -> String {
+        [
+            include_str!("../kernels/parameters.s"),
+            include_str!("../kernels/setup_scalar.s"),
+            include_str!("../kernels/ends_record.s"),
+            include_str!("../kernels/ends.s"),
+            include_str!("../kernels/blend.s"),
+        ]
+        .join("\n")
+    }
+
+    fn compiled(&self, main: &'static str) -> Vec<&'static str> {
         let (finish, surface) = match self.surface {
             KernelSurface::Gouraud => {
                 (include_str!("../kernels/finish_gouraud.s"), include_str!("../kernels/compiled_gouraud.s"))
@@ -219,7 +250,9 @@ impl Kernel {
             finish,
             include_str!("../kernels/turned_phong.s"),
             surface,
-            include_str!("../kernels/compiled.s"),
+            include_str!("../kernels/compiled_head.s"),
+            main,
+            include_str!("../kernels/compiled_corner.s"),
             include_str!("../kernels/functions_scalar.s"),
         ]
     }

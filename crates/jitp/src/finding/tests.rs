@@ -1,14 +1,14 @@
 //! What code finds in windows, and the messages that it lists, are those of the native firmware, whatever the scene and the windows.
 
-use crate::config::{Beam, BlockOrder, DrawingSchedule, JitpConfig, Viewpoint};
-use crate::drawing::DrawnList;
+use crate::config::{Beam, BlockOrder, DrawingSchedule, Interpolation, JitpConfig, Viewpoint};
+use crate::drawing::{DrawnList, Ends, Window};
 use crate::pieces::{messages, window};
 use crate::timing::JitpTiming;
-use crate::whole::WholeList;
+use crate::whole::{WholeList, picture};
 use glam::{Mat4, Vec3};
 use pphigs::{
-    DisplayList, DisplayStructure, EyeView, FrameView, MemoryPart, ModelFrame, SearchOutput, Searching, Share,
-    TransformCost,
+    DisplayList, DisplayStructure, EyeView, FrameView, MemoryPart, ModelEdit, ModelFrame, SearchOutput, Searching,
+    Share, TransformCost,
 };
 use pxpl5_display::Aim;
 use pxpl5_geometry::{Culling, Viewport, WorldSphere};
@@ -123,6 +123,17 @@ fn strips(strip_rows: u32) -> JitpConfig {
     config(DrawingSchedule::Beam { viewpoint: Viewpoint::Field, racing: false, strip_rows })
 }
 
+/// The view, and one that has turned by about as much in radians; a structure too.
+fn two_views(numbers: &mut Numbers, turn: f32) -> [FrameView; 2] {
+    [0.0, turn].map(|turn| {
+        let mut view = view(numbers);
+        view.eyes[0].world_to_eye *= Mat4::from_rotation_y(0.3 * turn) * Mat4::from_rotation_z(turn);
+        view.eyes[0].head_to_eye *= Mat4::from_rotation_x(0.1 * turn);
+        view.edits = vec![ModelEdit { structure: 0, model: Mat4::from_rotation_z(turn) }];
+        view
+    })
+}
+
 fn blocks(block: u32) -> JitpConfig {
     config(DrawingSchedule::Roam { block, batch: 16, order: BlockOrder::new(|step| RegionId(step as u16)) })
 }
@@ -136,6 +147,7 @@ struct Scene {
     picture: PictureNumber,
     viewport: Viewport,
     part: MemoryPart,
+    interpolation: Option<Interpolation>,
 }
 
 impl Scene {
@@ -147,25 +159,60 @@ impl Scene {
         share.install(&mut processor).expect("it fits");
         let picture = PictureNumber::drawn_for(PeriodNumber(seed));
         let viewport = config.extent(picture).0;
-        let part = MemoryPart::of(seed as usize, 4);
+        let part = MemoryPart::of(seed as usize % 4, 5);
         let view = view(numbers);
         let drawn = Arc::new(DrawnList::from_view(&list, &view, viewport));
-        let mut scene = Self { processor, share, drawn, config: config.clone(), picture, viewport, part };
-        scene.keep(&view);
+        let (config, interpolation) = (config.clone(), None);
+        let mut scene = Self { processor, share, drawn, config, picture, viewport, part, interpolation };
+        scene.keep(std::slice::from_ref(&view));
         scene
     }
 
-    fn keep(&mut self, view: &FrameView) {
+    /// The same between two views, `turn` apart: the part `s` of the way.
+    fn between(&mut self, seed: u64, turn: f32, interpolation: Interpolation) -> Ends {
+        let views = two_views(&mut Numbers(SplitMix64::new(seed)), turn).to_vec();
+        self.keep(&views);
+        self.interpolation = Some(interpolation);
+        Ends::new(self.share.list(), views, self.viewport)
+    }
+
+    /// Has a strip interpolated for the part `s` of the way, searched, and held to the native messages.
+    fn search_between(&mut self, ends: &Ends, s: f64, strip: u32) -> SearchOutput {
+        let interpolation = self.interpolation.expect("between two views");
+        self.drawn = Arc::new(DrawnList::between(self.share.list(), ends, s, interpolation, self.viewport));
+        let regions = self.config.strip_regions(strip);
+        let windows = self.windows(&regions);
+        let parts = [self.part, MemoryPart::of(4, 5)];
+        let drawn = Arc::clone(&self.drawn);
+        let picture = picture(self.viewport, self.config.layout);
+        let interpolating = drawn.interpolating(&self.share, &windows, picture, parts).expect("between two views");
+        interpolating.run_code(&GpTiming::PAPERS, &mut self.processor).expect("it returns").expect("it has kernels");
+        let of_ends = std::mem::replace(&mut self.part, parts[1]);
+        let output = self.search(&regions);
+        self.part = of_ends;
+        output
+    }
+
+    fn windows(&self, regions: &[RegionId]) -> Vec<Window> {
+        regions.iter().map(|region| window(&self.config, &self.viewport, *region)).collect()
+    }
+
+    fn keep(&mut self, views: &[FrameView]) {
         let pass = TransformCost::pass_over(self.share.list(), self.share.counts());
-        let (views, layout) = (std::slice::from_ref(view), self.config.layout);
+        let layout = self.config.layout;
         let whole = WholeList { share: &self.share, pass, views, viewport: self.viewport, layout, part: self.part };
         whole.by_code(&GpTiming::PAPERS, &mut self.processor).expect("it returns");
     }
 
     /// What the code lists for some regions, held to the native messages.
     fn search(&mut self, regions: &[RegionId]) -> SearchOutput {
-        let windows: Vec<_> = regions.iter().map(|region| window(&self.config, &self.viewport, *region)).collect();
+        let windows = self.windows(regions);
         let (counts, _) = self.drawn.count(&windows);
+        for (window, counts) in windows.iter().zip(&counts) {
+            let mut commands = 0;
+            self.drawn.triangle_commands(window, |_| commands += 1);
+            assert_eq!(commands, counts.triangles, "as many are drawn as are counted: {window:?}");
+        }
         let searching = Searching {
             part: self.part,
             viewport: self.viewport,
@@ -263,6 +310,24 @@ fn a_list_of_nothing_or_of_one_kind_is_searched_too() {
         for strip in 0..config.grid().rows() {
             let output = scene.search(&config.strip_regions(strip));
             assert_eq!(output.messages, [1; 5], "one that clears and copies, each");
+        }
+    }
+}
+
+/// Small turns and large ones, in which the ways of corners on the screen are curved; parts before the first view too.
+#[test]
+fn what_code_makes_of_a_strip_between_two_views_is_what_the_native_firmware_draws() {
+    for (seed, (rows, turn)) in (40..).zip([(1, 0.05), (8, 0.05), (7, 0.8), (1, 1.5)]) {
+        for interpolation in [Interpolation::Screen, Interpolation::View] {
+            for field in 0..2 {
+                let config = strips(rows);
+                let mut scene = Scene::new(&config, VERSIONS[seed as usize % 3], 2 * seed + field, [150, 10]);
+                let ends = scene.between(seed, turn, interpolation);
+                for strip in (field as u32..config.grid().rows()).step_by(if rows == 1 { 7 } else { 2 }) {
+                    let part = [-0.06, 0.0, 0.37, 0.5, 1.0][strip as usize % 5];
+                    scene.search_between(&ends, part, strip);
+                }
+            }
         }
     }
 }

@@ -168,10 +168,7 @@ impl Pipeline for Jitp {
     }
 
     fn without_code(&self, _: &MachineConfig) -> Option<&'static str> {
-        match self.viewpoint {
-            Viewpoint::Strip | Viewpoint::Field => None,
-            Viewpoint::Dual(_) => Some("interpolating what meets a strip, and finding it"),
-        }
+        None
     }
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
