@@ -19,10 +19,9 @@ use std::sync::Arc;
 /// Fields that stay transformed: the one being drawn and the next.
 const FIELDS_KEPT: usize = 3;
 
-/// Parts of a slave's memory: for these fields and for the one that is being transformed; and for a strip between two views.
-const PARTS_OF_FIELDS: usize = FIELDS_KEPT + 1;
-const MEMORY_PARTS: u8 = PARTS_OF_FIELDS as u8 + 1;
-const OF_STRIP: MemoryPart = MemoryPart::of(PARTS_OF_FIELDS, MEMORY_PARTS);
+/// Parts of a slave's memory: for these fields and for the one that is being transformed; one more for a strip between two views.
+const PARTS_OF_FIELDS: u8 = FIELDS_KEPT as u8 + 1;
+const OF_STRIP: MemoryPart = MemoryPart::of(PARTS_OF_FIELDS as usize, PARTS_OF_FIELDS + 1);
 
 #[derive(Default)]
 struct SlaveFields {
@@ -130,7 +129,7 @@ impl Slave {
     async fn prepare(self) -> Result<(), Fault> {
         loop {
             let (field, views) = self.gp.until("the order of a field", || self.take_newest_order()).await;
-            let part = MemoryPart::of(self.state.borrow().n_transformed % PARTS_OF_FIELDS, MEMORY_PARTS);
+            let part = self.next_part();
             self.transform_all(&views, PictureNumber::drawn_for(field), part).await?;
             self.gp.end(Stage::Transform, PictureNumber::drawn_for(field), None);
             let ready = self.transforms.known_or_made(field, || self.transform(field, views));
@@ -141,6 +140,12 @@ impl Slave {
                 state.transformed.pop_front();
             }
         }
+    }
+
+    /// Where the next field goes.
+    fn next_part(&self) -> MemoryPart {
+        let number = self.state.borrow().n_transformed % usize::from(PARTS_OF_FIELDS);
+        MemoryPart::of(number, PARTS_OF_FIELDS + u8::from(self.dual().is_some()))
     }
 
     /// TRANSFORM of the whole display list for each of some views of a picture.

@@ -32,7 +32,7 @@ const BOX_BYTES: u32 = 16;
 /// Bytes of a line of the data cache.
 const LINE: u32 = 32;
 
-/// What draws a window: the region is selected and cleared, at last copied.
+/// Words around what draws a window: it is selected and cleared first, copied at last.
 const OPENING: u32 = CommandKind::SelectRegion.words() + CommandKind::Clear.words();
 const CLOSING: u32 = CommandKind::CopyRegion.words();
 
@@ -55,7 +55,7 @@ impl MemoryPart {
         Self { number: (number % of as usize) as u8, of }
     }
 
-    /// Where it lies, at the end of each what begins with a line of the cache.
+    /// Where it lies: whole lines of the data cache.
     fn place(self, processor: &Processor, share: &Share) -> Range<u32> {
         let begin = share.end_of_list().next_multiple_of(LINE);
         let bytes = entries(processor).saturating_sub(begin) / u32::from(self.of) / LINE * LINE;

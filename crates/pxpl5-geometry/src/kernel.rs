@@ -19,6 +19,10 @@
 //! the normals. Registers and layouts stand in kernels/parameters.s. The sources are put together as a linker would, one file for
 //! each choice. This crate does not assemble or run them.
 
+mod between;
+
+pub use between::{ENDS_VIEW_WORDS, ENDS_WORDS};
+
 use crate::newton::ROUND_DOUBLE;
 use crate::transform::Turn;
 use crate::{DEPTH_FAR, DEPTH_NEAR, Light, MAX_CLIP, NORMAL_UNIT, Transform, Triangle, Viewport, clip, light, screen};
@@ -94,13 +98,6 @@ pub type Heads = [Word; 8];
 
 /// Words of a triangle in the display list.
 pub const TRIANGLE_WORDS: usize = 24;
-
-/// Words of the record of a triangle between two views: whether it has a place on the screen in both, the least and the greatest y, free;
-/// its corners in the first view, then in the second.
-pub const ENDS_WORDS: usize = 28;
-
-/// Words of it for the corners in one view.
-pub const ENDS_VIEW_WORDS: usize = 12;
 
 /// Words of a vertex of a strip in the display list.
 pub const VERTEX_WORDS: usize = 8;
@@ -208,30 +205,6 @@ impl Kernel {
             include_str!("../kernels/reciprocal.s"),
             include_str!("../kernels/triangle_straight.s"),
         ]
-    }
-
-    /// As the compiled kernel, for triangles [between two views](Self::ends_source): their commands for a strip of lines, which are
-    /// kept with their boxes. The schedule does not matter. Its entry is the label `start`, its registers stand in kernels/between.s.
-    #[must_use]
-    pub fn between_source(&self) -> String {
-        let record = include_str!("../kernels/ends_record.s");
-        let list = include_str!("../kernels/list_triangles.s");
-        let common = [include_str!("../kernels/parameters.s"), list, self.picture.source(), self.cull(), record];
-        let triangle = self.compiled(include_str!("../kernels/between.s"));
-        [common.as_slice(), &triangle, &[include_str!("../kernels/box_kept.s")]].concat().join("\n")
-    }
-
-    /// The source of what finds where triangles are in two views, and of what interpolates their matrices: the labels `keepends` and `blend`.
-    #[must_use]
-    pub fn ends_source() -> String {
-        [
-            include_str!("../kernels/parameters.s"),
-            include_str!("../kernels/setup_scalar.s"),
-            include_str!("../kernels/ends_record.s"),
-            include_str!("../kernels/ends.s"),
-            include_str!("../kernels/blend.s"),
-        ]
-        .join("\n")
     }
 
     fn compiled(&self, main: &'static str) -> Vec<&'static str> {

@@ -331,3 +331,23 @@ fn what_code_makes_of_a_strip_between_two_views_is_what_the_native_firmware_draw
         }
     }
 }
+
+/// A structure and the view turn at once, so that ways on the screen are curved and leave what is taken to be near a strip.
+#[test]
+fn what_is_counted_on_a_strip_between_two_views_is_what_is_drawn() {
+    let config = strips(1);
+    let mut scene = Scene::new(&config, CodeVersion::Compiled, 60, [600, 0]);
+    for interpolation in [Interpolation::Screen, Interpolation::View] {
+        let ends = scene.between(60, 1.5, interpolation);
+        let drawn = DrawnList::between(scene.share.list(), &ends, 0.5, interpolation, scene.viewport);
+        for strip in 0..config.grid().rows() {
+            let windows = scene.windows(&config.strip_regions(strip));
+            let (counts, _) = drawn.count(&windows);
+            for (window, counts) in windows.iter().zip(counts) {
+                let mut commands = 0;
+                drawn.triangle_commands(window, |_| commands += 1);
+                assert_eq!(commands, counts.triangles, "{window:?}, {interpolation:?}");
+            }
+        }
+    }
+}
