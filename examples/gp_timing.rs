@@ -10,7 +10,7 @@ use i860::timing::{DramTiming, FREEZES, Freeze};
 use i860::{AddressProfile, Config, Profile, linear};
 use kernel::{Bench, Strip, frame, strips, triangles};
 use parameters::{ParameterTable, Value};
-use pxpl5::lab::code_times::{CodeUse, code_times};
+use pxpl5::lab::code_times::{CodeUse, code_times, strip_times};
 use pxpl5::limit::{LimitQuery, test_scene};
 use pxpl5::{CodeVersion, Experiment, Level, MachineConfig, PictureNumber, Pixels, Slats, TestScene};
 use pxpl5_geometry::kernel::{Kernel, KernelList, KernelPicture, KernelSurface, Schedule};
@@ -471,6 +471,41 @@ fn table_of_code() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
+/// What just-in-time pixels and frameless rendering do besides TRANSFORM.
+fn strips_and_blocks() -> Result<(), Box<dyn std::error::Error>> {
+    println!("\n## Strips and blocks\n");
+    println!(
+        "Clocks of what just-in-time pixels do for a strip of one line, with the triangles of the aircraft (pxpl5_lab::code_times): \
+         windows_rules.md, between_rules.md and order_rules.md in crates/pphigs/kernels. Blocks of frameless rendering are searched for by \
+         the same code. A strip between two views begins a pass of its own. In the table of times `jitp.interpolate_ns` stands for a \
+         triangle that is interpolated, 280 clocks (assumed).\n"
+    );
+    head(&[
+        "code",
+        "box compared",
+        "entry of a window besides",
+        "five windows of a strip",
+        "places in two views",
+        "triangle far from the strip",
+        "near, on the screen, besides",
+        "near, in the view, besides",
+        "order of a strip",
+        "with a view",
+        "of blocks",
+        "of a field, two views",
+    ]);
+    for version in [CodeVersion::Unoptimised, CodeVersion::Compiled, CodeVersion::Scheduled] {
+        let times = strip_times(version)?;
+        let [screen, view] = times.interpolated_ns;
+        let of_triangles =
+            [times.box_ns, times.entry_ns, times.windows_ns, times.ends_ns, times.passed_ns, screen, view];
+        let clocks =
+            of_triangles.into_iter().chain(times.order_ns).map(|ns| format!("{:.0}", ns * 1e-3 * CLOCKS_PER_US));
+        row(&std::iter::once(version.name().to_owned()).chain(clocks).collect::<Vec<_>>());
+    }
+    Ok(())
+}
+
 fn sizes() {
     println!("\n## Size of the code\n");
     head(&["kernel", "bytes"]);
@@ -484,7 +519,7 @@ fn sizes() {
     let end = at("clipper");
     row(&["clipper".into(), (program.base + program.bytes.len() as u32 - end).to_string()]);
     for (surface, name) in [(KernelSurface::Gouraud, "spheres, Gouraud"), (KernelSurface::Phong, "spheres, Phong")] {
-        let source = SphereKernel { surface, picture: KernelPicture::Frame }.source();
+        let source = SphereKernel { surface, picture: KernelPicture::Frame, keeps_boxes: false }.source();
         let program = i860::assemble("sphere", 0, &source).expect("the tests assemble it");
         row(&[name.into(), program.bytes.len().to_string()]);
     }
@@ -515,12 +550,12 @@ manner. Messages and chains are received and sent by crates/pxpl5-gp/kernels/rin
 handed over by crates/pphigs/kernels/token.s; the original's operating software is not published, and ring_rules.md says what this
 one stands for. The kernels of these tables know the size of an NTSC frame or field; those of other frames in regions of 128 x 128
 (faces of a cube, other displays) read it from their parameter block (kernels/grid.s). Which of six faces a primitive may touch is found by
-crates/pphigs/kernels/sort.s (sort_rules.md). Not in code: what a master decides, moving vertices where cells are warped, and of just-in-time
-pixels and frameless rendering what is done for a strip or a block besides TRANSFORM: their runs at the cycle level say so. What the ring's
-interface does of a message (its DMA, its FIFOs) is no code at any level: it is simulated word by word. So a figure of the whole program is
-expected to be larger than these.
+crates/pphigs/kernels/sort.s (sort_rules.md), what meets a strip of lines or a block by windows.s (windows_rules.md), and triangles between
+the views of a field's begin and end come from between.s (between_rules.md). Not in code: what a master decides, and moving vertices where
+cells are warped. What the ring's interface does of a message (its DMA, its FIFOs) is no code at any level: it is simulated word by
+word. So a figure of the whole program is expected to be larger than these.
 
-Input of the tables before the last but one: 1,000 triangles of about 30 pixels, each corner with its own position,
+Input of the tables before the last but two: 1,000 triangles of about 30 pixels, each corner with its own position,
 normal and colour, streamed from memory. Processor: 40 MHz, the freeze rules and the memory of
 crates/i860/src/timing.rs, all of which are assumed; hence the tables of sensitivity.
 ";
@@ -536,6 +571,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     sharing()?;
     board()?;
     table_of_code()?;
+    strips_and_blocks()?;
     sizes();
     Ok(())
 }

@@ -1,10 +1,11 @@
 //! The cycle level: graphics processors whose time comes from i860 code over the data of every triangle.
 
+use jitp::JitpTiming;
 use pxpl5::limit::test_scene;
 use pxpl5::run::{FacePipeline, FacePolicy};
 use pxpl5::{
-    CodeVersion, Experiment, ExperimentError, Level, MachineConfig, Measured, Outcome, PictureNumber, Pipeline, Pixels,
-    RenderingControl, Slats, TestScene, Workstation, scene,
+    CodeVersion, Experiment, ExperimentError, Frameless, Interpolation, Jitp, Level, MachineConfig, Measured, Outcome,
+    PictureNumber, Pipeline, Pixels, RenderingControl, Slats, TestScene, Viewpoint, Workstation, scene,
 };
 use pxpl5_gp::Stage;
 use std::sync::Arc;
@@ -117,6 +118,7 @@ fn no_time_comes_from_the_table_where_code_runs() {
     let slats: Arc<dyn Pipeline> = Arc::new(Slats::split());
     let control: Arc<dyn Pipeline> = Arc::new(RenderingControl::stereo());
     let faces = |policy| Arc::new(FacePipeline::new(policy)) as Arc<dyn Pipeline>;
+    let jitp = |viewpoint, racing| Arc::new(Jitp::new(viewpoint, racing)) as Arc<dyn Pipeline>;
     for (preset, pipeline, scene) in [
         ("slats", slats, "full-screen:30"),
         ("small-hmd", Arc::clone(&control), "mig"),
@@ -125,12 +127,21 @@ fn no_time_comes_from_the_table_where_code_runs() {
         ("small-hmd", faces(FacePolicy::Objects), "gallery"),
         ("small-hmd", faces(FacePolicy::Cells), "gallery"),
         ("small-hmd", faces(FacePolicy::CellsWarped), "gallery"),
+        ("small-hmd", jitp(Viewpoint::Field, false), "mig"),
+        ("small-hmd", jitp(Viewpoint::Field, true), "molecules"),
+        ("small-hmd", jitp(Viewpoint::Strip, false), "full-screen:30"),
+        ("small-hmd", jitp(Viewpoint::Strip, true), "full-screen:30"),
+        ("small-hmd", jitp(Viewpoint::Dual(Interpolation::Screen), true), "mig"),
+        ("small-hmd", jitp(Viewpoint::Dual(Interpolation::View), false), "full-screen:30"),
+        ("small-hmd", Arc::new(Frameless::new()), "molecules"),
     ] {
-        let own = pipeline.adapt(MachineConfig::preset(preset).expect("listed"));
+        let mut own = pipeline.adapt(MachineConfig::preset(preset).expect("listed"));
+        own.add_firmware_table("jitp", Box::new(JitpTiming::PAPERS));
         let mut other = own.clone();
         for name in TIMES_OF_CODE {
             other.set(&format!("gp.{name}_ns"), 77_777).expect("known");
         }
+        other.set("jitp.interpolate_ns", 77_777).expect("known");
         let [own, other] = [own, other].map(|machine| hash_on(&machine, Arc::clone(&pipeline), scene));
         assert_eq!(own, other, "{} with {scene}", pipeline.name());
     }

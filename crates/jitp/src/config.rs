@@ -298,9 +298,14 @@ impl JitpConfig {
         let strip = self.deadline(first, 1).since(begin);
         let work = strip * self.slaves.len() as u64 + Span::from_ns(self.timing.margin_ns);
         let next_of_its_lines = self.deadline(first.after(2), 0);
-        let field = next_of_its_lines.since(begin) / 2;
-        let wanted = if racing { work } else { work + field };
+        let wanted = if racing { work } else { work + self.field_time() };
         wanted.min(next_of_its_lines.since(self.scanned(first, 0)))
+    }
+
+    /// From a field to the next one.
+    pub(crate) fn field_time(&self) -> Span {
+        let first = PeriodNumber::FIRST;
+        self.deadline(first.after(2), 0).since(self.deadline(first, 0)) / 2
     }
 
     /// When the last pixel of a strip has been scanned.

@@ -2,7 +2,10 @@
 
 use crate::config::Interpolation;
 use glam::Mat4;
-use pphigs::{DisplayList, EyeView, FrameView, ModelEdit, PlacedStructure, PrimitiveCounts, gouraud_sphere, place_all};
+use pphigs::{
+    DisplayList, EyeView, FrameView, Interpolating, MemoryPart, ModelEdit, Picture, PlacedStructure, PrimitiveCounts,
+    Share, gouraud_sphere, place_all,
+};
 use pxpl5_geometry::{LitColours, Outline, ScreenSphere, ScreenTriangle, SetupStats, TriangleEnds, Viewport};
 use pxpl5_renderer::{Command, TriangleCommand};
 use std::fmt;
@@ -27,10 +30,20 @@ pub(crate) struct DrawnList {
     list: Arc<DisplayList>,
     viewport: Viewport,
     placed: Vec<PlacedStructure>,
-    /// The places at T0 and T1, the part of the way between, and between what is interpolated.
-    ends: Option<(Ends, f64, Interpolation)>,
+    /// What it is between; `None` of one view.
+    between: Option<Between>,
     /// Made when first asked for; the strips of a conventional picture share them.
     outlines: OnceLock<Vec<Outline>>,
+}
+
+/// A moment between two for which a display list is transformed.
+struct Between {
+    ends: Ends,
+    /// The part of the way.
+    part: f64,
+    interpolation: Interpolation,
+    /// As it is seen then.
+    view: FrameView,
 }
 
 /// What a slave has transformed for the begin and the end of a field, or for one moment.
@@ -78,7 +91,7 @@ impl DrawnList {
     /// As one view shows it.
     pub(crate) fn from_view(list: &Arc<DisplayList>, view: &FrameView, viewport: Viewport) -> Self {
         let placed = place_all(list, view, 0, viewport);
-        Self { list: Arc::clone(list), viewport, placed, ends: None, outlines: OnceLock::new() }
+        Self { list: Arc::clone(list), viewport, placed, between: None, outlines: OnceLock::new() }
     }
 
     /// At the part `s` of the way between two views.
@@ -90,15 +103,15 @@ impl DrawnList {
         viewport: Viewport,
     ) -> Self {
         let view = interpolated(&ends.views[0], &ends.views[1], s);
-        Self { ends: Some((ends.clone(), s, interpolation)), ..Self::from_view(list, &view, viewport) }
+        let drawn = Self::from_view(list, &view, viewport);
+        Self { between: Some(Between { ends: ends.clone(), part: s, interpolation, view }), ..drawn }
     }
 
     /// How many primitives meet each window, and how many meet any.
     pub(crate) fn count(&self, windows: &[Window]) -> (Vec<PrimitiveCounts>, PrimitiveCounts) {
         let mut tallies = Tallies::new(windows);
-        if self.ends.is_some() {
-            let [top, bottom] = tallies.span;
-            self.each_outline([top - CURVED, bottom + CURVED], |outline| tallies.add_outline(outline));
+        if self.between.is_some() {
+            self.each_outline(near(windows), |outline| tallies.add_outline(outline));
         } else {
             let outlines = self.outlines.get_or_init(|| self.make_outlines());
             outlines.iter().for_each(|outline| tallies.add_outline(outline));
@@ -113,14 +126,14 @@ impl DrawnList {
         all
     }
 
-    /// Calls `sink` for each screen triangle, but for some that cannot be between two distances from the frame's top.
-    fn each_outline(&self, [top, bottom]: [i32; 2], mut sink: impl FnMut(&Outline)) {
+    /// Calls `sink` for each screen triangle, but for those that are apart from what is [`near`] the windows.
+    fn each_outline(&self, near: [i32; 2], mut sink: impl FnMut(&Outline)) {
         let mut stats = SetupStats::default();
         for (i, place) in self.placed.iter().enumerate() {
             let Some(transform) = &place.transform else { continue };
             for (k, number) in place.structure.triangles.clone().enumerate() {
                 match self.ends_of(i, k) {
-                    Some((ends, ..)) if ends.y_range()[0] > bottom || ends.y_range()[1] < top => {}
+                    Some((ends, ..)) if is_apart(ends, near) => {}
                     Some((ends, s, Interpolation::Screen)) => transform.outline_between(ends, s, &mut stats, &mut sink),
                     _ => transform.outlines(&self.list.corners(number), &mut stats, &mut sink),
                 }
@@ -130,8 +143,8 @@ impl DrawnList {
 
     /// The ends of a structure's k-th triangle, where it has a place on the screen at both.
     fn ends_of(&self, structure: usize, k: usize) -> Option<(&TriangleEnds, f64, Interpolation)> {
-        let (ends, s, interpolation) = self.ends.as_ref()?;
-        Some((ends.triangles.get(structure)?.get(k)?.as_ref()?, *s, *interpolation))
+        let Between { ends, part, interpolation, .. } = self.between.as_ref()?;
+        Some((ends.triangles.get(structure)?.get(k)?.as_ref()?, *part, *interpolation))
     }
 
     fn spheres(&self, mut sink: impl FnMut(&ScreenSphere, &PlacedStructure)) {
@@ -144,14 +157,16 @@ impl DrawnList {
         }
     }
 
-    /// Calls `sink` with the command of each triangle that meets a window, in order.
+    /// Calls `sink` with the command of each triangle that meets a window, in order. It was counted with windows of the same lines.
     pub(crate) fn triangle_commands(&self, window: &Window, mut sink: impl FnMut(Command)) {
+        let near = near(std::slice::from_ref(window));
         let mut stats = SetupStats::default();
         for (i, place) in self.placed.iter().enumerate() {
             let Some(transform) = &place.transform else { continue };
             for (k, number) in place.structure.triangles.clone().enumerate() {
                 let triangle = self.list.triangle(number);
                 match self.ends_of(i, k) {
+                    Some((ends, ..)) if is_apart(ends, near) => {}
                     Some((ends, s, Interpolation::Screen)) => {
                         transform.gouraud_between(ends, s, &triangle, &place.light, &mut stats, |t| {
                             sink_if_met(t, window, &self.viewport, &mut sink);
@@ -174,9 +189,52 @@ impl DrawnList {
         });
     }
 
+    /// The interpolation of what may meet some windows as work of a board, whose memory holds both ends in one part and gets what is
+    /// drawn in another; `None` of one view.
+    pub(crate) fn interpolating<'a>(
+        &'a self,
+        share: &'a Share,
+        windows: &[Window],
+        picture: Picture,
+        [ends, commands]: [MemoryPart; 2],
+    ) -> Option<Interpolating<'a>> {
+        let between = self.between.as_ref()?;
+        let [from, to] = between.ends.views.as_ref() else { return None };
+        Some(Interpolating {
+            share,
+            views: [from, to],
+            between: &between.view,
+            part_of_way: between.part,
+            in_view: between.interpolation == Interpolation::View,
+            near: near(windows),
+            picture,
+            ends,
+            commands,
+        })
+    }
+
     pub(crate) fn background(&self) -> [u8; 3] {
         self.list.background
     }
+}
+
+/// The least and the greatest distance from the frame's top of what may meet windows at any part of the way, subpixels.
+fn near(windows: &[Window]) -> [i32; 2] {
+    let [top, bottom] = span(windows);
+    [top - CURVED, bottom + CURVED]
+}
+
+/// From the top of the highest window to the bottom of the lowest, subpixels of the frame.
+fn span(windows: &[Window]) -> [i32; 2] {
+    let top = windows.iter().map(|w| w.lines[0] * SUBPIXELS).min().unwrap_or_default();
+    let bottom = windows.iter().map(|w| w.lines[1] * SUBPIXELS).max().unwrap_or_default() + SUBPIXELS;
+    [top, bottom]
+}
+
+/// Whether a triangle is nowhere between two such distances, whatever the part of the way.
+fn is_apart(ends: &TriangleEnds, [top, bottom]: [i32; 2]) -> bool {
+    let [least, greatest] = ends.y_range();
+    least > bottom || greatest < top
 }
 
 /// Calls `sink` with the command of a triangle, if that meets the window.
@@ -203,11 +261,9 @@ struct Tallies<'a> {
 
 impl<'a> Tallies<'a> {
     fn new(windows: &'a [Window]) -> Self {
-        let top = windows.iter().map(|w| w.lines[0] * SUBPIXELS).min().unwrap_or_default();
-        let bottom = windows.iter().map(|w| w.lines[1] * SUBPIXELS).max().unwrap_or_default() + SUBPIXELS;
         Self {
             windows,
-            span: [top, bottom],
+            span: span(windows),
             each: vec![PrimitiveCounts::default(); windows.len()],
             any: PrimitiveCounts::default(),
         }

@@ -29,8 +29,10 @@
 //!
 //! The reference that evaluates the view at each pixel's own moment is mathematics, not firmware.
 //!
-//! At the cycle level TRANSFORM of the whole list is i860 code, that of a pipeline that sends everything everywhere; what is found and
-//! interpolated for a strip or a block, and the master's part of a field, take the times of the table.
+//! At the cycle level all of that is i860 code ([`pphigs`]): TRANSFORM of the whole list, which keeps commands and their boxes, or the places
+//! of triangles in the views of the begin and the end; the triangles of a strip between these; what meets a strip or a block, found
+//! among the boxes and handed over as a bin is; the orders that the master puts together. A strip between two views begins a pass of its
+//! own, with the interpolated matrices. When slaves begin with a field, and how many blocks are a batch, are constants there.
 //!
 //! **Not modelled:** culling of the display list by line (a slave transforms every primitive for each strip), transforms
 //! shared among slaves, Phong shading. Frameless pixels come in square blocks: one pixel alone would pay 16 words of
@@ -41,8 +43,10 @@
 
 mod config;
 mod drawing;
+mod finding;
 mod host;
 mod master;
+mod ordering;
 mod pieces;
 mod protocol;
 mod slave;

@@ -1,12 +1,13 @@
 //! The master GP: it follows the beam, keeps the newest tracking data and orders strips or blocks.
 
 use crate::config::{DrawingSchedule, JitpConfig, Viewpoint, Wanted};
+use crate::ordering::Ordering;
 use crate::protocol::DrawingOrder;
 use pphigs::{FrameView, PROGRAM_BYTES, TransformCost};
 use pxpl5_display::LightSpan;
 use pxpl5_gp::{Account, Fault, Firmware, Gp, Priority, Stage};
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{PeriodNumber, PictureNumber, ViewNumber};
+use pxpl5_wire::{NodeId, PeriodNumber, PictureNumber, ViewNumber};
 use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
 use std::rc::Rc;
@@ -60,14 +61,13 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
             DrawingSchedule::Beam { viewpoint, racing, .. } => self.follow_the_beam(viewpoint, racing).await,
             DrawingSchedule::Roam { batch, .. } => self.roam(u64::from(batch)).await,
         }
-        Ok(())
     }
 
     fn view(&mut self, number: ViewNumber, shown_at: Time) -> FrameView {
         (self.view_of)(Wanted { number, known: self.state.known.get(), shown_at })
     }
 
-    async fn follow_the_beam(&mut self, viewpoint: Viewpoint, racing: bool) {
+    async fn follow_the_beam(&mut self, viewpoint: Viewpoint, racing: bool) -> Result<(), Fault> {
         let ahead = self.config.lead(racing);
         let first = self.gp.field().after(2);
         let mut prepared = first;
@@ -77,22 +77,28 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
                 let order_at = before(self.config.deadline(field, strip), ahead);
                 while viewpoint != Viewpoint::Strip && self.preparation_at(prepared, viewpoint, ahead) <= order_at {
                     self.wait_until(self.preparation_at(prepared, viewpoint, ahead)).await;
-                    self.order_field(prepared, viewpoint).await;
+                    self.order_field(prepared, viewpoint).await?;
                     prepared = prepared.next();
                 }
                 self.wait_until(order_at).await;
                 if self.gp.now() < self.config.deadline(field, strip) {
-                    self.order_strip(field, strip, viewpoint).await;
+                    self.order_strip(field, strip, viewpoint).await?;
                 }
             }
         }
+        Ok(())
     }
 
-    /// When slaves must begin to transform for a field: half again as early as that takes, since they draw meanwhile.
+    /// When slaves must begin to transform for a field: half again as early as that takes by the table, since they draw meanwhile. How
+    /// long code will take is not known beforehand: a field earlier (pphigs's kernels/order_rules.md).
     fn preparation_at(&self, field: PeriodNumber, viewpoint: Viewpoint, ahead: Span) -> Time {
+        let first_strip = self.config.deadline(field, 0);
+        if self.gp.runs_code() {
+            return before(first_strip, ahead + self.config.field_time());
+        }
         let views = if viewpoint == Viewpoint::Field { 1 } else { 2 };
         let span = self.pass.span(&self.gp.timing()) * views;
-        before(self.config.deadline(field, 0), ahead + span + span / 2)
+        before(first_strip, ahead + span + span / 2)
     }
 
     async fn wait_until(&self, time: Time) {
@@ -101,7 +107,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         }
     }
 
-    async fn order_field(&mut self, field: PeriodNumber, viewpoint: Viewpoint) {
+    async fn order_field(&mut self, field: PeriodNumber, viewpoint: Viewpoint) -> Result<(), Fault> {
         let (begin, end) = self.config.ends(field);
         let at_begin = JitpConfig::view_number(field, 0);
         let picture = PictureNumber::drawn_for(field);
@@ -111,12 +117,14 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
             Viewpoint::Field => vec![self.view(at_begin, self.config.aimed_at_field(field))],
             _ => vec![self.view(at_begin, begin), self.view(JitpConfig::view_number(field, 1), end)],
         };
-        self.gp.spend(TransformCost::PASS.span(&self.gp.timing())).await;
-        let (words, body) = DrawingOrder::Field { field, views }.message();
+        let order = DrawingOrder::Field { field, views };
+        self.gp.work(&Ordering(&order)).await?;
+        let (words, body) = order.message();
         self.gp.send_batch(self.config.slaves.iter().map(|node| (*node, words, body.clone())).collect()).await;
+        Ok(())
     }
 
-    async fn order_strip(&mut self, field: PeriodNumber, strip: u32, viewpoint: Viewpoint) {
+    async fn order_strip(&mut self, field: PeriodNumber, strip: u32, viewpoint: Viewpoint) -> Result<(), Fault> {
         let own = viewpoint == Viewpoint::Strip;
         let number = JitpConfig::view_number(field, u64::from(strip));
         if own && self.config.is_middle(strip) {
@@ -127,12 +135,19 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         let view = if own { Some(self.view(number, self.config.aimed_at_strip(field, strip))) } else { None };
         let deadline = self.config.deadline(field, strip);
         let slave = self.config.slaves[strip as usize % self.config.slaves.len()];
-        let (words, body) = DrawingOrder::Strip { field, strip, deadline, view }.message();
+        self.order(slave, &DrawingOrder::Strip { field, strip, deadline, view }).await
+    }
+
+    /// Puts an order together and sends it.
+    async fn order(&self, slave: NodeId, order: &DrawingOrder) -> Result<(), Fault> {
+        self.gp.work(&Ordering(order)).await?;
+        let (words, body) = order.message();
         self.gp.send(slave, words, body).await;
+        Ok(())
     }
 
     /// Gives every slave that is done the next blocks, with the newest view.
-    async fn roam(&mut self, batch: u64) {
+    async fn roam(&mut self, batch: u64) -> Result<(), Fault> {
         let slaves = self.config.slaves.len();
         self.state.done.borrow_mut().extend(0..slaves as u32);
         let mut flight = Flight::new(slaves, u64::from(self.config.grid().regions()).div_ceil(batch));
@@ -143,11 +158,11 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
             self.gp.begin(Stage::Transform, update, None);
             let shown_at = self.aimed_at_blocks(flight.ordered(slave as usize, self.gp.now()));
             let view = self.view(number, shown_at);
-            let (words, body) = DrawingOrder::Blocks { update, step: update.0 * batch, view }.message();
             if let Some(node) = self.config.slaves.get(slave as usize) {
-                self.gp.send(*node, words, body).await;
+                self.order(*node, &DrawingOrder::Blocks { update, step: update.0 * batch, view }).await?;
             }
         }
+        Ok(())
     }
 
     /// The instant that a batch of blocks ordered now is drawn for.

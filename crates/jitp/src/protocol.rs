@@ -66,6 +66,16 @@ impl DrawingOrder {
         words
     }
 
+    /// How many of its words come before those of views.
+    pub(crate) fn head_words(&self) -> usize {
+        match self {
+            Self::Field { .. } => 4,
+            Self::Strip { .. } => 6,
+            Self::Blocks { .. } => 5,
+            Self::Report { .. } | Self::Done { .. } => self.words().len(),
+        }
+    }
+
     /// Reads a received order.
     ///
     /// # Errors
@@ -149,6 +159,17 @@ mod tests {
         FrameView { number, eyes: vec![eye], edits: Vec::new() }
     }
 
+    impl DrawingOrder {
+        fn views(&self) -> Vec<FrameView> {
+            match self.clone() {
+                Self::Field { views, .. } => views,
+                Self::Strip { view, .. } => view.into_iter().collect(),
+                Self::Blocks { view, .. } => vec![view],
+                Self::Report { .. } | Self::Done { .. } => Vec::new(),
+            }
+        }
+    }
+
     #[test]
     fn every_order_survives_its_words() {
         let big = (1 << 40) + 3;
@@ -161,6 +182,9 @@ mod tests {
             DrawingOrder::Done { slave: 11 },
         ] {
             let (words, body) = order.message();
+            let of_views = order.words().len() - order.head_words();
+            let views: usize = order.views().iter().map(|view| 1 + view.to_words().len()).sum();
+            assert_eq!(of_views, views, "each with its length");
             let received = Received { arrived: Time(0), source: NodeId(1), body };
             assert_eq!(DrawingOrder::read(&received, NodeId(0)), Ok(order.clone()));
             assert!(words <= pxpl5_wire::MAX_MESSAGE_WORDS);

@@ -2,13 +2,14 @@
 
 use crate::config::{DrawingSchedule, JitpConfig, Viewpoint};
 use crate::drawing::{DrawnList, Ends};
+use crate::finding::Finding;
 use crate::pieces::{messages, window};
 use crate::protocol::DrawingOrder;
-use crate::whole::WholeList;
-use pphigs::{DisplayList, FrameView, PROGRAM_BYTES, Share, TransformCost};
+use crate::whole::{self, WholeList};
+use pphigs::{DisplayList, FrameView, MemoryPart, PROGRAM_BYTES, Searching, Share, TransformCost};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{Account, Fault, Firmware, Gp, Priority, Stage, Ticket};
-use pxpl5_sim::{Span, Time};
+use pxpl5_sim::Time;
 use pxpl5_wire::{Body, PeriodNumber, PictureNumber, RegionId};
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -18,12 +19,18 @@ use std::sync::Arc;
 /// Fields that stay transformed: the one being drawn and the next.
 const FIELDS_KEPT: usize = 3;
 
+/// Parts of a slave's memory: for these fields and for the one that is being transformed; one more for a strip between two views.
+const PARTS_OF_FIELDS: u8 = FIELDS_KEPT as u8 + 1;
+const OF_STRIP: MemoryPart = MemoryPart::of(PARTS_OF_FIELDS as usize, PARTS_OF_FIELDS + 1);
+
 #[derive(Default)]
 struct SlaveFields {
     /// Numbers and views of the fields that the master wants transformed, oldest first.
     ordered: VecDeque<(PeriodNumber, Vec<FrameView>)>,
-    /// Fields transformed, in order.
-    transformed: VecDeque<(PeriodNumber, Field)>,
+    /// Fields transformed, in order, and where they lie.
+    transformed: VecDeque<(PeriodNumber, Field, MemoryPart)>,
+    /// How many have been transformed.
+    n_transformed: usize,
 }
 
 /// A field's transforms, and what a conventional picture's strips share.
@@ -122,22 +129,30 @@ impl Slave {
     async fn prepare(self) -> Result<(), Fault> {
         loop {
             let (field, views) = self.gp.until("the order of a field", || self.take_newest_order()).await;
-            self.transform_all(&views, PictureNumber::drawn_for(field)).await?;
+            let part = self.next_part();
+            self.transform_all(&views, PictureNumber::drawn_for(field), part).await?;
             self.gp.end(Stage::Transform, PictureNumber::drawn_for(field), None);
             let ready = self.transforms.known_or_made(field, || self.transform(field, views));
             let state = &mut *self.state.borrow_mut();
-            state.transformed.push_back((field, ready));
+            state.transformed.push_back((field, ready, part));
+            state.n_transformed += 1;
             if state.transformed.len() > FIELDS_KEPT {
                 state.transformed.pop_front();
             }
         }
     }
 
+    /// Where the next field goes.
+    fn next_part(&self) -> MemoryPart {
+        let number = self.state.borrow().n_transformed % usize::from(PARTS_OF_FIELDS);
+        MemoryPart::of(number, PARTS_OF_FIELDS + u8::from(self.dual().is_some()))
+    }
+
     /// TRANSFORM of the whole display list for each of some views of a picture.
-    async fn transform_all(&self, views: &[FrameView], picture: PictureNumber) -> Result<(), Fault> {
+    async fn transform_all(&self, views: &[FrameView], picture: PictureNumber, part: MemoryPart) -> Result<(), Fault> {
         let Self { share, pass, config, .. } = self;
         let viewport = config.extent(picture).0;
-        self.gp.work(&WholeList { share, pass: *pass, views, viewport, layout: config.layout }).await
+        self.gp.work(&WholeList { share, pass: *pass, views, viewport, layout: config.layout, part }).await
     }
 
     /// The newest field ordered; older ones are left out.
@@ -167,19 +182,19 @@ impl Slave {
         let stands_for_field = self.config.is_middle(strip);
         let drawing = match &view {
             Some(view) => {
-                self.transform_all(std::slice::from_ref(view), picture).await?;
+                self.transform_all(std::slice::from_ref(view), picture, MemoryPart::WHOLE).await?;
                 if stands_for_field {
                     self.gp.end(Stage::Transform, picture, None);
                 }
-                Some(Arc::new(DrawnList::from_view(self.share.list(), view, viewport)))
+                Some((Arc::new(DrawnList::from_view(self.share.list(), view, viewport)), MemoryPart::WHOLE))
             }
             None => self.drawing_of_field(field, strip, viewport).await,
         };
-        let Some(drawing) = drawing.filter(|_| self.gp.now() < deadline) else { return Ok(()) };
+        let Some((drawing, part)) = drawing.filter(|_| self.gp.now() < deadline) else { return Ok(()) };
         if stands_for_field {
             self.gp.begin(Stage::Render, picture, None);
         }
-        let sent = self.send(picture, &self.config.strip_regions(strip), &viewport, &drawing).await;
+        let sent = self.send(picture, &self.config.strip_regions(strip), &viewport, &drawing, part).await?;
         if stands_for_field {
             self.gp.end_when_accepted(sent, Stage::Render, picture);
         }
@@ -191,18 +206,24 @@ impl Slave {
         self.state.borrow().transformed.back().is_some_and(|newest| newest.0 >= field)
     }
 
-    /// The strip as the transforms of its field give it; `None` if they were left out.
-    async fn drawing_of_field(&self, field: PeriodNumber, strip: u32, viewport: Viewport) -> Option<Arc<DrawnList>> {
+    /// The strip as the transforms of its field give it, and where they lie; `None` if they were left out.
+    async fn drawing_of_field(
+        &self,
+        field: PeriodNumber,
+        strip: u32,
+        viewport: Viewport,
+    ) -> Option<(Arc<DrawnList>, MemoryPart)> {
         self.gp.until("the transforms of the field", || self.has_transformed(field).then_some(())).await;
         let state = self.state.borrow();
-        let (_, ready) = state.transformed.iter().find(|ready| ready.0 == field)?;
-        Some(match self.dual() {
+        let (_, ready, part) = state.transformed.iter().find(|ready| ready.0 == field)?;
+        let drawing = match self.dual() {
             Some(interpolation) if ready.ends.views.len() == 2 => {
-                let part = self.config.part(field, strip);
-                Arc::new(DrawnList::between(self.share.list(), &ready.ends, part, interpolation, viewport))
+                let s = self.config.part(field, strip);
+                Arc::new(DrawnList::between(self.share.list(), &ready.ends, s, interpolation, viewport))
             }
             _ => Arc::clone(&ready.whole),
-        })
+        };
+        Some((drawing, *part))
     }
 
     fn dual(&self) -> Option<crate::config::Interpolation> {
@@ -216,12 +237,12 @@ impl Slave {
     async fn blocks(&self, update: PictureNumber, step: u64, view: &FrameView) -> Result<(), Fault> {
         let DrawingSchedule::Roam { batch, order, .. } = &self.config.schedule else { return Ok(()) };
         let viewport = self.config.extent(update).0;
-        self.transform_all(std::slice::from_ref(view), update).await?;
+        self.transform_all(std::slice::from_ref(view), update, MemoryPart::WHOLE).await?;
         self.gp.end(Stage::Transform, update, None);
         let drawing = Arc::new(DrawnList::from_view(self.share.list(), view, viewport));
         let regions: Vec<_> = (0..u64::from(*batch)).map(|i| order.at(step + i)).collect();
         self.gp.begin(Stage::Render, update, None);
-        let sent = self.send(update, &regions, &viewport, &drawing).await;
+        let sent = self.send(update, &regions, &viewport, &drawing, MemoryPart::WHOLE).await?;
         self.gp.end_when_accepted(sent, Stage::Render, update);
         let (words, body) = DrawingOrder::Done { slave: self.index as u32 }.message();
         self.gp.send(self.config.master, words, body).await;
@@ -237,14 +258,22 @@ impl Slave {
         regions: &[RegionId],
         viewport: &Viewport,
         drawing: &Arc<DrawnList>,
-    ) -> Ticket {
+        part: MemoryPart,
+    ) -> Result<Ticket, Fault> {
         let windows: Vec<_> = regions.iter().map(|region| window(&self.config, viewport, *region)).collect();
         let (counts, any) = drawing.count(&windows);
-        let entries: u64 = counts.iter().map(|c| u64::from(c.total())).sum();
-        let interpolated = if self.dual().is_some() { u64::from(any.total()) } else { 0 };
-        let timing = self.gp.timing();
-        let binning = TransformCost { entries, ..TransformCost::default() }.span(&timing);
-        self.gp.spend(binning + Span::from_ns(self.config.timing.interpolate_ns * interpolated)).await;
+        let of_kernels = whole::picture(*viewport, self.config.layout);
+        let interpolating = drawing.interpolating(&self.share, &windows, of_kernels, [part, OF_STRIP]);
+        let searching = Searching {
+            part: if interpolating.is_some() { OF_STRIP } else { part },
+            viewport: *viewport,
+            grid: self.config.grid(),
+            windows: regions,
+            counts: &counts,
+        };
+        let interpolate_ns = self.config.timing.interpolate_ns;
+        let finding = Finding { searching, interpolating, met: any, interpolate_ns };
+        self.gp.work(&finding).await?;
         self.gp.clump_buffer_free().await;
         let pieces = regions.iter().zip(&windows).zip(&counts);
         let groups = pieces.map(|((region, window), counts)| {
@@ -253,6 +282,6 @@ impl Slave {
             let group = lists.into_iter().map(|list| (list.words(), Body::Commands(list)));
             (self.config.renderer_of(*region), group.collect())
         });
-        self.gp.send_groups(groups.collect()).await
+        Ok(self.gp.send_groups(groups.collect()).await)
     }
 }

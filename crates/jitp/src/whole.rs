@@ -1,6 +1,6 @@
 //! TRANSFORM of the whole display list as work of a board.
 
-use pphigs::{FrameView, Picture, RegionBinning, Shading, Share, TransformCost, Transforming};
+use pphigs::{FrameView, KeepingEnds, MemoryPart, Picture, RegionBinning, Shading, Share, TransformCost};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_renderer::Layout;
@@ -19,6 +19,8 @@ pub(crate) struct WholeList<'a> {
     pub(crate) viewport: Viewport,
     /// Division of pixel memory that the commands are encoded for.
     pub(crate) layout: Layout,
+    /// Where the commands of one view are kept, or the places of triangles in two.
+    pub(crate) part: MemoryPart,
 }
 
 impl Work for WholeList<'_> {
@@ -26,14 +28,21 @@ impl Work for WholeList<'_> {
         self.pass.span(timing) * self.views.len() as u64
     }
 
-    /// The kernels are those of Slats, which sends everything everywhere.
+    /// The commands of one view are kept with their boxes; of two, the places of triangles in both.
     fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
-        let Self { viewport, layout, .. } = *self;
-        let picture =
-            Picture { viewport, shading: Shading::Gouraud, binning: RegionBinning::All, layout, pixels: false };
-        (0..).zip(self.views).try_fold(Span::ZERO, |all, (context, view)| {
-            let passes = [self.share.transform(view, 0, picture)];
-            Ok(all + Transforming { passes: &passes, context, begins: true }.by_code(timing, processor)?)
-        })
+        let Self { share, part, .. } = *self;
+        let picture = picture(self.viewport, self.layout);
+        let kept = match self.views {
+            [from, to] => KeepingEnds { share, views: [from, to], picture, part }.run_code(timing, processor)?,
+            views => views
+                .iter()
+                .try_fold(None, |_, view| self.share.transform(view, 0, picture).keep(timing, processor, part))?,
+        };
+        Ok(kept.unwrap_or_else(|| self.by_table(timing)))
     }
+}
+
+/// The picture whose kernels these are: that of a pipeline that sends everything everywhere, since what is sent where is found later.
+pub(crate) const fn picture(viewport: Viewport, layout: Layout) -> Picture {
+    Picture { viewport, shading: Shading::Gouraud, binning: RegionBinning::All, layout, pixels: false }
 }

@@ -13,7 +13,7 @@ P_BEGIN    = 8          // what begins the region: address, words
 P_AGAIN    = 16         // what begins every message but the first
 P_END      = 24         // what ends the region
 P_NOTHING  = 32         // words of a message that need not be sent
-MOST       = 1024       // words of a message
+// MOST words of a message before what ends the region, and WHOLE with that come from the program that assembles it.
 
         .macro  piece address, words
         st.l    \address, 0(r18)
@@ -74,7 +74,7 @@ ending: ld.l    P_END+4(r20), r31
         ld.l    P_END(r20), r29
         bte     r0, r31, ended
         adds    r31, r27, r28
-        subu    MOST, r28, r0
+        subu    WHOLE, r28, r0
         bc      last
         closed
         opened

@@ -91,6 +91,11 @@ impl Beginning {
         Self { list: Arc::clone(list), eyes, bins, chosen: None }
     }
 
+    /// The same where nothing goes into bins.
+    pub(crate) fn without_bins(self) -> Self {
+        Self { bins: 0, ..self }
+    }
+
     /// The same of some structures.
     pub(crate) fn of_chosen(self, chosen: Option<&[bool]>) -> Self {
         Self { chosen: chosen.map(Arc::from), ..self }

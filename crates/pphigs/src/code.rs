@@ -36,7 +36,7 @@ const MOST_PIECES: u32 = 7;
 
 /// Instructions after which a kernel is taken to be endless: many times what a primitive needs, and its prologue.
 const BUDGET_OF_PRIMITIVE: u64 = 100_000;
-const BUDGET: u64 = 10_000;
+pub(crate) const BUDGET: u64 = 10_000;
 
 /// Instructions for some primitives.
 pub(crate) const fn budget(primitives: u32) -> u64 {
@@ -168,6 +168,21 @@ struct Places {
     bins: Vec<u32>,
 }
 
+/// Where a kernel goes on: its next command, and the table of bins or, where boxes are kept, the next box.
+#[derive(Clone, Copy)]
+pub(crate) struct Next {
+    pub(crate) command: u32,
+    pub(crate) table: u32,
+}
+
+impl Next {
+    /// Behind what a call of a kernel has left.
+    pub(crate) const fn left(self, processor: &Processor, keeps_boxes: bool) -> Self {
+        let table = if keeps_boxes { processor.register(19) } else { self.table };
+        Self { command: processor.register(18), table }
+    }
+}
+
 /// Where a view's output goes: its bin context, which of the views that share it, and where the commands begin.
 #[derive(Clone, Copy)]
 pub(crate) struct Destination {
@@ -217,8 +232,10 @@ impl Pass {
     ) -> Result<KernelOutput, ProcessorFault> {
         let places = needs.places(to.begin);
         processor.write(BIN_TABLE, &places.bins)?;
-        let (of_triangles, spheres) = self.run_triangles(processor, kernel, places.commands, marks)?;
+        let first = Next { command: places.commands, table: BIN_TABLE };
+        let (of_triangles, spheres) = self.run_triangles(processor, kernel, first, marks)?;
         let (of_spheres, end) = self.run_spheres(processor, sphere_kernel(kernel), spheres, marks)?;
+        let [spheres, end] = [spheres.command, end.command];
         let tails = processor.read(BIN_TABLE, places.bins.len())?;
         let bins: Vec<Range<u32>> = places.bins.iter().zip(tails).map(|(head, tail)| *head..tail).collect();
         note_bins(processor, to, spheres, &bins)?;
@@ -227,13 +244,13 @@ impl Pass {
     }
 
     /// Time of the triangles, and where their commands end.
-    fn run_triangles(
+    pub(crate) fn run_triangles(
         &self,
         processor: &mut Processor,
         kernel: Kernel,
-        mut command: u32,
+        mut next: Next,
         marks: Option<Marks>,
-    ) -> Result<(Span, u32), ProcessorFault> {
+    ) -> Result<(Span, Next), ProcessorFault> {
         let heads = self.heads();
         let mut span = Span::ZERO;
         for (place, transform, held) in self.calls_of_triangles() {
@@ -244,23 +261,23 @@ impl Pass {
             let parameters: [Word; PARAMETER_WORDS] = kernel.parameters(transform, light, &heads, clipper);
             processor.write(PARAMETERS, &parameters)?;
             let first = DISPLAY_LIST + held.start as u32 * TRIANGLE_BYTES;
-            let call = Call { first, count: held.len() as u32, command, parameters: PARAMETERS };
+            let call = Call { first, count: held.len() as u32, next, parameters: PARAMETERS };
             let marked =
                 marks.map(|Marks { triangles, bit, .. }| [triangles + 4 * held.start as u32, bit, TRIANGLE_BYTES]);
             span += call.run(processor, &program, "start", marked)?;
-            command = processor.register(18);
+            next = next.left(processor, kernel.keeps_boxes);
         }
-        Ok((span, command))
+        Ok((span, next))
     }
 
     /// The same of the spheres.
-    fn run_spheres(
+    pub(crate) fn run_spheres(
         &self,
         processor: &mut Processor,
         kernel: SphereKernel,
-        mut command: u32,
+        mut next: Next,
         marks: Option<Marks>,
-    ) -> Result<(Span, u32), ProcessorFault> {
+    ) -> Result<(Span, Next), ProcessorFault> {
         let blank = match kernel.surface {
             KernelSurface::Gouraud => Command::Sphere(SphereCommand::default()),
             KernelSurface::Phong => Command::PhongSphere(PhongSphereCommand::default()),
@@ -271,12 +288,12 @@ impl Pass {
             let Some(parameters) = kernel.parameters(transform, &place.light, &blank) else { continue };
             processor.write(SPHERE_PARAMETERS, &parameters)?;
             let first = self.share().place_of_spheres() + held.start as u32 * SPHERE_BYTES;
-            let call = Call { first, count: held.len() as u32, command, parameters: SPHERE_PARAMETERS };
+            let call = Call { first, count: held.len() as u32, next, parameters: SPHERE_PARAMETERS };
             let marked = marks.map(|Marks { spheres, bit, .. }| [spheres + 4 * held.start as u32, bit, SPHERE_BYTES]);
             span += call.run(processor, &sphere_program(kernel, marks.is_some()), "spheres", marked)?;
-            command = processor.register(18);
+            next = next.left(processor, kernel.keeps_boxes);
         }
-        Ok((span, command))
+        Ok((span, next))
     }
 
     pub(crate) fn kernel(&self, version: CodeVersion) -> Option<Kernel> {
@@ -350,10 +367,14 @@ impl Pass {
             if self.is_binned() { counts.total() } else { counts.spheres }
         });
         let entries = entries.collect();
-        let more_pieces = (MOST_PIECES - 1) * self.stats().clipped as u32;
         let sphere_bytes = 4 * sphere_kernel(kernel).command_words() as u32;
-        let commands = kernel.command_bytes() * (given.triangles + more_pieces + 1) + sphere_bytes * given.spheres;
+        let commands = kernel.command_bytes() * self.most_commands(given) + sphere_bytes * given.spheres;
         Needs { commands, entries }
+    }
+
+    /// Commands of triangles that there must be room for, as [`Pass::needs`] says.
+    pub(crate) fn most_commands(&self, given: PrimitiveCounts) -> u32 {
+        given.triangles + (MOST_PIECES - 1) * self.stats().clipped as u32 + 1
     }
 }
 
@@ -373,13 +394,14 @@ fn note_bins(
 struct Call {
     first: u32,
     count: u32,
-    command: u32,
+    next: Next,
     parameters: u32,
 }
 
 impl Call {
     fn registers(&self) -> [(usize, Word); 6] {
-        [(16, self.first), (17, self.count), (18, self.command), (2, STACK), (19, BIN_TABLE), (20, self.parameters)]
+        let Next { command, table } = self.next;
+        [(16, self.first), (17, self.count), (18, command), (2, STACK), (19, table), (20, self.parameters)]
     }
 
     /// Calls a program's kernel for all of them, or for the runs of those that are marked: the address of their words, the bit of a word
@@ -402,7 +424,7 @@ impl Call {
 
 /// The spheres' kernel beside one of triangles.
 pub(crate) const fn sphere_kernel(kernel: Kernel) -> SphereKernel {
-    SphereKernel { surface: kernel.surface, picture: kernel.picture }
+    SphereKernel { surface: kernel.surface, picture: kernel.picture, keeps_boxes: kernel.keeps_boxes }
 }
 
 /// Programs that were asked for.
@@ -449,51 +471,4 @@ fn sphere_program(kernel: SphereKernel, by_runs: bool) -> Arc<Program> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::layout::{BEGIN_CODE, MESSAGE, SORT_CODE, TOKEN_CODE};
-    use crate::{begin, handing, surrounding};
-    use pxpl5_geometry::kernel::{KernelList, KernelPicture};
-
-    const SURFACES: [KernelSurface; 2] = [KernelSurface::Gouraud, KernelSurface::Phong];
-    const BOTH: [bool; 2] = [false, true];
-    const PICTURES: [KernelPicture; 3] = [KernelPicture::Frame, KernelPicture::Field, KernelPicture::Grid];
-
-    fn kernels() -> impl Iterator<Item = Kernel> {
-        let schedules = [Schedule::Straight, Schedule::Compiled, Schedule::Dual];
-        let kinds = schedules.into_iter().flat_map(|schedule| SURFACES.map(|surface| (schedule, surface)));
-        let pictures = PICTURES.into_iter().flat_map(|picture| BOTH.map(|binned| (picture, binned)));
-        let pictures = pictures.filter(|(picture, binned)| *binned || *picture != KernelPicture::Grid);
-        let pictures: Vec<_> =
-            pictures.flat_map(|(picture, binned)| BOTH.map(|culls| (picture, binned, culls))).collect();
-        kinds.flat_map(move |(schedule, surface)| {
-            let list = KernelList::Triangles;
-            let kernel = move |(picture, binned, culls)| Kernel { schedule, surface, list, picture, binned, culls };
-            pictures.clone().into_iter().map(kernel)
-        })
-    }
-
-    fn end(program: &Program) -> u32 {
-        program.base + program.bytes.len() as u32
-    }
-
-    /// A breakpoint in one of them is met in no other.
-    #[test]
-    fn no_two_programs_of_a_board_lie_in_the_same_place() {
-        for kernel in kernels() {
-            let program = program(kernel, true);
-            assert!(program.base == CODE && end(&program) <= SORT_CODE, "{kernel:?} ends at {:#x}", end(&program));
-        }
-        let sort = surrounding::program();
-        assert!(sort.base == SORT_CODE && end(&sort) <= BEGIN_CODE, "{:#x}", end(&sort));
-        let token = handing::program();
-        assert!(token.base == TOKEN_CODE && end(&token) <= MESSAGE, "{:#x}", end(&token));
-        let begin = begin::program();
-        assert!(begin.base == BEGIN_CODE && end(&begin) <= SPHERE_CODE, "{:#x}", end(&begin));
-        for kernel in SURFACES.into_iter().flat_map(|surface| PICTURES.map(|picture| SphereKernel { surface, picture }))
-        {
-            let program = sphere_program(kernel, true);
-            assert!(program.base == SPHERE_CODE && end(&program) <= PARAMETERS, "{kernel:?}: {:#x}", end(&program));
-        }
-    }
-}
+mod tests;

@@ -10,7 +10,7 @@ use i860::Program;
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_renderer::CommandKind;
 use pxpl5_sim::Span;
-use pxpl5_wire::{RegionId, Word};
+use pxpl5_wire::{MAX_MESSAGE_WORDS, RegionId, Word};
 use std::sync::{Arc, LazyLock};
 
 /// The bin of a region, handed over in its envelope.
@@ -32,15 +32,15 @@ pub struct Handing<'a> {
 pub type MessagePieces = Vec<[Word; 2]>;
 
 /// Bytes of a piece, and of a message in the list of messages.
-const PIECE_BYTES: u32 = 8;
-const MESSAGE_BYTES: u32 = 16;
+pub(crate) const PIECE_BYTES: u32 = 8;
+pub(crate) const MESSAGE_BYTES: u32 = 16;
 /// Pieces that there is room for, besides what encloses a message: two for each of the messages, which hold 20 commands and more.
-const MOST_ENTRIES: u32 = (LISTS_END - PIECES) / PIECE_BYTES * 9 / 10;
+pub(crate) const MOST_ENTRIES: u32 = (LISTS_END - PIECES) / PIECE_BYTES * 9 / 10;
 const _: () = assert!((MOST_ENTRIES / 20 + 2) * MESSAGE_BYTES <= PIECES - LISTS, "room for the messages of so many");
 
 /// Instructions after which the code is taken to be endless: many times what it needs.
-const BUDGET: u64 = 10_000;
-const BUDGET_OF_ENTRY: u64 = 1_000;
+pub(crate) const BUDGET: u64 = 10_000;
+pub(crate) const BUDGET_OF_ENTRY: u64 = 1_000;
 
 impl Work for Handing<'_> {
     fn by_table(&self, timing: &GpTiming) -> Span {
@@ -89,15 +89,24 @@ impl Handing<'_> {
     ///
     /// [`ProcessorFault::Unmapped`] on a board that no code has run on.
     pub fn listed(processor: &Processor) -> Result<Vec<MessagePieces>, ProcessorFault> {
-        let count = processor.register(16);
-        let message = |number: u32| {
-            let bounds = processor.read(LISTS + number * MESSAGE_BYTES, 2)?;
-            let [first, end] = [0, 1].map(|at| bounds.get(at).copied().unwrap_or_default());
-            let words = processor.read(first, (end.saturating_sub(first) / 4) as usize)?;
-            Ok(words.as_chunks::<2>().0.to_vec())
-        };
-        (0..count).map(message).collect()
+        listed(processor, processor.register(16))
     }
+}
+
+/// The first messages of the list of messages.
+pub(crate) fn listed(processor: &Processor, count: u32) -> Result<Vec<MessagePieces>, ProcessorFault> {
+    let message = |number: u32| {
+        let bounds = processor.read(LISTS + number * MESSAGE_BYTES, 2)?;
+        let [first, end] = [0, 1].map(|at| bounds.get(at).copied().unwrap_or_default());
+        let words = processor.read(first, (end.saturating_sub(first) / 4) as usize)?;
+        Ok(words.as_chunks::<2>().0.to_vec())
+    };
+    (0..count).map(message).collect()
+}
+
+/// The source of what lists messages: of at most so many words before what ends a region, and of at most so many with that.
+pub(crate) fn token_source([most, whole]: [Word; 2]) -> String {
+    format!("MOST = {most}\nWHOLE = {whole}\n{}", include_str!("../kernels/token.s"))
 }
 
 /// The program of all this.
@@ -107,7 +116,7 @@ pub(crate) fn program() -> Arc<Program> {
 }
 
 static PROGRAM: LazyLock<Arc<Program>> =
-    LazyLock::new(|| match i860::assemble("token", TOKEN_CODE, include_str!("../kernels/token.s")) {
+    LazyLock::new(|| match i860::assemble("token", TOKEN_CODE, &token_source([MAX_MESSAGE_WORDS; 2])) {
         Ok(program) => Arc::new(program),
         Err(errors) => unreachable!("it is assembled by the tests: {errors}"),
     });

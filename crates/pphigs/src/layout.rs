@@ -31,7 +31,36 @@ pub(crate) const MODELS: u32 = 0x1_6000;
 /// As [`BINS`], of further views that share a context: of each of them both contexts.
 const MORE_BINS: u32 = 0x7_D000;
 /// Where matrices end.
-pub(crate) const MODELS_END: u32 = MORE_BINS;
+pub(crate) const MODELS_END: u32 = BLENDED;
+/// Elements of matrices of two views and of one between them, and how many there is room for.
+pub(crate) const BLENDED: u32 = 0x7_5000;
+pub(crate) const BLENDED_ELEMENTS: u32 = 1024;
+/// Where the code begins that finds what meets windows.
+pub(crate) const WINDOWS_CODE: u32 = 0x7_8000;
+/// The windows that are searched for, the rectangle around them first, and the picture's regions as windows.
+pub(crate) const WINDOWS: u32 = 0x7_9000;
+pub(crate) const REGION_WINDOWS: u32 = 0x7_9C00;
+/// Upper left pixels of windows.
+pub(crate) const WINDOW_PLACES: u32 = 0x7_AE00;
+/// Lists of what meets windows, as [`bins`] of a context.
+pub(crate) const WINDOW_LISTS: u32 = 0x7_B000;
+/// Where the passes lie that are kept, of each in a part of memory.
+pub(crate) const KEPT: u32 = 0x7_B400;
+/// Bytes of that for one.
+pub(crate) const KEPT_BYTES: u32 = 32;
+/// Passes that there is room for.
+pub(crate) const MOST_KEPT: u32 = 16;
+/// Where the code begins that puts orders together.
+pub(crate) const ORDER_CODE: u32 = 0x7_B600;
+/// What an order says, and its views.
+pub(crate) const ORDER_HEAD: u32 = 0x7_B800;
+pub(crate) const ORDER_VIEWS: u32 = 0x7_C000;
+/// Windows that are searched for at once.
+pub(crate) const MOST_WINDOWS: u32 = 64;
+/// Bytes of a window.
+pub(crate) const WINDOW_BYTES: u32 = 32;
+/// Bytes at the end of memory for the entries of the windows of an order.
+pub(crate) const ENTRY_BYTES: u32 = 4 * (LISTS_END - PIECES) / 8;
 /// Views whose bins may share a context: those of the faces of a cube.
 pub(crate) const MOST_VIEWS: u32 = 6;
 /// Where the bins of both contexts begin and end, as their tokens find them.
@@ -61,4 +90,10 @@ const _: () = {
     assert!(BIN_TABLE + 4 * regions <= SPHERE_PARAMETERS, "a bin's end for each region");
     assert!(4 * (1 + 2 * regions) <= BIN_BOUNDS_BYTES && BINS + 2 * BIN_BOUNDS_BYTES <= TOKEN_PARAMETERS);
     assert!(MORE_BINS + 2 * (MOST_VIEWS - 1) * BIN_BOUNDS_BYTES <= LISTS);
+    assert!(BLENDED + 3 * 4 * BLENDED_ELEMENTS <= WINDOWS_CODE);
+    assert!(WINDOWS + WINDOW_BYTES * (1 + MOST_WINDOWS) <= REGION_WINDOWS);
+    assert!(REGION_WINDOWS + WINDOW_BYTES * (1 + regions) <= WINDOW_PLACES, "a window for each region");
+    assert!(WINDOW_PLACES + 4 * regions <= WINDOW_LISTS && MOST_WINDOWS <= regions);
+    assert!(WINDOW_LISTS + 4 * (1 + 2 * MOST_WINDOWS) <= KEPT && KEPT + KEPT_BYTES * MOST_KEPT <= ORDER_CODE);
+    assert!(ORDER_VIEWS + 4 * pxpl5_wire::MAX_MESSAGE_WORDS <= MORE_BINS);
 };

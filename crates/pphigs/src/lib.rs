@@ -18,6 +18,9 @@
 //! - [`Transforming`]: the same as work of a board, in time by table or by i860 code that makes the same words.
 //! - [`Surrounding`]: six of them around an eye, as code.
 //! - [`Handing`]: a region's bin handed over to the ring, as such work.
+//! - [`Searching`]: what meets rectangles of the screen that no bin was made for, found and handed over, as such work.
+//! - [`KeepingEnds`] and [`Interpolating`]: triangles in two views, and their commands for a strip between these, as code.
+//! - [`put_together`]: an order of a master, as code.
 //!
 //! **Not modelled:** traversal of nested structures, picking, text, and PPHIGS's other primitives.
 //!
@@ -30,8 +33,10 @@ mod cost;
 mod counts;
 mod encoder;
 mod handing;
+mod interpolating;
 mod layout;
 mod list;
+mod ordering;
 mod pass;
 mod picture;
 mod placed;
@@ -40,6 +45,7 @@ mod sending;
 mod structure;
 mod surrounding;
 mod view;
+mod windows;
 
 pub use begin::{Beginning, Editing};
 pub use code::{KernelOutput, Transforming};
@@ -49,7 +55,9 @@ pub use commands::{
 pub use cost::TransformCost;
 pub use counts::PrimitiveCounts;
 pub use handing::{Handing, MessagePieces};
+pub use interpolating::{Interpolating, KeepingEnds};
 pub use list::{DisplayList, Share};
+pub use ordering::put_together;
 pub use pass::Pass;
 pub use picture::{Picture, RegionBinning, Shading};
 pub use placed::{PlacedStructure, RecentViews};
@@ -58,3 +66,4 @@ pub use sending::send_as_tracked;
 pub use structure::{DisplayStructure, ModelFrame};
 pub use surrounding::{Surrounding, SurroundingOutput};
 pub use view::{EyeView, FrameView, MAX_EDITS, ModelEdit, ViewWordsError};
+pub use windows::{MemoryPart, SearchOutput, Searching};

@@ -272,21 +272,12 @@ pictured: fld.d XX(r2), f16
         firstrow r13
         lastrow r14
         clipped r13, r14, lastline
+        boxed
         shr     7, r11, r11
         shr     7, r12, r12
         regionrow r13
         regionrow r14
-        mov     r0, r22
-        mov     r13, r15
-rows:   mov     r11, r23
-columns: regionnumber r15, r23
-        insert  r28
-        adds    1, r23, r23
-        subs    r12, r23, r0
-        bnc     columns
-        adds    1, r15, r15
-        subs    r14, r15, r0
-        bnc     rows
+        binned
         // their pixels
         orh     0x4330, r0, r30
         fld.d   S_TWO52(r20), f10

@@ -19,6 +19,10 @@
 //! the normals. Registers and layouts stand in kernels/parameters.s. The sources are put together as a linker would, one file for
 //! each choice. This crate does not assemble or run them.
 
+mod between;
+
+pub use between::{ENDS_VIEW_WORDS, ENDS_WORDS};
+
 use crate::newton::ROUND_DOUBLE;
 use crate::transform::Turn;
 use crate::{DEPTH_FAR, DEPTH_NEAR, Light, MAX_CLIP, NORMAL_UNIT, Transform, Triangle, Viewport, clip, light, screen};
@@ -83,6 +87,9 @@ pub struct Kernel {
     pub binned: bool,
     /// Whether triangles that face away are not drawn.
     pub culls: bool,
+    /// Whether it keeps the box of each command behind the table of bins' address, where there are no bins: low x, high x, low y, high y in
+    /// 1/16 px of the frame.
+    pub keeps_boxes: bool,
 }
 
 /// Instruction heads of a triangle's command, in the order of the kernel's parameter block: enable, edge, depth
@@ -114,7 +121,7 @@ impl Kernel {
     pub fn for_picture(schedule: Schedule, surface: KernelSurface, viewport: &Viewport, binned: bool) -> Option<Self> {
         let picture = KernelPicture::of(viewport).filter(|picture| binned || *picture != KernelPicture::Grid)?;
         let list = KernelList::Triangles;
-        Some(Self { schedule, surface, list, picture, binned, culls: false })
+        Some(Self { schedule, surface, list, picture, binned, culls: false, keeps_boxes: false })
     }
 
     /// The source in i860 assembly, with linear stretches where the schedule is [`Schedule::Dual`]; its entry is the label
@@ -135,7 +142,7 @@ impl Kernel {
         };
         let triangle = match self.schedule {
             Schedule::Straight => [self.straight(), vec![bins]].concat(),
-            Schedule::Compiled => [self.compiled(), vec![bins]].concat(),
+            Schedule::Compiled => [self.compiled(include_str!("../kernels/compiled.s")), vec![bins]].concat(),
             // What is seldom needed comes last, so that bins do not share sets of the cache with the end of the second loop.
             Schedule::Dual => {
                 [self.dual(), vec![bins_of_frames, include_str!("../kernels/scheduled_doubt.s")]].concat()
@@ -175,7 +182,11 @@ impl Kernel {
     }
 
     const fn bins(&self) -> &'static str {
-        if self.binned { include_str!("../kernels/bins.s") } else { include_str!("../kernels/unbinned.s") }
+        match (self.binned, self.keeps_boxes) {
+            (true, _) => include_str!("../kernels/bins.s"),
+            (false, false) => include_str!("../kernels/unbinned.s"),
+            (false, true) => include_str!("../kernels/box_kept.s"),
+        }
     }
 
     const fn cull(&self) -> &'static str {
@@ -196,7 +207,7 @@ impl Kernel {
         ]
     }
 
-    fn compiled(&self) -> Vec<&'static str> {
+    fn compiled(&self, main: &'static str) -> Vec<&'static str> {
         let (finish, surface) = match self.surface {
             KernelSurface::Gouraud => {
                 (include_str!("../kernels/finish_gouraud.s"), include_str!("../kernels/compiled_gouraud.s"))
@@ -212,7 +223,9 @@ impl Kernel {
             finish,
             include_str!("../kernels/turned_phong.s"),
             surface,
-            include_str!("../kernels/compiled.s"),
+            include_str!("../kernels/compiled_head.s"),
+            main,
+            include_str!("../kernels/compiled_corner.s"),
             include_str!("../kernels/functions_scalar.s"),
         ]
     }
@@ -235,6 +248,10 @@ impl Kernel {
             ],
         };
         let (regions, tail) = match (self.binned, self.picture) {
+            (false, _) if self.keeps_boxes => (
+                concat!(include_str!("../kernels/regions_later.s"), "\n", include_str!("../kernels/regions_kept.s")),
+                include_str!("../kernels/tail_kept.s"),
+            ),
             (false, _) => (include_str!("../kernels/regions_later.s"), include_str!("../kernels/tail_none.s")),
             (true, KernelPicture::Field) => {
                 (include_str!("../kernels/regions_later.s"), include_str!("../kernels/tail_field.s"))

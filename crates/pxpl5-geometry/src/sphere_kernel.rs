@@ -23,6 +23,8 @@ pub struct SphereKernel {
     pub surface: KernelSurface,
     /// What it knows of the picture.
     pub picture: KernelPicture,
+    /// Whether it keeps the box of each command and has no bins.
+    pub keeps_boxes: bool,
 }
 
 /// Words of a sphere in the display list.
@@ -44,7 +46,7 @@ impl SphereKernel {
     /// The kernel for a picture; `None` where there is none: regions of other sizes than [`KernelPicture`] has.
     #[must_use]
     pub fn for_picture(surface: KernelSurface, viewport: &Viewport) -> Option<Self> {
-        KernelPicture::of(viewport).map(|picture| Self { surface, picture })
+        KernelPicture::of(viewport).map(|picture| Self { surface, picture, keeps_boxes: false })
     }
 
     /// The source in i860 assembly; its entry is the label `spheres`.
@@ -54,12 +56,17 @@ impl SphereKernel {
             KernelSurface::Gouraud => include_str!("../kernels/sphere_gouraud.s"),
             KernelSurface::Phong => include_str!("../kernels/sphere_phong.s"),
         };
+        let bins = match self.keeps_boxes {
+            false => include_str!("../kernels/sphere_binned.s"),
+            true => include_str!("../kernels/sphere_kept.s"),
+        };
         [
             include_str!("../kernels/sphere_parameters.s"),
             self.picture.source(),
             include_str!("../kernels/reciprocal.s"),
             include_str!("../kernels/reciprocal_root.s"),
             include_str!("../kernels/insert.s"),
+            bins,
             surface,
             include_str!("../kernels/sphere_macros.s"),
             include_str!("../kernels/sphere.s"),

@@ -36,6 +36,12 @@ impl Gp {
         Ok(())
     }
 
+    /// Whether the time of this board's work comes from code.
+    #[must_use]
+    pub fn runs_code(&self) -> bool {
+        self.shared.borrow().processor.is_some()
+    }
+
     /// Prepares the memory of a board whose time comes from code; on others there is nothing to do.
     ///
     /// # Errors

@@ -23,6 +23,9 @@
 //! the time in which a bin is handed over, over the entries in it, by least squares over all bins.
 
 mod messages;
+mod strips;
+
+pub use strips::{StripTimes, strip_times};
 
 use glam::Mat4;
 use pphigs::{

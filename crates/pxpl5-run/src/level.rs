@@ -9,9 +9,9 @@
 //! The ring needs no third form: its word-by-word reference and the event form give the same picosecond for every
 //! message (a property test of the ring's crate), so the cycle level uses the event form.
 //!
-//! All that graphics processors do under Rendering Control, Slats and the pipelines that draw six faces is i860 code (docs/gp-timing.md), so
-//! that no time of the cycle level is the table's; `tests/cycle.rs` holds it to that. Just-in-time pixels and frameless rendering keep the
-//! table's times for what has no code ([`Pipeline::without_code`](crate::Pipeline::without_code)), as do pipelines of others, and their
+//! All that graphics processors do under Rendering Control, Slats, just-in-time pixels, frameless rendering and the pipelines that draw six
+//! faces is i860 code (docs/gp-timing.md), so that no time of the cycle level is the table's; `tests/cycle.rs` holds it to that. Pipelines of
+//! others keep the table's times for what has no code ([`Pipeline::without_code`](crate::Pipeline::without_code)), and their
 //! reports say so. Which code runs is a value of the machine ([`MachineConfig::code`]), whatever its table of times says. The table may be
 //! that of the code ([`MachineConfig::with_times_of_code`]): then the transaction level says in the mean what the cycle level does.
 

@@ -35,7 +35,7 @@ const RETURN: u32 = 0x0800;
 pub(crate) const fn frame(schedule: Schedule) -> Kernel {
     let list = KernelList::Triangles;
     let picture = KernelPicture::Frame;
-    Kernel { schedule, surface: KernelSurface::Gouraud, list, picture, binned: true, culls: false }
+    Kernel { schedule, surface: KernelSurface::Gouraud, list, picture, binned: true, culls: false, keeps_boxes: false }
 }
 
 /// The kernel and its clipper, assembled.

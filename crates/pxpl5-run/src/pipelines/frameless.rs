@@ -9,6 +9,7 @@ use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use jitp::{BlockOrder, DrawingSchedule, JitpConfig};
 use pphigs::TransformCost;
 use pxpl5_framebuffer::Video;
+use pxpl5_gp::Priority;
 use pxpl5_machine::{Arrival, ConfigError, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
@@ -37,10 +38,14 @@ impl Frameless {
         Self { block: 16, batch: 0, seed: 1 }
     }
 
-    /// While a slave transforms for one batch the others' blocks pass the frame buffer's port.
-    fn batch(&self, record: &Record, pass: TransformCost) -> u32 {
+    /// While a slave transforms for one batch the others' blocks pass the frame buffer's port. How long code will take is not known
+    /// beforehand.
+    fn batch(&self, record: &Record, pass: TransformCost, runs_code: bool) -> u32 {
         if self.batch > 0 {
             return self.batch;
+        }
+        if runs_code {
+            return BATCH_OF_CODE;
         }
         let ports = record.ports();
         let ring = record.ring().timing();
@@ -78,6 +83,9 @@ impl Default for Frameless {
 const LEAST_BATCH: u64 = 4;
 const MOST_BATCH: u64 = 64;
 
+/// Blocks of a batch where code runs, whose time nobody knows beforehand (assumed; pphigs's kernels/order_rules.md).
+const BATCH_OF_CODE: u32 = 16;
+
 /// When the beam next reaches a region after an instant.
 fn next_light(video: &Video, target: &CopyTarget, after: Time) -> Time {
     let now = video.field_at(after);
@@ -111,7 +119,7 @@ impl Pipeline for Frameless {
     }
 
     fn without_code(&self, _: &MachineConfig) -> Option<&'static str> {
-        Some("finding what meets a block, and how many blocks are a batch")
+        None
     }
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
@@ -119,7 +127,9 @@ impl Pipeline for Frameless {
             let what = "block of frameless rendering, pixels".to_owned();
             return Err(ConfigError::Value { what, expected: (4, 128), found: u64::from(self.block) });
         }
-        let batch = self.batch(machine.record(), whole_pass(setup));
+        let master = machine.record().ports().gps[0];
+        let runs_code = machine.processor(master, Priority::Foreground).runs_code();
+        let batch = self.batch(machine.record(), whole_pass(setup), runs_code);
         let schedule = DrawingSchedule::Roam { block: self.block, batch, order: self.order()? };
         let config = config(machine.record(), schedule, self.layout(), setup.pixels)?;
         let config = JitpConfig { aim: setup.aim, ..config };

@@ -168,11 +168,7 @@ impl Pipeline for Jitp {
     }
 
     fn without_code(&self, _: &MachineConfig) -> Option<&'static str> {
-        Some(match self.viewpoint {
-            Viewpoint::Strip => "finding what meets a strip",
-            Viewpoint::Field => "finding what meets a strip, and the master's part of a field",
-            Viewpoint::Dual(_) => "interpolating, finding what meets a strip, and the master's part of a field",
-        })
+        None
     }
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {

@@ -1,0 +1,63 @@
+//! Where programs lie.
+
+use super::*;
+use crate::layout::{BEGIN_CODE, MESSAGE, ORDER_CODE, ORDER_HEAD, SORT_CODE, TOKEN_CODE, WINDOWS, WINDOWS_CODE};
+use crate::{begin, handing, interpolating, ordering, surrounding, windows};
+use pxpl5_geometry::kernel::{KernelList, KernelPicture};
+
+const SURFACES: [KernelSurface; 2] = [KernelSurface::Gouraud, KernelSurface::Phong];
+const BOTH: [bool; 2] = [false, true];
+/// Whether there are bins, and whether boxes are kept.
+const BINS: [(bool, bool); 3] = [(true, false), (false, false), (false, true)];
+const PICTURES: [KernelPicture; 3] = [KernelPicture::Frame, KernelPicture::Field, KernelPicture::Grid];
+
+fn kernels() -> impl Iterator<Item = Kernel> {
+    let schedules = [Schedule::Straight, Schedule::Compiled, Schedule::Dual];
+    let kinds = schedules.into_iter().flat_map(|schedule| SURFACES.map(|surface| (schedule, surface)));
+    let pictures = PICTURES.into_iter().flat_map(|picture| BINS.map(|bins| (picture, bins)));
+    let pictures = pictures.filter(|(picture, (binned, _))| *binned || *picture != KernelPicture::Grid);
+    let pictures: Vec<_> = pictures.flat_map(|(picture, bins)| BOTH.map(|culls| (picture, bins, culls))).collect();
+    kinds.flat_map(move |(schedule, surface)| {
+        let list = KernelList::Triangles;
+        let kernel = move |(picture, (binned, keeps_boxes), culls)| Kernel {
+            schedule,
+            surface,
+            list,
+            picture,
+            binned,
+            culls,
+            keeps_boxes,
+        };
+        pictures.clone().into_iter().map(kernel)
+    })
+}
+
+fn end(program: &Program) -> u32 {
+    program.base + program.bytes.len() as u32
+}
+
+/// A breakpoint in one of them is met in no other.
+#[test]
+fn no_two_programs_of_a_board_lie_in_the_same_place() {
+    for kernel in kernels() {
+        for program in [program(kernel, true), interpolating::program(kernel)] {
+            assert!(program.base == CODE && end(&program) <= SORT_CODE, "{kernel:?} ends at {:#x}", end(&program));
+        }
+    }
+    let sort = surrounding::program();
+    assert!(sort.base == SORT_CODE && end(&sort) <= BEGIN_CODE, "{:#x}", end(&sort));
+    let token = handing::program();
+    assert!(token.base == TOKEN_CODE && end(&token) <= MESSAGE, "{:#x}", end(&token));
+    let windows = windows::program();
+    assert!(windows.base == WINDOWS_CODE && end(&windows) <= WINDOWS, "{:#x}", end(&windows));
+    let order = ordering::program();
+    assert!(order.base == ORDER_CODE && end(&order) <= ORDER_HEAD, "{:#x}", end(&order));
+    let begin = begin::program();
+    assert!(begin.base == BEGIN_CODE && end(&begin) <= SPHERE_CODE, "{:#x}", end(&begin));
+    let spheres = SURFACES.into_iter().flat_map(|surface| PICTURES.map(|picture| (surface, picture)));
+    let kernel = |(surface, picture)| BOTH.map(|keeps_boxes| SphereKernel { surface, picture, keeps_boxes });
+    for kernel in spheres.flat_map(kernel) {
+        let program = sphere_program(kernel, true);
+        assert!(program.base == SPHERE_CODE && end(&program) <= PARAMETERS, "{kernel:?}: {:#x}", end(&program));
+    }
+}

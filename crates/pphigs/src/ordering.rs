@@ -1,0 +1,69 @@
+//! A master's order put together, as work of a board: kernels/order.s, by rules of ours (kernels/order_rules.md).
+
+use crate::layout::{MESSAGE, ORDER_CODE, ORDER_HEAD, ORDER_VIEWS};
+use i860::Program;
+use pxpl5_gp::{Processor, ProcessorFault};
+use pxpl5_sim::Span;
+use pxpl5_wire::{MAX_MESSAGE_WORDS, Word};
+use std::sync::{Arc, LazyLock};
+
+/// Instructions after which the code is taken to be endless: twice those of the longest message.
+const BUDGET: u64 = 12 * MAX_MESSAGE_WORDS as u64;
+
+/// Words of what an order says that there is room for.
+const HEAD_WORDS: usize = (ORDER_VIEWS - ORDER_HEAD) as usize / 4;
+
+/// Puts an order together on a board, and gives the time that it takes: what it says, `head` words of it at the beginning, and views.
+///
+/// # Errors
+///
+/// [`ProcessorFault`] when the code does not come to its end, or the order is longer than a message.
+pub fn put_together(processor: &mut Processor, order: &[Word], head: usize) -> Result<Span, ProcessorFault> {
+    let (head, views) = order.split_at(head.min(order.len()));
+    if order.len() > MAX_MESSAGE_WORDS as usize || head.len() > HEAD_WORDS {
+        return Err(ProcessorFault::Unmapped { gp: processor.node(), address: MESSAGE, words: order.len() });
+    }
+    if head.is_empty() {
+        return Ok(Span::ZERO);
+    }
+    processor.write(ORDER_HEAD, head)?;
+    processor.write(ORDER_VIEWS, views)?;
+    let of_head = [(16, MESSAGE), (17, ORDER_HEAD), (18, head.len() as Word)];
+    let of_views = [(19, ORDER_VIEWS), (20, views.len() as Word)];
+    processor.call(&PROGRAM, "order", &[of_head.as_slice(), &of_views].concat(), BUDGET)
+}
+
+/// The program of all this.
+#[cfg(test)]
+pub(crate) fn program() -> Arc<Program> {
+    Arc::clone(&PROGRAM)
+}
+
+static PROGRAM: LazyLock<Arc<Program>> =
+    LazyLock::new(|| match i860::assemble("order", ORDER_CODE, include_str!("../kernels/order.s")) {
+        Ok(program) => Arc::new(program),
+        Err(errors) => unreachable!("it is assembled by the tests: {errors}"),
+    });
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pxpl5_gp::CodeVersion;
+    use pxpl5_wire::NodeId;
+
+    /// The buffer holds exactly the order, and an order of nothing but views or none at all is none.
+    #[test]
+    fn an_order_lies_in_the_buffer_word_for_word() {
+        let mut processor = Processor::new(NodeId(1), 8 << 20, CodeVersion::Compiled, i860::Config::cycle());
+        for (words, head) in [(1, 1), (6, 6), (110, 4), (MAX_MESSAGE_WORDS, 6)] {
+            let order: Vec<Word> = (0..words).map(|word| 0x1000_0000 + 7 * word).collect();
+            processor.write(MESSAGE, &vec![0; order.len() + 1]).expect("in memory");
+            let span = put_together(&mut processor, &order, head).expect("it returns");
+            // A word is six instructions, the last of which is a branch that takes two clocks more when it is taken.
+            assert!(span >= Processor::CLOCK * (6 * u64::from(words)), "{span:?} for {words} words");
+            assert_eq!(processor.read(MESSAGE, order.len()).expect("in memory"), order);
+            assert_eq!(processor.read(MESSAGE + 4 * words, 1).expect("in memory"), [0], "{words} words and no more");
+        }
+        assert!(put_together(&mut processor, &[0; MAX_MESSAGE_WORDS as usize + 1], 4).is_err());
+    }
+}

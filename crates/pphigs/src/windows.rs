@@ -1,0 +1,379 @@
+//! What meets rectangles of the screen that no bin was made for, as work of a board: strips of lines, blocks.
+//!
+//! A TRANSFORM is [kept](Pass::keep) in a part of memory, commands and the box of each; [`Searching`] finds what meets each window of an
+//! order and lists the messages that draw it. The code is kernels/windows.s, its rules are ours (kernels/windows_rules.md). By the timing
+//! table each entry of a window takes `bin_entry_ns`.
+
+use crate::begin::Beginning;
+use crate::code::{Next, budget, sphere_kernel};
+use crate::cost::TransformCost;
+use crate::counts::PrimitiveCounts;
+use crate::handing::{
+    BUDGET, BUDGET_OF_ENTRY, MESSAGE_BYTES, MOST_ENTRIES, MessagePieces, PIECE_BYTES, listed, token_source,
+};
+use crate::layout::{
+    ENTRY_BYTES, ENVELOPES, KEPT, KEPT_BYTES, LISTS, MOST_KEPT, MOST_WINDOWS, PIECES, REGION_WINDOWS, STACK,
+    TOKEN_PARAMETERS, WINDOW_LISTS, WINDOW_PLACES, WINDOWS, WINDOWS_CODE,
+};
+use crate::list::Share;
+use crate::pass::Pass;
+use i860::Program;
+use pxpl5_geometry::Viewport;
+use pxpl5_geometry::kernel::Kernel;
+use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
+use pxpl5_renderer::CommandKind;
+use pxpl5_sim::Span;
+use pxpl5_wire::{MAX_MESSAGE_WORDS, RegionGrid, RegionId, Word};
+use std::ops::Range;
+use std::sync::{Arc, LazyLock};
+
+/// Bytes of a box.
+const BOX_BYTES: u32 = 16;
+/// Bytes of a line of the data cache.
+const LINE: u32 = 32;
+
+/// Words around what draws a window: it is selected and cleared first, copied at last.
+const OPENING: u32 = CommandKind::SelectRegion.words() + CommandKind::Clear.words();
+const CLOSING: u32 = CommandKind::CopyRegion.words();
+
+/// One of some equal parts of the memory behind a display list, for a pass that is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MemoryPart {
+    number: u8,
+    of: u8,
+}
+
+impl MemoryPart {
+    /// All of the memory.
+    pub const WHOLE: Self = Self { number: 0, of: 1 };
+
+    /// Part `number`, counted round, of `of`, at least 1 and at most 16.
+    #[must_use]
+    pub const fn of(number: usize, of: u8) -> Self {
+        let of = if of == 0 { 1 } else { of };
+        let of = if of as u32 > MOST_KEPT { MOST_KEPT as u8 } else { of };
+        Self { number: (number % of as usize) as u8, of }
+    }
+
+    /// Where it lies: whole lines of the data cache.
+    fn place(self, processor: &Processor, share: &Share) -> Range<u32> {
+        let begin = share.end_of_list().next_multiple_of(LINE);
+        let bytes = entries(processor).saturating_sub(begin) / u32::from(self.of) / LINE * LINE;
+        let begin = begin + u32::from(self.number) * bytes;
+        begin..begin + bytes
+    }
+
+    /// Where it begins, if it has so many bytes.
+    pub(crate) fn checked(
+        self,
+        processor: &Processor,
+        share: &Share,
+        needed_bytes: u32,
+    ) -> Result<u32, ProcessorFault> {
+        let place = self.place(processor, share);
+        let available_bytes = place.end - place.start;
+        if needed_bytes > available_bytes {
+            let gp = processor.node();
+            return Err(ProcessorFault::NoRoom { gp, context: self.number, needed_bytes, available_bytes });
+        }
+        Ok(place.start)
+    }
+
+    const fn note(self) -> u32 {
+        KEPT + self.number as u32 * KEPT_BYTES
+    }
+}
+
+/// Where entries of windows begin.
+fn entries(processor: &Processor) -> u32 {
+    processor.memory_bytes().saturating_sub(ENTRY_BYTES)
+}
+
+/// Commands of one kind, one behind the other, and where their boxes begin.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct KeptCommands {
+    first: u32,
+    count: u32,
+    boxes: u32,
+}
+
+/// What a pass left in a part of memory: triangles and spheres.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Kept([KeptCommands; 2]);
+
+impl Kept {
+    fn note(&self, processor: &mut Processor, part: MemoryPart) -> Result<(), ProcessorFault> {
+        let words = self.0.map(|KeptCommands { first, count, boxes }| [first, count, boxes]);
+        processor.write(part.note(), words.as_flattened())
+    }
+
+    /// `None` where nothing was kept.
+    fn noted(processor: &Processor, part: MemoryPart) -> Result<Option<Self>, ProcessorFault> {
+        let words = processor.read(part.note(), 6)?;
+        let mut kinds = words.as_chunks::<3>().0.iter().map(|[first, count, boxes]| KeptCommands {
+            first: *first,
+            count: *count,
+            boxes: *boxes,
+        });
+        let kept = Self([kinds.next().unwrap_or_default(), kinds.next().unwrap_or_default()]);
+        Ok(Some(kept).filter(|kept| kept.0[0].first > 0))
+    }
+}
+
+impl Pass {
+    /// Runs the kernels of a pass that has no bins, from its beginning on, and leaves in a part of memory the command of every
+    /// primitive with its box; `None` for a picture that has no kernel.
+    ///
+    /// # Errors
+    ///
+    /// [`ProcessorFault`] when the code does not come to its end, or its data do not fit.
+    pub fn keep(
+        &self,
+        timing: &GpTiming,
+        processor: &mut Processor,
+        part: MemoryPart,
+    ) -> Result<Option<Span>, ProcessorFault> {
+        let kernel = self.kernel(processor.version()).filter(|kernel| !kernel.binned);
+        let Some(kernel) = kernel.map(|kernel| Kernel { keeps_boxes: true, ..kernel }) else { return Ok(None) };
+        let beginning = self.beginning_without_bins().by_code(timing, processor)?;
+        let of_kernels = self.keep_what(processor, kernel, part, |processor, first| {
+            self.run_triangles(processor, kernel, first, None)
+        })?;
+        Ok(Some(beginning + of_kernels))
+    }
+
+    pub(crate) fn beginning_without_bins(&self) -> Beginning {
+        Beginning::new(self.share().list(), vec![self.placed()], *self.picture()).without_bins()
+    }
+
+    /// Leaves in a part of memory what `triangles` makes, and all spheres behind it.
+    pub(crate) fn keep_what(
+        &self,
+        processor: &mut Processor,
+        kernel: Kernel,
+        part: MemoryPart,
+        triangles: impl FnOnce(&mut Processor, Next) -> Result<(Span, Next), ProcessorFault>,
+    ) -> Result<Span, ProcessorFault> {
+        let first = self.room(processor, kernel, part)?;
+        let (of_triangles, next) = triangles(processor, first)?;
+        let (of_spheres, end) = self.run_spheres(processor, sphere_kernel(kernel), next, None)?;
+        let commands = |from: Next, to: Next| KeptCommands {
+            first: from.command,
+            count: (to.table - from.table) / BOX_BYTES,
+            boxes: from.table,
+        };
+        Kept([commands(first, next), commands(next, end)]).note(processor, part)?;
+        Ok(of_triangles + of_spheres)
+    }
+
+    /// Where its boxes and its commands begin.
+    fn room(&self, processor: &Processor, kernel: Kernel, part: MemoryPart) -> Result<Next, ProcessorFault> {
+        let given = self.transformed();
+        let triangles = self.most_commands(given);
+        let boxes = BOX_BYTES * (triangles + given.spheres);
+        let sphere_bytes = 4 * sphere_kernel(kernel).command_words() as u32;
+        let commands = kernel.command_bytes() * triangles + sphere_bytes * given.spheres;
+        let begin = part.checked(processor, self.share(), boxes.next_multiple_of(LINE) + commands)?;
+        Ok(Next { command: begin + boxes.next_multiple_of(LINE), table: begin })
+    }
+}
+
+/// Windows in which a kept pass is searched for what meets them.
+#[derive(Clone, Copy, Debug)]
+pub struct Searching<'a> {
+    /// Where the pass lies.
+    pub part: MemoryPart,
+    /// The picture that it is of.
+    pub viewport: Viewport,
+    /// How that is cut into windows.
+    pub grid: RegionGrid,
+    /// The windows, by their places in the grid.
+    pub windows: &'a [RegionId],
+    /// What meets each of them.
+    pub counts: &'a [PrimitiveCounts],
+}
+
+impl Work for Searching<'_> {
+    fn by_table(&self, timing: &GpTiming) -> Span {
+        TransformCost { entries: u64::from(self.entries()), ..TransformCost::default() }.span(timing)
+    }
+
+    fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
+        Ok(self.run_code(processor)?.map_or_else(|| self.by_table(timing), |listed| listed.span))
+    }
+}
+
+/// What the code has listed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SearchOutput {
+    /// Simulated time of all.
+    pub span: Span,
+    /// The part of it that it took to hand over what was found.
+    pub of_handing: Span,
+    /// Number of messages of each window.
+    pub messages: Vec<u32>,
+}
+
+impl SearchOutput {
+    /// The messages, window by window.
+    ///
+    /// # Errors
+    ///
+    /// [`ProcessorFault::Unmapped`] on another board than that of the code.
+    pub fn listed(&self, processor: &Processor) -> Result<Vec<MessagePieces>, ProcessorFault> {
+        listed(processor, self.messages.iter().sum())
+    }
+}
+
+impl Searching<'_> {
+    fn entries(&self) -> u32 {
+        self.counts.iter().map(|counts| counts.total()).sum()
+    }
+
+    /// Runs the code on a board that keeps the pass; `None` where none is kept.
+    ///
+    /// # Errors
+    ///
+    /// [`ProcessorFault`] when the code does not come to its end, or has no room for what is found.
+    pub fn run_code(&self, processor: &mut Processor) -> Result<Option<SearchOutput>, ProcessorFault> {
+        let Some(kept) = Kept::noted(processor, self.part)? else { return Ok(None) };
+        self.check_room(processor)?;
+        let mut output = SearchOutput { span: Span::ZERO, of_handing: Span::ZERO, messages: Vec::new() };
+        if self.lies_across_regions() {
+            output.span +=
+                make_windows(processor, self.viewport.grid(), &self.viewport, &self.all_regions(), REGION_WINDOWS)?;
+        }
+        let mut next = [PIECES, LISTS];
+        let chunks = MOST_WINDOWS as usize;
+        for (windows, counts) in self.windows.chunks(chunks).zip(self.counts.chunks(chunks)) {
+            output.span += make_windows(processor, self.grid, &self.viewport, windows, WINDOWS)?;
+            output.span += self.search(processor, &kept, counts)?;
+            for window in 0..windows.len() {
+                let span = hand_over(processor, window as u32, &mut next, counts.get(window))?;
+                output.of_handing += span;
+                output.span += span;
+                output.messages.push(processor.register(16));
+            }
+        }
+        Ok(Some(output))
+    }
+
+    /// Entries and messages have as much room as [`crate::Handing`] gives those of a region.
+    fn check_room(&self, processor: &Processor) -> Result<(), ProcessorFault> {
+        let entries = self.entries() + 2 * self.windows.len() as u32;
+        let fits =
+            entries <= MOST_ENTRIES && (entries / 20 + 2 * self.windows.len() as u32) * MESSAGE_BYTES <= PIECES - LISTS;
+        if fits {
+            return Ok(());
+        }
+        Err(ProcessorFault::NoRoom {
+            gp: processor.node(),
+            context: self.part.number,
+            needed_bytes: entries * PIECE_BYTES,
+            available_bytes: MOST_ENTRIES * PIECE_BYTES,
+        })
+    }
+
+    /// Whether a window may hold pixels of several regions of the picture.
+    fn lies_across_regions(&self) -> bool {
+        let regions = self.viewport.grid();
+        !regions.region_width.is_multiple_of(self.grid.region_width)
+            || !regions.region_height.is_multiple_of(self.grid.region_height)
+    }
+
+    fn all_regions(&self) -> Vec<RegionId> {
+        (0..self.viewport.grid().regions() as u16).map(RegionId).collect()
+    }
+
+    /// Goes over the boxes of all that is kept; lists begin where those before them, as long as they are known to become, end.
+    fn search(
+        &self,
+        processor: &mut Processor,
+        Kept([triangles, spheres]): &Kept,
+        counts: &[PrimitiveCounts],
+    ) -> Result<Span, ProcessorFault> {
+        let mut place = entries(processor);
+        let mut lists = vec![spheres.first];
+        for counts in counts {
+            lists.extend([place; 2]);
+            place += 4 * counts.total();
+        }
+        processor.write(WINDOW_LISTS, &lists)?;
+        let windows = counts.len() as u32;
+        let (regions, n_regions) = match self.lies_across_regions() {
+            true => (REGION_WINDOWS, self.viewport.grid().regions()),
+            false => (0, 0),
+        };
+        let of_lines = line_registers(&self.viewport, 24);
+        let mut span = Span::ZERO;
+        for (entry, KeptCommands { first, count, boxes }) in [("triangles", *triangles), ("spheres", *spheres)] {
+            if count == 0 {
+                continue;
+            }
+            let data = [(2, STACK), (16, first), (17, count), (18, boxes)];
+            let tables = [(19, WINDOWS), (20, windows), (21, WINDOW_LISTS), (22, regions), (23, n_regions)];
+            let registers = [data.as_slice(), &tables, &of_lines].concat();
+            span += processor.call(&PROGRAM, entry, &registers, budget(count * (windows + n_regions)))?;
+        }
+        Ok(span)
+    }
+}
+
+/// Line of the frame of row 0, and whether every second line is a row.
+fn line_registers(viewport: &Viewport, first: usize) -> [(usize, Word); 2] {
+    [(first, viewport.first_line()), (first + 1, viewport.line_step() - 1)]
+}
+
+/// Has the limits of windows made, cut out of a picture by a grid.
+fn make_windows(
+    processor: &mut Processor,
+    grid: RegionGrid,
+    viewport: &Viewport,
+    windows: &[RegionId],
+    to: u32,
+) -> Result<Span, ProcessorFault> {
+    let pair = |columns: u32, rows: u32| rows << 16 | columns;
+    let places = windows.iter().map(|window| {
+        let [left, top, _, _] = grid.rectangle(*window);
+        pair(left, top)
+    });
+    processor.write(WINDOW_PLACES, &places.collect::<Vec<_>>())?;
+    let picture = viewport.grid();
+    let data = [(16, WINDOW_PLACES), (17, windows.len() as u32), (18, to)];
+    let sizes = [(19, pair(grid.region_width, grid.region_height)), (20, pair(picture.width, picture.height))];
+    let registers = [data.as_slice(), &sizes, &line_registers(viewport, 21)].concat();
+    processor.call(&PROGRAM, "windows", &registers, BUDGET + BUDGET_OF_ENTRY * windows.len() as u64)
+}
+
+/// Has the list of a window handed over, behind the pieces and messages before it.
+fn hand_over(
+    processor: &mut Processor,
+    window: u32,
+    [pieces, lists]: &mut [u32; 2],
+    counts: Option<&PrimitiveCounts>,
+) -> Result<Span, ProcessorFault> {
+    let words = [CommandKind::Triangle, CommandKind::Sphere].map(CommandKind::words);
+    let enclosing = [ENVELOPES, OPENING, ENVELOPES + 0x40, 0, ENVELOPES + 0x80, CLOSING, 0];
+    processor.write(TOKEN_PARAMETERS, &[words.as_slice(), &enclosing].concat())?;
+    let data = [(16, window), (17, WINDOW_LISTS), (18, *pieces), (19, *lists), (20, TOKEN_PARAMETERS)];
+    let entries = u64::from(counts.copied().unwrap_or_default().total());
+    let span = processor.call(&PROGRAM, "token", &data, BUDGET + BUDGET_OF_ENTRY * entries)?;
+    [*pieces, *lists] = [18, 19].map(|number| processor.register(number));
+    Ok(span)
+}
+
+/// The program of all this.
+#[cfg(test)]
+pub(crate) fn program() -> Arc<Program> {
+    Arc::clone(&PROGRAM)
+}
+
+/// Of every message there is room kept for the copy, as the native messages have it.
+static PROGRAM: LazyLock<Arc<Program>> = LazyLock::new(|| {
+    let token = token_source([MAX_MESSAGE_WORDS - CLOSING, MAX_MESSAGE_WORDS]);
+    let sources = [("windows", include_str!("../kernels/windows.s")), ("token", token.as_str())];
+    match i860::link(WINDOWS_CODE, &sources) {
+        Ok(program) => Arc::new(program),
+        Err(errors) => unreachable!("it is assembled by the tests: {errors}"),
+    }
+});

@@ -1,0 +1,45 @@
+// Where the corners of triangles are on the screen in one of two views (pphigs's kernels/between_rules.md, rule 1).
+//
+// In: r16 first triangle, r17 how many (at least 1), r18 their records, r20 parameter block, r21 0 in the first view, 48 in the second.
+
+        .align  32
+keepends: mov   r16, r5
+        adds    E_CORNERS, r18, r6
+        adds    r21, r6, r6
+        mov     3, r4
+        mov     1, r3
+        orh     0x7FFF, r0, r11
+        subs    r0, r11, r12
+        bte     r0, r21, each
+        ld.l    E_INSIDE(r18), r3
+        ld.l    E_TOP(r18), r11
+        ld.l    E_BOTTOM(r18), r12
+        bte     r0, r3, noted
+each:   projected
+        guarded
+        placed
+        fsub.dd f12, f10, f12
+        fst.d   f12, E_DEPTH(r6)
+        ftrunc.sd f21, f18
+        fxfr    f18, r10
+        subs    r10, r11, r0
+        bnc     low                         // unless the least > it
+        mov     r10, r11
+low:    subs    r12, r10, r0
+        bnc     high
+        mov     r10, r12
+high:   adds    -1, r4, r4
+        adds    VERTEX_BYTES, r5, r5
+        adds    E_CORNER, r6, r6
+        btne    r0, r4, each
+noted:  st.l    r3, E_INSIDE(r18)
+        st.l    r11, E_TOP(r18)
+        st.l    r12, E_BOTTOM(r18)
+        adds    -1, r17, r17
+        adds    TRIANGLE_BYTES, r16, r16
+        adds    E_BYTES, r18, r18
+        btne    r0, r17, keepends
+        bri     r1
+        nop
+beyond: br      noted
+        mov     r0, r3

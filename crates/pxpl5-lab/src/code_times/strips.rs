@@ -1,0 +1,166 @@
+//! What just-in-time pixels and frameless rendering take besides TRANSFORM, as the code gives it.
+
+use super::{ExperimentError, Rig, fault, mean, solve};
+use pphigs::{
+    Interpolating, KeepingEnds, MemoryPart, Picture, PrimitiveCounts, RegionBinning, Searching, Shading, put_together,
+};
+use pxpl5_geometry::Viewport;
+use pxpl5_gp::{CodeVersion, GpTiming, ProcessorFault};
+use pxpl5_renderer::Layout;
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::{FieldParity, RegionGrid, RegionId, ViewNumber};
+
+/// The scene whose triangles are searched, and of how many boards the share is that is searched for comparison.
+const SCENE: &str = "mig";
+const SMALLER: usize = 12;
+
+/// From a view to the next one: a field.
+const FIELD_PS: u64 = 16_683_333_333;
+
+/// Where display lists begin in memory: pieces of messages above are commands.
+const COMMANDS: u32 = 1 << 20;
+
+/// Words of orders: of a strip, of a strip with its view, of blocks, of a field between two views; and how many come before the views.
+const ORDERS: [(usize, usize); 4] = [(6, 6), (59, 6), (58, 5), (110, 4)];
+
+/// Times in nanoseconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StripTimes {
+    /// A box that is compared with a strip, which it does not meet.
+    pub box_ns: f64,
+    /// What meets a window of a strip besides, found and handed over.
+    pub entry_ns: f64,
+    /// The five windows of a strip, made and handed over empty.
+    pub windows_ns: f64,
+    /// A triangle's places in two views.
+    pub ends_ns: f64,
+    /// A triangle between two views that is nowhere near a strip.
+    pub passed_ns: f64,
+    /// One that is near it besides, interpolated on the screen and in the view.
+    pub interpolated_ns: [f64; 2],
+    /// An order of a strip, of a strip with a view, of blocks, of a field between two views.
+    pub order_ns: [f64; 4],
+}
+
+/// Measures them.
+///
+/// # Errors
+///
+/// [`ExperimentError::Scene`] when the code does not come to its end.
+pub fn strip_times(version: CodeVersion) -> Result<StripTimes, ExperimentError> {
+    let [whole, smaller] = [measured(version, 1)?, measured(version, SMALLER)?];
+    let more = whole.triangles - smaller.triangles;
+    let each = |of: fn(&Measured) -> f64| (of(&whole) - of(&smaller)) / more;
+    let box_ns = each(|measured| measured.search_ns);
+    let passed_ns = each(|measured| measured.passed_ns);
+    let interpolated_ns = whole.interpolated_ns.map(|ns| (ns - whole.passed_ns) / whole.triangles);
+    Ok(StripTimes {
+        box_ns,
+        entry_ns: whole.entry_ns,
+        windows_ns: smaller.search_ns - box_ns * smaller.triangles,
+        ends_ns: each(|measured| measured.ends_ns),
+        passed_ns,
+        interpolated_ns,
+        order_ns: order_ns(version)?,
+    })
+}
+
+/// Of a share of a scene.
+struct Measured {
+    triangles: f64,
+    /// A strip that nothing meets, and what more an entry takes, by least squares over all strips.
+    search_ns: f64,
+    entry_ns: f64,
+    /// Places of all in two views; commands of none of them between these, of all on the screen, of all in the view.
+    ends_ns: f64,
+    passed_ns: f64,
+    interpolated_ns: [f64; 2],
+}
+
+fn measured(version: CodeVersion, boards: usize) -> Result<Measured, ExperimentError> {
+    let mut rig = Rig::of_triangles(version, SCENE, boards)?;
+    let triangles = f64::from(rig.share.counts().triangles);
+    let rows = searches(&mut rig).map_err(fault)?;
+    let entry_ns = solve(rows.iter().map(|[entries, ns]| ([*entries, 1.0], *ns)));
+    let search_ns = mean(rows.iter().map(|[entries, ns]| ns - entry_ns * entries));
+    let ends_ns = ends_ns(&mut rig).map_err(fault)?;
+    let all = [i32::MIN, i32::MAX];
+    let passed_ns = between_ns(&mut rig, false, [i32::MAX, i32::MIN]).map_err(fault)?;
+    let [on_screen, in_view] = [false, true].map(|in_view| between_ns(&mut rig, in_view, all).map_err(fault));
+    Ok(Measured { triangles, search_ns, entry_ns, ends_ns, passed_ns, interpolated_ns: [on_screen?, in_view?] })
+}
+
+const VIEWPORT: Viewport = Viewport::field(FieldParity::Even);
+const PICTURE: Picture = Picture {
+    viewport: VIEWPORT,
+    shading: Shading::Gouraud,
+    binning: RegionBinning::All,
+    layout: Layout::slats(),
+    pixels: false,
+};
+const GRID: RegionGrid = RegionGrid { region_height: 1, ..RegionGrid::FIELD };
+
+fn ns(span: Span) -> f64 {
+    span.0 as f64 / 1e3
+}
+
+/// Entries and time of every strip of a line.
+fn searches(rig: &mut Rig) -> Result<Vec<[f64; 2]>, ProcessorFault> {
+    let pass = rig.share.transform(&rig.view(0), 0, PICTURE);
+    pass.keep(&GpTiming::PAPERS, &mut rig.processor, MemoryPart::WHOLE)?;
+    // Room for all in each window.
+    let counts = [PrimitiveCounts { triangles: rig.share.counts().triangles, spheres: 0 }; 5];
+    let columns = GRID.columns() as u16;
+    let mut rows = Vec::new();
+    for strip in 0..GRID.rows() as u16 {
+        let windows: Vec<_> = (strip * columns..(strip + 1) * columns).map(RegionId).collect();
+        let part = MemoryPart::WHOLE;
+        let searching = Searching { part, viewport: VIEWPORT, grid: GRID, windows: &windows, counts: &counts };
+        let Some(output) = searching.run_code(&mut rig.processor)? else { continue };
+        let listed = output.listed(&rig.processor)?;
+        let entries = listed.iter().flatten().filter(|[address, _]| *address >= COMMANDS).count();
+        rows.push([entries as f64, ns(output.span)]);
+    }
+    Ok(rows)
+}
+
+const PARTS: [MemoryPart; 2] = [MemoryPart::of(0, 2), MemoryPart::of(1, 2)];
+
+fn ends_ns(rig: &mut Rig) -> Result<f64, ProcessorFault> {
+    let [from, to] = views(rig);
+    let keeping = KeepingEnds { share: &rig.share, views: [&from, &to], picture: PICTURE, part: PARTS[0] };
+    Ok(keeping.run_code(&GpTiming::PAPERS, &mut rig.processor)?.map_or(0.0, ns))
+}
+
+/// The commands of what is near some lines, half way.
+fn between_ns(rig: &mut Rig, in_view: bool, near: [i32; 2]) -> Result<f64, ProcessorFault> {
+    let [from, to] = views(rig);
+    let interpolating = Interpolating {
+        share: &rig.share,
+        views: [&from, &to],
+        between: &from,
+        part_of_way: 0.5,
+        in_view,
+        near,
+        picture: PICTURE,
+        ends: PARTS[0],
+        commands: PARTS[1],
+    };
+    Ok(interpolating.run_code(&GpTiming::PAPERS, &mut rig.processor)?.map_or(0.0, ns))
+}
+
+fn views(rig: &Rig) -> [pphigs::FrameView; 2] {
+    [0, 1].map(|number| (rig.views)(ViewNumber(number), Time(number * FIELD_PS)))
+}
+
+/// Each order, put together after another one has brought the code into the caches.
+fn order_ns(version: CodeVersion) -> Result<[f64; 4], ExperimentError> {
+    let mut rig = Rig::of_triangles(version, SCENE, SMALLER)?;
+    let mut times = [0.0; 4];
+    for (time, (words, head)) in times.iter_mut().zip(ORDERS) {
+        for _ in 0..2 {
+            *time = ns(put_together(&mut rig.processor, &vec![0; words], head).map_err(fault)?);
+        }
+    }
+    Ok(times)
+}
