@@ -294,3 +294,20 @@ fn a_message_that_comes_with_the_end_of_a_field_has_not_come() {
         );
     }
 }
+
+/// Of a region that begins as the field ends that field has nothing to say, whichever is known first.
+#[test]
+fn a_region_that_begins_with_the_end_of_a_field_is_not_late_for_it() {
+    let grid = RegionGrid { region_height: 16, ..RegionGrid::FIELD };
+    let image = source(1, 1, 128 * 16);
+    for shuffle in 0..16 {
+        let mut board = remembering();
+        board.bench.queue().shuffle_ties(shuffle);
+        board.retraces(0..=FIELD + 2);
+        let target = target(0, Lines::Field(FieldParity::Odd), grid, 0, 0);
+        board.part(Time(ENDS), target, &image, 0);
+        board.run();
+        let late = |field| board.device.seen(PeriodNumber(field)).expect("remembered").late_regions();
+        assert_eq!(late(FIELD), [], "{shuffle}");
+    }
+}
