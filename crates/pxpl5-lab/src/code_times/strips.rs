@@ -1,6 +1,6 @@
 //! What just-in-time pixels and frameless rendering take besides TRANSFORM, as the code gives it.
 
-use super::{ExperimentError, Rig, fault, mean, solve};
+use super::{ExperimentError, Rig, fault, mean};
 use pphigs::{
     Interpolating, KeepingEnds, MemoryPart, Picture, PrimitiveCounts, RegionBinning, Searching, Shading, put_together,
 };
@@ -28,7 +28,7 @@ const ORDERS: [(usize, usize); 4] = [(6, 6), (59, 6), (58, 5), (110, 4)];
 pub struct StripTimes {
     /// A box that is compared with a strip, which it does not meet.
     pub box_ns: f64,
-    /// What meets a window of a strip besides, found and handed over.
+    /// What meets a window of a strip besides, found and handed over, with what is near it and does not meet it.
     pub entry_ns: f64,
     /// The five windows of a strip, made and handed over empty.
     pub windows_ns: f64,
@@ -68,7 +68,7 @@ pub fn strip_times(version: CodeVersion) -> Result<StripTimes, ExperimentError> 
 /// Of a share of a scene.
 struct Measured {
     triangles: f64,
-    /// A strip that nothing meets, and what more an entry takes, by least squares over all strips.
+    /// A strip that nothing meets, in the mean, and what more strips take for each of their entries.
     search_ns: f64,
     entry_ns: f64,
     /// Places of all in two views; commands of none of them between these, of all on the screen, of all in the view.
@@ -81,8 +81,9 @@ fn measured(version: CodeVersion, boards: usize) -> Result<Measured, ExperimentE
     let mut rig = Rig::of_triangles(version, SCENE, boards)?;
     let triangles = f64::from(rig.share.counts().triangles);
     let rows = searches(&mut rig).map_err(fault)?;
-    let entry_ns = solve(rows.iter().map(|[entries, ns]| ([*entries, 1.0], *ns)));
-    let search_ns = mean(rows.iter().map(|[entries, ns]| ns - entry_ns * entries));
+    let search_ns = mean(rows.iter().filter(|[entries, _]| *entries == 0.0).map(|[_, ns]| *ns));
+    let [entries, more_ns] = rows.iter().fold([0.0; 2], |sum, [n, ns]| [sum[0] + n, sum[1] + ns - search_ns]);
+    let entry_ns = more_ns / entries;
     let ends_ns = ends_ns(&mut rig).map_err(fault)?;
     let all = [i32::MIN, i32::MAX];
     let passed_ns = between_ns(&mut rig, false, [i32::MAX, i32::MIN]).map_err(fault)?;
