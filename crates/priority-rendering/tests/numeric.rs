@@ -242,13 +242,13 @@ fn periods_of_objects() {
 /// Validity periods of the specification (3.6): the distance that counts for the eye's way, and an object that turns at its nearest point.
 #[test]
 fn the_distance_of_an_object_is_that_of_its_nearest_point_or_of_its_middle() {
-    let seen = SeenObject { distance_m: 5.0, radius_m: 1.0, speed: -2.0, turn: -0.5, animation_s: f64::INFINITY };
+    let seen = SeenObject { distance_m: 5.0, radius_m: 0.5, speed: -2.0, turn: -0.5, animation_s: f64::INFINITY };
     let theta = (90.0_f64 / 512.0).to_radians();
-    for (distance, counted) in [(Distance::Nearest, 4.0), (Distance::Centre, 5.0)] {
+    for (distance, counted) in [(Distance::Nearest, 4.5), (Distance::Centre, 5.0)] {
         let period = Threshold { distance, ..threshold() }.period(&seen);
         near(period.translation_s, 2.0 * counted * (theta / 2.0).sin() / 2.0, 1e-12);
-        near(period.turn_s, 2.0 / 0.5 * (4.0 * theta.sin() / 2.0).asin(), 1e-12);
-        near(period.size_s, threshold().way_of_size(5.0, 1.0) / 2.0, 1e-15);
+        near(period.turn_s, 2.0 / 0.5 * (4.5 * theta.sin() / (2.0 * 0.5)).asin(), 1e-12);
+        near(period.size_s, threshold().way_of_size(5.0, 0.5) / 2.0, 1e-15);
         assert_eq!(period.animation_s, f64::INFINITY);
     }
 }
