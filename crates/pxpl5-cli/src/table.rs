@@ -50,10 +50,11 @@ pub(crate) fn table(runs: &[(&Report, Option<&Comparison>)]) -> String {
     laid_out(&rows)
 }
 
-fn comparison_rows(runs: &[(&Report, Option<&Comparison>)]) -> [(&'static str, Vec<String>); 3] {
+fn comparison_rows(runs: &[(&Report, Option<&Comparison>)]) -> [(&'static str, Vec<String>); 4] {
     [
         ("published", comparison_cells(runs, |c| format!("{} {}", c.published, c.quantity))),
         ("  where", comparison_cells(runs, |c| c.source.clone())),
+        ("  simulated", comparison_cells(runs, |c| format!("{:.4}", c.simulated))),
         ("  error", comparison_cells(runs, |c| format!("{:+.1} %", c.error_percent()))),
     ]
 }

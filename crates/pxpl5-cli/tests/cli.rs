@@ -410,6 +410,7 @@ fn without_arguments_both_pipelines_run_and_leave_pictures() {
     assert_eq!(report["runs"][0]["name"], "rendering-control-mig", "the scene first, the plain rectangle last");
     for run in report["runs"].as_array().expect("a list") {
         assert!(run["report"]["fields"].as_u64().expect("a number") >= 120);
+        assert_agrees_with_accuracy(&run["published"]);
         let timeline = format!("out/{}-timeline.svg", run["name"].as_str().expect("text"));
         assert!(std::fs::read_to_string(folder.0.join(timeline)).expect("written").contains("</svg>"));
         for eye in ["left", "right"] {
@@ -522,6 +523,15 @@ fn accuracy(id: &str) -> (f64, f64) {
     let cells: Vec<&str> = row.split('|').map(str::trim).collect();
     let number = |cell: &str| cell.split_whitespace().next().and_then(|n| n.parse().ok()).expect("a number");
     (number(cells[3]), number(cells[4]))
+}
+
+/// A run of the main job is its figure as ACCURACY.md reads it: on the same machine, and by the same quantity.
+fn assert_agrees_with_accuracy(published: &serde_json::Value) {
+    let id = published["source"].as_str().and_then(|source| source.strip_prefix("figure ")?.split(',').next());
+    let (printed, found) = accuracy(id.expect("a figure"));
+    let [value, simulated] = ["published", "simulated"].map(|name| published[name].as_f64().expect("a number"));
+    assert_eq!(value, printed, "{published}");
+    assert!((simulated / found - 1.0).abs() < 0.001, "{published}: in ACCURACY.md {found}");
 }
 
 /// A file may say why it does not give ACCURACY.md's number.
