@@ -428,9 +428,14 @@ pub(crate) const fn sphere_kernel(kernel: Kernel) -> SphereKernel {
 }
 
 /// Programs that were asked for.
-type Programs<K> = LazyLock<Mutex<HashMap<K, Arc<Program>>>>;
+pub(crate) type Programs<K> = LazyLock<Mutex<HashMap<K, Arc<Program>>>>;
 
-fn kept<K: Copy + Eq + Hash>(programs: &Programs<K>, kernel: K, assembled: impl FnOnce(K) -> Program) -> Arc<Program> {
+/// The program of a kernel, assembled when first asked for.
+pub(crate) fn kept<K: Copy + Eq + Hash>(
+    programs: &Programs<K>,
+    kernel: K,
+    assembled: impl FnOnce(K) -> Program,
+) -> Arc<Program> {
     let mut programs = programs.lock().unwrap_or_else(PoisonError::into_inner);
     Arc::clone(programs.entry(kernel).or_insert_with(|| Arc::new(assembled(kernel))))
 }

@@ -3,7 +3,7 @@
 //!
 //! The code is `ends.s`, `blend.s` and `between.s` of `pxpl5-geometry`, by rules of ours (kernels/between_rules.md).
 
-use crate::code::{BUDGET, Next, TRIANGLE_BYTES, budget};
+use crate::code::{BUDGET, Next, Programs, TRIANGLE_BYTES, budget, kept};
 use crate::layout::{BLENDED, BLENDED_ELEMENTS, CODE, DISPLAY_LIST, PARAMETERS, STACK};
 use crate::list::Share;
 use crate::pass::Pass;
@@ -16,9 +16,8 @@ use pxpl5_geometry::kernel::{ENDS_VIEW_WORDS, ENDS_WORDS, Kernel};
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_sim::Span;
 use pxpl5_wire::Word;
-use std::collections::HashMap;
 use std::ops::Range;
-use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+use std::sync::{Arc, LazyLock, Mutex};
 
 /// Bytes of the record of a triangle, and of its corners in one view.
 const RECORD_BYTES: u32 = 4 * ENDS_WORDS as u32;
@@ -165,17 +164,15 @@ fn elements(view: &FrameView) -> Vec<Word> {
 
 /// The program of all this for a kernel, with its clipper.
 pub(crate) fn program(kernel: Kernel) -> Arc<Program> {
-    static PROGRAMS: LazyLock<Mutex<HashMap<Kernel, Arc<Program>>>> = LazyLock::new(Mutex::default);
-    let mut programs = PROGRAMS.lock().unwrap_or_else(PoisonError::into_inner);
-    let made = || {
+    static PROGRAMS: Programs<Kernel> = LazyLock::new(Mutex::default);
+    kept(&PROGRAMS, kernel, |kernel| {
         let (between, clipper, ends) = (kernel.between_source(), kernel.clipper_source(), Kernel::ends_source());
         let sources = [("between", between.as_str()), ("clipper", clipper.as_str()), ("ends", ends.as_str())];
         match i860::link(CODE, &sources) {
-            Ok(program) => Arc::new(program),
+            Ok(program) => program,
             Err(errors) => unreachable!("every program is assembled by the tests: {errors}"),
         }
-    };
-    Arc::clone(programs.entry(kernel).or_insert_with(made))
+    })
 }
 
 #[cfg(test)]
