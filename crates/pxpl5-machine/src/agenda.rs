@@ -3,7 +3,6 @@
 use crate::event::Event;
 use pxpl5_ring::{Request, RingEvent, RingOutput};
 use pxpl5_sim::{Context, EventQueue, Phase, Time};
-use pxpl5_wire::Message;
 
 /// Puts what a board scheduled for itself into the queue.
 pub(crate) fn schedule_own<E, O>(
@@ -23,53 +22,42 @@ pub(crate) fn schedule_brought(
     if context.is_silent() {
         return;
     }
-    let mut delivered: Option<(Time, Message)> = None;
-    for (time, output) in context.drain_outputs() {
-        match (delivered.take(), output) {
-            (None, RingOutput::Delivered(message)) if joint => delivered = Some((time, message)),
-            (Some((at, message)), RingOutput::Sent { source, ticket }) if at == time && message.source == source => {
-                queue.schedule(time, Phase::Arrive, Event::DeliveredAndSent(message, ticket));
+    let mut outputs = context.drain_outputs();
+    while let Some((time, output)) = outputs.next() {
+        let event = match (output, outputs.as_slice().first()) {
+            (RingOutput::Delivered(message), Some((at, RingOutput::Sent { source, ticket })))
+                if joint && *at == time && *source == message.source =>
+            {
+                let event = Event::DeliveredAndSent(message, *ticket);
+                outputs.next();
+                event
             }
-            (before, output) => {
-                schedule_delivered(queue, before);
-                queue.schedule(time, Phase::Arrive, Event::FromRing(output));
-            }
-        }
-    }
-    schedule_delivered(queue, delivered);
-}
-
-fn schedule_delivered(queue: &mut EventQueue<Event>, delivered: Option<(Time, Message)>) {
-    if let Some((time, message)) = delivered {
-        queue.schedule(time, Phase::Arrive, Event::FromRing(RingOutput::Delivered(message)));
+            (output, _) => Event::FromRing(output),
+        };
+        queue.schedule(time, Phase::Arrive, event);
     }
 }
 
 /// Puts messages that a board hands to its port into the queue: one event, where they may be and come at one instant.
 pub(crate) fn schedule_requests(
     queue: &mut EventQueue<Event>,
-    mut sends: impl Iterator<Item = (Time, Request)>,
+    sends: impl Iterator<Item = (Time, Request)>,
     joint: bool,
 ) {
-    let Some((mut at, mut first)) = sends.next() else { return };
-    let mut more = Vec::new();
-    let mut put = |at, first, more: &mut Vec<Request>| {
-        let event = if more.is_empty() {
+    let mut sends = sends.peekable();
+    while let Some((at, first)) = sends.next() {
+        let mut all = Vec::new();
+        while let Some((_, request)) = sends.next_if(|(time, _)| joint && *time == at) {
+            all.push(request);
+        }
+        let event = if all.is_empty() {
             Event::Ring(RingEvent::Request(first))
         } else {
-            more.insert(0, first);
-            Event::Requests(std::mem::take(more))
+            all.insert(0, first);
+            Event::Requests(all)
         };
         queue.schedule(at, Phase::Arrive, event);
-    };
-    for (time, request) in sends {
-        if joint && time == at {
-            more.push(request);
-        } else {
-            put(std::mem::replace(&mut at, time), std::mem::replace(&mut first, request), &mut more);
-        }
     }
-    put(at, first, &mut more);
 }
 
 #[cfg(test)]

@@ -231,8 +231,8 @@ impl Machine {
     ///
     /// [`RunError`]; everything observed before it is kept.
     pub fn run_until(&mut self, end: Time) -> Result<(), RunError> {
-        while self.step_before(end)?.is_some() {}
-        Ok(())
+        while self.takes_event_before(end).is_some() {}
+        self.failure.clone().map_or(Ok(()), Err)
     }
 
     /// Handles the next event, if it is before an instant, and gives its time.
@@ -241,18 +241,18 @@ impl Machine {
     ///
     /// [`RunError`], of this event or of one before: a machine that has failed goes on no more.
     pub fn step_before(&mut self, end: Time) -> Result<Option<Time>, RunError> {
-        if let Some(failure) = &self.failure {
-            return Err(failure.clone());
+        let taken = self.takes_event_before(end);
+        self.failure.clone().map_or(Ok(taken), Err)
+    }
+
+    /// Handles the next event, if it is before an instant and the machine has not failed, and gives its time.
+    fn takes_event_before(&mut self, end: Time) -> Option<Time> {
+        if self.failure.is_some() {
+            return None;
         }
-        if self.queue.next_time().is_none_or(|time| time >= end) {
-            return Ok(None);
-        }
-        let Some((now, _, event)) = self.queue.next_event() else { return Ok(None) };
+        let (now, event) = self.queue.next_event_before(end)?;
         self.handle(now, event);
-        match &self.failure {
-            Some(failure) => Err(failure.clone()),
-            None => Ok(Some(now)),
-        }
+        Some(now)
     }
 
     /// What will happen next; `None` where nothing will.
@@ -437,11 +437,13 @@ impl Machine {
         let processor = &mut processors[board];
         processor.handle(event, context.at(now));
         schedule_own(queue, context, |event| Event::Gp(board, event));
-        let sends =
-            (0..).zip(context.drain_outputs()).map(|(order, (time, GpOutput::Send { message, ticket, hold }))| {
+        if !context.is_silent() {
+            let outputs = (0..).zip(context.drain_outputs());
+            let sends = outputs.map(|(order, (time, GpOutput::Send { message, ticket, hold }))| {
                 (time, Request { message, ticket: Some(ticket), hold, order })
             });
-        schedule_requests(queue, sends, self.joint_events);
+            schedule_requests(queue, sends, self.joint_events);
+        }
         if let Some(fault) = processor.fault().cloned() {
             self.failure = Some(RunError::Fault { board: Board::of_processor(board).to_string(), time: now, fault });
         }

@@ -25,6 +25,8 @@ pub struct Ring {
     heads_to_fifos: u32,
     /// Sources that send on as many channels as they can.
     at_limit: usize,
+    /// Whether something was made free, since the last grants, for which a head may have waited.
+    unblocked: bool,
     /// Instants for which arbitration is scheduled.
     arbitrations: Vec<Time>,
     /// Whether every end of a message is an event, though nobody waits for it.
@@ -87,6 +89,7 @@ impl Ring {
             heads: Vec::new(),
             heads_to_fifos: 0,
             at_limit: 0,
+            unblocked: false,
             arbitrations: Vec::new(),
             watched: false,
             word_by_word: false,
@@ -214,7 +217,9 @@ impl Ring {
         if !new_first || source.in_flight >= most {
             return;
         }
-        if let Some(place) = self.heads.iter().position(|head| head.source == id) {
+        if source.queue.len() > 1
+            && let Some(place) = self.heads.iter().position(|head| head.source == id)
+        {
             self.take_head(place);
         }
         self.add_head(now, id);
@@ -278,15 +283,18 @@ impl Ring {
     /// Frees channels and ports of all messages that have ended by `now`. The ring does it by itself before it grants;
     /// its sums are up to date afterwards.
     pub fn settle(&mut self, now: Time) {
+        let lacked_channel = self.lacks_channel();
         while let Some((channel, ended, flight)) = self.channels.take_ended(now) {
             let destination = &mut self.destinations[usize::from(flight.destination.0)];
             destination.release(&flight);
+            self.unblocked |= lacked_channel || destination.heads > 0;
             self.to_fifos -= u64::from(!destination.elastic);
             let source = &mut self.sources[usize::from(flight.source.0)];
             source.in_flight -= 1;
             // Below the limit the next message has been a head all along.
             if source.in_flight + 1 == self.timing.source_channels {
                 self.at_limit -= 1;
+                self.unblocked = true;
                 self.add_head(ended, flight.source);
             }
             let busy = ended.since(flight.granted);
@@ -297,9 +305,13 @@ impl Ring {
         }
     }
 
-    /// One pass is enough: a grant makes nothing free, and the head that it brings forward comes after it in order.
+    /// One pass is enough: a grant makes nothing free, and the head that it brings forward comes after it in order. Where nothing was
+    /// made free since the last pass, the heads that it left can go no more than they could then: those of this instant alone are looked at.
     fn grant_all(&mut self, context: &mut RingContext) {
-        let mut place = 0;
+        let now = context.now();
+        let is_for_all = std::mem::take(&mut self.unblocked);
+        let mut place =
+            if is_for_all { 0 } else { self.heads.iter().rposition(|h| h.since < now).map_or(0, |p| p + 1) };
         while self.channels.has_free() && place < self.heads.len() {
             let QueueHead { source, destination, .. } = self.heads[place];
             if self.destinations[usize::from(destination.0)].takes_from(source) && self.has_channel_to(destination) {

@@ -109,8 +109,8 @@ impl<E> EventQueue<E> {
 
     /// Whether the next event is of those scheduled for work at once: arrivals of the instant, and work that was scheduled before it
     /// began, come before them.
-    fn is_soon(&self) -> bool {
-        !self.soon.is_empty() && self.first().is_none_or(|first| first.key() >= work_key(self.now))
+    fn is_soon(&self, first: Option<Due>) -> bool {
+        !self.soon.is_empty() && first.is_none_or(|first| first.key() >= work_key(self.now))
     }
 
     fn keep(&mut self, event: E) -> u32 {
@@ -124,21 +124,44 @@ impl<E> EventQueue<E> {
 
     /// Takes the next event and moves the present to it.
     pub fn next_event(&mut self) -> Option<(Time, Phase, E)> {
-        if self.is_soon() {
-            self.popped += 1;
-            return self.soon.pop_front().map(|event| (self.now, Phase::Work, event));
+        if self.is_soon(self.first()) {
+            return self.take_soon().map(|event| (self.now, Phase::Work, event));
         }
         let due = self.next.take().or_else(|| self.heap.pop())?;
-        self.now = due.time;
-        self.popped += 1;
-        self.free.push(due.slot);
-        let event = self.events[due.slot as usize].take()?;
+        let event = self.take(due)?;
         let phase = match due.order >> PHASE_SHIFT {
             0 => Phase::Arrive,
             1 => Phase::Work,
             _ => Phase::Observe,
         };
         Some((due.time, phase, event))
+    }
+
+    /// Takes the next event if it is before an instant, and moves the present to it.
+    pub fn next_event_before(&mut self, end: Time) -> Option<(Time, E)> {
+        let first = self.first();
+        if self.is_soon(first) {
+            let event = if self.now < end { self.take_soon() } else { None }?;
+            return Some((self.now, event));
+        }
+        let due = first.filter(|due| due.time < end)?;
+        if self.next.take().is_none() {
+            self.heap.pop();
+        }
+        Some((due.time, self.take(due)?))
+    }
+
+    fn take_soon(&mut self) -> Option<E> {
+        self.popped += 1;
+        self.soon.pop_front()
+    }
+
+    /// Takes an event out of its slot and moves the present to it.
+    fn take(&mut self, due: Due) -> Option<E> {
+        self.now = due.time;
+        self.popped += 1;
+        self.free.push(due.slot);
+        self.events[due.slot as usize].take()
     }
 
     /// All events that wait, in no order.
@@ -158,10 +181,11 @@ impl<E> EventQueue<E> {
     /// The next event and its time, without taking it.
     #[must_use]
     pub fn peek(&self) -> Option<(Time, &E)> {
-        if self.is_soon() {
+        let first = self.first();
+        if self.is_soon(first) {
             return Some((self.now, self.soon.front()?));
         }
-        let due = self.first()?;
+        let due = first?;
         Some((due.time, self.events[due.slot as usize].as_ref()?))
     }
 
@@ -276,9 +300,15 @@ mod tests {
                 prop_assert_eq!(queue.pending().count(), plain.waiting.len());
                 let peeked = queue.peek().map(|(time, event)| (time, *event));
                 prop_assert_eq!(queue.next_time(), peeked.map(|next| next.0));
-                let taken = queue.next_event().map(|(time, phase, event)| (time.0, phase as u8, event));
-                prop_assert_eq!(peeked.map(|(time, event)| (time.0, event)), taken.map(|t| (t.0, t.2)));
-                prop_assert_eq!(taken, plain.take());
+                let expected = plain.take();
+                prop_assert_eq!(peeked.map(|(time, event)| (time.0, event)), expected.map(|t| (t.0, t.2)));
+                if let Some((time, _, event)) = expected.filter(|(.., event)| event % 2 == 0) {
+                    prop_assert_eq!(queue.next_event_before(Time(time)), None);
+                    prop_assert_eq!(queue.next_event_before(Time(time + 1)), Some((Time(time), event)));
+                } else {
+                    let taken = queue.next_event().map(|(time, phase, event)| (time.0, phase as u8, event));
+                    prop_assert_eq!(taken, expected);
+                }
                 let now = plain.now;
                 follow(&mut queue, &mut plain, now, &some);
             }

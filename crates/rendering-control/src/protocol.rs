@@ -4,6 +4,7 @@ use crate::rules::EyeDrawing;
 use pphigs::FrameView;
 use pxpl5_gp::{Fault, Received};
 use pxpl5_wire::{Body, COPY_ACKNOWLEDGEMENT, CopyWay, NodeId, PictureNumber, RegionId, Word};
+use std::sync::Arc;
 
 const SEND: Word = 1;
 const EDIT: Word = 2;
@@ -78,20 +79,20 @@ impl StageOrder {
     /// Length in words and body.
     pub(crate) fn message(&self) -> (u32, Body) {
         let words = self.words();
-        (words.len() as u32, Body::Words(words.into()))
+        (words.len() as u32, Body::Words(words))
     }
 
-    fn words(&self) -> Vec<Word> {
+    fn words(&self) -> Arc<[Word]> {
         match self {
-            Self::Send(view) => [vec![SEND], view.to_words()].concat(),
-            Self::Edit(frame) => numbered(EDIT, frame.0),
-            Self::Edited(frame) => numbered(EDITED, frame.0),
-            Self::EditsDone(frame) => numbered(EDITS_DONE, frame.0),
-            Self::Transform(drawing) => numbered(TRANSFORM, drawing.0),
-            Self::Transformed(drawing, entries) => [numbered(TRANSFORMED, drawing.0), entries.clone()].concat(),
-            Self::Token(token) => token.words(TOKEN),
-            Self::Accepted(token) => token.words(ACCEPTED),
-            Self::Copied { frame_buffer } => vec![COPY_ACKNOWLEDGEMENT, 0, 0, Word::from(frame_buffer.0)],
+            Self::Send(view) => [vec![SEND], view.to_words()].concat().into(),
+            Self::Edit(frame) => numbered(EDIT, frame.0).into(),
+            Self::Edited(frame) => numbered(EDITED, frame.0).into(),
+            Self::EditsDone(frame) => numbered(EDITS_DONE, frame.0).into(),
+            Self::Transform(drawing) => numbered(TRANSFORM, drawing.0).into(),
+            Self::Transformed(drawing, entries) => [&numbered(TRANSFORMED, drawing.0)[..], entries].concat().into(),
+            Self::Token(token) => token.words(TOKEN).into(),
+            Self::Accepted(token) => token.words(ACCEPTED).into(),
+            Self::Copied { frame_buffer } => [COPY_ACKNOWLEDGEMENT, 0, 0, Word::from(frame_buffer.0)].into(),
         }
     }
 
@@ -122,8 +123,8 @@ impl StageOrder {
 }
 
 /// A message of a tag and the number of a frame or drawing.
-fn numbered(tag: Word, number: u64) -> Vec<Word> {
-    vec![tag, number as Word, (number >> 32) as Word]
+fn numbered(tag: Word, number: u64) -> [Word; 3] {
+    [tag, number as Word, (number >> 32) as Word]
 }
 
 /// The number of a [`numbered`] message.
@@ -134,9 +135,9 @@ fn number_of(words: &[Word]) -> Option<u64> {
 }
 
 impl Token {
-    fn words(self, tag: Word) -> Vec<Word> {
+    fn words(self, tag: Word) -> [Word; 6] {
         let regions = u32::from(self.region.0) | u32::from(self.renderer) << 16;
-        vec![
+        [
             tag,
             self.drawing.0 as Word,
             (self.drawing.0 >> 32) as Word,
