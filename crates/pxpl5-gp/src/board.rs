@@ -1,7 +1,7 @@
 //! The board: it polls its programs whenever something has happened to them.
 
 use crate::cpu::{Cpu, Priority};
-use crate::firmware::{Cause, ChainLink, Fault, Firmware, Gp, Received, Shared, Wait};
+use crate::firmware::{ChainLink, Fault, Firmware, Gp, Shared, Wait};
 use crate::look::GpLook;
 use crate::memory::Memory;
 use crate::probe::Mark;
@@ -58,6 +58,7 @@ const PLACE_MASK: u64 = (1 << PLACE_BITS) - 1;
 struct Task {
     firmware: Firmware,
     priority: Priority,
+    has_ended: bool,
 }
 
 /// One board with its programs.
@@ -153,52 +154,35 @@ impl GpBoard {
     /// Loads a program; there is one for each priority.
     pub fn load(&mut self, priority: Priority, firmware: Firmware) {
         self.shared.borrow_mut().waits[priority as usize] = Wait::TO_BEGIN;
-        self.tasks.push(Task { firmware, priority });
+        self.tasks.push(Task { firmware, priority, has_ended: false });
         self.tasks.sort_by_key(|task| task.priority);
     }
 
     /// Handles one event at its instant.
     pub fn handle(&mut self, event: GpEvent, context: &mut Context<GpEvent, GpOutput>) {
-        self.shared.borrow_mut().now = context.now();
-        match event {
-            GpEvent::Delivered(message) => self.latch(message, context),
-            GpEvent::Accepted(ticket) => {
-                self.shared.borrow_mut().note_accepted(ticket >> PLACE_BITS, ticket & PLACE_MASK);
-                self.wake(Cause::Acceptance, context);
+        let mut shared = self.shared.borrow_mut();
+        shared.now = context.now();
+        let cause = match event {
+            GpEvent::Delivered(message) => shared.latch(message),
+            GpEvent::Accepted(ticket) => shared.note_accepted(ticket >> PLACE_BITS, ticket & PLACE_MASK),
+            GpEvent::Retrace(field) => shared.begin_field(field),
+            GpEvent::Status { from, value } => shared.set_status(from, value),
+            GpEvent::Poll => {
+                drop(shared);
+                return self.work(context);
             }
-            GpEvent::Retrace(field) => {
-                self.shared.borrow_mut().field = field;
-                self.wake(Cause::Arrival, context);
+            GpEvent::WorkEnds => {
+                drop(shared);
+                return self.end_of_work(context);
             }
-            GpEvent::Status { from, value } => {
-                self.shared.borrow_mut().set_status(from, value);
-                self.wake(Cause::Arrival, context);
-            }
-            GpEvent::Poll => self.work(context),
-            GpEvent::WorkEnds => self.end_of_work(context),
-        }
-    }
-
-    /// Messages of one instant are kept in order of their senders, whatever the order of their events.
-    fn latch(&mut self, message: Message, context: &mut Context<GpEvent, GpOutput>) {
-        let arrived = context.now();
-        {
-            let inbox = &mut self.shared.borrow_mut().inbox;
-            let before = inbox.iter().rposition(|other| (other.arrived, other.source) <= (arrived, message.source));
-            let place = before.map_or(0, |i| i + 1);
-            inbox.insert(place, Received { arrived, source: message.source, body: message.body });
-        }
-        self.wake(Cause::Arrival, context);
-    }
-
-    /// The programs look at this instant's arrivals together, if one of them waits for such.
-    fn wake(&mut self, cause: Cause, context: &mut Context<GpEvent, GpOutput>) {
-        if !self.poll_pending && self.shared.borrow().is_woken_by(cause) {
+        };
+        if !self.poll_pending && shared.is_woken_by(cause) {
             self.poll_pending = true;
             context.schedule(context.now(), Phase::Work, GpEvent::Poll);
         }
     }
 
+    /// The programs look at this instant's arrivals together, if one of them waits for such.
     fn work(&mut self, context: &mut Context<GpEvent, GpOutput>) {
         self.poll_pending = false;
         {
@@ -206,14 +190,15 @@ impl GpBoard {
             shared.cpu.settle(shared.now);
         }
         self.poll_until_quiet();
-        let batch = self.shared.borrow_mut().next_batch();
-        if let Some(batch) = batch {
+        let mut shared = self.shared.borrow_mut();
+        if let Some(batch) = shared.next_batch() {
             for (place, ChainLink { message, hold }) in (0..).zip(batch.links) {
                 let ticket = batch.ticket.0 << PLACE_BITS | place;
                 context.output(context.now() + self.cycle, GpOutput::Send { message, ticket, hold });
             }
         }
-        let end = self.shared.borrow().cpu.next_end();
+        let end = shared.cpu.next_end();
+        drop(shared);
         self.announce(end, context);
     }
 
@@ -240,20 +225,18 @@ impl GpBoard {
         let mut task_context = TaskContext::from_waker(Waker::noop());
         loop {
             let before = self.shared.borrow().progress;
-            let fault = &mut self.fault;
-            let shared = &self.shared;
-            self.tasks.retain_mut(|task| {
-                if shared.borrow().is_at_work(task.priority) {
-                    return true;
+            for task in &mut self.tasks {
+                if self.shared.borrow().is_at_work(task.priority) {
+                    continue;
                 }
-                match task.firmware.as_mut().poll(&mut task_context) {
-                    Poll::Pending => true,
-                    Poll::Ready(result) => {
-                        *fault = fault.take().or(result.err());
-                        false
-                    }
+                if let Poll::Ready(result) = task.firmware.as_mut().poll(&mut task_context) {
+                    task.has_ended = true;
+                    self.fault = self.fault.take().or(result.err());
                 }
-            });
+            }
+            if self.tasks.iter().any(|task| task.has_ended) {
+                self.tasks.retain(|task| !task.has_ended);
+            }
             if self.stop() || self.shared.borrow().progress == before {
                 return;
             }

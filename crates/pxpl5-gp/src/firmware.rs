@@ -141,8 +141,21 @@ impl Shared {
         self.waits[priority as usize].ended_by == Cause::Work && !self.cpu.is_done(priority)
     }
 
-    pub(crate) fn note_accepted(&mut self, batch: u64, place: u64) {
-        let Some(i) = self.in_flight.iter().position(|flight| flight.0 == place) else { return };
+    /// Messages of one instant are kept in order of their senders, whatever the order of their events.
+    pub(crate) fn latch(&mut self, Message { source, body, .. }: Message) -> Cause {
+        let arrived = self.now;
+        let before = self.inbox.iter().rposition(|other| (other.arrived, other.source) <= (arrived, source));
+        self.inbox.insert(before.map_or(0, |place| place + 1), Received { arrived, source, body });
+        Cause::Arrival
+    }
+
+    pub(crate) const fn begin_field(&mut self, field: PeriodNumber) -> Cause {
+        self.field = field;
+        Cause::Arrival
+    }
+
+    pub(crate) fn note_accepted(&mut self, batch: u64, place: u64) -> Cause {
+        let Some(i) = self.in_flight.iter().position(|flight| flight.0 == place) else { return Cause::Acceptance };
         let (_, receiver) = self.in_flight.swap_remove(i);
         self.not_begun.retain(|node| *node != receiver);
         if self.not_begun.is_empty() {
@@ -155,6 +168,7 @@ impl Shared {
                 self.ends.pop_front();
             }
         }
+        Cause::Acceptance
     }
 
     /// The next batch, if the DMA is free.
@@ -166,11 +180,12 @@ impl Shared {
         Some(batch)
     }
 
-    pub(crate) fn set_status(&mut self, from: NodeId, value: u64) {
+    pub(crate) fn set_status(&mut self, from: NodeId, value: u64) -> Cause {
         match self.status.iter_mut().find(|status| status.0 == from) {
             Some(status) => status.1 = value,
             None => self.status.push((from, value)),
         }
+        Cause::Arrival
     }
 }
 

@@ -46,15 +46,16 @@ pub(crate) fn schedule_requests(
 ) {
     let mut sends = sends.peekable();
     while let Some((at, first)) = sends.next() {
-        let mut all = Vec::new();
-        while let Some((_, request)) = sends.next_if(|(time, _)| joint && *time == at) {
-            all.push(request);
-        }
-        let event = if all.is_empty() {
-            Event::Ring(RingEvent::Request(first))
-        } else {
-            all.insert(0, first);
-            Event::Requests(all)
+        let event = match sends.next_if(|(time, _)| joint && *time == at) {
+            None => Event::Ring(RingEvent::Request(first)),
+            Some((_, second)) => {
+                let mut all = Vec::with_capacity(2 + sends.size_hint().1.unwrap_or(0));
+                all.extend([first, second]);
+                while let Some((_, request)) = sends.next_if(|(time, _)| *time == at) {
+                    all.push(request);
+                }
+                Event::Requests(all)
+            }
         };
         queue.schedule(at, Phase::Arrive, event);
     }
@@ -63,7 +64,7 @@ pub(crate) fn schedule_requests(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pxpl5_wire::{Body, NodeId};
+    use pxpl5_wire::{Body, Message, NodeId};
 
     fn message(source: u16) -> Message {
         Message { source: NodeId(source), destination: NodeId(9), words: 1, body: Body::Words([1].into()) }
