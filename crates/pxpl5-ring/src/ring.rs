@@ -294,7 +294,6 @@ impl Ring {
             // Below the limit the next message has been a head all along.
             if source.in_flight + 1 == self.timing.source_channels {
                 self.at_limit -= 1;
-                self.unblocked = true;
                 self.add_head(ended, flight.source);
             }
             let busy = ended.since(flight.granted);
