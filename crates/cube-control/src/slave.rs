@@ -5,9 +5,11 @@ use crate::faces::{CubePass, context_of};
 use crate::master::copy_order;
 use crate::protocol::{Token, UpdateOrder};
 use crate::update::FaceUpdate;
-use pphigs::{DisplayList, Editing, Handing, PROGRAM_BYTES, RegionEnvelope, Share, region_messages};
+use pphigs::{
+    DisplayList, Editing, Handing, PROGRAM_BYTES, Pass, RegionEnvelope, Share, is_no_message, region_messages,
+};
 use pxpl5_gp::{Account, Fault, Gp, Priority, Stage};
-use pxpl5_wire::{Body, CommandList, NodeId, PictureNumber, SurfaceId};
+use pxpl5_wire::{Body, CommandList, NodeId, PictureNumber, RegionId, SurfaceId};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
@@ -142,7 +144,7 @@ async fn token_program(gp: Gp, config: CubeControlConfig, index: usize, state: S
         let order = UpdateOrder::read(&received, gp.node());
         if let Ok(UpdateOrder::Token(token)) = order
             && gp.pays_at_once()
-            && bin_messages(&config, &state, token).is_empty()
+            && TokenBin::of(&config, &state, token).is_none_or(|bin| bin.is_empty())
         {
             // The token goes on when it has been received and sent, and nothing of this level happens between.
             gp.spend_messages(2).await;
@@ -172,34 +174,50 @@ async fn walk(
     token: Token,
 ) -> Result<(), Fault> {
     let renderer = config.renderers[usize::from(token.renderer)];
-    hand_over(gp, config, state, token).await?;
-    for list in bin_messages(config, state, token) {
-        gp.clump_buffer_free().await;
-        gp.send(renderer, list.words(), Body::Commands(list)).await;
+    if let Some(bin) = TokenBin::of(config, state, token) {
+        gp.work(&bin.handing()).await?;
+        for list in bin.messages() {
+            gp.clump_buffer_free().await;
+            gp.send(renderer, list.words(), Body::Commands(list)).await;
+        }
     }
     gp.send_batch(vec![passed_on(config, index, token)]).await;
     Ok(())
 }
 
-/// Makes messages of the bin of the token's region.
-async fn hand_over(gp: &Gp, config: &CubeControlConfig, state: &SharedSlaveState, token: Token) -> Result<(), Fault> {
-    let context = context_of(token.update);
-    let (face, region) = config.faces.on_face(token.region);
-    let found = state.borrow().bins[context].as_ref().and_then(|pass| {
-        let envelope = envelope(config, pass.update(), token);
-        Some((Arc::clone(pass.face(face)?), envelope))
-    });
-    let Some((pass, envelope)) = found else { return Ok(()) };
-    gp.work(&Handing { pass: &pass, context: context as u8, view: face as u8, region, envelope }).await
+/// A slave's bin of a token's region, with what its messages begin and end.
+struct TokenBin {
+    pass: Arc<Pass>,
+    context: usize,
+    face: usize,
+    region: RegionId,
+    envelope: RegionEnvelope,
 }
 
-/// What this slave has for the token's region.
-fn bin_messages(config: &CubeControlConfig, state: &SharedSlaveState, token: Token) -> Vec<CommandList> {
-    let state = state.borrow();
-    let Some(pass) = &state.bins[context_of(token.update)] else { return Vec::new() };
-    let (face, region) = config.faces.on_face(token.region);
-    let envelope = envelope(config, pass.update(), token);
-    pass.face(face).map_or_else(Vec::new, |pass| region_messages(pass, region, 0, envelope))
+impl TokenBin {
+    /// `None` where this slave has nothing of the region's face.
+    fn of(config: &CubeControlConfig, state: &SharedSlaveState, token: Token) -> Option<Self> {
+        let context = context_of(token.update);
+        let (face, region) = config.faces.on_face(token.region);
+        let state = state.borrow();
+        let passes = state.bins[context].as_ref()?;
+        let envelope = envelope(config, passes.update(), token);
+        Some(Self { pass: Arc::clone(passes.face(face)?), context, face, region, envelope })
+    }
+
+    fn handing(&self) -> Handing<'_> {
+        let Self { pass, region, envelope, .. } = self;
+        let (context, view) = (self.context as u8, self.face as u8);
+        Handing { pass, context, view, region: *region, envelope: *envelope }
+    }
+
+    fn is_empty(&self) -> bool {
+        is_no_message(&self.pass, self.region, self.envelope)
+    }
+
+    fn messages(&self) -> Vec<CommandList> {
+        region_messages(&self.pass, self.region, 0, self.envelope)
+    }
 }
 
 /// The first slave begins the region, the last one ends it.
