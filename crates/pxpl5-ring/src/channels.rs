@@ -44,8 +44,8 @@ pub(crate) struct RingChannels {
     flights: Vec<Option<MessageInFlight>>,
     /// When each channel is free again; unknown on a free one and until the receiver has answered.
     ends_at: Vec<Time>,
-    /// The earliest of them, unknown where none is known.
-    first_end: Time,
+    /// Those that are known, with their channels, the earliest last.
+    due: Vec<(Time, usize)>,
     /// One bit a channel.
     free: u64,
 }
@@ -53,7 +53,7 @@ pub(crate) struct RingChannels {
 impl RingChannels {
     /// 1 to 64 free channels.
     pub(crate) fn new(n: usize) -> Self {
-        Self { flights: vec![None; n], ends_at: vec![UNKNOWN; n], first_end: UNKNOWN, free: u64::MAX >> (64 - n) }
+        Self { flights: vec![None; n], ends_at: vec![UNKNOWN; n], due: Vec::with_capacity(n), free: u64::MAX >> (64 - n) }
     }
 
     pub(crate) const fn has_free(&self) -> bool {
@@ -84,19 +84,19 @@ impl RingChannels {
     pub(crate) fn ends(&mut self, channel: usize, at: Time) {
         let before = std::mem::replace(&mut self.ends_at[channel], at);
         debug_assert_eq!(before, UNKNOWN, "an end that is known stays");
-        self.first_end = self.first_end.min(at);
+        let earlier = self.due.iter().rev().take_while(|end| end.0 < at).count();
+        self.due.insert(self.due.len() - earlier, (at, channel));
     }
 
     /// The earliest end that is known.
     pub(crate) fn first_end(&self) -> Option<Time> {
-        Some(self.first_end).filter(|end| *end != UNKNOWN)
+        self.due.last().map(|end| end.0)
     }
 
     /// The earliest known end of a message to one of some destinations.
     pub(crate) fn first_end_at(&self, is_one: impl Fn(NodeId) -> bool) -> Option<Time> {
-        let flights = self.ends_at.iter().zip(&self.flights).filter(|(end, _)| **end != UNKNOWN);
-        let ends = flights.filter(|(_, flight)| flight.as_ref().is_some_and(|flight| is_one(flight.destination)));
-        ends.map(|(end, _)| *end).min()
+        let is_to_one = |channel: usize| self.flight(channel).is_some_and(|flight| is_one(flight.destination));
+        self.due.iter().rev().find(|end| is_to_one(end.1)).map(|end| end.0)
     }
 
     /// The end of the message on a channel, if it is known.
@@ -106,12 +106,8 @@ impl RingChannels {
 
     /// Takes a message whose time is over, with its channel and the end of that time.
     pub(crate) fn take_ended(&mut self, now: Time) -> Option<(usize, Time, MessageInFlight)> {
-        if self.first_end > now {
-            return None;
-        }
-        let channel = self.ends_at.iter().position(|end| *end <= now && *end != UNKNOWN)?;
-        let ended = std::mem::replace(&mut self.ends_at[channel], UNKNOWN);
-        self.first_end = self.ends_at.iter().copied().min().unwrap_or(UNKNOWN);
+        let (ended, channel) = self.due.pop_if(|end| end.0 <= now)?;
+        self.ends_at[channel] = UNKNOWN;
         self.free |= 1 << channel;
         Some((channel, ended, self.flights[channel].take()?))
     }

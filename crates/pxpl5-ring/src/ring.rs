@@ -484,7 +484,11 @@ impl SourcePort {
     fn insert(&mut self, queued: QueuedRequest) -> usize {
         let later = self.queue.iter().rev().take_while(|other| other.order() > queued.order()).count();
         let place = self.queue.len() - later;
-        self.queue.insert(place, queued);
+        if later == 0 {
+            self.queue.push_back(queued);
+        } else {
+            self.queue.insert(place, queued);
+        }
         place
     }
 }
