@@ -53,7 +53,12 @@ pub(crate) struct RingChannels {
 impl RingChannels {
     /// 1 to 64 free channels.
     pub(crate) fn new(n: usize) -> Self {
-        Self { flights: vec![None; n], ends_at: vec![UNKNOWN; n], due: Vec::with_capacity(n), free: u64::MAX >> (64 - n) }
+        Self {
+            flights: vec![None; n],
+            ends_at: vec![UNKNOWN; n],
+            due: Vec::with_capacity(n),
+            free: u64::MAX >> (64 - n),
+        }
     }
 
     pub(crate) const fn has_free(&self) -> bool {

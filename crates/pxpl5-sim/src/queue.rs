@@ -32,6 +32,9 @@ impl Keyed for Due {
 
 const PHASE_SHIFT: u32 = 62;
 
+/// Events in the list before the heap: more take longer to go past than the heap is deep.
+const NEAR: usize = 16;
+
 /// Above the keys of all work of an instant; the first of those of what observes it.
 const fn work_key(now: Time) -> u128 {
     (now.0 as u128) << 64 | ((Phase::Observe as u64) << PHASE_SHIFT) as u128
@@ -41,8 +44,8 @@ const fn work_key(now: Time) -> u128 {
 #[derive(Debug)]
 pub struct EventQueue<E> {
     heap: QuadHeap<Due>,
-    /// An event that comes before all of the heap: what is scheduled next often is, and need not go through it.
-    next: Option<Due>,
+    /// Events that come before all of the heap, [`NEAR`] at most, the next one last: where few wait, none goes through the heap.
+    near: Vec<Due>,
     /// Work of the present instant that was scheduled during it, in order: it needs no place among others. Empty where ties are shuffled.
     soon: VecDeque<E>,
     events: Vec<Option<E>>,
@@ -57,7 +60,7 @@ impl<E> Default for EventQueue<E> {
     fn default() -> Self {
         Self {
             heap: QuadHeap::default(),
-            next: None,
+            near: Vec::with_capacity(NEAR + 1),
             soon: VecDeque::new(),
             events: Vec::new(),
             free: Vec::new(),
@@ -95,16 +98,27 @@ impl<E> EventQueue<E> {
         let order = (phase as u64) << PHASE_SHIFT | tie & ((1 << PHASE_SHIFT) - 1);
         self.sequence += 1;
         let slot = self.keep(event);
-        let due = Due { time, order, slot };
-        let for_heap =
-            if self.first().is_none_or(|first| due.key() < first.key()) { self.next.replace(due) } else { Some(due) };
-        if let Some(due) = for_heap {
-            self.heap.push(due);
+        self.enter(Due { time, order, slot });
+    }
+
+    fn enter(&mut self, due: Due) {
+        if self.heap.peek().is_some_and(|first| first.key() < due.key()) {
+            return self.heap.push(due);
+        }
+        let sooner = self.near.iter().rev().take_while(|near| near.key() < due.key()).count();
+        self.near.insert(self.near.len() - sooner, due);
+        if self.near.len() > NEAR {
+            let latest = self.near.remove(0);
+            self.heap.push(latest);
         }
     }
 
     fn first(&self) -> Option<Due> {
-        self.next.or_else(|| self.heap.peek().copied())
+        self.near.last().or_else(|| self.heap.peek()).copied()
+    }
+
+    fn take_first(&mut self) -> Option<Due> {
+        self.near.pop().or_else(|| self.heap.pop())
     }
 
     /// Whether the next event is of those scheduled for work at once: arrivals of the instant, and work that was scheduled before it
@@ -127,7 +141,7 @@ impl<E> EventQueue<E> {
         if self.is_soon(self.first()) {
             return self.take_soon().map(|event| (self.now, Phase::Work, event));
         }
-        let due = self.next.take().or_else(|| self.heap.pop())?;
+        let due = self.take_first()?;
         let event = self.take(due)?;
         let phase = match due.order >> PHASE_SHIFT {
             0 => Phase::Arrive,
@@ -144,10 +158,10 @@ impl<E> EventQueue<E> {
             let event = if self.now < end { self.take_soon() } else { None }?;
             return Some((self.now, event));
         }
-        let due = first.filter(|due| due.time < end)?;
-        if self.next.take().is_none() {
-            self.heap.pop();
+        if first?.time >= end {
+            return None;
         }
+        let due = self.take_first()?;
         Some((due.time, self.take(due)?))
     }
 
@@ -204,7 +218,7 @@ impl<E> EventQueue<E> {
     /// Number of events that wait.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.heap.len() + self.soon.len() + usize::from(self.next.is_some())
+        self.heap.len() + self.near.len() + self.soon.len()
     }
 
     /// Whether no event waits.
@@ -282,7 +296,7 @@ mod tests {
         /// Work that is scheduled for the instant at which it is scheduled has a way of its own.
         #[test]
         fn what_events_schedule_comes_as_from_a_sorted_list(
-            begun in proptest::collection::vec((0u64..4, 0u8..3), 1..20),
+            begun in proptest::collection::vec((0u64..4, 0u8..3), 1..60),
             follows in proptest::collection::vec(proptest::collection::vec((0u64..3, 0u8..3), 0..3), 60)
         ) {
             let phases = [Phase::Arrive, Phase::Work, Phase::Observe];
