@@ -221,25 +221,31 @@ impl GpBoard {
         }
     }
 
+    /// Asks programs in turn until all of them wait for what another would have to do. A program goes as far as it can when it is asked,
+    /// so it is asked again only when another has come on since.
     fn poll_until_quiet(&mut self) {
         let mut task_context = TaskContext::from_waker(Waker::noop());
-        loop {
+        let mut quiet = 0;
+        for place in (0..self.tasks.len()).cycle() {
             let before = self.shared.borrow().progress;
-            for task in &mut self.tasks {
-                if self.shared.borrow().is_at_work(task.priority) {
-                    continue;
-                }
-                if let Poll::Ready(result) = task.firmware.as_mut().poll(&mut task_context) {
-                    task.has_ended = true;
-                    self.fault = self.fault.take().or(result.err());
-                }
+            self.poll(place, &mut task_context);
+            let has_come_on = self.shared.borrow().progress != before;
+            quiet = if has_come_on { 1 } else { quiet + 1 };
+            if self.stop() || quiet >= self.tasks.len() {
+                break;
             }
-            if self.tasks.iter().any(|task| task.has_ended) {
-                self.tasks.retain(|task| !task.has_ended);
-            }
-            if self.stop() || self.shared.borrow().progress == before {
-                return;
-            }
+        }
+        self.tasks.retain(|task| !task.has_ended);
+    }
+
+    fn poll(&mut self, place: usize, context: &mut TaskContext<'_>) {
+        let task = &mut self.tasks[place];
+        if task.has_ended || self.shared.borrow().is_at_work(task.priority) {
+            return;
+        }
+        if let Poll::Ready(result) = task.firmware.as_mut().poll(context) {
+            task.has_ended = true;
+            self.fault = self.fault.take().or(result.err());
         }
     }
 

@@ -14,7 +14,8 @@ use std::pin::Pin;
 use std::rc::Rc;
 use std::task::Poll;
 
-/// A program loaded onto a board; it ends only with a fault.
+/// A program loaded onto a board; it ends only with a fault. It waits for one thing at a time: of futures that are polled side by side the
+/// board would know the last one's wait alone.
 pub type Firmware = Pin<Box<dyn Future<Output = Result<(), Fault>>>>;
 
 /// A fault of the simulated machine that stops a program.
