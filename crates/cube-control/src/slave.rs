@@ -6,7 +6,7 @@ use crate::master::copy_order;
 use crate::protocol::{Token, UpdateOrder};
 use crate::update::FaceUpdate;
 use pphigs::{
-    DisplayList, Editing, Handing, PROGRAM_BYTES, Pass, RegionEnvelope, Share, is_no_message, region_messages,
+    DisplayList, Editing, Handing, PROGRAM_BYTES, Pass, RegionEnvelope, Share, has_region_messages, region_messages,
 };
 use pxpl5_gp::{Account, Fault, Gp, Priority, Stage};
 use pxpl5_wire::{Body, CommandList, NodeId, PictureNumber, RegionId, SurfaceId};
@@ -212,7 +212,7 @@ impl TokenBin {
     }
 
     fn is_empty(&self) -> bool {
-        is_no_message(&self.pass, self.region, self.envelope)
+        !has_region_messages(&self.pass, self.region, self.envelope)
     }
 
     fn messages(&self) -> Vec<CommandList> {

@@ -47,10 +47,10 @@ pub fn region_messages(pass: &Arc<Pass>, region: RegionId, context: u8, envelope
     parts.map(list).collect()
 }
 
-/// Whether a region's bin in its envelope is no message at all ([`region_messages`]).
+/// Whether there is any such message, without making them.
 #[must_use]
-pub fn is_no_message(pass: &Pass, region: RegionId, envelope: RegionEnvelope) -> bool {
-    pass.counts(region).total() == 0 && !envelope.begin && pass.ending_words(envelope) == 0
+pub fn has_region_messages(pass: &Pass, region: RegionId, envelope: RegionEnvelope) -> bool {
+    pass.counts(region).total() > 0 || envelope.begin || pass.ending_words(envelope) > 0
 }
 
 /// A message that only copies regions, each from its context.
