@@ -41,7 +41,12 @@ impl<const N: usize> Times<N> {
 
     #[inline(always)]
     pub(super) fn each(ns: impl Fn(usize) -> f64) -> Self {
-        Self(std::array::from_fn(ns))
+        // A loop, because `from_fn` is not always inlined, and then compiled for any processor.
+        let mut all = [0.0; N];
+        for (i, lane) in all.iter_mut().enumerate() {
+            *lane = ns(i);
+        }
+        Self(all)
     }
 
     /// [`later`] of each.

@@ -225,10 +225,13 @@ fn fields_at_once<const N: usize>(models: &[SlatsModel; N], triangles: f64, each
     }
     let rendered = clumps::render(models, arrays, triangles, each);
     let top = copy(models, arrays, rendered + message, &of_top);
-    let bottom = is_split.then(|| {
+    // No closure around lanes: what is not inlined is compiled for any processor.
+    let bottom = if is_split {
         let retrace = Times::each(|i| models[i].field_ns);
-        copy(models, arrays, retrace.later(rendered + message + message), &of_bottom)
-    });
+        Some(copy(models, arrays, retrace.later(rendered + message + message), &of_bottom))
+    } else {
+        None
+    };
     std::array::from_fn(|i| models[i].times(rendered.0[i], top[i], bottom.map(|times| times[i])))
 }
 
