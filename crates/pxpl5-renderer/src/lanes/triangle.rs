@@ -5,7 +5,7 @@ use super::columns::Values;
 use super::enable::Enable;
 use super::template::{Template, starts_anew};
 use crate::command::{COMPONENTS_AT, DEPTH_AT, EDGES_AT};
-use crate::simd::{SimdVector, VectorKernel};
+use crate::simd::{FOUR, SimdVector, VectorKernel};
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_BITS, NORMAL_FRACTION_BITS};
 use pxpl5_wire::{LANES, Linear, TriangleBatch, Word};
 use std::ops::Range;
@@ -23,6 +23,12 @@ impl<V: SimdVector> Walk<V> {
     #[inline(always)]
     fn start(e: &Linear, x: i32, y: i32) -> Self {
         Self { value: V::ramp(e.at(x, y), e.a), step: V::splat(e.a.wrapping_mul(V::LANES as i32)) }
+    }
+
+    /// At the pixels of [fours](FOUR).
+    #[inline(always)]
+    fn start_fours(e: &Linear, [x, y]: [i32; 2]) -> Self {
+        Self { value: V::ramp_of_fours(e.at(x, y), e.a, e.b), step: V::splat(0) }
     }
 
     /// Some rows below, in all of which together the expression grows by `b`.
@@ -69,12 +75,49 @@ struct WideTriangle<V> {
     components: [Slope<V>; 3],
 }
 
+/// How the pixels of a vector lie in the array.
+pub(super) trait Shape {
+    fn load<V: SimdVector>(column: &Values, at: usize) -> V;
+    /// Overwrites where the mask is true; `old` is what pixels hold.
+    fn store<V: SimdVector>(new: V, mask: V::Mask, old: V, column: &mut Values, at: usize);
+}
+
+/// In one row.
+struct InRow;
+
+impl Shape for InRow {
+    #[inline(always)]
+    fn load<V: SimdVector>(column: &Values, at: usize) -> V {
+        V::load(&column.0[at..])
+    }
+
+    #[inline(always)]
+    fn store<V: SimdVector>(new: V, mask: V::Mask, old: V, column: &mut Values, at: usize) {
+        new.store(mask, old, &mut column.0[at..]);
+    }
+}
+
+/// Four in a row, the next ones below.
+struct InFours;
+
+impl Shape for InFours {
+    #[inline(always)]
+    fn load<V: SimdVector>(column: &Values, at: usize) -> V {
+        V::load_fours(&column.0[at..])
+    }
+
+    #[inline(always)]
+    fn store<V: SimdVector>(new: V, mask: V::Mask, old: V, column: &mut Values, at: usize) {
+        new.store_fours(mask, old, &mut column.0[at..]);
+    }
+}
+
 /// What triangles store in the pixels that pass.
 pub(super) trait PaintTriangle {
     /// Takes the colour of the triangle that comes, where it has one.
     fn begin(&mut self, colour: Word);
     /// Stores pixels from index `at` where the mask is true.
-    fn store<V: SimdVector>(&mut self, walks: &[Walk<V>; 3], at: usize, mask: V::Mask);
+    fn store<V: SimdVector, S: Shape>(&mut self, walks: &[Walk<V>; 3], at: usize, mask: V::Mask);
 }
 
 /// Draws triangles into a region.
@@ -220,6 +263,10 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         let Some(bounds) = bounds else { return };
         self.paint.begin(triangle.surface.colour());
         let Area { left, right, top, bottom } = bounds.area;
+        if right - left <= FOUR && !triangle.keep {
+            self.slim::<V, S>(triangle, left.min(WIDTH - FOUR), top..bottom);
+            return;
+        }
         if let Some(x) = one_vector(left, right, V::LANES) {
             self.narrow::<V, S>(triangle, x, top..bottom);
             return;
@@ -262,6 +309,30 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         [self.walk(&p, x, y), self.walk(&q, x, y), self.walk(&r, x, y)]
     }
 
+    /// Four columns from column `x`, and as many rows at a time as a vector has fours: most triangles of a dense scene are in one vector.
+    #[inline(always)]
+    fn slim<V: SimdVector, S: Surface>(&mut self, triangle: &CurrentTriangle<S>, x: usize, rows: Range<usize>) {
+        let tall = V::LANES / FOUR;
+        let vectors = rows.len().div_ceil(tall);
+        let top = rows.start.min(WIDTH - tall * vectors);
+        let [p, q, r] = &triangle.edges;
+        let depth = triangle.surface.depth();
+        for y in (0..vectors).map(|vector| top + tall * vector) {
+            let at = y * WIDTH + x;
+            let own = [x as i32, y as i32];
+            let picture = [self.origin[0] + own[0], self.origin[1] + own[1]];
+            let edges = [Walk::start_fours(p, own), Walk::start_fours(q, own), Walk::start_fours(r, own)];
+            let tested = self.test::<V, InFours>(at, edges, Walk::start_fours(&depth, picture));
+            if V::any_of(tested.mask, tested.mask) {
+                InFours::store(tested.new, tested.mask, tested.old, self.z, at);
+                let [p, q, r] = triangle.surface.components();
+                let p = Walk::start_fours(&p, picture);
+                let walks = [p, Walk::start_fours(&q, picture), Walk::start_fours(&r, picture)];
+                self.paint.store::<V, InFours>(&walks, at, tested.mask);
+            }
+        }
+    }
+
     /// One vector a row, from column `x`; two rows at a time, since branches that nobody can foretell cost more than a row
     /// outside of the triangle.
     #[inline(always)]
@@ -276,15 +347,15 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         for y in (0..pairs).map(|pair| top + 2 * pair) {
             let at = [y * WIDTH + x, (y + 1) * WIDTH + x];
             let lower = [first.below(p), second.below(q), third.below(r), depth.below(deeper)];
-            let upper = self.test(at[0], [first, second, third], depth);
-            let lower = self.test(at[1], [lower[0], lower[1], lower[2]], lower[3]);
+            let upper = self.test::<V, InRow>(at[0], [first, second, third], depth);
+            let lower = self.test::<V, InRow>(at[1], [lower[0], lower[1], lower[2]], lower[3]);
             if V::any_of(upper.mask, lower.mask) {
                 let walks = self.components::<V>(&triangle.surface, x, y);
                 self.nearer(&upper, at[0], triangle.keep);
-                self.paint.store(&walks, at[0], upper.mask);
+                self.paint.store::<V, InRow>(&walks, at[0], upper.mask);
                 let walks = components_below(&triangle.surface, &walks);
                 self.nearer(&lower, at[1], triangle.keep);
-                self.paint.store(&walks, at[1], lower.mask);
+                self.paint.store::<V, InRow>(&walks, at[1], lower.mask);
             }
             first = first.below(2 * p);
             second = second.below(2 * q);
@@ -302,10 +373,10 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         let mut walks = [p.walk(left, y), q.walk(left, y), r.walk(left, y)];
         for x in (left..right).step_by(V::LANES) {
             let at = y * WIDTH + x;
-            let tested = self.test(at, [first, second, third], depth);
+            let tested = self.test::<V, InRow>(at, [first, second, third], depth);
             if V::any_of(tested.mask, tested.mask) {
                 self.nearer(&tested, at, keep);
-                self.paint.store(&walks, at, tested.mask);
+                self.paint.store::<V, InRow>(&walks, at, tested.mask);
             }
             first.advance();
             second.advance();
@@ -319,8 +390,8 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
 
     /// Where no edge is negative and the depth is nearer.
     #[inline(always)]
-    fn test<V: SimdVector>(&self, at: usize, [p, q, r]: [Walk<V>; 3], depth: Walk<V>) -> Tested<V> {
-        let old = V::load(&self.z.0[at..]);
+    fn test<V: SimdVector, S: Shape>(&self, at: usize, [p, q, r]: [Walk<V>; 3], depth: Walk<V>) -> Tested<V> {
+        let old = S::load::<V>(self.z, at);
         let new = depth.value.shift_right(self.z_shift.into());
         Tested { old, new, mask: p.value.or(q.value).or(r.value).passes(new, old) }
     }
@@ -372,9 +443,9 @@ fn three<V: SimdVector>(e: &[Linear; 3], x: usize, y: usize) -> [Walk<V>; 3] {
 }
 
 #[inline(always)]
-fn blend<V: SimdVector>(column: &mut Values, at: usize, mask: V::Mask, new: V) {
-    let old = V::load(&column.0[at..]);
-    new.store(mask, old, &mut column.0[at..]);
+fn blend<V: SimdVector, S: Shape>(column: &mut Values, at: usize, mask: V::Mask, new: V) {
+    let old = S::load::<V>(column, at);
+    S::store(new, mask, old, column, at);
 }
 
 /// Stores interpolated colour, as 0x00RRGGBB.
@@ -387,12 +458,12 @@ impl PaintTriangle for PaintGouraud<'_> {
     fn begin(&mut self, _: Word) {}
 
     #[inline(always)]
-    fn store<V: SimdVector>(&mut self, [red, green, blue]: &[Walk<V>; 3], at: usize, mask: V::Mask) {
+    fn store<V: SimdVector, S: Shape>(&mut self, [red, green, blue]: &[Walk<V>; 3], at: usize, mask: V::Mask) {
         // Each component goes to its place in one shift.
         let red = red.value.shift_left(16 - COLOUR_FRACTION_BITS).and(V::splat(0xff_0000));
         let green = green.value.shift_right(COLOUR_FRACTION_BITS - 8).and(V::splat(0xff00));
         let blue = blue.value.shift_right(COLOUR_FRACTION_BITS).and(V::splat(0xff));
-        blend(self.colour, at, mask, red.or(green).or(blue));
+        blend::<V, S>(self.colour, at, mask, red.or(green).or(blue));
     }
 }
 
@@ -410,11 +481,11 @@ impl PaintTriangle for PaintPhong<'_> {
     }
 
     #[inline(always)]
-    fn store<V: SimdVector>(&mut self, walks: &[Walk<V>; 3], at: usize, mask: V::Mask) {
+    fn store<V: SimdVector, S: Shape>(&mut self, walks: &[Walk<V>; 3], at: usize, mask: V::Mask) {
         let twelve = V::splat((1 << NORMAL_BITS) - 1);
         for (walk, column) in walks.iter().zip(self.normal.iter_mut()) {
-            blend(column, at, mask, walk.value.shift_right(NORMAL_FRACTION_BITS).and(twelve));
+            blend::<V, S>(column, at, mask, walk.value.shift_right(NORMAL_FRACTION_BITS).and(twelve));
         }
-        blend(self.colour, at, mask, V::splat(self.constant as i32));
+        blend::<V, S>(self.colour, at, mask, V::splat(self.constant as i32));
     }
 }
