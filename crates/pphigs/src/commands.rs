@@ -47,6 +47,12 @@ pub fn region_messages(pass: &Arc<Pass>, region: RegionId, context: u8, envelope
     parts.map(list).collect()
 }
 
+/// Whether there is any such message.
+#[must_use]
+pub fn has_region_messages(pass: &Pass, region: RegionId, envelope: RegionEnvelope) -> bool {
+    Parts::new(pass, region, envelope).next().is_some()
+}
+
 /// A message that only copies regions, each from its context.
 #[must_use]
 pub fn copy_message(layout: Layout, copies: Vec<CopyOrder>, pixels: bool) -> CommandList {

@@ -8,6 +8,8 @@ mod general;
 mod large;
 mod roots;
 mod shade;
+mod shape;
+mod slim;
 mod sphere;
 mod template;
 mod triangle;

@@ -6,7 +6,7 @@ use crate::protocol::{StageOrder, Token};
 use crate::rules::EyeDrawing;
 use pphigs::{
     BIN_ENTRY_BYTES, Editing, FrameView, Handing, PROGRAM_BYTES, Pass, RegionEnvelope, Share, Transforming,
-    region_messages,
+    has_region_messages, region_messages,
 };
 use pxpl5_gp::{Account, Fault, Gp, Priority, Stage};
 use pxpl5_wire::{Body, NodeId, PictureNumber, RegionId};
@@ -221,7 +221,7 @@ async fn walk(
 /// Whether this slave has nothing for the token's region.
 fn is_empty(config: &RenderingControlConfig, state: &SharedSlaveState, token: Token) -> bool {
     let pass = &state.borrow().bins[(token.drawing.0 % 2) as usize];
-    pass.as_ref().is_none_or(|pass| region_messages(pass, token.region, 0, envelope(config, token)).is_empty())
+    pass.as_ref().is_none_or(|pass| !has_region_messages(pass, token.region, envelope(config, token)))
 }
 
 /// What tells the next slave, or the master, of a token.

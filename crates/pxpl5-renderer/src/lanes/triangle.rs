@@ -3,9 +3,11 @@
 use super::bounds::{Area, Boxes, Edges, Spans};
 use super::columns::Values;
 use super::enable::Enable;
+use super::shape::{InRow, Shape};
+use super::slim::SlimTriangles;
 use super::template::{Template, starts_anew};
 use crate::command::{COMPONENTS_AT, DEPTH_AT, EDGES_AT};
-use crate::simd::{FOUR, SimdVector, VectorKernel};
+use crate::simd::{SimdVector, VectorKernel};
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_BITS, NORMAL_FRACTION_BITS};
 use pxpl5_wire::{LANES, Linear, TriangleBatch, Word};
 use std::ops::Range;
@@ -25,15 +27,15 @@ impl<V: SimdVector> Walk<V> {
         Self { value: V::ramp(e.at(x, y), e.a), step: V::splat(e.a.wrapping_mul(V::LANES as i32)) }
     }
 
-    /// At the pixels of [fours](FOUR).
+    /// At the pixels of a vector of [fours](crate::simd::FOUR), the first of which has this value. It is not walked along a row.
     #[inline(always)]
-    fn start_fours(e: &Linear, [x, y]: [i32; 2]) -> Self {
-        Self { value: V::ramp_of_fours(e.at(x, y), e.a, e.b), step: V::splat(0) }
+    pub(super) fn fours(first: i32, a: i32, b: i32) -> Self {
+        Self { value: V::ramp_of_fours(first, a, b), step: V::splat(0) }
     }
 
     /// Some rows below, in all of which together the expression grows by `b`.
     #[inline(always)]
-    fn below(&self, b: i32) -> Self {
+    pub(super) fn below(&self, b: i32) -> Self {
         Self { value: self.value.add(V::splat(b)), step: self.step }
     }
 
@@ -73,43 +75,6 @@ struct WideTriangle<V> {
     edges: [Slope<V>; 3],
     depth: Slope<V>,
     components: [Slope<V>; 3],
-}
-
-/// How the pixels of a vector lie in the array.
-pub(super) trait Shape {
-    fn load<V: SimdVector>(column: &Values, at: usize) -> V;
-    /// Overwrites where the mask is true; `old` is what pixels hold.
-    fn store<V: SimdVector>(new: V, mask: V::Mask, old: V, column: &mut Values, at: usize);
-}
-
-/// In one row.
-struct InRow;
-
-impl Shape for InRow {
-    #[inline(always)]
-    fn load<V: SimdVector>(column: &Values, at: usize) -> V {
-        V::load(&column.0[at..])
-    }
-
-    #[inline(always)]
-    fn store<V: SimdVector>(new: V, mask: V::Mask, old: V, column: &mut Values, at: usize) {
-        new.store(mask, old, &mut column.0[at..]);
-    }
-}
-
-/// Four in a row, the next ones below.
-struct InFours;
-
-impl Shape for InFours {
-    #[inline(always)]
-    fn load<V: SimdVector>(column: &Values, at: usize) -> V {
-        V::load_fours(&column.0[at..])
-    }
-
-    #[inline(always)]
-    fn store<V: SimdVector>(new: V, mask: V::Mask, old: V, column: &mut Values, at: usize) {
-        new.store_fours(mask, old, &mut column.0[at..]);
-    }
 }
 
 /// What triangles store in the pixels that pass.
@@ -204,10 +169,10 @@ struct CurrentTriangle<S> {
 }
 
 /// The depth test of a vector of pixels.
-struct Tested<V: SimdVector> {
-    old: V,
-    new: V,
-    mask: V::Mask,
+pub(super) struct Tested<V: SimdVector> {
+    pub(super) old: V,
+    pub(super) new: V,
+    pub(super) mask: V::Mask,
 }
 
 impl<const N: usize, P: PaintTriangle> VectorKernel for DrawTriangles<'_, N, P> {
@@ -244,7 +209,12 @@ impl<P: PaintTriangle> VectorKernel for DrawBatch<'_, P> {
         let mut edges = Edges(*self.batch.edges);
         edges.localise(self.painter.origin);
         let boxes = Boxes::enclosing(&edges);
+        let slim = SlimTriangles::among::<V>(&boxes, &edges, self.batch.planes, self.painter.origin);
         for i in 0..self.batch.len.min(LANES) {
+            if slim.has(i) {
+                slim.draw::<V, P>(&mut self.painter, self.batch, &edges, i);
+                continue;
+            }
             let surface = OfBatch { batch: self.batch, i };
             let triangle = CurrentTriangle { edges: edges.get(i), surface, keep: false };
             self.painter.triangle::<V, _>(&triangle, &boxes, i);
@@ -263,10 +233,6 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         let Some(bounds) = bounds else { return };
         self.paint.begin(triangle.surface.colour());
         let Area { left, right, top, bottom } = bounds.area;
-        if right - left <= FOUR && !triangle.keep {
-            self.slim::<V, S>(triangle, left.min(WIDTH - FOUR), top..bottom);
-            return;
-        }
         if let Some(x) = one_vector(left, right, V::LANES) {
             self.narrow::<V, S>(triangle, x, top..bottom);
             return;
@@ -307,30 +273,6 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
     fn components<V: SimdVector>(&self, surface: &impl Surface, x: usize, y: usize) -> [Walk<V>; 3] {
         let [p, q, r] = surface.components();
         [self.walk(&p, x, y), self.walk(&q, x, y), self.walk(&r, x, y)]
-    }
-
-    /// Four columns from column `x`, and as many rows at a time as a vector has fours: most triangles of a dense scene are in one vector.
-    #[inline(always)]
-    fn slim<V: SimdVector, S: Surface>(&mut self, triangle: &CurrentTriangle<S>, x: usize, rows: Range<usize>) {
-        let tall = V::LANES / FOUR;
-        let vectors = rows.len().div_ceil(tall);
-        let top = rows.start.min(WIDTH - tall * vectors);
-        let [p, q, r] = &triangle.edges;
-        let depth = triangle.surface.depth();
-        for y in (0..vectors).map(|vector| top + tall * vector) {
-            let at = y * WIDTH + x;
-            let own = [x as i32, y as i32];
-            let picture = [self.origin[0] + own[0], self.origin[1] + own[1]];
-            let edges = [Walk::start_fours(p, own), Walk::start_fours(q, own), Walk::start_fours(r, own)];
-            let tested = self.test::<V, InFours>(at, edges, Walk::start_fours(&depth, picture));
-            if V::any_of(tested.mask, tested.mask) {
-                InFours::store(tested.new, tested.mask, tested.old, self.z, at);
-                let [p, q, r] = triangle.surface.components();
-                let p = Walk::start_fours(&p, picture);
-                let walks = [p, Walk::start_fours(&q, picture), Walk::start_fours(&r, picture)];
-                self.paint.store::<V, InFours>(&walks, at, tested.mask);
-            }
-        }
     }
 
     /// One vector a row, from column `x`; two rows at a time, since branches that nobody can foretell cost more than a row
@@ -390,7 +332,12 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
 
     /// Where no edge is negative and the depth is nearer.
     #[inline(always)]
-    fn test<V: SimdVector, S: Shape>(&self, at: usize, [p, q, r]: [Walk<V>; 3], depth: Walk<V>) -> Tested<V> {
+    pub(super) fn test<V: SimdVector, S: Shape>(
+        &self,
+        at: usize,
+        [p, q, r]: [Walk<V>; 3],
+        depth: Walk<V>,
+    ) -> Tested<V> {
         let old = S::load::<V>(self.z, at);
         let new = depth.value.shift_right(self.z_shift.into());
         Tested { old, new, mask: p.value.or(q.value).or(r.value).passes(new, old) }
