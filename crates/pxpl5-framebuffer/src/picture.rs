@@ -33,9 +33,9 @@ impl Canvas {
     pub(crate) fn into_image(self) -> RgbImage {
         let height = self.words.len() as u32 / self.width;
         let mut bytes = vec![0; 3 * self.words.len()];
-        for (pixel, word) in bytes.as_chunks_mut().0.iter_mut().zip(&self.words) {
+        for (pixel, word) in bytes.chunks_exact_mut(3).zip(&self.words) {
             let [_, red, green, blue] = word.to_be_bytes();
-            *pixel = [red, green, blue];
+            pixel.copy_from_slice(&[red, green, blue]);
         }
         RgbImage::from_raw(self.width, height, bytes).unwrap_or_default()
     }
@@ -50,9 +50,9 @@ impl CanvasRow<'_> {
         // An image that is too short leaves black.
         let pixels = image.get(segment.image_range()).unwrap_or_default();
         for ((i, word), pixel) in (0..).zip(self.0).zip(pixels) {
-            // Stored in any case, so that vectors of them are where all are chosen.
-            let is_put_now = *word & PUT == 0 && chosen(i);
-            *word = if is_put_now { pixel | PUT } else { *word };
+            if *word & PUT == 0 && chosen(i) {
+                *word = pixel | PUT;
+            }
         }
     }
 }
