@@ -43,6 +43,6 @@ mod value;
 pub use error::ParameterError;
 pub use info::{ParameterInfo, Standing};
 pub use nearest::nearest;
-pub use number::{Number, check};
+pub use number::{Number, check, check_value};
 pub use table::{Entry, ParameterTable};
 pub use value::{MAX, Value};

@@ -82,6 +82,16 @@ macro_rules! parameter_table {
                     _ => ::core::result::Result::Err($crate::ParameterError::unknown(name, Self::INFOS)),
                 }
             }
+
+            // Without names to compare: who checks many machines does it for each of them.
+            fn check(&self) -> ::core::result::Result<(), $crate::ParameterError> {
+                $($crate::check_value(
+                    stringify!($field),
+                    self.$field.into(),
+                    $crate::number!(pair $($real)? : $low, $high $(, $least, $most)?),
+                )?;)*
+                ::core::result::Result::Ok(())
+            }
         }
 
         impl ::core::cmp::PartialEq for $name {

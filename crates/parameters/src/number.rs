@@ -36,9 +36,14 @@ impl Number for f64 {
 ///
 /// [`ParameterError::OutOfLimits`] if it is beyond the limits, which are the smallest and the largest value allowed.
 pub fn check<N: Number>(name: &'static str, found: N, limits: (N, N)) -> Result<(), ParameterError> {
-    let limits = (limits.0.into(), limits.1.into());
-    let found = found.into();
-    if (limits.0..=limits.1).contains(&found) {
+    check_value(name, found.into(), (limits.0.into(), limits.1.into()))
+}
+
+/// The same of a value. Where the limits are constants it is two comparisons.
+#[doc(hidden)]
+#[inline]
+pub fn check_value(name: &'static str, found: Value, limits: (Value, Value)) -> Result<(), ParameterError> {
+    if limits.0 <= found && found <= limits.1 {
         return Ok(());
     }
     Err(ParameterError::OutOfLimits { name, limits, found })

@@ -52,6 +52,7 @@ impl PartialEq for Value {
 impl Eq for Value {}
 
 impl PartialOrd for Value {
+    #[inline]
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         match (self, other) {
             (Self::Whole(own), Self::Whole(other)) => Some(own.cmp(other)),
@@ -80,12 +81,14 @@ impl fmt::Display for Value {
 }
 
 impl From<u64> for Value {
+    #[inline]
     fn from(n: u64) -> Self {
         Self::Whole(n)
     }
 }
 
 impl From<f64> for Value {
+    #[inline]
     fn from(x: f64) -> Self {
         Self::Real(x)
     }

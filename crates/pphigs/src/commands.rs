@@ -106,6 +106,21 @@ impl Parts {
     }
 }
 
+impl Parts {
+    /// A message by its number. Those between the first and the last one with triangles are alike, and not filled one by one.
+    fn skip_to(mut self, number: u32) -> Option<RegionPart> {
+        if number == 0 {
+            return self.next();
+        }
+        self.next()?;
+        let select_words = CommandKind::SelectRegion.words() * u32::from(self.selects);
+        let full = (MAX_MESSAGE_WORDS - select_words) / self.words_each[0];
+        let skipped = (number - 1).min((self.triangles.len() as u32).saturating_sub(1) / full);
+        self.triangles.start += skipped * full;
+        self.nth((number - 1 - skipped) as usize)
+    }
+}
+
 impl Iterator for Parts {
     type Item = RegionPart;
 
@@ -229,7 +244,7 @@ impl CommandWords for RegionWords {
 impl RegionWords {
     /// What a message holds: nothing where there are not so many.
     fn part(&self, number: u32) -> RegionPart {
-        Parts::new(&self.pass, self.region, self.envelope).nth(number as usize).unwrap_or_default()
+        Parts::new(&self.pass, self.region, self.envelope).skip_to(number).unwrap_or_default()
     }
 
     /// All commands of a message, with some of the triangles.

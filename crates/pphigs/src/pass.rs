@@ -41,8 +41,8 @@ pub struct Pass {
     bins: OnceLock<Vec<Bin>>,
     /// Where all regions get all triangles.
     touching: OnceLock<Touching>,
-    /// Makes the words of triangles; `None` where nobody wants pixels.
-    encoder: Option<Encoder>,
+    /// Makes the words of triangles, once somebody wants them.
+    encoder: OnceLock<Option<Encoder>>,
 }
 
 /// What binning goes through.
@@ -285,8 +285,7 @@ impl Pass {
             let mut noting = Noting { counting, touching: Default::default() };
             (walk.go(&mut noting), noting.counting.found(Some(noting.touching)))
         };
-        let encoder = picture.pixels.then(|| Encoder::for_picture(&picture)).flatten();
-        Self { walk, found, stats, bins: OnceLock::new(), touching: OnceLock::new(), encoder }
+        Self { walk, found, stats, bins: OnceLock::new(), touching: OnceLock::new(), encoder: OnceLock::new() }
     }
 
     /// What is in the bins, found again.
@@ -369,8 +368,8 @@ impl Pass {
         &self.walk.share
     }
 
-    pub(crate) const fn encoder(&self) -> Option<&Encoder> {
-        self.encoder.as_ref()
+    pub(crate) fn encoder(&self) -> Option<&Encoder> {
+        self.encoder.get_or_init(|| Encoder::for_picture(self.picture())).as_ref()
     }
 
     pub(crate) fn bin(&self, region: RegionId) -> &Bin {

@@ -1,6 +1,17 @@
 //! Frame-buffer ports: one region at a time, in order of arrival.
 
-use super::renderer::Times;
+use super::renderer::{Array, Times};
+
+/// A loop over the lanes that compilers turn into one operation on all of them.
+macro_rules! lanes {
+    ($i:ident => $lane:expr) => {{
+        let mut all = [Default::default(); N];
+        for $i in 0..N {
+            all[$i] = $lane;
+        }
+        all
+    }};
+}
 
 /// Renderers that are looked at one by one; more than there are field regions never hold one.
 pub(super) const MOST_RENDERERS: usize = 20;
@@ -43,85 +54,124 @@ pub struct CopyTimes {
     pub end_ns: f64,
 }
 
-/// The copies of renderers on some machines at once, which have the same ones to make.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Copies<const N: usize> {
-    /// When each renderer is ready for its next copy, or free for good.
-    pub(super) ready: [Times<N>; MOST_RENDERERS],
+/// The ports of some machines at once, while copies are made.
+struct Ports<const N: usize> {
+    free: [Times<N>; 2],
+    begins: Times<N>,
+    ends: Times<N>,
 }
 
-impl<const N: usize> Copies<N> {
-    /// Makes all copies of so many renderers, each of `region` nanoseconds: the renderer that is ready first goes first, of several the
-    /// one with the lowest number.
+/// Makes all copies of some renderers, each of `region` nanoseconds: the renderer that is ready first goes first, of several the one with
+/// the lowest number. A renderer is free for good when its last copy has ended.
+///
+/// As long as the same renderer is first on all machines nothing has to be chosen for each of them.
+#[inline(always)]
+pub(super) fn make<const N: usize>(
+    arrays: &mut [Array<N>],
+    queues: &[Queue; MOST_RENDERERS],
+    region: Times<N>,
+) -> [CopyTimes; N] {
+    let mut left = *queues;
+    let mut ports = Ports::new();
+    while let Some(first) = first_of_all(arrays, &left) {
+        let to_right = left[first].0 & Queue::RIGHT != 0;
+        left[first].0 >>= Queue::BITS;
+        arrays[first].free = ports.copy(arrays[first].free, to_right, region);
+    }
+    ports.copy_apart(arrays, &left, region);
+    std::array::from_fn(|i| CopyTimes { begin_ns: ports.begins.0[i], end_ns: ports.ends.0[i] })
+}
+
+/// The renderer that goes first on all machines; `None` where they are not one, or all copies have been made.
+#[inline(always)]
+fn first_of_all<const N: usize>(arrays: &[Array<N>], left: &[Queue; MOST_RENDERERS]) -> Option<usize> {
+    let waiting = || (0..arrays.len()).filter(|r| left[*r].0 != 0);
+    let there = |r: &usize| arrays[*r].free.0[0];
+    let first = waiting().min_by(|a, b| there(a).total_cmp(&there(b)))?;
+    let own = arrays[first].free.0;
+    let mut not_first = [0; N];
+    for r in waiting() {
+        let other = arrays[r].free.0;
+        let before = if r < first { where_no_more(other, own) } else { where_less(other, own) };
+        not_first = lanes!(i => not_first[i] | before[i]);
+    }
+    (not_first == [0; N]).then_some(first)
+}
+
+impl<const N: usize> Ports<N> {
+    const fn new() -> Self {
+        Self { free: [Times::all(f64::MIN); 2], begins: Times::all(f64::INFINITY), ends: Times::all(f64::MIN) }
+    }
+
+    /// A copy to one of the two ports from an instant on; its end.
     #[inline(always)]
-    pub(super) fn make(
-        &mut self,
-        queues: &[Queue; MOST_RENDERERS],
-        renderers: usize,
-        region: Times<N>,
-    ) -> [CopyTimes; N] {
-        let never = f64::INFINITY;
-        let mut left = [[0_u64; N]; MOST_RENDERERS];
+    fn copy(&mut self, ready: Times<N>, to_right: bool, region: Times<N>) -> Times<N> {
+        let begin = self.free[usize::from(to_right)].later(ready);
+        let end = begin + region;
+        self.free[usize::from(to_right)] = end;
+        self.note(begin, end);
+        end
+    }
+
+    /// A later copy may begin sooner, on the other port.
+    #[inline(always)]
+    fn note(&mut self, begin: Times<N>, end: Times<N>) {
+        self.begins = self.begins.sooner(begin);
+        self.ends = self.ends.later(end);
+    }
+
+    /// The copies that are left, in an order of their own on each machine.
+    #[inline(always)]
+    fn copy_apart(&mut self, arrays: &mut [Array<N>], queues: &[Queue; MOST_RENDERERS], region: Times<N>) {
+        let never = [f64::INFINITY; N];
+        let mut left = queues.map(|queue| [queue.0; N]);
         // When each renderer could begin: never where nothing is left to do.
-        let mut next = self.ready;
-        for r in 0..renderers {
-            left[r] = [queues[r].0; N];
-            if queues[r].0 == 0 {
-                next[r] = Times::all(never);
-            }
-        }
-        let mut ports = [[f64::MIN; N]; 2];
-        let (mut begins, mut ends) = (Times::<N>::all(never), Times::<N>::all(f64::MIN));
-        for _ in 0..queues[..renderers].iter().map(|queue| queue.len()).sum::<u32>() {
-            let (mut first, mut chosen, mut copy) = ([never; N], [0; N], [0; N]);
-            for r in 0..renderers {
-                let sooner = where_less(next[r].0, first);
-                first = select_times(sooner, next[r].0, first);
+        let mut next = [never; MOST_RENDERERS];
+        let waiting = arrays.iter().zip(&mut next).zip(queues).filter(|(_, queue)| queue.0 != 0);
+        waiting.for_each(|((array, next), _)| *next = array.free.0);
+        for _ in 0..queues.iter().map(|queue| queue.len()).sum::<u32>() {
+            let (mut first, mut chosen, mut copy) = (never, [0; N], [0; N]);
+            for r in 0..arrays.len() {
+                let sooner = where_less(next[r], first);
+                first = select_times(sooner, next[r], first);
                 chosen = select(sooner, [r as u64; N], chosen);
                 copy = select(sooner, left[r], copy);
             }
-            let to_right = where_set(copy, Queue::RIGHT);
-            let port = select_times(to_right, ports[1], ports[0]);
-            let begin = Times(port).later(Times(first));
-            let end = begin + region;
-            ports = [select_times(to_right, ports[0], end.0), select_times(to_right, end.0, ports[1])];
-            // A later copy may begin sooner, on the other port.
-            begins = begins.sooner(begin);
-            ends = ends.later(end);
-            for r in 0..renderers {
+            let end = self.copy_where(Times(first), where_set(copy, Queue::RIGHT), region);
+            for r in 0..arrays.len() {
                 let is_chosen = where_equal(chosen, [r as u64; N]);
                 let rest = shifted(left[r], Queue::BITS);
-                let then = select_times(where_equal(rest, [0; N]), [never; N], end.0);
+                let then = select_times(where_equal(rest, [0; N]), never, end.0);
                 left[r] = select(is_chosen, rest, left[r]);
-                next[r].0 = select_times(is_chosen, then, next[r].0);
-                self.ready[r].0 = select_times(is_chosen, end.0, self.ready[r].0);
+                next[r] = select_times(is_chosen, then, next[r]);
+                arrays[r].free.0 = select_times(is_chosen, end.0, arrays[r].free.0);
             }
         }
-        let mut all = [CopyTimes { begin_ns: never, end_ns: never }; N];
-        for (i, times) in all.iter_mut().enumerate() {
-            *times = CopyTimes { begin_ns: begins.0[i], end_ns: ends.0[i] };
-        }
-        all
+    }
+
+    /// A copy to the right port where the mask says so, and else to the left one; its end.
+    #[inline(always)]
+    fn copy_where(&mut self, ready: Times<N>, to_right: Mask<N>, region: Times<N>) -> Times<N> {
+        let [left, right] = self.free;
+        let begin = Times(select_times(to_right, right.0, left.0)).later(ready);
+        let end = begin + region;
+        self.free = [select_times(to_right, left.0, end.0), select_times(to_right, end.0, right.0)].map(Times);
+        self.note(begin, end);
+        end
     }
 }
 
 /// All bits of a lane where something holds of it.
 type Mask<const N: usize> = [u64; N];
 
-/// A loop over the lanes that compilers turn into one operation on all of them.
-macro_rules! lanes {
-    ($i:ident => $lane:expr) => {{
-        let mut all = [Default::default(); N];
-        for $i in 0..N {
-            all[$i] = $lane;
-        }
-        all
-    }};
-}
-
 #[inline(always)]
 fn where_less<const N: usize>(a: [f64; N], b: [f64; N]) -> Mask<N> {
     lanes!(i => u64::from(a[i] < b[i]).wrapping_neg())
+}
+
+#[inline(always)]
+fn where_no_more<const N: usize>(a: [f64; N], b: [f64; N]) -> Mask<N> {
+    lanes!(i => u64::from(a[i] <= b[i]).wrapping_neg())
 }
 
 #[inline(always)]
@@ -158,8 +208,7 @@ mod tests {
         for (queue, boards) in queues.iter_mut().zip(order) {
             boards.iter().for_each(|right| queue.push(*right));
         }
-        let mut copies = Copies { ready: [Times::all(0.0); MOST_RENDERERS] };
-        let [times] = copies.make(&queues, 5, Times::all(region_ns));
+        let [times] = make(&mut [Array::idle(); 5], &queues, Times::all(region_ns));
         times
     }
 

@@ -18,6 +18,7 @@
 //!
 //! Times are nanoseconds in f64; an error of 1 ns is far below everything that is compared.
 
+mod clumps;
 mod copies;
 mod load;
 mod renderer;

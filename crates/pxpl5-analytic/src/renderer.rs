@@ -1,7 +1,7 @@
 //! A renderer's input FIFO and array, a message at a time.
 
 use pxpl5_renderer::{CommandKind, RendererTiming};
-use std::ops::{Add, Sub};
+use std::ops::{Add, Mul, Sub};
 
 /// The later of two times. (`f64::max` has to look for a NaN; there is none.)
 #[inline]
@@ -30,13 +30,6 @@ impl Cost {
     }
 }
 
-/// Depth and speed of the FIFO.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Fifo {
-    pub(super) depth_words: f64,
-    pub(super) word_ns: f64,
-}
-
 /// Times of some configurations at once, nanoseconds: everything is done to each by itself, so that each is what it would be alone.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Times<const N: usize>(pub(super) [f64; N]);
@@ -48,7 +41,12 @@ impl<const N: usize> Times<N> {
 
     #[inline(always)]
     pub(super) fn each(ns: impl Fn(usize) -> f64) -> Self {
-        Self(std::array::from_fn(ns))
+        // A loop, because `from_fn` is not always inlined, and then compiled for any processor.
+        let mut all = [0.0; N];
+        for (i, lane) in all.iter_mut().enumerate() {
+            *lane = ns(i);
+        }
+        Self(all)
     }
 
     /// [`later`] of each.
@@ -80,17 +78,58 @@ impl<const N: usize> Sub for Times<N> {
     }
 }
 
+impl<const N: usize> Mul for Times<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self::each(|i| self.0[i] * other.0[i])
+    }
+}
+
+/// Depth and speed of the FIFOs of some configurations.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Fifos<const N: usize> {
+    pub(super) depth_words: Times<N>,
+    pub(super) word_ns: Times<N>,
+}
+
+/// Words and times of what is sent on some configurations.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Costs<const N: usize> {
+    pub(super) words: Times<N>,
+    pub(super) ns: Times<N>,
+}
+
+impl<const N: usize> Costs<N> {
+    #[inline(always)]
+    pub(super) fn each(of: impl Fn(usize) -> Cost) -> Self {
+        Self { words: Times::each(|i| of(i).words), ns: Times::each(|i| of(i).ns) }
+    }
+}
+
+impl<const N: usize> Add for Costs<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self { words: self.words + other.words, ns: self.ns + other.ns }
+    }
+}
+
 /// A message of equal commands in a row, with all of its times that do not depend on when it comes.
+///
+/// Of a message's first word everything else is sums and the latest of some: `max(a, b) + c` is exactly `max(a + c, b + c)`, whatever is
+/// rounded, so sums are taken before maxima where fewer then wait for each other.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Commands<const N: usize> {
-    /// Words before the commands, on the channel, and the time that they take: selection, clearing.
+    /// Words before the commands on the channel, and the time that they take: selection, clearing.
     head_wire: Times<N>,
     head: Times<N>,
+    /// From the head's last word to the start of the first command, if the array is free.
+    lead: Times<N>,
     /// How many commands, and the time of one.
-    count: Times<N>,
+    count: f64,
     each: Times<N>,
-    /// One command and the whole message on the channel.
-    first_wire: Times<N>,
+    /// The whole message on the channel.
     wire: Times<N>,
     /// From the start of the first command to the end of the last one, with the words at their heels.
     drawing: Times<N>,
@@ -102,77 +141,73 @@ pub(super) struct Commands<const N: usize> {
 }
 
 impl<const N: usize> Commands<N> {
-    /// A configuration's `count` commands behind a head, and so on, for each configuration.
+    /// So many commands behind a head.
     #[inline(always)]
-    pub(super) fn new(of: impl Fn(usize) -> (Fifo, Cost, f64, Cost)) -> Self {
-        let none = Times::all(0.0);
-        let mut all = Self {
-            head_wire: none,
-            head: none,
-            count: none,
-            each: none,
-            first_wire: none,
-            wire: none,
-            drawing: none,
-            room_after: Times::all(f64::MIN),
-            room_before: Times::all(f64::INFINITY),
-        };
-        for i in 0..N {
-            let (Fifo { depth_words, word_ns }, head, count, each) = of(i);
-            let total = head.words + count * each.words;
-            let slowest = each.ns.max(each.words * word_ns);
-            let before_last = total - 1.0 - depth_words - head.words;
-            if before_last >= 0.0 {
-                let command = (before_last / each.words).floor().min(count);
-                let behind = before_last - command * each.words + 1.0;
-                all.room_after.0[i] = command * each.ns + behind.min(each.words) * word_ns;
-            } else {
-                all.room_before.0[i] = (-before_last / each.words).ceil();
-            }
-            all.head.0[i] = head.ns;
-            all.head_wire.0[i] = head.words * word_ns;
-            all.count.0[i] = count;
-            all.each.0[i] = each.ns;
-            all.first_wire.0[i] = each.words * word_ns;
-            all.wire.0[i] = total * word_ns;
-            all.drawing.0[i] = (count * each.ns).max((count - 1.0).max(0.0) * slowest + each.ns);
+    pub(super) fn new(fifos: &Fifos<N>, head: &Costs<N>, count: f64, each: &Costs<N>) -> Self {
+        let (word_ns, counts) = (fifos.word_ns, Times::all(count));
+        let total = head.words + counts * each.words;
+        let first_wire = each.words * word_ns;
+        let slowest = each.ns.later(first_wire);
+        let before_last = total - Times::all(1.0) - fifos.depth_words - head.words;
+        let room_after = Times::each(|i| {
+            let command = sooner((before_last.0[i] / each.words.0[i]).floor(), count);
+            let behind = before_last.0[i] - command * each.words.0[i] + 1.0;
+            let after = command * each.ns.0[i] + sooner(behind, each.words.0[i]) * word_ns.0[i];
+            if before_last.0[i] >= 0.0 { after } else { f64::MIN }
+        });
+        let room_before = Times::each(|i| {
+            let place = (-before_last.0[i] / each.words.0[i]).ceil();
+            if before_last.0[i] >= 0.0 { f64::INFINITY } else { place }
+        });
+        Self {
+            head_wire: head.words * word_ns,
+            head: head.ns,
+            lead: head.ns.later(first_wire),
+            count,
+            each: each.ns,
+            wire: total * word_ns,
+            drawing: (counts * each.ns).later(Times::all(later(count - 1.0, 0.0)) * slowest + each.ns),
+            room_after,
+            room_before,
         }
-        all
+    }
+
+    /// From the start of the first command of the message before to when its room is there for the last word of this one; before all
+    /// times where no room of that message is waited for.
+    #[inline(always)]
+    pub(super) fn room_behind(&self, before: &Self) -> Times<N> {
+        Times::each(|i| {
+            let back = self.room_before.0[i];
+            if back > before.count { f64::NEG_INFINITY } else { (before.count - back) * before.each.0[i] }
+        })
     }
 }
 
 /// What is known of a renderer between messages.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Array<const N: usize> {
-    /// When everything sent to it so far has been executed.
+    /// When everything sent to it so far has been executed, or the copy that holds it has ended.
     pub(super) free: Times<N>,
-    /// When the last message's first command started, how many there were, and their time.
+    /// When its port was free again.
+    pub(super) released: Times<N>,
+    /// When the last message's first command started.
     last_start: Times<N>,
-    last_count: Times<N>,
-    last_each: Times<N>,
 }
 
 impl<const N: usize> Array<N> {
-    /// An array that is busy, or held by a copy, until `free`.
-    pub(super) const fn busy_until(free: Times<N>) -> Self {
-        Self { free, last_start: free, last_count: Times::all(0.0), last_each: Times::all(0.0) }
+    /// An array without anything to do.
+    pub(super) const fn idle() -> Self {
+        Self { free: Times::all(0.0), released: Times::all(0.0), last_start: Times::all(0.0) }
     }
 
-    /// A message whose first word begins at `first_word`: when its last word has entered.
+    /// A message whose first word begins at `first_word`, behind one that leaves room [so long](Commands::room_behind) after its first
+    /// command: when its last word has entered.
     #[inline(always)]
-    pub(super) fn take(&mut self, first_word: Times<N>, commands: &Commands<N>) -> Times<N> {
-        let head_at = first_word + commands.head_wire;
-        let start = (head_at.later(self.free) + commands.head).later(head_at + commands.first_wire);
-        let before = Times::each(|i| {
-            let back = commands.room_before.0[i];
-            let at = self.last_start.0[i] + (self.last_count.0[i] - back) * self.last_each.0[i];
-            if back > self.last_count.0[i] { f64::MIN } else { at }
-        });
-        let room = (start + commands.room_after).later(before);
-        let accepted = (first_word + commands.wire).later(room);
+    pub(super) fn take(&mut self, first_word: Times<N>, commands: &Commands<N>, behind: Times<N>) -> Times<N> {
+        let start = (first_word + commands.head_wire + commands.lead).later(self.free + commands.head);
+        let sent = (first_word + commands.wire).later(self.last_start + behind);
+        let accepted = (start + commands.room_after).later(sent);
         self.last_start = start;
-        self.last_count = commands.count;
-        self.last_each = commands.each;
         self.free = (start + commands.drawing).later(accepted);
         accepted
     }

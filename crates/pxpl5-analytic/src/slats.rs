@@ -1,8 +1,9 @@
 //! Slats: one field.
 
-use super::copies::{Copies, CopyTimes, MOST_RENDERERS, Queue};
+use super::clumps::{self, MOST_CHANNELS};
+use super::copies::{self, CopyTimes, MOST_RENDERERS, Queue};
 use super::load::Load;
-use super::renderer::{Array, Commands, Cost, Fifo, Times};
+use super::renderer::{Array, Cost, Times};
 use crate::{pipeline_of, video_of};
 use multiversion::multiversion;
 use pphigs::{RegionBinning, TransformCost};
@@ -17,10 +18,9 @@ use pxpl5_run::{
 use pxpl5_scene::Scene;
 use pxpl5_sim::Time;
 use pxpl5_wire::{FieldParity, PeriodNumber, RegionGrid};
-use slats::CLUMP;
 
 /// Field regions of both eyes.
-const REGIONS: usize = 20;
+pub(super) const REGIONS: usize = 20;
 
 /// Eyes, for each of which a structure is put in its place.
 const EYES: f64 = 2.0;
@@ -34,23 +34,24 @@ fn begin_ns(gp: &GpTiming, structures: usize, sphere_views: usize) -> f64 {
 /// Slats on a machine, reduced to numbers.
 #[derive(Clone, Debug)]
 pub struct SlatsModel {
-    fifo: Fifo,
-    overhead_ns: f64,
-    hop_ns: f64,
+    pub(super) fifo_words: f64,
+    pub(super) word_ns: f64,
+    pub(super) overhead_ns: f64,
+    pub(super) hop_ns: f64,
     gp: GpTiming,
     /// The beginning of a pass.
-    begin_ns: f64,
-    message_ns: f64,
-    command: Cost,
-    select: Cost,
-    clear: Cost,
+    pub(super) begin_ns: f64,
+    pub(super) message_ns: f64,
+    pub(super) command: Cost,
+    pub(super) select: Cost,
+    pub(super) clear: Cost,
     region_ns: f64,
     field_ns: f64,
     /// From a retrace to the scan of the first line of the bottom regions.
     bottom_ns: f64,
     renderers: usize,
-    gps: usize,
-    source_channels: usize,
+    pub(super) gps: usize,
+    pub(super) source_channels: usize,
     split: bool,
 }
 
@@ -101,7 +102,8 @@ impl SlatsModel {
         let messages = (15_360.0_f64 / 1_024.0).ceil();
         let word_ns = config.ring.word_ns as f64;
         Ok(Self {
-            fifo: Fifo { depth_words: config.renderer.fifo_words as f64, word_ns },
+            fifo_words: config.renderer.fifo_words as f64,
+            word_ns,
             overhead_ns: config.ring.overhead_words as f64 * word_ns,
             hop_ns: config.ring.hop_ns as f64,
             gp: config.gp,
@@ -132,7 +134,7 @@ impl SlatsModel {
     /// A field in the steady state: renderers begin with the bottom regions of the field before.
     #[must_use]
     pub fn field(&self, triangles: f64, each: PerTriangle) -> FieldTimes {
-        let [times] = fields_at_once([self], triangles, each);
+        let [times] = fields_at_once(std::array::from_ref(self), triangles, each);
         times
     }
 
@@ -142,7 +144,7 @@ impl SlatsModel {
     pub fn fields(models: &[Self], triangles: f64, each: PerTriangle) -> Vec<FieldTimes> {
         let mut all = Vec::with_capacity(models.len());
         for some in models.chunks(TOGETHER) {
-            match <[&Self; TOGETHER]>::try_from(some.iter().collect::<Vec<_>>()) {
+            match <&[Self; TOGETHER]>::try_from(some) {
                 Ok(some) if some.iter().all(|model| model.structure() == some[0].structure()) => {
                     all.extend(fields_together(some, triangles, each));
                 }
@@ -184,18 +186,17 @@ impl SlatsModel {
         queues
     }
 
+    /// Whether what ends then is in time.
+    fn times(&self, rendered_ns: f64, top: CopyTimes, bottom: Option<CopyTimes>) -> FieldTimes {
+        let bottom_in_time = bottom.is_none_or(|times| times.end_ns <= self.field_ns + self.bottom_ns);
+        FieldTimes { rendered_ns, top, bottom, in_time: top.end_ns <= self.field_ns && bottom_in_time }
+    }
+
     /// TRANSFORM of a clump of so many triangles for both eyes.
-    fn clump_ns(&self, triangles: f64, each: PerTriangle) -> f64 {
+    pub(super) fn clump_ns(&self, triangles: f64, each: PerTriangle) -> f64 {
         let both_eyes = EYES * triangles;
         let [entries, clipped] = [each.entries, each.clipped].map(|n| both_eyes * n);
         TransformCost { triangles: both_eyes, entries, clipped, ..TransformCost::default() }.ns(&self.gp)
-    }
-
-    /// What a message of a clump holds: select, and clear in the first one, then `count` triangles.
-    fn commands(&self, count: f64, clearing: bool) -> (Fifo, Cost, f64, Cost) {
-        let clear = if clearing { self.clear } else { Cost::default() };
-        let head = Cost { words: self.select.words + clear.words, ns: self.select.ns + clear.ns };
-        (self.fifo, head, count, self.command)
     }
 }
 
@@ -205,206 +206,49 @@ const TOGETHER: usize = 16;
 
 /// As wide as the processor is.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn fields_together(models: [&SlatsModel; TOGETHER], triangles: f64, each: PerTriangle) -> [FieldTimes; TOGETHER] {
+fn fields_together(models: &[SlatsModel; TOGETHER], triangles: f64, each: PerTriangle) -> [FieldTimes; TOGETHER] {
     fields_at_once(models, triangles, each)
-}
-
-/// Which regions each renderer copies before the retrace, all of them without a split copy, and which after it.
-struct Layouts {
-    top: [Queue; MOST_RENDERERS],
-    bottom: [Queue; MOST_RENDERERS],
 }
 
 /// Fields of machines of the same structure.
 #[inline(always)]
-fn fields_at_once<const N: usize>(models: [&SlatsModel; N], triangles: f64, each: PerTriangle) -> [FieldTimes; N] {
-    let layouts = Layouts {
-        top: models[0].layout(|region| !models[0].split || region < REGIONS / 2),
-        bottom: models[0].layout(|region| region >= REGIONS / 2),
-    };
-    let before = bottom_of_the_field_before(models, &layouts);
-    let mut arrays = [Array::busy_until(Times::all(0.0)); MOST_RENDERERS];
-    for (array, before) in arrays.iter_mut().zip(before).take(models[0].renderers) {
-        *array = Array::busy_until(before);
+fn fields_at_once<const N: usize>(models: &[SlatsModel; N], triangles: f64, each: PerTriangle) -> [FieldTimes; N] {
+    let is_split = models[0].split;
+    let of_top = models[0].layout(|region| !is_split || region < REGIONS / 2);
+    let of_bottom = models[0].layout(|region| is_split && region >= REGIONS / 2);
+    let mut arrays = [Array::idle(); MOST_RENDERERS];
+    let arrays = &mut arrays[..models[0].renderers];
+    let message = Times::each(|i| models[i].message_ns);
+    if is_split {
+        // Of the field before.
+        copy(models, arrays, Times::all(0.0), &of_bottom);
     }
-    let rendered = render(models, &mut arrays, triangles, each);
-    copies(models, &layouts, rendered, |renderer| arrays[renderer].free)
-}
-
-/// When each renderer has copied the bottom regions of the field before.
-#[inline(always)]
-fn bottom_of_the_field_before<const N: usize>(
-    models: [&SlatsModel; N],
-    layouts: &Layouts,
-) -> [Times<N>; MOST_RENDERERS] {
-    let none = Times::all(0.0);
-    if !models[0].split {
-        return [none; MOST_RENDERERS];
-    }
-    let mut copies = commanded(models, none, |_| none);
-    copies.make(&layouts.bottom, models[0].renderers, region_of(models));
-    copies.ready
-}
-
-/// The copies of a field whose last clump was accepted at an instant, by renderers that are busy until then.
-#[inline(always)]
-fn copies<const N: usize>(
-    models: [&SlatsModel; N],
-    layouts: &Layouts,
-    rendered: Times<N>,
-    busy_until: impl Fn(usize) -> Times<N>,
-) -> [FieldTimes; N] {
-    let (region, message) = (region_of(models), Times::each(|i| models[i].message_ns));
-    let to_command = rendered + message;
-    let mut of_top = commanded(models, to_command, busy_until);
-    let top = of_top.make(&layouts.top, models[0].renderers, region);
-    let bottom = if models[0].split {
-        let from = Times::each(|i| models[i].field_ns).later(to_command + message);
-        let mut of_bottom = commanded(models, from, |renderer| of_top.ready[renderer]);
-        Some(of_bottom.make(&layouts.bottom, models[0].renderers, region))
+    let rendered = clumps::render(models, arrays, triangles, each);
+    let top = copy(models, arrays, rendered + message, &of_top);
+    // No closure around lanes: what is not inlined is compiled for any processor.
+    let bottom = if is_split {
+        let retrace = Times::each(|i| models[i].field_ns);
+        Some(copy(models, arrays, retrace.later(rendered + message + message), &of_bottom))
     } else {
         None
     };
-    let mut fields = [FieldTimes { rendered_ns: 0.0, top: top[0], bottom: None, in_time: false }; N];
-    for (i, field) in fields.iter_mut().enumerate() {
-        let (SlatsModel { field_ns, bottom_ns, .. }, bottom) = (models[i], bottom.map(|times| times[i]));
-        let bottom_in_time = bottom.is_none_or(|times| times.end_ns <= field_ns + bottom_ns);
-        let in_time = top[i].end_ns <= *field_ns && bottom_in_time;
-        *field = FieldTimes { rendered_ns: rendered.0[i], top: top[i], bottom, in_time };
-    }
-    fields
+    std::array::from_fn(|i| models[i].times(rendered.0[i], top[i], bottom.map(|times| times[i])))
 }
 
-/// Renderers to which the commands to copy go out one after the other from an instant on, and which are busy until others.
+/// Copies by renderers to which the commands for them go out one after the other from an instant on.
 #[inline(always)]
-fn commanded<const N: usize>(
-    models: [&SlatsModel; N],
+fn copy<const N: usize>(
+    models: &[SlatsModel; N],
+    arrays: &mut [Array<N>],
     from: Times<N>,
-    busy_until: impl Fn(usize) -> Times<N>,
-) -> Copies<N> {
-    let each = Times::<N>::each(|i| models[i].overhead_ns + 2.0 * 11.0 * models[i].fifo.word_ns);
-    let mut copies = Copies { ready: [from; MOST_RENDERERS] };
-    for (renderer, ready) in copies.ready.iter_mut().enumerate().take(models[0].renderers) {
-        let commanded = Times::each(|i| from.0[i] + each.0[i] * (renderer + 1) as f64);
-        *ready = commanded.later(busy_until(renderer));
+    queues: &[Queue; MOST_RENDERERS],
+) -> [CopyTimes; N] {
+    let each = Times::<N>::each(|i| models[i].overhead_ns + 2.0 * 11.0 * models[i].word_ns);
+    for (renderer, array) in arrays.iter_mut().enumerate() {
+        let commanded = from + each * Times::all((renderer + 1) as f64);
+        array.free = commanded.later(array.free);
     }
-    copies
-}
-
-/// Time of a region on a channel.
-#[inline(always)]
-fn region_of<const N: usize>(models: [&SlatsModel; N]) -> Times<N> {
-    Times::each(|i| models[i].region_ns)
-}
-
-/// TRANSFORM and RENDER: clumps of all GPs by turns; when the last one was accepted.
-#[inline(always)]
-fn render<const N: usize>(
-    models: [&SlatsModel; N],
-    arrays: &mut [Array<N>; MOST_RENDERERS],
-    triangles: f64,
-    each: PerTriangle,
-) -> Times<N> {
-    let share = triangles / models[0].gps as f64;
-    let clumps = (share / CLUMP as f64).ceil().max(1.0) as usize;
-    let none = Times::all(0.0);
-    let mut chain = Chain { released: [none; MOST_RENDERERS], accepted: none, draining: none };
-    let mut cpu = Times::each(|i| models[i].begin_ns);
-    let message = Times::each(|i| models[i].message_ns);
-    for clump in 0..clumps {
-        let count = (share - (clump * CLUMP) as f64).min(CLUMP as f64);
-        // The one clump buffer is written again when all renderers have begun with what was in it.
-        cpu = cpu.later(chain.draining) + Times::each(|i| models[i].clump_ns(count, each));
-        cpu = cpu.later(chain.accepted) + message;
-        send(models, arrays, &mut chain, cpu, count * each.entries / 10.0, clump == 0);
-    }
-    chain.accepted
-}
-
-/// The messages of one clump of every GP, as many at a time as a port drives channels.
-#[inline(always)]
-fn send<const N: usize>(
-    models: [&SlatsModel; N],
-    arrays: &mut [Array<N>; MOST_RENDERERS],
-    chain: &mut Chain<N>,
-    from: Times<N>,
-    count: f64,
-    first: bool,
-) {
-    let (renderers, gps, source_channels, _) = models[0].structure();
-    let mut channels = Channels::new(source_channels);
-    let mut granted = from;
-    let of_first = Commands::new(|i| models[i].commands(count, first));
-    let of_others = if first && gps > 1 { Commands::new(|i| models[i].commands(count, false)) } else { of_first };
-    let overhead = Times::each(|i| models[i].overhead_ns);
-    let hop = Times::<N>::each(|i| models[i].hop_ns);
-    chain.accepted = from;
-    // A round is a region of every renderer.
-    for round in (0..REGIONS).step_by(renderers) {
-        let ports = arrays.iter_mut().zip(&mut chain.released).take(renderers.min(REGIONS - round));
-        for (renderer, (array, released)) in ports.enumerate() {
-            let latency = Times::each(|i| hop.0[i] * (renderer + gps) as f64);
-            granted = granted.later(channels.take_first()).later(*released);
-            let mut accepted = array.take(granted + overhead + latency, &of_first);
-            *released = accepted - latency;
-            channels.put(*released);
-            chain.accepted = chain.accepted.later(accepted);
-            // Several GPs share the ports of the renderers: their messages follow each other.
-            for _ in 1..gps {
-                let begin = granted.later(*released);
-                accepted = array.take(begin + overhead + latency, &of_others);
-                *released = accepted - latency;
-                chain.accepted = chain.accepted.later(accepted);
-            }
-        }
-        if round == 0 {
-            chain.draining = chain.accepted;
-        }
-    }
-}
-
-/// Messages of clumps on their way.
-struct Chain<const N: usize> {
-    /// When each renderer's port was free again.
-    released: [Times<N>; MOST_RENDERERS],
-    /// When the last message of the last clump was accepted.
-    accepted: Times<N>,
-    /// When every renderer had accepted its first message of that clump.
-    draining: Times<N>,
-}
-
-/// Channels that a ring can have; a power of two.
-const MOST_CHANNELS: usize = 8;
-
-/// When the channels of a port are free, soonest first, from a place on that goes round.
-struct Channels<const N: usize> {
-    free: [Times<N>; MOST_CHANNELS],
-    first: usize,
-    number: usize,
-}
-
-impl<const N: usize> Channels<N> {
-    const fn new(number: usize) -> Self {
-        Self { free: [Times::all(f64::MIN); MOST_CHANNELS], first: 0, number }
-    }
-
-    #[inline(always)]
-    fn take_first(&mut self) -> Times<N> {
-        self.first += 1;
-        self.free[(self.first - 1) % MOST_CHANNELS]
-    }
-
-    /// Gives the channel that was taken back: it moves before all that are free later.
-    #[inline(always)]
-    fn put(&mut self, free: Times<N>) {
-        let mut here = free;
-        for place in (self.first + 1..self.first + self.number).rev() {
-            let before = self.free[(place - 1) % MOST_CHANNELS];
-            self.free[place % MOST_CHANNELS] = before.later(here);
-            here = before.sooner(here);
-        }
-        self.free[self.first % MOST_CHANNELS] = here;
-    }
+    copies::make(arrays, queues, Times::each(|i| models[i].region_ns))
 }
 
 /// An experiment with Slats at the analytic level.

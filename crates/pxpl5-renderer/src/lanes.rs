@@ -8,6 +8,8 @@ mod general;
 mod large;
 mod roots;
 mod shade;
+mod shape;
+mod slim;
 mod sphere;
 mod template;
 mod triangle;
@@ -275,6 +277,26 @@ mod tests {
             }
         }
 
+        /// The same, with the edges of triangles of some pixels, over the region's borders too.
+        fn slim(layout: Layout, random: &mut Random, with_normals: bool) -> Self {
+            let mut all = Self::random(layout, random, with_normals);
+            for i in 0..LANES {
+                let place = [128, 64].map(|origin| 16 * (origin + (random.signed(9) & 127)));
+                let mut corners = [(); 3].map(|()| place.map(|place| place + random.signed(6)));
+                let [[ax, ay], [bx, by], [cx, cy]] = corners;
+                if (bx - ax) * (cy - ay) < (cx - ax) * (by - ay) {
+                    corners.swap(1, 2);
+                }
+                for e in 0..3 {
+                    let ([px, py], [qx, qy]) = (corners[e], corners[(e + 1) % 3]);
+                    all.edges[e].a[i] = -16 * (qy - py);
+                    all.edges[e].b[i] = 16 * (qx - px);
+                    all.edges[e].c[i] = (qy - py) * px - (qx - px) * py;
+                }
+            }
+            all
+        }
+
         fn append(&self, command: Command, out: &mut Vec<Word>) {
             command.encode(&self.layout, out).expect("the layout has what it needs");
         }
@@ -313,14 +335,14 @@ mod tests {
         }
     }
 
-    #[test]
-    fn triangles_without_words_leave_the_pixels_of_their_commands() {
+    /// Draws such triangles with words and without, on all vector units; pixels that were covered.
+    fn covered_alike(rounds: u32, some: fn(Layout, &mut Random, bool) -> SomeTriangles) -> usize {
         let mut random = Random::new(20);
         let mut covered = 0;
-        for round in 0..40 {
+        for round in 0..rounds {
             let with_normals = round % 2 == 1;
             let layout = if with_normals { Layout::rendering_control_phong() } else { Layout::slats() };
-            let list = CommandContent::new(Arc::new(SomeTriangles::random(layout, &mut random, with_normals)), 0);
+            let list = CommandContent::new(Arc::new(some(layout, &mut random, with_normals)), 0);
             let mut words = Vec::new();
             list.append_words(&mut words);
             for vectors in Vectors::available() {
@@ -334,7 +356,19 @@ mod tests {
                 covered += by_words.read_colour(128, 128).iter().filter(|colour| **colour != 0x12_34_56).count();
             }
         }
+        covered
+    }
+
+    #[test]
+    fn triangles_without_words_leave_the_pixels_of_their_commands() {
+        let covered = covered_alike(40, SomeTriangles::random);
         assert!(covered > 10_000, "{covered}");
+    }
+
+    #[test]
+    fn slim_triangles_without_words_leave_the_pixels_of_their_commands() {
+        let covered = covered_alike(200, SomeTriangles::slim);
+        assert!(covered > 1_000, "{covered}");
     }
 
     #[test]

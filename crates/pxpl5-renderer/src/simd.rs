@@ -10,7 +10,14 @@ mod wasm;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
+use pxpl5_wire::REGION_SIZE;
 use std::sync::atomic::{AtomicU8, Ordering};
+
+/// Words from a pixel to the one below.
+const ROW: usize = REGION_SIZE as usize;
+
+/// Pixels of a vector of fours that lie side by side; the next ones lie below.
+pub(crate) const FOUR: usize = 4;
 
 /// The best unit that an array takes by itself, as its place in [`Vectors`].
 static MOST: AtomicU8 = AtomicU8::new(Vectors::Avx512 as u8);
@@ -129,8 +136,12 @@ pub(crate) trait SimdVector: Copy {
     fn splat(value: i32) -> Self;
     /// first, first + step, first + 2 step, ...; wraps.
     fn ramp(first: i32, step: i32) -> Self;
+    /// The same in [fours](FOUR), each of which begins `down` further than the one before.
+    fn ramp_of_fours(first: i32, step: i32, down: i32) -> Self;
     /// The first lanes of `from`, which has at least as many.
     fn load(from: &[u32]) -> Self;
+    /// [Fours](FOUR) from the beginnings of rows of pixels.
+    fn load_fours(from: &[u32]) -> Self;
     /// As [`SimdVector::load`] from words of two lanes, the low half first.
     fn load_words(from: &[u64]) -> Self;
     /// Overwrites as many words as [`SimdVector::load_words`] reads.
@@ -155,6 +166,8 @@ pub(crate) trait SimdVector: Copy {
     fn any_of(a: Self::Mask, b: Self::Mask) -> bool;
     /// Overwrites lanes of `to` where the mask is true; `old` is what they hold.
     fn store(self, mask: Self::Mask, old: Self, to: &mut [u32]);
+    /// The same of what [`SimdVector::load_fours`] reads.
+    fn store_fours(self, mask: Self::Mask, old: Self, to: &mut [u32]);
     /// 255 where the mask is true, else 0.
     fn store_mask(mask: Self::Mask, to: &mut [u8]);
 }
@@ -205,9 +218,21 @@ impl SimdVector for PortableVector {
     }
 
     #[inline(always)]
+    fn ramp_of_fours(first: i32, step: i32, down: i32) -> Self {
+        let at = |k: usize| step.wrapping_mul((k % FOUR) as i32).wrapping_add(down.wrapping_mul((k / FOUR) as i32));
+        Self(std::array::from_fn(|k| first.wrapping_add(at(k))))
+    }
+
+    #[inline(always)]
     fn load(from: &[u32]) -> Self {
         let from: &[u32; 8] = from.first_chunk().expect("a whole vector");
         Self(from.map(|v| v as i32))
+    }
+
+    #[inline(always)]
+    fn load_fours(from: &[u32]) -> Self {
+        let from: &[u32; ROW + FOUR] = from.first_chunk().expect("whole rows");
+        Self(std::array::from_fn(|k| from[k / FOUR * ROW + k % FOUR] as i32))
     }
 
     #[inline(always)]
@@ -285,6 +310,14 @@ impl SimdVector for PortableVector {
     fn store(self, mask: Self, old: Self, to: &mut [u32]) {
         let to: &mut [u32; 8] = to.first_chunk_mut().expect("a whole vector");
         *to = std::array::from_fn(|k| (self.0[k] & mask.0[k] | old.0[k] & !mask.0[k]) as u32);
+    }
+
+    #[inline(always)]
+    fn store_fours(self, mask: Self, old: Self, to: &mut [u32]) {
+        let to: &mut [u32; ROW + FOUR] = to.first_chunk_mut().expect("whole rows");
+        for k in 0..8 {
+            to[k / FOUR * ROW + k % FOUR] = (self.0[k] & mask.0[k] | old.0[k] & !mask.0[k]) as u32;
+        }
     }
 
     #[inline(always)]

@@ -87,7 +87,7 @@ impl RowLimit {
 }
 
 /// A number of each of some triangles.
-type PerTriangle<T> = [T; LANES];
+pub(super) type PerTriangle<T> = [T; LANES];
 
 /// The edges of some triangles over the array's own columns and rows.
 #[derive(Clone, Copy, Debug, Default)]
@@ -126,10 +126,10 @@ impl Edges {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Boxes {
     /// First column and row that the corners leave, 0 to 128; the last ones, -1 to 127.
-    x: [PerTriangle<i32>; 2],
-    y: [PerTriangle<i32>; 2],
+    pub(super) x: [PerTriangle<i32>; 2],
+    pub(super) y: [PerTriangle<i32>; 2],
     /// The edges enclose a triangle: normals that turn the same way at all corners leave no way out to infinity.
-    closed: PerTriangle<bool>,
+    pub(super) closed: PerTriangle<bool>,
     /// No value in the array needs more than 32 bits, so the edges are straight lines.
     straight: PerTriangle<bool>,
 }

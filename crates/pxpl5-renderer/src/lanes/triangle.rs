@@ -3,6 +3,8 @@
 use super::bounds::{Area, Boxes, Edges, Spans};
 use super::columns::Values;
 use super::enable::Enable;
+use super::shape::{InRow, Shape};
+use super::slim::SlimTriangles;
 use super::template::{Template, starts_anew};
 use crate::command::{COMPONENTS_AT, DEPTH_AT, EDGES_AT};
 use crate::simd::{SimdVector, VectorKernel};
@@ -25,9 +27,15 @@ impl<V: SimdVector> Walk<V> {
         Self { value: V::ramp(e.at(x, y), e.a), step: V::splat(e.a.wrapping_mul(V::LANES as i32)) }
     }
 
+    /// At the pixels of a vector of [fours](crate::simd::FOUR), the first of which has this value. It is not walked along a row.
+    #[inline(always)]
+    pub(super) fn fours(first: i32, a: i32, b: i32) -> Self {
+        Self { value: V::ramp_of_fours(first, a, b), step: V::splat(0) }
+    }
+
     /// Some rows below, in all of which together the expression grows by `b`.
     #[inline(always)]
-    fn below(&self, b: i32) -> Self {
+    pub(super) fn below(&self, b: i32) -> Self {
         Self { value: self.value.add(V::splat(b)), step: self.step }
     }
 
@@ -74,7 +82,7 @@ pub(super) trait PaintTriangle {
     /// Takes the colour of the triangle that comes, where it has one.
     fn begin(&mut self, colour: Word);
     /// Stores pixels from index `at` where the mask is true.
-    fn store<V: SimdVector>(&mut self, walks: &[Walk<V>; 3], at: usize, mask: V::Mask);
+    fn store<V: SimdVector, S: Shape>(&mut self, walks: &[Walk<V>; 3], at: usize, mask: V::Mask);
 }
 
 /// Draws triangles into a region.
@@ -161,10 +169,10 @@ struct CurrentTriangle<S> {
 }
 
 /// The depth test of a vector of pixels.
-struct Tested<V: SimdVector> {
-    old: V,
-    new: V,
-    mask: V::Mask,
+pub(super) struct Tested<V: SimdVector> {
+    pub(super) old: V,
+    pub(super) new: V,
+    pub(super) mask: V::Mask,
 }
 
 impl<const N: usize, P: PaintTriangle> VectorKernel for DrawTriangles<'_, N, P> {
@@ -201,7 +209,12 @@ impl<P: PaintTriangle> VectorKernel for DrawBatch<'_, P> {
         let mut edges = Edges(*self.batch.edges);
         edges.localise(self.painter.origin);
         let boxes = Boxes::enclosing(&edges);
+        let slim = SlimTriangles::among::<V>(&boxes, &edges, self.batch.planes, self.painter.origin);
         for i in 0..self.batch.len.min(LANES) {
+            if slim.has(i) {
+                slim.draw::<V, P>(&mut self.painter, self.batch, &edges, i);
+                continue;
+            }
             let surface = OfBatch { batch: self.batch, i };
             let triangle = CurrentTriangle { edges: edges.get(i), surface, keep: false };
             self.painter.triangle::<V, _>(&triangle, &boxes, i);
@@ -276,15 +289,15 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         for y in (0..pairs).map(|pair| top + 2 * pair) {
             let at = [y * WIDTH + x, (y + 1) * WIDTH + x];
             let lower = [first.below(p), second.below(q), third.below(r), depth.below(deeper)];
-            let upper = self.test(at[0], [first, second, third], depth);
-            let lower = self.test(at[1], [lower[0], lower[1], lower[2]], lower[3]);
+            let upper = self.test::<V, InRow>(at[0], [first, second, third], depth);
+            let lower = self.test::<V, InRow>(at[1], [lower[0], lower[1], lower[2]], lower[3]);
             if V::any_of(upper.mask, lower.mask) {
                 let walks = self.components::<V>(&triangle.surface, x, y);
                 self.nearer(&upper, at[0], triangle.keep);
-                self.paint.store(&walks, at[0], upper.mask);
+                self.paint.store::<V, InRow>(&walks, at[0], upper.mask);
                 let walks = components_below(&triangle.surface, &walks);
                 self.nearer(&lower, at[1], triangle.keep);
-                self.paint.store(&walks, at[1], lower.mask);
+                self.paint.store::<V, InRow>(&walks, at[1], lower.mask);
             }
             first = first.below(2 * p);
             second = second.below(2 * q);
@@ -302,10 +315,10 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         let mut walks = [p.walk(left, y), q.walk(left, y), r.walk(left, y)];
         for x in (left..right).step_by(V::LANES) {
             let at = y * WIDTH + x;
-            let tested = self.test(at, [first, second, third], depth);
+            let tested = self.test::<V, InRow>(at, [first, second, third], depth);
             if V::any_of(tested.mask, tested.mask) {
                 self.nearer(&tested, at, keep);
-                self.paint.store(&walks, at, tested.mask);
+                self.paint.store::<V, InRow>(&walks, at, tested.mask);
             }
             first.advance();
             second.advance();
@@ -319,8 +332,13 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
 
     /// Where no edge is negative and the depth is nearer.
     #[inline(always)]
-    fn test<V: SimdVector>(&self, at: usize, [p, q, r]: [Walk<V>; 3], depth: Walk<V>) -> Tested<V> {
-        let old = V::load(&self.z.0[at..]);
+    pub(super) fn test<V: SimdVector, S: Shape>(
+        &self,
+        at: usize,
+        [p, q, r]: [Walk<V>; 3],
+        depth: Walk<V>,
+    ) -> Tested<V> {
+        let old = S::load::<V>(self.z, at);
         let new = depth.value.shift_right(self.z_shift.into());
         Tested { old, new, mask: p.value.or(q.value).or(r.value).passes(new, old) }
     }
@@ -372,9 +390,9 @@ fn three<V: SimdVector>(e: &[Linear; 3], x: usize, y: usize) -> [Walk<V>; 3] {
 }
 
 #[inline(always)]
-fn blend<V: SimdVector>(column: &mut Values, at: usize, mask: V::Mask, new: V) {
-    let old = V::load(&column.0[at..]);
-    new.store(mask, old, &mut column.0[at..]);
+fn blend<V: SimdVector, S: Shape>(column: &mut Values, at: usize, mask: V::Mask, new: V) {
+    let old = S::load::<V>(column, at);
+    S::store(new, mask, old, column, at);
 }
 
 /// Stores interpolated colour, as 0x00RRGGBB.
@@ -387,12 +405,12 @@ impl PaintTriangle for PaintGouraud<'_> {
     fn begin(&mut self, _: Word) {}
 
     #[inline(always)]
-    fn store<V: SimdVector>(&mut self, [red, green, blue]: &[Walk<V>; 3], at: usize, mask: V::Mask) {
+    fn store<V: SimdVector, S: Shape>(&mut self, [red, green, blue]: &[Walk<V>; 3], at: usize, mask: V::Mask) {
         // Each component goes to its place in one shift.
         let red = red.value.shift_left(16 - COLOUR_FRACTION_BITS).and(V::splat(0xff_0000));
         let green = green.value.shift_right(COLOUR_FRACTION_BITS - 8).and(V::splat(0xff00));
         let blue = blue.value.shift_right(COLOUR_FRACTION_BITS).and(V::splat(0xff));
-        blend(self.colour, at, mask, red.or(green).or(blue));
+        blend::<V, S>(self.colour, at, mask, red.or(green).or(blue));
     }
 }
 
@@ -410,11 +428,11 @@ impl PaintTriangle for PaintPhong<'_> {
     }
 
     #[inline(always)]
-    fn store<V: SimdVector>(&mut self, walks: &[Walk<V>; 3], at: usize, mask: V::Mask) {
+    fn store<V: SimdVector, S: Shape>(&mut self, walks: &[Walk<V>; 3], at: usize, mask: V::Mask) {
         let twelve = V::splat((1 << NORMAL_BITS) - 1);
         for (walk, column) in walks.iter().zip(self.normal.iter_mut()) {
-            blend(column, at, mask, walk.value.shift_right(NORMAL_FRACTION_BITS).and(twelve));
+            blend::<V, S>(column, at, mask, walk.value.shift_right(NORMAL_FRACTION_BITS).and(twelve));
         }
-        blend(self.colour, at, mask, V::splat(self.constant as i32));
+        blend::<V, S>(self.colour, at, mask, V::splat(self.constant as i32));
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! SAFETY of every block: loads and stores go through slices whose length has been checked; WebAssembly allows any alignment.
 
-use super::SimdVector;
+use super::{FOUR, ROW, SimdVector};
 use std::arch::wasm32::*;
 
 /// Eight lanes, the first four in the first half.
@@ -37,9 +37,21 @@ impl SimdVector for Simd128 {
     }
 
     #[inline(always)]
+    fn ramp_of_fours(first: i32, step: i32, down: i32) -> Self {
+        let steps = i32x4_mul(i32x4(0, 1, 2, 3), i32x4_splat(step));
+        Self([first, first.wrapping_add(down)].map(|begin| i32x4_add(i32x4_splat(begin), steps)))
+    }
+
+    #[inline(always)]
     fn load(from: &[u32]) -> Self {
         let from: &[u32; 8] = from.first_chunk().expect("a whole vector");
         Self([0, 4].map(|lane| unsafe { v128_load(from[lane..].as_ptr().cast()) }))
+    }
+
+    #[inline(always)]
+    fn load_fours(from: &[u32]) -> Self {
+        let from: &[u32; ROW + FOUR] = from.first_chunk().expect("whole rows");
+        Self([0, ROW].map(|row| unsafe { v128_load(from[row..][..FOUR].as_ptr().cast()) }))
     }
 
     #[inline(always)]
@@ -122,6 +134,15 @@ impl SimdVector for Simd128 {
         for half in 0..2 {
             let blended = v128_bitselect(self.0[half], old.0[half], mask.0[half]);
             unsafe { v128_store(to[4 * half..].as_mut_ptr().cast(), blended) };
+        }
+    }
+
+    #[inline(always)]
+    fn store_fours(self, mask: Self, old: Self, to: &mut [u32]) {
+        let to: &mut [u32; ROW + FOUR] = to.first_chunk_mut().expect("whole rows");
+        for half in 0..2 {
+            let blended = v128_bitselect(self.0[half], old.0[half], mask.0[half]);
+            unsafe { v128_store(to[half * ROW..][..FOUR].as_mut_ptr().cast(), blended) };
         }
     }
 

@@ -3,7 +3,7 @@
 //! SAFETY of every block: values of these types are made only in [`super::avx2`] and [`super::avx512`], where the
 //! features are present; loads and stores go through slices whose length has been checked.
 
-use super::SimdVector;
+use super::{FOUR, ROW, SimdVector};
 use std::arch::x86_64::*;
 
 /// The eight lanes of a vector of AVX2.
@@ -29,9 +29,30 @@ impl SimdVector for Avx2 {
     }
 
     #[inline(always)]
+    fn ramp_of_fours(first: i32, step: i32, down: i32) -> Self {
+        unsafe {
+            let columns = _mm256_setr_epi32(0, 1, 2, 3, 0, 1, 2, 3);
+            let steps = _mm256_mullo_epi32(columns, _mm256_set1_epi32(step));
+            let below = _mm_set1_epi32(first.wrapping_add(down));
+            let rows = _mm256_setr_m128i(_mm_set1_epi32(first), below);
+            Self(_mm256_add_epi32(rows, steps))
+        }
+    }
+
+    #[inline(always)]
     fn load(from: &[u32]) -> Self {
         let from: &[u32; 8] = from.first_chunk().expect("a whole vector");
         Self(unsafe { _mm256_loadu_si256(from.as_ptr().cast()) })
+    }
+
+    #[inline(always)]
+    fn load_fours(from: &[u32]) -> Self {
+        let from: &[u32; ROW + FOUR] = from.first_chunk().expect("whole rows");
+        unsafe {
+            let upper = _mm_loadu_si128(from[..FOUR].as_ptr().cast());
+            let lower = _mm_loadu_si128(from[ROW..][..FOUR].as_ptr().cast());
+            Self(_mm256_setr_m128i(upper, lower))
+        }
     }
 
     #[inline(always)]
@@ -124,6 +145,16 @@ impl SimdVector for Avx2 {
     }
 
     #[inline(always)]
+    fn store_fours(self, mask: __m256i, old: Self, to: &mut [u32]) {
+        let to: &mut [u32; ROW + FOUR] = to.first_chunk_mut().expect("whole rows");
+        unsafe {
+            let blended = _mm256_blendv_epi8(old.0, self.0, mask);
+            _mm_storeu_si128(to[..FOUR].as_mut_ptr().cast(), _mm256_castsi256_si128(blended));
+            _mm_storeu_si128(to[ROW..][..FOUR].as_mut_ptr().cast(), _mm256_extracti128_si256::<1>(blended));
+        }
+    }
+
+    #[inline(always)]
     fn store_mask(mask: __m256i, to: &mut [u8]) {
         let bits = unsafe { _mm256_movemask_ps(_mm256_castsi256_ps(mask)) };
         for (k, to) in to[..8].iter_mut().enumerate() {
@@ -155,9 +186,29 @@ impl SimdVector for Avx512 {
     }
 
     #[inline(always)]
+    fn ramp_of_fours(first: i32, step: i32, down: i32) -> Self {
+        unsafe {
+            let columns = _mm512_setr_epi32(0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3);
+            let rows = _mm512_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3);
+            let steps = _mm512_mullo_epi32(columns, _mm512_set1_epi32(step));
+            let downs = _mm512_mullo_epi32(rows, _mm512_set1_epi32(down));
+            Self(_mm512_add_epi32(_mm512_set1_epi32(first), _mm512_add_epi32(steps, downs)))
+        }
+    }
+
+    #[inline(always)]
     fn load(from: &[u32]) -> Self {
         let from: &[u32; 16] = from.first_chunk().expect("a whole vector");
         Self(unsafe { _mm512_loadu_si512(from.as_ptr().cast()) })
+    }
+
+    #[inline(always)]
+    fn load_fours(from: &[u32]) -> Self {
+        let from: &[u32; 3 * ROW + FOUR] = from.first_chunk().expect("whole rows");
+        let [upper, lower] = [&from[..ROW + FOUR], &from[2 * ROW..]];
+        unsafe {
+            Self(_mm512_inserti64x4::<1>(_mm512_castsi256_si512(Avx2::load_fours(upper).0), Avx2::load_fours(lower).0))
+        }
     }
 
     #[inline(always)]
@@ -239,6 +290,18 @@ impl SimdVector for Avx512 {
         unsafe {
             let blended = _mm512_mask_blend_epi32(mask, old.0, self.0);
             _mm512_storeu_si512(to.as_mut_ptr().cast(), blended);
+        }
+    }
+
+    #[inline(always)]
+    fn store_fours(self, mask: __mmask16, old: Self, to: &mut [u32]) {
+        let to: &mut [u32; 3 * ROW + FOUR] = to.first_chunk_mut().expect("whole rows");
+        unsafe {
+            let blended = _mm512_mask_blend_epi32(mask, old.0, self.0);
+            _mm_storeu_si128(to[..FOUR].as_mut_ptr().cast(), _mm512_castsi512_si128(blended));
+            _mm_storeu_si128(to[ROW..][..FOUR].as_mut_ptr().cast(), _mm512_extracti32x4_epi32::<1>(blended));
+            _mm_storeu_si128(to[2 * ROW..][..FOUR].as_mut_ptr().cast(), _mm512_extracti32x4_epi32::<2>(blended));
+            _mm_storeu_si128(to[3 * ROW..][..FOUR].as_mut_ptr().cast(), _mm512_extracti32x4_epi32::<3>(blended));
         }
     }
 

@@ -1,0 +1,197 @@
+//! TRANSFORM and RENDER of Slats: clumps on their way to the renderers, on some machines at once.
+
+use super::renderer::{Array, Commands, Costs, Fifos, Times};
+use super::slats::{PerTriangle, REGIONS, SlatsModel};
+use slats::CLUMP;
+
+/// Clumps of all GPs by turns; when the last one was accepted.
+#[inline(always)]
+pub(super) fn render<const N: usize>(
+    models: &[SlatsModel; N],
+    arrays: &mut [Array<N>],
+    triangles: f64,
+    each: PerTriangle,
+) -> Times<N> {
+    let share = triangles / models[0].gps as f64;
+    let clumps = (share / CLUMP as f64).ceil().max(1.0) as usize;
+    let size = |clump: usize| (share - (clump * CLUMP) as f64).min(CLUMP as f64);
+    let sending = Sending::of(models);
+    let message = Times::each(|i| models[i].message_ns);
+    let mut clump = Clump::first(models, &sending, size(0), each);
+    let mut chain = Chain::begin(Times::each(|i| models[i].begin_ns));
+    for n in 0..clumps {
+        // All between the first and the last are alike.
+        if n == 1 || n > 1 && size(n) != size(n - 1) {
+            clump = clump.next(models, &sending, size(n), each);
+        }
+        // The one clump buffer is written again when all renderers have begun with what was in it.
+        let transformed = chain.cpu.later(chain.draining) + clump.transform;
+        chain.cpu = transformed.later(chain.accepted) + message;
+        chain.send(arrays, &sending, &clump);
+        clump.behind_last = clump.others_behind_others;
+    }
+    chain.accepted
+}
+
+/// What messages cost that does not depend on what they hold.
+struct Sending<const N: usize> {
+    gps: usize,
+    source_channels: usize,
+    overhead: Times<N>,
+    hop: Times<N>,
+    fifos: Fifos<N>,
+    clear: Costs<N>,
+    select: Costs<N>,
+    command: Costs<N>,
+}
+
+impl<const N: usize> Sending<N> {
+    #[inline(always)]
+    fn of(models: &[SlatsModel; N]) -> Self {
+        Self {
+            gps: models[0].gps,
+            source_channels: models[0].source_channels,
+            overhead: Times::each(|i| models[i].overhead_ns),
+            hop: Times::each(|i| models[i].hop_ns),
+            fifos: Fifos {
+                depth_words: Times::each(|i| models[i].fifo_words),
+                word_ns: Times::each(|i| models[i].word_ns),
+            },
+            clear: Costs::each(|i| models[i].clear),
+            select: Costs::each(|i| models[i].select),
+            command: Costs::each(|i| models[i].command),
+        }
+    }
+
+    /// The message of a clump that goes to a region.
+    #[inline(always)]
+    fn commands(&self, head: Costs<N>, triangles: f64, each: PerTriangle) -> Commands<N> {
+        Commands::new(&self.fifos, &head, triangles * each.entries / 10.0, &self.command)
+    }
+}
+
+/// A clump of every GP: select, and clear in the first message of a field, then its triangles.
+struct Clump<const N: usize> {
+    transform: Times<N>,
+    /// The first GP's messages, and those of the others.
+    first: Commands<N>,
+    others: Commands<N>,
+    /// [Room](Commands::room_behind) of a first message behind the clump before and behind the others of this one, and of the others
+    /// behind the first one and behind each other.
+    behind_last: Times<N>,
+    first_behind_others: Times<N>,
+    others_behind_first: Times<N>,
+    others_behind_others: Times<N>,
+}
+
+impl<const N: usize> Clump<N> {
+    /// The first one of a field.
+    #[inline(always)]
+    fn first(models: &[SlatsModel; N], sending: &Sending<N>, triangles: f64, each: PerTriangle) -> Self {
+        let first = sending.commands(sending.select + sending.clear, triangles, each);
+        let others = if sending.gps > 1 { sending.commands(sending.select, triangles, each) } else { first };
+        let transform = Times::each(|i| models[i].clump_ns(triangles, each));
+        Self::of(transform, first, others, Times::all(f64::NEG_INFINITY))
+    }
+
+    /// A later one, behind this one.
+    #[inline(always)]
+    fn next(&self, models: &[SlatsModel; N], sending: &Sending<N>, triangles: f64, each: PerTriangle) -> Self {
+        let commands = sending.commands(sending.select, triangles, each);
+        let transform = Times::each(|i| models[i].clump_ns(triangles, each));
+        Self::of(transform, commands, commands, commands.room_behind(&self.others))
+    }
+
+    #[inline(always)]
+    fn of(transform: Times<N>, first: Commands<N>, others: Commands<N>, behind_last: Times<N>) -> Self {
+        Self {
+            transform,
+            first_behind_others: first.room_behind(&others),
+            others_behind_first: others.room_behind(&first),
+            others_behind_others: others.room_behind(&others),
+            first,
+            others,
+            behind_last,
+        }
+    }
+}
+
+/// Clumps on their way.
+struct Chain<const N: usize> {
+    /// When the processors are done with what they did last.
+    cpu: Times<N>,
+    /// When the last message of the last clump was accepted.
+    accepted: Times<N>,
+    /// When every renderer had accepted its first message of that clump.
+    draining: Times<N>,
+}
+
+impl<const N: usize> Chain<N> {
+    const fn begin(cpu: Times<N>) -> Self {
+        Self { cpu, accepted: Times::all(0.0), draining: Times::all(0.0) }
+    }
+
+    /// The messages of one clump of every GP, as many at a time as a port drives channels.
+    #[inline(always)]
+    fn send(&mut self, arrays: &mut [Array<N>], sending: &Sending<N>, clump: &Clump<N>) {
+        let mut channels = Channels::new(sending.source_channels);
+        let mut granted = self.cpu;
+        let mut accepted = self.cpu;
+        let mut behind = clump.behind_last;
+        // A round is a region of every renderer.
+        for round in (0..REGIONS).step_by(arrays.len()) {
+            for (renderer, array) in arrays.iter_mut().enumerate().take(REGIONS - round) {
+                let latency = sending.hop * Times::all((renderer + sending.gps) as f64);
+                granted = granted.later(array.released).later(channels.soonest);
+                let first = array.take(granted + sending.overhead + latency, &clump.first, behind);
+                array.released = first - latency;
+                channels.give_back(array.released);
+                accepted = accepted.later(first);
+                // Several GPs share the ports of the renderers: their messages follow each other.
+                let mut behind = clump.others_behind_first;
+                for _ in 1..sending.gps {
+                    let begin = granted.later(array.released);
+                    let other = array.take(begin + sending.overhead + latency, &clump.others, behind);
+                    array.released = other - latency;
+                    accepted = accepted.later(other);
+                    behind = clump.others_behind_others;
+                }
+            }
+            if round == 0 {
+                self.draining = accepted;
+            }
+            behind = clump.first_behind_others;
+        }
+        self.accepted = accepted;
+    }
+}
+
+/// Channels that a ring can have.
+pub(super) const MOST_CHANNELS: usize = 8;
+
+/// When the channels of a port are free: the soonest one, which is taken next, and as many others as there are, in their order.
+struct Channels<const N: usize> {
+    soonest: Times<N>,
+    others: [Times<N>; MOST_CHANNELS - 1],
+    number: usize,
+}
+
+impl<const N: usize> Channels<N> {
+    const fn new(number: usize) -> Self {
+        let free = Times::all(f64::MIN);
+        Self { soonest: free, others: [free; MOST_CHANNELS - 1], number: number - 1 }
+    }
+
+    /// Gives the channel back that was taken: it goes before all that are free later.
+    #[inline(always)]
+    fn give_back(&mut self, free: Times<N>) {
+        let mut here = free;
+        let mut before = &mut self.soonest;
+        for other in self.others.iter_mut().take(self.number) {
+            *before = other.sooner(here);
+            here = other.later(here);
+            before = other;
+        }
+        *before = here;
+    }
+}

@@ -1,0 +1,132 @@
+//! Triangles of at most four columns, which are most of a dense scene's: as many rows at a time as a vector has fours, so that one vector
+//! holds nearly all of them. What their expressions are at their first pixel is computed side by side.
+
+use super::bounds::{Boxes, Edges, PerTriangle};
+use super::shape::{InFours, Shape};
+use super::triangle::{PaintTriangle, TrianglePainter, Walk};
+use crate::simd::{FOUR, SimdVector};
+use pxpl5_wire::{LANES, LinearLanes, TriangleBatch};
+
+const WIDTH: i32 = 128;
+
+/// The slim ones of some triangles.
+pub(super) struct SlimTriangles {
+    /// First column and row, so that all vectors lie in the array.
+    x: PerTriangle<i32>,
+    y: PerTriangle<i32>,
+    /// Vectors below each other: none for a triangle without pixels, less than none for one that is not slim.
+    vectors: PerTriangle<i32>,
+    /// Values at the first column and row.
+    edges: [PerTriangle<i32>; 3],
+    planes: [PerTriangle<i32>; 4],
+}
+
+impl SlimTriangles {
+    /// Of triangles with these boxes and edges over the array's own columns and rows; planes are over those of the picture, with which
+    /// the array begins.
+    #[inline(always)]
+    pub(super) fn among<V: SimdVector>(
+        boxes: &Boxes,
+        edges: &Edges,
+        planes: &[LinearLanes; 4],
+        [left, top]: [i32; 2],
+    ) -> Self {
+        let places = Self::places::<V>(boxes);
+        let own = [&places.x, &places.y];
+        let picture = [&moved(own[0], left), &moved(own[1], top)];
+        let [p, q, r] = &edges.0;
+        let [depth, red, green, blue] = planes;
+        Self {
+            edges: [values(p, own), values(q, own), values(r, own)],
+            planes: [values(depth, picture), values(red, picture), values(green, picture), values(blue, picture)],
+            ..places
+        }
+    }
+
+    #[inline(always)]
+    fn places<V: SimdVector>(boxes: &Boxes) -> Self {
+        let tall = (V::LANES / FOUR) as i32;
+        let none = [0; LANES];
+        let mut all = Self { x: none, y: none, vectors: none, edges: [none; 3], planes: [none; 4] };
+        for i in 0..LANES {
+            let columns = boxes.x[1][i] - boxes.x[0][i] + 1;
+            let rows = (boxes.y[1][i] - boxes.y[0][i] + 1).max(0);
+            let vectors = (rows + tall - 1) / tall;
+            all.x[i] = boxes.x[0][i].min(WIDTH - FOUR as i32);
+            all.y[i] = boxes.y[0][i].min(WIDTH - tall * vectors);
+            let held = if columns > 0 { vectors } else { 0 };
+            all.vectors[i] = if columns <= FOUR as i32 { held } else { -1 };
+        }
+        for i in 0..LANES {
+            all.vectors[i] = if boxes.closed[i] { all.vectors[i] } else { -1 };
+        }
+        all
+    }
+
+    /// Whether triangle `i` is one.
+    #[inline(always)]
+    pub(super) const fn has(&self, i: usize) -> bool {
+        self.vectors[i] >= 0
+    }
+
+    /// Draws triangle `i`, which is one.
+    #[inline(always)]
+    pub(super) fn draw<V: SimdVector, P: PaintTriangle>(
+        &self,
+        painter: &mut TrianglePainter<'_, P>,
+        batch: &TriangleBatch<'_>,
+        edges: &Edges,
+        i: usize,
+    ) {
+        if let Some(colours) = &batch.colours {
+            painter.paint.begin(colours[i]);
+        }
+        let [p, q, r] = &edges.0;
+        let [depth, ..] = batch.planes;
+        let tall = V::LANES / FOUR;
+        for down in (0..self.vectors[i] as usize).map(|vector| vector * tall) {
+            let at = (self.y[i] as usize + down) * WIDTH as usize + self.x[i] as usize;
+            let first = walk::<V>(p, self.edges[0][i], i, down);
+            let second = walk::<V>(q, self.edges[1][i], i, down);
+            let third = walk::<V>(r, self.edges[2][i], i, down);
+            let tested =
+                painter.test::<V, InFours>(at, [first, second, third], walk(depth, self.planes[0][i], i, down));
+            if V::any_of(tested.mask, tested.mask) {
+                InFours::store(tested.new, tested.mask, tested.old, painter.z, at);
+                painter.paint.store::<V, InFours>(&self.components(batch, i, down), at, tested.mask);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn components<V: SimdVector>(&self, batch: &TriangleBatch<'_>, i: usize, down: usize) -> [Walk<V>; 3] {
+        let [_, p, q, r] = batch.planes;
+        let [_, first, second, third] = &self.planes;
+        [walk(p, first[i], i, down), walk(q, second[i], i, down), walk(r, third[i], i, down)]
+    }
+}
+
+/// Each triangle's expression at its pixel. An array of its own, or compilers would not see that nothing else changes.
+#[inline(always)]
+fn values(e: &LinearLanes, [x, y]: [&PerTriangle<i32>; 2]) -> PerTriangle<i32> {
+    let mut all = [0; LANES];
+    for i in 0..LANES {
+        all[i] = e.c[i].wrapping_add(e.a[i].wrapping_mul(x[i])).wrapping_add(e.b[i].wrapping_mul(y[i]));
+    }
+    all
+}
+
+#[inline(always)]
+fn moved(places: &PerTriangle<i32>, by: i32) -> PerTriangle<i32> {
+    let mut all = [0; LANES];
+    for i in 0..LANES {
+        all[i] = places[i] + by;
+    }
+    all
+}
+
+/// Triangle `i`'s expression some rows below the pixel where it has its first value.
+#[inline(always)]
+fn walk<V: SimdVector>(e: &LinearLanes, first: i32, i: usize, down: usize) -> Walk<V> {
+    Walk::fours(first.wrapping_add(e.b[i].wrapping_mul(down as i32)), e.a[i], e.b[i])
+}
