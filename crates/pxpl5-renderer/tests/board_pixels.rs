@@ -116,3 +116,18 @@ fn whoever_looks_into_the_array_sees_what_has_started() {
     assert_eq!(seen(&bench, Time((second + WORD * 7).0 - 1)), Some(0x10_20_30));
     assert_eq!(seen(&bench, second + WORD * 7), Some(0x40_50_60));
 }
+
+/// There are eight contexts, so that nine is one.
+#[test]
+fn what_is_sent_to_another_context_changes_nothing_that_is_copied() {
+    for (sent, copied) in [(1, 1), (1, 9), (9, 1)] {
+        let mut bench = Bench::new();
+        let order = CopyOrder { context: copied, ..order(1, CopyWay::ThroughBacking, CopyContent::Colour) };
+        let first = CommandList { context: sent, ..list_of(&[select(0), clear(0x10_20_30)], &[]) };
+        bench.announce(BEGIN, first);
+        bench.announce(BEGIN + Span::from_us(10), list_of(&[select(0), clear(0x40_50_60)], &[]));
+        bench.announce(BEGIN + Span::from_us(20), list(&[run(CommandKind::CopyRegion, 1)], &[order]));
+        bench.run();
+        assert!(images(&bench)[0].iter().all(|pixel| *pixel == 0x10_20_30), "{sent} {copied}");
+    }
+}
