@@ -99,22 +99,25 @@ fn pixel_memory_holds_what_was_sent_since_the_last_clear_and_no_list_that_draws_
     }
 }
 
-/// Commands count from their start on: one of select's two words, then five of clear.
+/// Commands count from their start on: select with two words, then clear with five. The picture before is seen until the clear starts,
+/// which comes behind five selects of six clocks the second time.
 #[test]
 fn whoever_looks_into_the_array_sees_what_has_started() {
     let mut bench = Bench::new();
     bench.device.watch_fifo();
     let second = BEGIN + Span::from_us(100);
     bench.announce(BEGIN, list_of(&[select(0), clear(0x10_20_30)], &[]));
-    bench.announce(second, list_of(&[select(0), clear(0x40_50_60)], &[]));
+    bench.announce(second, list_of(&[[select(0); 5].as_slice(), &[clear(0x40_50_60)]].concat(), &[]));
     let seen = |bench: &Bench, at: Time| bench.device.array_at(at).as_ref().map(colour);
     bench.run_until(BEGIN);
     assert_eq!(seen(&bench, Time((BEGIN + WORD * 2).0 - 1)), None);
     assert_eq!(seen(&bench, Time((BEGIN + WORD * 7).0 - 1)), Some(0));
     assert_eq!(seen(&bench, BEGIN + WORD * 7), Some(0x10_20_30));
     bench.run();
-    assert_eq!(seen(&bench, Time((second + WORD * 7).0 - 1)), Some(0x10_20_30));
-    assert_eq!(seen(&bench, second + WORD * 7), Some(0x40_50_60));
+    let clears = second + WORD * 2 + Span::from_ns(5 * 6 * 25);
+    assert_eq!(seen(&bench, second + WORD * 2), Some(0x10_20_30));
+    assert_eq!(seen(&bench, Time(clears.0 - 1)), Some(0x10_20_30));
+    assert_eq!(seen(&bench, clears), Some(0x40_50_60));
 }
 
 /// There are eight contexts, so that nine is one.
@@ -130,4 +133,19 @@ fn what_is_sent_to_another_context_changes_nothing_that_is_copied() {
         bench.run();
         assert!(images(&bench)[0].iter().all(|pixel| *pixel == 0x10_20_30), "{sent} {copied}");
     }
+}
+
+#[test]
+fn a_clear_hides_nothing_of_another_context_from_whoever_looks() {
+    let mut bench = Bench::new();
+    bench.device.watch_fifo();
+    for (us, context, colour_sent) in [(0, 1, 0x10_20_30), (100, 0, 0x40_50_60)] {
+        let list = list_of(&[select(context), clear(colour_sent)], &[]);
+        bench.announce(BEGIN + Span::from_us(us), CommandList { context, ..list });
+    }
+    let again = list_of(&[select(1), Command::WaitBacking], &[]);
+    bench.announce(BEGIN + Span::from_us(200), CommandList { context: 1, ..again });
+    bench.run();
+    let seen = |us: u64| bench.device.array_at(BEGIN + Span::from_us(us)).as_ref().map(colour);
+    assert_eq!([seen(199), seen(300)], [Some(0x40_50_60), Some(0x10_20_30)]);
 }

@@ -21,7 +21,8 @@ pub(crate) const CYCLE: Span = Span::from_ns(25);
 /// A picture of 2 x 1 regions of 100 x 100 pixels and a narrow one.
 pub(crate) const GRID: RegionGrid = RegionGrid { width: 210, height: 100, region_width: 100, region_height: 100 };
 
-pub(crate) const LAYOUT: fn() -> Layout = Layout::rendering_control_phong;
+/// It has four contexts.
+pub(crate) const LAYOUT: fn() -> Layout = Layout::slats;
 
 pub(crate) struct Bench {
     pub(crate) device: Renderer,
@@ -101,11 +102,12 @@ pub(crate) fn list(runs: &[CommandRun], copies: &[CopyOrder]) -> CommandList {
     CommandList { runs: runs.to_vec(), context: 0, copies: copies.to_vec(), content: None }
 }
 
-/// Commands with their words.
+/// Commands with their words, equal ones in a row as one run.
 pub(crate) fn list_of(commands: &[Command], copies: &[CopyOrder]) -> CommandList {
     let mut words: Vec<Word> = Vec::new();
     commands.iter().for_each(|command| command.encode(&LAYOUT(), &mut words).expect("it fits"));
-    let runs = commands.iter().map(|command| run(command.kind(), 1)).collect();
+    let in_a_row = commands.chunk_by(|one, next| one.kind() == next.kind());
+    let runs = in_a_row.map(|equal| run(equal[0].kind(), equal.len() as u32)).collect();
     let content = Some(CommandContent::new(Arc::new(words), 0));
     CommandList { runs, context: 0, copies: copies.to_vec(), content }
 }
