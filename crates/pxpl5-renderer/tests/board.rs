@@ -176,23 +176,29 @@ fn a_copy_command_without_an_order_ends_at_once() {
     assert!(bench.sent().is_empty());
 }
 
+/// Two triangles in one message, or in two, of which the second is told before the first has come in.
 #[test]
 fn whoever_watches_the_fifo_sees_words_between_their_last_one_and_the_start_of_their_command() {
-    let mut bench = Bench::new();
-    bench.device.watch_fifo();
-    bench.announce(BEGIN, list(&[run(CommandKind::Triangle, 2)], &[]));
-    bench.run();
-    // The second one has come whole after 60 words, and starts when the first one, which started after 30, has ended.
-    let [first, second, started] = [WORD * 30, WORD * 60, WORD * 30 + TRIANGLE].map(|span| BEGIN + span);
-    let words = |at: Time| bench.device.look(at).fifo_words;
-    assert_eq!([BEGIN, first, Time(second.0 - 1)].map(words), [Some(0); 3]);
-    assert_eq!([second, Time(started.0 - 1)].map(words), [Some(30); 2]);
-    assert_eq!(words(started), Some(0));
-    assert_eq!(bench.device.look(BEGIN).fifo_depth_words, 448);
-    let mut changes = bench.device.take_fifo_changes();
-    changes.sort_unstable();
-    assert_eq!(changes, [(first, -30), (first, 30), (second, 30), (started, -30)]);
-    assert!(bench.device.take_fifo_changes().is_empty());
+    for messages in [1, 2] {
+        let mut bench = Bench::new();
+        bench.device.watch_fifo();
+        for message in 0..messages {
+            let triangles = run(CommandKind::Triangle, 2 / messages);
+            bench.announce(BEGIN + Span(message.into()), list(&[triangles], &[]));
+        }
+        bench.run();
+        // The second one has come whole after 60 words, and starts when the first one, which started after 30, has ended.
+        let [first, second, started] = [WORD * 30, WORD * 60, WORD * 30 + TRIANGLE].map(|span| BEGIN + span);
+        let words = |at: Time| bench.device.look(at).fifo_words;
+        assert_eq!([BEGIN, first, Time(second.0 - 1)].map(words), [Some(0); 3]);
+        assert_eq!([second, Time(started.0 - 1)].map(words), [Some(30); 2]);
+        assert_eq!(words(started), Some(0));
+        assert_eq!(bench.device.look(BEGIN).fifo_depth_words, 448);
+        let mut changes = bench.device.take_fifo_changes();
+        changes.sort_unstable();
+        assert_eq!(changes, [(first, -30), (first, 30), (second, 30), (started, -30)]);
+        assert!(bench.device.take_fifo_changes().is_empty());
+    }
 }
 
 #[test]

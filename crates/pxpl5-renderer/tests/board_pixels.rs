@@ -118,6 +118,26 @@ fn whoever_looks_into_the_array_sees_what_has_started() {
     assert_eq!(seen(&bench, second + WORD * 2), Some(0x10_20_30));
     assert_eq!(seen(&bench, Time(clears.0 - 1)), Some(0x10_20_30));
     assert_eq!(seen(&bench, clears), Some(0x40_50_60));
+    let third = second + Span::from_us(100);
+    bench.announce(third, list_of(&[clear(0x70_80_90)], &[]));
+    bench.run();
+    assert_eq!(seen(&bench, Time((third + WORD * 5).0 - 1)), Some(0x40_50_60));
+    assert_eq!(seen(&bench, third + WORD * 5), Some(0x70_80_90));
+}
+
+/// Arrays are used again, for whatever region comes.
+#[test]
+fn a_region_that_was_never_cleared_is_black_whatever_its_array_held() {
+    let mut bench = Bench::new();
+    let orders = [1, 2].map(|region| order(region, CopyWay::ThroughBacking, CopyContent::Colour));
+    bench.announce(BEGIN, painted(0x10_20_30, orders[0]));
+    let other = CopyOrder { context: 1, ..orders[1] };
+    let list = list_of(&[select(0), Command::WaitBacking, copy(other.target)], &[other]);
+    bench.announce(BEGIN + Span::from_us(1), CommandList { context: 1, ..list });
+    bench.delivered(BEGIN + Span::from_us(900));
+    bench.run();
+    let images = images(&bench);
+    assert!(images[0].iter().all(|pixel| *pixel == 0x10_20_30) && images[1].iter().all(|pixel| *pixel == 0));
 }
 
 /// There are eight contexts, so that nine is one.
