@@ -1,5 +1,6 @@
 //! Numbers of a report against each other and against the machine's: what has a name has one value, wherever it is asked for.
 
+use glam::{DQuat, DVec3};
 use image::{Rgb, RgbImage};
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{LatencyCurve, Measure, Measured, QUANTITIES, Results, side_by_side};
@@ -8,9 +9,10 @@ use pxpl5_run::{
 };
 use pxpl5_scene::builtin;
 use std::sync::Arc;
-use tracking::motion::Pan;
+use tracking::motion::{Motion, Pan};
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
+use tracking::{Pose, SettingSink};
 
 const FIELD_HZ: f64 = 60_000.0 / 1_001.0;
 
@@ -73,13 +75,14 @@ fn every_quantity_is_the_number_of_that_name_in_the_report() {
     assert!(due.shown > 0 && report.pictures > 0 && report.events > 0);
 }
 
-/// A picture of one eye has TRANSFORM, RENDER and COPY one after the other, and its copy is the first; stereo has two.
+/// An eye's picture has TRANSFORM, RENDER and COPY one after the other; the two first are different work, which takes different times.
 #[test]
 fn parts_of_a_picture_add_up() {
     let results = Results::of_run(run("rendering-control", "sphere:10", 60));
     let of = |name: &str| value(&results, name).expect(name);
     assert!((of("copies_ms") - of("first_copy_ms") - of("last_copy_ms")).abs() < 1e-9);
     assert!(of("first_copy_ms") > 0.0 && of("last_copy_ms") > 0.0);
+    assert!((of("transform_ms") - of("render_ms")).abs() > 1e-6);
     let stages = of("transform_ms") + of("render_ms");
     assert!(of("transform_ms") > 0.0 && of("render_ms") > 0.0 && stages < of("eye_ms"), "{stages} {}", of("eye_ms"));
 }
@@ -103,6 +106,7 @@ fn a_quantity_is_found_by_its_whole_name_and_a_wrong_one_is_answered_by_the_near
     }
     assert_eq!(Measure::named("latency_ms.meen"), Err("latency_ms.mean"));
     assert_ne!(Measure::named("events"), Measure::named("pictures"));
+    assert_eq!(Measure::named("events"), Measure::named("events"));
     let usual: Vec<&str> = Measure::usual().iter().map(Measure::name).collect();
     let latency = |unit: &str| ["mean", "sd", "min", "max"].map(|of| format!("latency_{unit}.{of}"));
     let expected = [latency("fields").to_vec(), latency("ms").to_vec()].concat();
@@ -163,6 +167,34 @@ fn a_latency_alone_has_a_point_each_field_from_its_first_picture_on() {
         assert!((time - 0.09 - n as f64 / FIELD_HZ).abs() < 1e-9, "{n}: {time}");
     }
     assert_eq!(LatencyCurve::of(&Pan::at(40.0), 3_000, 2, 3.0).mean_px(), 0.0);
+    assert!(LatencyCurve::of(&Pan::at(40.0), 2_000, 2, 3.0).points.is_empty());
+}
+
+/// A head that turns for a second and then stands.
+#[derive(Clone, Copy, Debug)]
+struct Stopping;
+
+impl Motion for Stopping {
+    fn pose(&self, t_ps: u64) -> Pose {
+        Pose::facing(DQuat::from_rotation_y(0.5 * (t_ps as f64 * 1e-12).min(1.0)))
+    }
+    fn identify(&self, settings: &mut SettingSink) {
+        settings("motion", &"stopping");
+    }
+    fn velocity(&self, _: u64) -> DVec3 {
+        DVec3::ZERO
+    }
+    fn angular_velocity(&self, t_ps: u64) -> DVec3 {
+        if t_ps < 1_000_000_000_000 { DVec3::Y * 0.5 } else { DVec3::ZERO }
+    }
+}
+
+#[test]
+fn what_is_drawn_late_goes_on_moving_for_its_latency_after_the_head_has_stopped() {
+    let curve = LatencyCurve::of(&Stopping, 90, 2, 3.0);
+    for (time, pixels) in &curve.points {
+        assert_eq!(*pixels > 1e-6, *time < 1.0 + 0.09, "{time}: {pixels}");
+    }
 }
 
 #[test]
