@@ -1,7 +1,7 @@
 //! The board: input FIFO and controller on one side, the port to the frame buffers on the other.
 
 use crate::command::CommandKind;
-use crate::contents::{MAX_CONTEXTS, begins_with_clear, changes_pixels};
+use crate::contents::{MAX_CONTEXTS, changes_pixels, words_before_clear};
 use crate::fifo::{EqualCommands, InputFifo, Progress};
 use crate::job::{ArrayPool, NoPixels, PixelJob};
 use crate::look::{RendererLook, SentLists};
@@ -190,7 +190,7 @@ impl Renderer {
 
     fn take(&mut self, list: CommandList) {
         let log = &mut self.logs[usize::from(list.context) % MAX_CONTEXTS];
-        if begins_with_clear(&list.runs) {
+        if words_before_clear(&list.runs).is_some() {
             log.clear();
         }
         if let Some(content) = list.content.filter(|_| changes_pixels(&list.runs)) {

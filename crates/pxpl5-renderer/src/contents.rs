@@ -12,10 +12,16 @@ pub(crate) fn changes_pixels(runs: &[CommandRun]) -> bool {
     runs.iter().any(|run| CommandKind::from_opcode(run.opcode).is_none_or(|kind| !kinds.contains(&kind)))
 }
 
-/// Whether a list overwrites its whole context, so that nothing sent before can be seen any more.
-pub(crate) fn begins_with_clear(runs: &[CommandRun]) -> bool {
-    let kinds = runs.iter().map(|run| CommandKind::from_opcode(run.opcode));
-    kinds
-        .take_while(|kind| matches!(kind, Some(CommandKind::SelectRegion | CommandKind::Clear)))
-        .any(|kind| kind == Some(CommandKind::Clear))
+/// Words before the clear with which a list overwrites its whole context, so that nothing sent before can be seen once it has started;
+/// `None` of a list that begins otherwise.
+pub(crate) fn words_before_clear(runs: &[CommandRun]) -> Option<u64> {
+    let mut words = 0;
+    for run in runs {
+        match CommandKind::from_opcode(run.opcode) {
+            Some(CommandKind::Clear) => return Some(words),
+            Some(CommandKind::SelectRegion) => words += u64::from(run.count) * u64::from(run.words_each),
+            _ => return None,
+        }
+    }
+    None
 }

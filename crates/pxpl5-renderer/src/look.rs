@@ -1,6 +1,6 @@
 //! What somebody who looks at a renderer while it works sees.
 
-use crate::contents::{MAX_CONTEXTS, begins_with_clear, changes_pixels};
+use crate::contents::{MAX_CONTEXTS, changes_pixels, words_before_clear};
 use crate::{Lanes, Layout, PixelArray};
 use pxpl5_sim::Span;
 use pxpl5_wire::{Body, CommandContent, CopyOrder, Message};
@@ -32,7 +32,8 @@ struct SentList {
     context: usize,
     /// Words that were sent before it, since the start.
     first_word: u64,
-    clears: bool,
+    /// The first word of the clear with which it begins, counted alike; `None` where it begins otherwise.
+    clear: Option<u64>,
     content: CommandContent,
 }
 
@@ -42,9 +43,9 @@ impl SentLists {
         let Body::Commands(list) = &message.body else { return };
         let Some(content) = list.content.clone().filter(|_| changes_pixels(&list.runs)) else { return };
         let context = usize::from(list.context) % MAX_CONTEXTS;
-        let clears = begins_with_clear(&list.runs);
+        let clear = words_before_clear(&list.runs).map(|words| first_word + words);
         self.forget(started);
-        self.0.push_back(SentList { context, first_word, clears, content });
+        self.0.push_back(SentList { context, first_word, clear, content });
     }
 
     /// Gives up what a clear that has started has hidden.
@@ -53,11 +54,11 @@ impl SentLists {
         self.0.retain(|list| list.first_word >= cleared[list.context]);
     }
 
-    /// The first word of the last list that clears a context and has started; 0 without any.
+    /// The first word of the last list whose clear of a context has started; 0 without any.
     fn cleared_at(&self, context: usize, started: u64) -> u64 {
         let of_context = self.0.iter().filter(|list| list.context == context);
         of_context
-            .filter(|list| list.clears && list.first_word < started)
+            .filter(|list| list.clear.is_some_and(|clear| clear < started))
             .map(|list| list.first_word)
             .max()
             .unwrap_or(0)

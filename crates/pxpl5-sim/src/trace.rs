@@ -56,6 +56,20 @@ mod tests {
         assert_ne!(base, hash(&[(1, &[2, 3]), (1, &[4]), (1, &[4])]));
     }
 
+    /// Both are mixed alike and taken exclusively, so that nothing is left of them but the mixed zero: the first output of
+    /// SplitMix64 seeded with 0 (Vigna's reference program).
+    #[test]
+    fn a_fact_that_is_its_own_time_leaves_the_hash_of_zero() {
+        for both in [0, 1, 1_234_567, u64::MAX] {
+            assert_eq!(hash(&[(both, &[both])]), TraceHash(0xE220_A839_7B1D_CDAF));
+        }
+    }
+
+    #[test]
+    fn a_hash_prints_as_sixteen_digits() {
+        assert_eq!(TraceHash(0xAB0).to_string(), "0000000000000ab0");
+    }
+
     #[test]
     fn mix_agrees_with_the_published_splitmix64_sequence() {
         // First outputs of SplitMix64 seeded with 1234567 (Vigna's reference program).

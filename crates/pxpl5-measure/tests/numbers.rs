@@ -1,0 +1,216 @@
+//! Numbers of a report against each other and against the machine's: what has a name has one value, wherever it is asked for.
+
+use glam::{DQuat, DVec3};
+use image::{Rgb, RgbImage};
+use pxpl5_machine::MachineConfig;
+use pxpl5_measure::{LatencyCurve, Measure, Measured, QUANTITIES, Results, side_by_side};
+use pxpl5_run::{
+    Experiment, FacePipeline, FacePolicy, FaceSource, Head, Outcome, Pipeline, PipelineSettings, Pixels, Registry,
+};
+use pxpl5_scene::builtin;
+use std::sync::Arc;
+use tracking::motion::{Motion, Pan};
+use tracking::predict::PredictorKind;
+use tracking::tracker::TrackerConfig;
+use tracking::{Pose, SettingSink};
+
+const FIELD_HZ: f64 = 60_000.0 / 1_001.0;
+
+fn head() -> Head {
+    Head::new(Arc::new(Pan::at(20.0)), TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1).expect("in range")
+}
+
+fn run(pipeline: &str, scene: &str, fields: u64) -> Outcome {
+    let registry = Registry::of_papers();
+    let pipeline = (registry.pipeline(pipeline).expect("listed").build)(&PipelineSettings::default());
+    let scene = Arc::new(builtin(scene).expect("built in"));
+    let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene).head(head());
+    experiment.fields(fields).pixels(Pixels::Off).run().expect("it runs")
+}
+
+fn value(results: &Results, name: &str) -> Option<f64> {
+    Measure::named(name).expect("a quantity").of(results)
+}
+
+#[test]
+fn every_quantity_is_the_number_of_that_name_in_the_report() {
+    let results = Results::of_run(run("rendering-control", "sphere:10", 60));
+    let (_, report) = results.run.as_ref().expect("a run");
+    let due = report.due.expect("pictures are due");
+    let head = report.head.as_ref().expect("a head");
+    let counted = [
+        ("pictures_due", due.due),
+        ("pictures_shown", due.shown),
+        ("pictures_late", due.late),
+        ("pictures_incomplete", due.incomplete),
+        ("pictures_missed", due.missed),
+        ("missed_retraces", due.due - due.shown),
+        ("late_regions", report.late_regions as u64),
+        ("pictures", report.pictures as u64),
+        ("events", report.events),
+    ];
+    for (name, expected) in counted {
+        assert_eq!(value(&results, name), Some(expected as f64), "{name}");
+    }
+    let measured = [
+        ("latency_ms.mean", report.latency_ms.statistics.mean),
+        ("latency_ms.sd", report.latency_ms.statistics.sd),
+        ("latency_ms.min", report.latency_ms.statistics.min),
+        ("latency_ms.max", report.latency_ms.statistics.max),
+        ("latency_fields.mean", report.latency_ms.statistics.mean * FIELD_HZ * 1e-3),
+        ("missed_share", (due.due - due.shown) as f64 / due.due as f64),
+        ("to_light_ms", head.end_to_end.total_ms),
+        ("error_px.mean", head.error.pixels.mean),
+        ("error_px.p50", head.error.pixels.p50),
+        ("error_px.p90", head.error.pixels.p90),
+        ("error_px.p99", head.error.pixels.p99),
+        ("error_px.max", head.error.pixels.max),
+        ("error_deg.mean", head.error.degrees.mean),
+        ("updates_hz", report.updates_hz.expect("pictures were shown")),
+    ];
+    for (name, expected) in measured {
+        let found = value(&results, name).expect(name);
+        assert!((found - expected).abs() < 1e-9, "{name}: {found} for {expected}");
+    }
+    assert!(due.shown > 0 && report.pictures > 0 && report.events > 0);
+}
+
+/// An eye's picture has TRANSFORM, RENDER and COPY one after the other; the two first are different work, which takes different times.
+#[test]
+fn parts_of_a_picture_add_up() {
+    let results = Results::of_run(run("rendering-control", "sphere:10", 60));
+    let of = |name: &str| value(&results, name).expect(name);
+    assert!((of("copies_ms") - of("first_copy_ms") - of("last_copy_ms")).abs() < 1e-9);
+    assert!(of("first_copy_ms") > 0.0 && of("last_copy_ms") > 0.0);
+    assert!((of("transform_ms") - of("render_ms")).abs() > 1e-6);
+    let stages = of("transform_ms") + of("render_ms");
+    assert!(of("transform_ms") > 0.0 && of("render_ms") > 0.0 && stages < of("eye_ms"), "{stages} {}", of("eye_ms"));
+}
+
+#[test]
+fn what_a_run_has_not_is_no_number() {
+    let results = Results::of_run(run("slats", "sphere:10", 60));
+    for name in ["eye_ms", "eye_latency_ms.mean", "rotation_ms"] {
+        assert_eq!(value(&results, name), None, "{name}");
+    }
+    let closed_form = Results::of_closed_form(results.summary.clone());
+    assert_eq!(value(&closed_form, "events"), None);
+    assert_eq!(value(&closed_form, "latency_ms.mean"), value(&results, "latency_ms.mean"));
+}
+
+#[test]
+fn a_quantity_is_found_by_its_whole_name_and_a_wrong_one_is_answered_by_the_nearest() {
+    for quantity in &QUANTITIES {
+        let measure = Measure::named(quantity.name).expect("listed");
+        assert_eq!((measure.name(), measure.definition()), (quantity.name, quantity.definition));
+    }
+    assert_eq!(Measure::named("latency_ms.meen"), Err("latency_ms.mean"));
+    assert_ne!(Measure::named("events"), Measure::named("pictures"));
+    assert_eq!(Measure::named("events"), Measure::named("events"));
+    let usual: Vec<&str> = Measure::usual().iter().map(Measure::name).collect();
+    let latency = |unit: &str| ["mean", "sd", "min", "max"].map(|of| format!("latency_{unit}.{of}"));
+    let expected = [latency("fields").to_vec(), latency("ms").to_vec()].concat();
+    assert_eq!(usual[..8], expected);
+    assert_eq!(usual[8..], ["updates_hz", "missed_retraces"]);
+}
+
+#[test]
+fn a_load_that_is_too_heavy_is_told_with_what_would_do() {
+    let outcome = run("jitp-scanline", "mig", 40);
+    let report = outcome.report();
+    let heavy = report.too_heavy.expect("too many triangles for a line's time");
+    let due = report.due.expect("pictures are due");
+    assert_eq!((heavy.due, heavy.not_shown), (due.due, due.due - due.shown));
+    assert_eq!(heavy.triangles, (report.triangles + report.spheres) as u64);
+    assert!(heavy.triangles_in_time.is_none_or(|some| some < heavy.triangles));
+    let begin = format!("TOO HEAVY: with {} triangles {} of {} pictures", heavy.triangles, heavy.not_shown, heavy.due);
+    assert!(
+        heavy.to_string().starts_with(&begin) && heavy.to_string().ends_with(&format!("{}.", heavy.advice)),
+        "{heavy}"
+    );
+    let number = heavy.triangles_in_time.filter(|some| *some > 0).map(|some| format!("--triangles {some}"));
+    assert!(heavy.advice.contains(&number.unwrap_or_else(|| "--pipeline jitp-scanline".to_owned())), "{heavy}");
+    assert_eq!(run("jitp-scanline", "full-screen:2", 40).report().too_heavy, None);
+}
+
+/// Faces of 512 texels of 24 bits of colour and of depth, one memory, so 24 stages of 25 ns.
+#[test]
+fn a_display_with_faces_is_reported_with_its_memory() {
+    let pipeline = FacePipeline { source: FaceSource::Ideal, ..FacePipeline::new(FacePolicy::Full) };
+    let config = pipeline.adapt(MachineConfig::small_hmd());
+    let scene = builtin("sphere:100").expect("even");
+    let experiment = Experiment::new(config, pipeline, scene).fields(40).head(head()).pixels(Pixels::Off);
+    let report = experiment.run().expect("it runs").report();
+    let faces = report.arp.expect("faces");
+    assert_eq!((faces.face_texels, faces.pipeline_ns.round()), (512, 600.0));
+    let counted = |name: &str| report.display_counters.iter().find(|counter| counter.name == name).map(|c| c.count);
+    assert_eq!(Some(faces.matrix_loads), counted("matrix loads"));
+    assert_eq!(Some(faces.matrix_refused), counted("matrices refused"));
+    assert!(faces.matrix_loads >= 39, "{}", faces.matrix_loads);
+    let [memory] = &faces.memories[..] else { panic!("{faces:?}") };
+    assert_eq!(memory.bytes, 2 * 6 * 512 * 512 * 6);
+    let period = memory.period_frames.expect("updates were shown");
+    assert!((memory.updates_hz * period - FIELD_HZ).abs() < 1e-6, "{memory:?}");
+    assert_eq!((memory.segments, memory.missed), (1, 0));
+    let whole = faces.rotation_latency_ms.expect("a head").mean;
+    let parts: f64 = faces.rotation_latency_parts_ms.iter().map(|part| part.statistics.mean).sum();
+    assert!(whole > 0.0 && (whole - parts).abs() < 1e-9, "{whole} {parts}");
+}
+
+/// The first point is where the pose that is drawn is that of the start; there is one each field until the end.
+#[test]
+fn a_latency_alone_has_a_point_each_field_from_its_first_picture_on() {
+    let curve = LatencyCurve::of(&Pan::at(40.0), 90, 2, 3.0);
+    let times: Vec<f64> = curve.points.iter().map(|point| point.0).collect();
+    assert_eq!((curve.latency_ms, times.len() as f64), (90, ((2.0 - 0.09) * FIELD_HZ).ceil()));
+    for (n, time) in times.iter().enumerate() {
+        assert!((time - 0.09 - n as f64 / FIELD_HZ).abs() < 1e-9, "{n}: {time}");
+    }
+    assert_eq!(LatencyCurve::of(&Pan::at(40.0), 3_000, 2, 3.0).mean_px(), 0.0);
+    assert!(LatencyCurve::of(&Pan::at(40.0), 2_000, 2, 3.0).points.is_empty());
+}
+
+/// A head that turns for a second and then stands.
+#[derive(Clone, Copy, Debug)]
+struct Stopping;
+
+impl Motion for Stopping {
+    fn pose(&self, t_ps: u64) -> Pose {
+        Pose::facing(DQuat::from_rotation_y(0.5 * (t_ps as f64 * 1e-12).min(1.0)))
+    }
+    fn identify(&self, settings: &mut SettingSink) {
+        settings("motion", &"stopping");
+    }
+    fn velocity(&self, _: u64) -> DVec3 {
+        DVec3::ZERO
+    }
+    fn angular_velocity(&self, t_ps: u64) -> DVec3 {
+        if t_ps < 1_000_000_000_000 { DVec3::Y * 0.5 } else { DVec3::ZERO }
+    }
+}
+
+#[test]
+fn what_is_drawn_late_goes_on_moving_for_its_latency_after_the_head_has_stopped() {
+    let curve = LatencyCurve::of(&Stopping, 90, 2, 3.0);
+    for (time, pixels) in &curve.points {
+        assert_eq!(*pixels > 1e-6, *time < 1.0 + 0.09, "{time}: {pixels}");
+    }
+}
+
+#[test]
+fn pictures_stand_side_by_side_the_lower_one_on_black() {
+    let left = RgbImage::from_pixel(2, 3, Rgb([1, 2, 3]));
+    let right = RgbImage::from_pixel(4, 1, Rgb([4, 5, 6]));
+    let both = side_by_side(&left, &right);
+    assert_eq!(both.dimensions(), (6, 3));
+    for (x, y, pixel) in both.enumerate_pixels() {
+        let expected = if x < 2 {
+            [1, 2, 3]
+        } else if y < 1 {
+            [4, 5, 6]
+        } else {
+            [0; 3]
+        };
+        assert_eq!(pixel.0, expected, "{x} {y}");
+    }
+}

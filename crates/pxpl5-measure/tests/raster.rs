@@ -1,0 +1,187 @@
+//! A raster that is shifted while it is scanned, beside the closed form of a head that turns steadily about one axis.
+//!
+//! A picture that is drawn for the middle of its field is shifted, where the beam is at t, by what the head turns between: f tan(v (t - a)).
+
+use glam::{DQuat, DVec3};
+use image::{Rgb, RgbImage};
+use pxpl5_machine::MachineConfig;
+use pxpl5_measure::{Measured, PixelErrors, RasterOffsets, Showing, UNJUDGED_FIELDS};
+use pxpl5_run::{Aim, Experiment, Head, Outcome, PipelineSettings, Pixels, Raster, Registry};
+use pxpl5_scene::builtin;
+use pxpl5_wire::PeriodNumber;
+use std::sync::Arc;
+use tracking::motion::Motion;
+use tracking::predict::PredictorKind;
+use tracking::tracker::TrackerConfig;
+use tracking::{Pose, SettingSink};
+
+const FIELDS: u64 = 30;
+
+/// NTSC: a line of 780 pixel periods, of which the last 640 are visible, and a field of 262.5 lines, the first 22 of which are blanked; an
+/// odd one begins with half a line.
+const LINE_S: f64 = 4004.0 / 63.0 * 1e-6;
+
+fn beam(field: u64, row: u64, x: u64) -> f64 {
+    let half = (field % 2) as f64 / 2.0;
+    (field as f64 * 262.5 + half + 22.0 + row as f64 + (140.0 + x as f64) / 780.0) * LINE_S
+}
+
+/// Focal length of 640 pixels over 60 degrees.
+fn focal_px() -> f64 {
+    320.0 / 30f64.to_radians().tan()
+}
+
+/// A head that turns about an axis of the world: to the left about y, upwards about x.
+#[derive(Clone, Copy, Debug)]
+struct Turning {
+    axis: DVec3,
+}
+
+const RAD_PER_S: f64 = 2.0;
+
+impl Motion for Turning {
+    fn pose(&self, t_ps: u64) -> Pose {
+        // Begun so that a field in the middle of the run looks straight ahead, where up and down are those of the world.
+        Pose::facing(DQuat::from_axis_angle(self.axis, RAD_PER_S * (t_ps as f64 * 1e-12 - 0.35)))
+    }
+    fn identify(&self, settings: &mut SettingSink) {
+        settings("motion", &"turning");
+    }
+    fn velocity(&self, _: u64) -> DVec3 {
+        DVec3::ZERO
+    }
+    fn angular_velocity(&self, _: u64) -> DVec3 {
+        self.axis * RAD_PER_S
+    }
+}
+
+fn run(axis: DVec3, raster: Raster) -> Outcome {
+    let registry = Registry::of_papers();
+    let pipeline = (registry.pipeline("jitp-field").expect("listed").build)(&PipelineSettings::default());
+    let head = Head::new(Arc::new(Turning { axis }), TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1);
+    let head = head.expect("in range").aiming(Aim::Middle).before(raster);
+    let scene = Arc::new(builtin("full-screen:2").expect("built in"));
+    let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene).head(head);
+    experiment.fields(FIELDS).pixels(Pixels::Off).run().expect("two triangles")
+}
+
+/// The angle by which the head has turned since the instant that a field's picture is drawn for.
+fn turned(field: u64, row: u64, x: u64) -> f64 {
+    let aim = (beam(field, 0, 0) + beam(field, 239, 639)) / 2.0;
+    RAD_PER_S * (beam(field, row, x) - aim)
+}
+
+/// A screen of which every pixel tells its place.
+fn places() -> RgbImage {
+    RgbImage::from_fn(640, 480, |x, y| Rgb([1 + (x / 256) as u8, x as u8, (y / 2) as u8]))
+}
+
+/// Shifts every pixel of a field and compares with what comes from its place in the closed form.
+fn check(axis: DVec3, field: u64, from: impl Fn(u64, u64, f64) -> [f64; 2]) {
+    let outcome = run(axis, Raster::Vdrt);
+    let offsets = RasterOffsets::of(&outcome).expect("it is shifted");
+    let screen = places();
+    let mut shifted = RgbImage::from_pixel(640, 480, Rgb([255; 3]));
+    offsets.shift_rows(&screen, PeriodNumber(field), &mut shifted);
+    let mut compared = 0;
+    for (row, x) in (0..240_u64).step_by(7).flat_map(|row| (0..640_u64).map(move |x| (row, x))) {
+        let y = (2 * row + field % 2) as u32;
+        assert_eq!(shifted.get_pixel(x as u32, y ^ 1), &Rgb([255; 3]), "the other field's rows stay");
+        let place = from(row, x, focal_px() * turned(field, row, x).tan());
+        if place.iter().any(|place| (place - place.floor() - 0.5).abs() < 0.01) {
+            continue;
+        }
+        let [column, line] = place.map(|place| place.round() as i64);
+        let inside = (0..640).contains(&column) && (0..240).contains(&line);
+        let expected =
+            if inside { *screen.get_pixel(column as u32, 2 * line as u32 + (field % 2) as u32) } else { Rgb([0; 3]) };
+        assert_eq!(shifted.get_pixel(x as u32, y), &expected, "{x} {row} of field {field}: from {place:?}");
+        compared += 1;
+    }
+    assert!(compared > 20_000, "{compared}");
+}
+
+#[test]
+fn under_a_pan_every_pixel_comes_from_where_the_turn_has_moved_it_from() {
+    for field in [20, 21] {
+        check(DVec3::Y, field, |row, x, shift| [x as f64 - shift, row as f64]);
+    }
+}
+
+#[test]
+fn under_a_nod_every_row_comes_from_half_as_many_rows_of_its_field() {
+    for field in [20, 21] {
+        check(DVec3::X, field, |row, x, shift| [x as f64, row as f64 - shift / 2.0]);
+    }
+}
+
+#[test]
+fn before_anything_is_shown_rows_stay_and_behind_the_run_there_is_no_offset() {
+    let outcome = run(DVec3::Y, Raster::Vdrt);
+    let offsets = RasterOffsets::of(&outcome).expect("it is shifted");
+    let screen = places();
+    let mut shifted = RgbImage::new(640, 480);
+    offsets.shift_rows(&screen, PeriodNumber(0), &mut shifted);
+    assert!(shifted.enumerate_pixels().all(|(x, y, pixel)| y % 2 == 1 || pixel == screen.get_pixel(x, y)));
+    assert!(offsets.field(PeriodNumber(0)).is_none() && offsets.field(PeriodNumber(FIELDS)).is_none());
+    assert!(offsets.field(PeriodNumber(FIELDS - 2)).is_some());
+    assert!(RasterOffsets::of(&run(DVec3::Y, Raster::Plain)).is_none());
+}
+
+/// Where a place's content is after a turn to the left, both from the middle.
+fn after(right: f64, up: f64, angle: f64) -> [f64; 2] {
+    let (sin, cos) = angle.sin_cos();
+    let depth = focal_px() * cos - right * sin;
+    [(right * cos + focal_px() * sin) * focal_px() / depth, up * focal_px() / depth]
+}
+
+/// The mean error of the 25 pixels of each field, from the place at which a pixel's content was drawn.
+fn mean_px(drawn_at: impl Fn(f64, f64) -> f64) -> f64 {
+    let grid = |size: u64| (0..5).map(move |i| (2 * i + 1) * size / 10);
+    let fields = UNJUDGED_FIELDS..FIELDS - 1;
+    let pixels = fields.flat_map(|field| grid(480).flat_map(move |y| grid(640).map(move |x| (field, y / 2, x))));
+    let errors = pixels.map(|(field, row, x)| {
+        let [right, up] = [x as f64 + 0.5 - 320.0, 240.0 - ((2 * row + field % 2) as f64 + 0.5)];
+        let angle = turned(field, row, x);
+        let [seen_right, seen_up] = after(drawn_at(right, angle), up, angle);
+        (seen_right - right).hypot(seen_up - up)
+    });
+    let errors: Vec<f64> = errors.collect();
+    errors.iter().sum::<f64>() / errors.len() as f64
+}
+
+#[test]
+fn a_flat_raster_leaves_what_a_shift_is_no_turn() {
+    let plain = mean_px(|right, _| right);
+    let shifted = mean_px(|right, angle| right - focal_px() * angle.tan());
+    assert!(shifted < plain / 5.0, "{shifted} of {plain}");
+    for (raster, expected) in [(Raster::Plain, plain), (Raster::Vdrt, shifted)] {
+        let outcome = run(DVec3::Y, raster);
+        let found = outcome.pixel_errors().expect("a head");
+        assert!((found.pixels.mean / expected - 1.0).abs() < 1e-3, "{raster:?}: {} for {expected}", found.pixels.mean);
+    }
+}
+
+/// The reference is drawn for every pixel's own instant, so that nothing is left under a turn that is predicted without error.
+#[test]
+fn an_ideal_view_of_a_steady_turn_has_no_error() {
+    let errors = PixelErrors::shown(&run(DVec3::Y, Raster::Plain), Showing::Ideal);
+    assert_eq!(errors.judged, 25 * (FIELDS - 1 - UNJUDGED_FIELDS));
+    assert!(errors.pixels.max < 1e-6 && errors.degrees.max < 1e-6, "{errors:?}");
+}
+
+#[test]
+fn errors_by_field_are_those_of_all_pixels_at_the_time_of_their_retraces() {
+    let errors = run(DVec3::Y, Raster::Plain).pixel_errors().expect("a head");
+    let fields: Vec<u64> = errors.by_field.iter().map(|error| error.field.0).collect();
+    assert_eq!(fields, (UNJUDGED_FIELDS..FIELDS - 1).collect::<Vec<_>>());
+    for error in &errors.by_field {
+        let retrace_s = error.field.0 as f64 * 262.5 * LINE_S;
+        assert!((error.time_s - retrace_s).abs() < 1e-9, "{error:?}");
+    }
+    let mean =
+        |of: fn(&pxpl5_measure::FieldError) -> f64| errors.by_field.iter().map(of).sum::<f64>() / fields.len() as f64;
+    assert!((mean(|error| error.mean_px) - errors.pixels.mean).abs() < 1e-9);
+    assert!((mean(|error| error.centre_px) - errors.centre_px.mean).abs() < 1e-9);
+    assert_eq!((errors.all_px.len() as u64, errors.behind, errors.empty), (errors.judged, 0, 0));
+}

@@ -1,0 +1,171 @@
+//! What a renderer board's regions hold: what was sent to their context until they were copied, and until somebody looks.
+
+mod support;
+
+use pxpl5_renderer::{Clear, Command, CommandKind, Lanes, PixelArray, SelectRegion};
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::{Body, CommandList, CopyContent, CopyOrder, CopyTarget, CopyWay, Word};
+use std::sync::Arc;
+use support::{Bench, WORD, list, list_of, order, run};
+
+const BEGIN: Time = Time(1_000_000_000);
+const FARTHEST: Word = 0xFF_FFFF;
+
+fn select(context: u8) -> Command {
+    Command::SelectRegion(SelectRegion { context, left: 0, top: 0 })
+}
+
+const fn clear(colour: Word) -> Command {
+    Command::Clear(Clear { colour })
+}
+
+fn copy(target: CopyTarget) -> Command {
+    Command::CopyRegion(pxpl5_renderer::CopyRegion { target })
+}
+
+/// A region of one colour that is copied.
+fn painted(colour: Word, order: CopyOrder) -> CommandList {
+    list_of(&[select(0), clear(colour), copy(order.target)], &[order])
+}
+
+fn images(bench: &Bench) -> Vec<Arc<[Word]>> {
+    let images = bench.sent().into_iter().filter_map(|sent| match sent.message.body {
+        Body::Pixels(pixels) if pixels.part == 0 => Some(pixels.image.pixels()),
+        _ => None,
+    });
+    images.collect()
+}
+
+#[test]
+fn a_region_is_copied_as_it_was_when_its_copy_was_sent() {
+    for saves in [true, false] {
+        let mut bench = Bench::new();
+        if !saves {
+            bench.device.draw_every_region();
+        }
+        let orders = [1, 2].map(|region| order(region, CopyWay::ThroughBacking, CopyContent::Colour));
+        let colours = [0x10_20_30, 0x40_50_60];
+        bench.announce(BEGIN, painted(colours[0], orders[0]));
+        bench.announce(BEGIN + Span::from_us(1), painted(colours[1], orders[1]));
+        bench.delivered(BEGIN + Span::from_us(900));
+        bench.run();
+        let images = images(&bench);
+        // Of 100 x 100 pixels, and of 10 x 100.
+        assert_eq!(images.iter().map(|image| image.len()).collect::<Vec<_>>(), [10_000, 1_000]);
+        for (image, colour) in images.iter().zip(colours) {
+            assert!(image.iter().all(|pixel| *pixel == colour), "{colour:x}");
+        }
+    }
+}
+
+#[test]
+fn depths_that_are_copied_too_follow_the_colours_and_lie_at_the_far_plane_where_nothing_was_drawn() {
+    let mut bench = Bench::new();
+    let order = order(1, CopyWay::ThroughBacking, CopyContent::ColourAndDepth);
+    bench.announce(BEGIN, painted(0x10_20_30, order));
+    bench.run();
+    let image = &images(&bench)[0];
+    assert_eq!(image.len(), 20_000);
+    assert!(image[..10_000].iter().all(|pixel| *pixel == 0x10_20_30));
+    assert!(image[10_000..].iter().all(|depth| *depth == FARTHEST));
+}
+
+#[test]
+fn a_region_of_which_no_words_were_sent_is_black() {
+    let mut bench = Bench::new();
+    let order = order(1, CopyWay::ThroughBacking, CopyContent::ColourAndDepth);
+    bench.announce(BEGIN, list(&[run(CommandKind::Clear, 1), run(CommandKind::CopyRegion, 1)], &[order]));
+    bench.run();
+    assert!(bench.device.pixel_memory().is_none());
+    assert_eq!(images(&bench), [vec![0; 20_000].into()]);
+}
+
+/// The colour of the selected context at a pixel.
+fn colour(array: &Lanes) -> Word {
+    array.read_colour(1, 1)[0]
+}
+
+#[test]
+fn pixel_memory_holds_what_was_sent_since_the_last_clear_and_no_list_that_draws_nothing() {
+    let mut bench = Bench::new();
+    bench.announce(BEGIN, list_of(&[select(0)], &[]));
+    bench.run();
+    assert!(bench.device.pixel_memory().is_none());
+    for (us, colour_sent) in [(100, 0x10_20_30), (200, 0x40_50_60)] {
+        let at = BEGIN + Span::from_us(us);
+        bench.announce(at, list_of(&[select(0), clear(colour_sent)], &[]));
+        bench.run();
+        assert_eq!(bench.device.pixel_memory().as_ref().map(colour), Some(colour_sent));
+    }
+}
+
+/// Commands count from their start on: select with two words, then clear with five. The picture before is seen until the clear starts,
+/// which comes behind five selects of six clocks the second time.
+#[test]
+fn whoever_looks_into_the_array_sees_what_has_started() {
+    let mut bench = Bench::new();
+    bench.device.watch_fifo();
+    let second = BEGIN + Span::from_us(100);
+    bench.announce(BEGIN, list_of(&[select(0), clear(0x10_20_30)], &[]));
+    bench.announce(second, list_of(&[[select(0); 5].as_slice(), &[clear(0x40_50_60)]].concat(), &[]));
+    let seen = |bench: &Bench, at: Time| bench.device.array_at(at).as_ref().map(colour);
+    bench.run_until(BEGIN);
+    assert_eq!(seen(&bench, Time((BEGIN + WORD * 2).0 - 1)), None);
+    assert_eq!(seen(&bench, Time((BEGIN + WORD * 7).0 - 1)), Some(0));
+    assert_eq!(seen(&bench, BEGIN + WORD * 7), Some(0x10_20_30));
+    bench.run();
+    let clears = second + WORD * 2 + Span::from_ns(5 * 6 * 25);
+    assert_eq!(seen(&bench, second + WORD * 2), Some(0x10_20_30));
+    assert_eq!(seen(&bench, Time(clears.0 - 1)), Some(0x10_20_30));
+    assert_eq!(seen(&bench, clears), Some(0x40_50_60));
+    let third = second + Span::from_us(100);
+    bench.announce(third, list_of(&[clear(0x70_80_90)], &[]));
+    bench.run();
+    assert_eq!(seen(&bench, Time((third + WORD * 5).0 - 1)), Some(0x40_50_60));
+    assert_eq!(seen(&bench, third + WORD * 5), Some(0x70_80_90));
+}
+
+/// Arrays are used again, for whatever region comes.
+#[test]
+fn a_region_that_was_never_cleared_is_black_whatever_its_array_held() {
+    let mut bench = Bench::new();
+    let orders = [1, 2].map(|region| order(region, CopyWay::ThroughBacking, CopyContent::Colour));
+    bench.announce(BEGIN, painted(0x10_20_30, orders[0]));
+    let other = CopyOrder { context: 1, ..orders[1] };
+    let list = list_of(&[select(0), Command::WaitBacking, copy(other.target)], &[other]);
+    bench.announce(BEGIN + Span::from_us(1), CommandList { context: 1, ..list });
+    bench.delivered(BEGIN + Span::from_us(900));
+    bench.run();
+    let images = images(&bench);
+    assert!(images[0].iter().all(|pixel| *pixel == 0x10_20_30) && images[1].iter().all(|pixel| *pixel == 0));
+}
+
+/// There are eight contexts, so that nine is one.
+#[test]
+fn what_is_sent_to_another_context_changes_nothing_that_is_copied() {
+    for (sent, copied) in [(1, 1), (1, 9), (9, 1)] {
+        let mut bench = Bench::new();
+        let order = CopyOrder { context: copied, ..order(1, CopyWay::ThroughBacking, CopyContent::Colour) };
+        let first = CommandList { context: sent, ..list_of(&[select(0), clear(0x10_20_30)], &[]) };
+        bench.announce(BEGIN, first);
+        bench.announce(BEGIN + Span::from_us(10), list_of(&[select(0), clear(0x40_50_60)], &[]));
+        bench.announce(BEGIN + Span::from_us(20), list(&[run(CommandKind::CopyRegion, 1)], &[order]));
+        bench.run();
+        assert!(images(&bench)[0].iter().all(|pixel| *pixel == 0x10_20_30), "{sent} {copied}");
+    }
+}
+
+#[test]
+fn a_clear_hides_nothing_of_another_context_from_whoever_looks() {
+    let mut bench = Bench::new();
+    bench.device.watch_fifo();
+    for (us, context, colour_sent) in [(0, 1, 0x10_20_30), (100, 0, 0x40_50_60)] {
+        let list = list_of(&[select(context), clear(colour_sent)], &[]);
+        bench.announce(BEGIN + Span::from_us(us), CommandList { context, ..list });
+    }
+    let again = list_of(&[select(1), Command::WaitBacking], &[]);
+    bench.announce(BEGIN + Span::from_us(200), CommandList { context: 1, ..again });
+    bench.run();
+    let seen = |us: u64| bench.device.array_at(BEGIN + Span::from_us(us)).as_ref().map(colour);
+    assert_eq!([seen(199), seen(300)], [Some(0x40_50_60), Some(0x10_20_30)]);
+}
