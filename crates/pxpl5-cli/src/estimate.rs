@@ -87,7 +87,7 @@ impl Work {
             batch: whole("batch"),
             block: whole("block"),
             is_cycle_level: plan.level == Level::Cycle,
-            keeps_everything: keeps_everything || plan.head.is_some() || !plan.pipeline.can_forget(),
+            keeps_everything: keeps_everything || !plan.pipeline.can_forget(),
             computes_all_pixels: plan.pixels == Pixels::All,
         }
     }

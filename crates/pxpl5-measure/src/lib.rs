@@ -13,9 +13,12 @@
 mod budget;
 mod causes;
 mod content;
+mod distribution;
 mod drawn;
+mod error_sum;
 mod errors;
 mod faces_report;
+mod head_sum;
 mod latency;
 mod latency_curve;
 mod measured;
@@ -29,11 +32,13 @@ mod screen;
 mod shown;
 mod summary;
 mod too_heavy;
+mod turn_sum;
 mod turned;
 
 pub use budget::Budget;
 pub use causes::{ErrorCauses, ErrorPart};
 pub use errors::{FieldError, PixelErrors, Showing, UNJUDGED_FIELDS, pixel_errors};
+pub use head_sum::HeadSum;
 pub use faces_report::{FacesReport, MemoryReport, RotationPart};
 pub use latency::{NamedStatistics, SurfaceStatistics, latency_by_surface, latency_parts};
 pub use latency_curve::LatencyCurve;

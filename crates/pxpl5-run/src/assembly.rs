@@ -6,7 +6,7 @@ use crate::error::ExperimentError;
 use crate::experiment::{Experiment, FIELDS_RANGE, Pixels};
 use crate::face_notes::FaceNotes;
 use crate::head::Head;
-use crate::head_views::{FIELDS_WITH_HEAD, HeadViews};
+use crate::head_views::HeadViews;
 use crate::level::{Level, with_clocks_of_instructions};
 use crate::pipeline::{Pipeline, Setup};
 use crate::preparation::Preparation;
@@ -16,17 +16,35 @@ use pxpl5_sim::Time;
 use std::sync::Arc;
 
 /// A machine with its programs, and what is written of a run while it goes on.
+#[derive(Debug)]
 pub(crate) struct Assembled {
     pub(crate) machine: Machine,
     pub(crate) head: Option<Arc<HeadViews>>,
     pub(crate) notes: FaceNotes,
 }
 
+impl Assembled {
+    /// Records that are held of the run.
+    pub(crate) fn records(&self) -> usize {
+        let observation = self.machine.record().observation();
+        let traffic = observation.traffic.as_ref().map_or(0, |traffic| traffic.records());
+        observation.records() + traffic + self.head.as_ref().map_or(0, |head| head.records())
+    }
+
+    /// Gives up what was observed before one instant, and what is known of the head before another: nobody looks so far back.
+    pub(crate) fn forget_before(&mut self, instant: Time, of_head: Time) {
+        self.machine.forget_before(instant);
+        self.head.iter().for_each(|head| head.forget_before(of_head));
+        let record = self.machine.record();
+        let of_memories = record.ports().display().iter().enumerate();
+        of_memories.for_each(|(memory, port)| self.notes.keep_from(memory, record.observation().first_swap_held(*port)));
+    }
+}
+
 impl Experiment {
     pub(crate) fn assemble(&self, preparation: Preparation) -> Result<Assembled, ExperimentError> {
-        let expected = if self.head.is_some() { (FIELDS_RANGE.0, FIELDS_WITH_HEAD) } else { FIELDS_RANGE };
-        if !(expected.0..=expected.1).contains(&self.fields) {
-            return Err(ExperimentError::Fields { expected, found: self.fields });
+        if !(FIELDS_RANGE.0..=FIELDS_RANGE.1).contains(&self.fields) {
+            return Err(ExperimentError::Fields { expected: FIELDS_RANGE, found: self.fields });
         }
         let mut adapted = self.pipeline.adapt(self.config.clone());
         check_faces(&adapted, self.pipeline.as_ref())?;

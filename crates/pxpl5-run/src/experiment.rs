@@ -8,6 +8,7 @@ use crate::level::Level;
 use crate::pipeline::Pipeline;
 use crate::raster::Raster;
 use crate::rehearsal::Rehearsed;
+use crate::sums::Sums;
 use pxpl5_display::Aim;
 use pxpl5_machine::{MachineConfig, Parameter, Saving};
 use pxpl5_scene::Scene;
@@ -70,6 +71,7 @@ pub struct Experiment {
     pub(crate) head: Option<Arc<Head>>,
     pub(crate) on_demand: bool,
     pub(crate) estimates: Option<Estimates>,
+    pub(crate) sums: Option<Sums>,
     pub(crate) rehearsed: Option<Arc<Rehearsed>>,
 }
 
@@ -109,6 +111,7 @@ impl Experiment {
             head: None,
             on_demand: false,
             estimates: None,
+            sums: None,
             rehearsed: None,
         }
     }
@@ -198,6 +201,14 @@ impl Experiment {
     #[must_use]
     pub const fn estimated_by(mut self, estimates: Option<Estimates>) -> Self {
         self.estimates = estimates;
+        self
+    }
+
+    /// Who sums up a run that keeps statistics only ([`Keep::Statistics`]) what its tally does not know: what a report says of a head rests on
+    /// records that such a run gives up. Of a run that keeps everything it is summed up when somebody asks.
+    #[must_use]
+    pub const fn summed_by(mut self, sums: Option<Sums>) -> Self {
+        self.sums = sums;
         self
     }
 

@@ -2,15 +2,18 @@
 
 use crate::fingerprint::Fingerprint;
 use crate::raster::Raster;
+use crate::report_schedule::Contents;
 use pxpl5_display::Aim;
 use pxpl5_machine::Parameter;
-use pxpl5_sim::Time;
 use std::fmt;
 use std::sync::Arc;
 use tracking::SettingError;
 use tracking::motion::Motion;
 use tracking::predict::{Predictor, PredictorConfig, PredictorKind, Start, Training, Tuned, tune};
-use tracking::tracker::{Reports, TrackerConfig, TrackerModel, TrackerReport};
+use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
+
+/// A motion that whoever follows it shares.
+pub(crate) type Moving = Arc<dyn Motion + Send + Sync>;
 
 /// Why a head cannot be simulated.
 pub type HeadError = SettingError;
@@ -32,7 +35,7 @@ const TUNING: &str = "for its interval and motion, version 1";
 /// A head, its tracker, a predictor, and the display before its eyes.
 #[derive(Clone)]
 pub struct Head {
-    pub(crate) motion: Arc<dyn Motion + Send + Sync>,
+    pub(crate) motion: Moving,
     pub(crate) tracker: TrackerModel,
     predictor: PredictorConfig,
     numbers: Numbers,
@@ -179,20 +182,12 @@ impl Head {
         Self { reports: Some(reports.into()), ..self }
     }
 
-    /// The reports that reach the host before an instant.
-    pub(crate) fn reports_until(&self, until: Time) -> Arc<[TrackerReport]> {
-        let in_time = |report: &TrackerReport| report.arrives_ps < until.0;
+    /// What its tracker says of a motion, or what was put in the place of that, in order of arrival.
+    pub(crate) fn reports_of(&self, motion: Moving) -> Contents {
         match &self.reports {
-            Some(reports) => reports.iter().copied().take_while(in_time).collect(),
-            None => self.tracker.reports(self.motion.as_ref(), self.seed).take_while(in_time).collect(),
+            Some(given) => Box::new(GivenReports { given: Arc::clone(given), next: 0 }),
+            None => Box::new(self.tracker.reports(motion, self.seed)),
         }
-    }
-
-    /// The same reports one after the other, of a motion that is not known ahead; `None` of others. When they arrive is known: it does not depend
-    /// on what they say.
-    pub(crate) fn reports_as_it_moves(&self) -> Option<Reports<Arc<dyn Motion + Send + Sync>>> {
-        let is_live = self.motion.grows() && self.reports.is_none();
-        is_live.then(|| self.tracker.reports(Arc::clone(&self.motion), self.seed))
     }
 
     /// For which instant of what is shown from them views are predicted.
@@ -320,5 +315,21 @@ impl Head {
 
     pub(crate) fn build_predictor(&self) -> Box<dyn Predictor> {
         self.predictor.build().expect("checked by Head::new")
+    }
+}
+
+/// Reports that were said, one after the other.
+struct GivenReports {
+    given: Arc<[TrackerReport]>,
+    next: usize,
+}
+
+impl Iterator for GivenReports {
+    type Item = TrackerReport;
+
+    fn next(&mut self) -> Option<TrackerReport> {
+        let report = self.given.get(self.next).copied();
+        self.next += 1;
+        report
     }
 }
