@@ -78,8 +78,15 @@ fn of_pictures(run: &Settled<'_>, pictures: &[PictureTimes]) -> Vec<[f64; STAGES
 fn of_picture(run: &Settled<'_>, times: &PictureTimes, sampled: &Sampled) -> Option<[f64; STAGES]> {
     let light = run.experiment.pipeline().light(run.record, times);
     let taken_at = sampled.known.max(sampled.arrived_at?);
-    let path =
-        [sampled.measured_at?, sampled.arrived_at?, taken_at, times.transform_at, times.copied_at?, times.shown_at, light];
+    let path = [
+        sampled.measured_at?,
+        sampled.arrived_at?,
+        taken_at,
+        times.transform_at,
+        times.copied_at?,
+        times.shown_at,
+        light,
+    ];
     Some(std::array::from_fn(|i| (path[i + 1].0 as f64 - path[i].0 as f64) * 1e-9))
 }
 

@@ -45,7 +45,14 @@ impl Distribution {
             return Percentiles::of(self.samples.iter().copied());
         }
         let at = |percent: u64| self.ranked((statistics.n * percent).div_ceil(100).max(1));
-        Percentiles { n: statistics.n, mean: statistics.mean, p50: at(50), p90: at(90), p99: at(99), max: statistics.max }
+        Percentiles {
+            n: statistics.n,
+            mean: statistics.mean,
+            p50: at(50),
+            p90: at(90),
+            p99: at(99),
+            max: statistics.max,
+        }
     }
 
     /// The number of a rank, counted from 1 at the least, as far as its bin tells it.
@@ -96,9 +103,7 @@ mod tests {
             let expected = Percentiles::of(numbers(1_000));
             assert_eq!((found.n, found.max), (expected.n, expected.max));
             assert!((found.mean / expected.mean - 1.0).abs() < 1e-12, "{found:?} {expected:?}");
-            for (found, expected) in
-                [(found.p50, expected.p50), (found.p90, expected.p90), (found.p99, expected.p99)]
-            {
+            for (found, expected) in [(found.p50, expected.p50), (found.p90, expected.p90), (found.p99, expected.p99)] {
                 assert!((found / expected - 1.0).abs() <= 1.0 / 2_048.0, "{found} {expected}");
             }
             assert_eq!(counted.kept().len(), limit);

@@ -1,7 +1,7 @@
 //! What a display with faces did, as numbers.
 
-use address_recalculation::{AddressRecalculationPipeline, DisplayMemory, Latch};
 use crate::turn_sum::Turns;
+use address_recalculation::{AddressRecalculationPipeline, DisplayMemory, Latch};
 use pxpl5_run::{Outcome, Statistics};
 use serde::Serialize;
 

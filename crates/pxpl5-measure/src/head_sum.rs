@@ -54,8 +54,7 @@ impl HeadSaid {
 
 /// What is missing where a run with a head gave up its records and nobody summed them up: a sentence.
 pub(crate) fn untold(outcome: &Outcome) -> Option<String> {
-    let is_untold =
-        outcome.head().is_some() && outcome.has_forgotten() && HeadSaid::while_it_ran(outcome).is_none();
+    let is_untold = outcome.head().is_some() && outcome.has_forgotten() && HeadSaid::while_it_ran(outcome).is_none();
     is_untold.then(|| UNTOLD.to_owned())
 }
 

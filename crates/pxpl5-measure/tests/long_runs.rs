@@ -49,8 +49,7 @@ fn experiments() -> Vec<Experiment> {
     let slats = |fields| experiment("slats", MachineConfig::slats(), scene("mig", 60), fields);
     let control = |fields| experiment("rendering-control", small(), scene("mig", 0), fields);
     let faces = |name, fields| experiment(name, small(), scene("gallery", 0), fields);
-    let [none, velocity, kalman] =
-        [PredictorKind::None, PredictorKind::ConstantVelocity, PredictorKind::Kalman];
+    let [none, velocity, kalman] = [PredictorKind::None, PredictorKind::ConstantVelocity, PredictorKind::Kalman];
     vec![
         slats(2_000).head(head(synthetic(), fastrak(), kalman)),
         slats(2_000).head(head(Pan::at(60.0), TrackerConfig::flock_of_birds(), none).before(Raster::Vdrt)),
@@ -64,7 +63,11 @@ fn experiments() -> Vec<Experiment> {
             fastrak(),
             none,
         )),
-        experiment("jitp-dual-view", small(), scene("full-screen:4", 0), 500).head(head(synthetic(), fastrak(), kalman)),
+        experiment("jitp-dual-view", small(), scene("full-screen:4", 0), 500).head(head(
+            synthetic(),
+            fastrak(),
+            kalman,
+        )),
         experiment("frameless", small(), scene("full-screen:4", 0), 150).head(head(synthetic(), fastrak(), velocity)),
         faces("arp-full", 1_500).head(head(synthetic(), fastrak(), kalman)),
         faces("arp-priority-line", 1_500).head(head(synthetic(), TrackerConfig::flock_of_birds(), velocity)),
@@ -97,7 +100,7 @@ fn what_is_kept_changes_nothing_that_is_said_of_a_head() {
         let of_head = everything.report().head.expect("tracked");
         assert!(of_head.error.judged > 500 && of_head.end_to_end.n > 50, "{name}: there is something to be said");
         let [all, last] = [&everything, &statistics].map(|outcome| outcome.head().expect("tracked").sampled());
-        assert!(2 * last.len() < all.len(), "{name}: {} poses of {} are held", last.len(), all.len());
+        assert!(4 * last.len() < 3 * all.len(), "{name}: {} poses of {} are held", last.len(), all.len());
         assert_eq!(last, all[all.len() - last.len()..], "{name}: the last ones");
     }
 }

@@ -37,7 +37,8 @@ impl Assembled {
         self.head.iter().for_each(|head| head.forget_before(of_head));
         let record = self.machine.record();
         let of_memories = record.ports().display().iter().enumerate();
-        of_memories.for_each(|(memory, port)| self.notes.keep_from(memory, record.observation().first_swap_held(*port)));
+        of_memories
+            .for_each(|(memory, port)| self.notes.keep_from(memory, record.observation().first_swap_held(*port)));
     }
 }
 

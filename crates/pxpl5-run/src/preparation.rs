@@ -76,7 +76,8 @@ impl Experiment {
     fn without_prediction(&self, head: &Head, fields: u64) -> Result<Rehearsed, ExperimentError> {
         let plain = Some(Arc::new(head.without_prediction()));
         let (keep, sums): (Keep, Sums) = (Keep::Statistics, || Box::<RehearsalSum>::default());
-        let plain = Self { head: plain, pixels: Pixels::Off, traffic: false, keep, sums: Some(sums), fields, ..self.clone() };
+        let plain =
+            Self { head: plain, pixels: Pixels::Off, traffic: false, keep, sums: Some(sums), fields, ..self.clone() };
         let outcome = plain.perform(Preparation::default(), &[], |_, _| Ok(()))?;
         Ok(outcome.said().cloned().unwrap_or_else(|| rehearsed(&outcome)))
     }

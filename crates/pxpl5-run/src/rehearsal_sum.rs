@@ -11,6 +11,7 @@ use pxpl5_display::LightSpan;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{FieldParity, PeriodNumber, ViewNumber};
 use std::any::Any;
+use std::collections::BTreeMap;
 
 /// Least step of an interval for which a predictor is tuned, picoseconds: a millisecond. A finer one changes no number of a filter
 /// by a per cent.
@@ -20,8 +21,8 @@ const INTERVAL_STEP_PS: u64 = 1_000_000_000;
 #[derive(Debug, Default)]
 pub(crate) struct RehearsalSum {
     pictures: usize,
-    /// The view of the newest picture, which the next one may show too.
-    newest: Option<ShownView>,
+    /// Views of which another picture may come.
+    going_on: BTreeMap<ViewNumber, ShownView>,
     aimed_at: Instants,
     leads: Mean,
     intervals: Mean,
@@ -29,10 +30,9 @@ pub(crate) struct RehearsalSum {
     turned_to: PeriodNumber,
 }
 
-/// A view, and when it is shown in as many pictures as are of it.
+/// When a view is shown, in as many pictures as are of it.
 #[derive(Clone, Copy, Debug)]
 struct ShownView {
-    view: ViewNumber,
     shown: LightSpan,
     /// Whether a picture of it behind the warm-up was complete.
     is_complete: bool,
@@ -70,11 +70,9 @@ impl Summing for RehearsalSum {
         let nexts = settled.pictures.iter().skip(1).chain(settled.next).map(Some).chain([None]);
         for (times, next) in settled.pictures.iter().zip(nexts) {
             let shown = settled.experiment.pipeline.shown(settled.record, times, next);
-            self.take_picture(settled, &sampled, times, shown);
+            self.take_picture(times, shown);
         }
-        if settled.next.is_none() {
-            self.end_view(settled, &sampled);
-        }
+        self.end_views(settled, &sampled);
         self.take_turns(settled, head);
     }
 
@@ -93,26 +91,32 @@ impl RehearsalSum {
         }
     }
 
-    fn take_picture(&mut self, settled: &Settled<'_>, sampled: &[Sampled], times: &PictureTimes, shown: LightSpan) {
+    fn take_picture(&mut self, times: &PictureTimes, shown: LightSpan) {
         self.pictures += 1;
         let is_complete = times.is_shown() && self.pictures > WARM_UP_PICTURES;
-        match &mut self.newest {
-            Some(newest) if newest.view == times.view => {
-                newest.shown.last = newest.shown.last.max(shown.last);
-                newest.is_complete |= is_complete;
-            }
-            _ => {
-                self.end_view(settled, sampled);
-                self.newest = Some(ShownView { view: times.view, shown, is_complete });
-            }
+        let view = self.going_on.entry(times.view).or_insert(ShownView { shown, is_complete });
+        view.shown.last = view.shown.last.max(shown.last);
+        view.is_complete |= is_complete;
+    }
+
+    /// Ends all views but the newest, of which the next picture may be too; that one with the run.
+    fn end_views(&mut self, settled: &Settled<'_>, sampled: &[Sampled]) {
+        let newest = self.going_on.pop_last();
+        let ended = std::mem::take(&mut self.going_on);
+        ended.iter().for_each(|(view, shown)| self.end_view(settled, sampled, *view, *shown));
+        match newest {
+            Some((view, shown)) if settled.next.is_none() => self.end_view(settled, sampled, view, shown),
+            newest => self.going_on.extend(newest),
         }
     }
 
-    /// No picture to come shows the newest view: views are shown in the order of their numbers.
-    fn end_view(&mut self, settled: &Settled<'_>, sampled: &[Sampled]) {
-        let Some(ShownView { view, shown, is_complete }) = self.newest.take() else { return };
+    /// Firmware that knows itself when its views are seen asks for no instant; it may show them in another order than that of their numbers.
+    fn end_view(&mut self, settled: &Settled<'_>, sampled: &[Sampled], view: ViewNumber, shown: ShownView) {
+        let ShownView { shown, is_complete } = shown;
         let instant = settled.experiment.aim().instant(&shown);
-        self.aimed_at.push(view.0, instant);
+        if !settled.experiment.pipeline.knows_when_seen() {
+            self.aimed_at.push(view.0, instant);
+        }
         let first = sampled.partition_point(|sampled| sampled.number < view);
         let of_view = sampled[first..].iter().take_while(|sampled| sampled.number == view);
         of_view.clone().for_each(|sampled| self.leads.add(instant.since(sampled.known)));

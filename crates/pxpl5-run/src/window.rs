@@ -132,7 +132,17 @@ impl Window {
         let pictures = self.fresh(pipeline, record, end);
         let arrivals = &record.observation().arrivals[self.arrivals_taken..];
         let (until, samples) = (experiment.end(), self.samples);
-        self.take(&Settled { experiment, record, head, notes, arrivals, pictures: &pictures, next: None, until, samples });
+        self.take(&Settled {
+            experiment,
+            record,
+            head,
+            notes,
+            arrivals,
+            pictures: &pictures,
+            next: None,
+            until,
+            samples,
+        });
         Closed { tally: self.tally, said: self.sum.map(|sum| sum.said()), pictures }
     }
 }

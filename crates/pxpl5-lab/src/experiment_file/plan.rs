@@ -11,8 +11,8 @@ use pxpl5_gp::CodeVersion;
 use pxpl5_machine::{ConfigError, MachineConfig, Parameter};
 use pxpl5_measure::{HeadSum, Measure, Results};
 use pxpl5_run::{
-    Experiment, ExperimentError, FIELDS_RANGE, Key, KeyValue, KeyValues, Level, LimitCriterion,
-    Pipeline, PipelineEntry, PipelineSettings, Pixels, Registry, check_faces, out_of_range, times_of_table,
+    Experiment, ExperimentError, FIELDS_RANGE, Key, KeyValue, KeyValues, Level, LimitCriterion, Pipeline,
+    PipelineEntry, PipelineSettings, Pixels, Registry, check_faces, out_of_range, times_of_table,
 };
 use pxpl5_scene::Scene;
 use std::sync::Arc;
