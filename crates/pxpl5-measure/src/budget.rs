@@ -1,7 +1,6 @@
 //! Where the time goes from the head's pose to light.
 
-use crate::head_sum::HeadSaid;
-use pxpl5_run::{Outcome, PictureTimes, Sampled, Samples, Settled, WARM_UP_PICTURES};
+use pxpl5_run::{PictureTimes, Sampled, Samples, Settled, WARM_UP_PICTURES};
 use pxpl5_wire::ViewNumber;
 use std::collections::BTreeMap;
 
@@ -42,7 +41,7 @@ pub(crate) struct BudgetSum {
 }
 
 /// Stages from the head's pose to light.
-const STAGES: usize = 6;
+pub(crate) const STAGES: usize = 6;
 
 impl BudgetSum {
     pub(crate) fn take(&mut self, run: &Settled<'_>) {
@@ -67,7 +66,7 @@ impl BudgetSum {
 }
 
 /// Of complete pictures whose pose was measured and is held.
-fn of_pictures(run: &Settled<'_>, pictures: &[PictureTimes]) -> Vec<[f64; STAGES]> {
+pub(crate) fn of_pictures(run: &Settled<'_>, pictures: &[PictureTimes]) -> Vec<[f64; STAGES]> {
     let Some(head) = run.head else { return Vec::new() };
     let sampled: BTreeMap<ViewNumber, Sampled> = head.sampled().into_iter().map(|s| (s.number, s)).collect();
     let complete = pictures.iter().filter(|times| times.is_shown());
@@ -76,7 +75,7 @@ fn of_pictures(run: &Settled<'_>, pictures: &[PictureTimes]) -> Vec<[f64; STAGES
 
 /// From each instant at which a picture's pose passed from stage to stage to the next one.
 fn of_picture(run: &Settled<'_>, times: &PictureTimes, sampled: &Sampled) -> Option<[f64; STAGES]> {
-    let light = run.experiment.pipeline().light(run.record, times);
+    let light = run.pipeline.light(run.record, times);
     let taken_at = sampled.known.max(sampled.arrived_at?);
     let path = [
         sampled.measured_at?,
@@ -88,24 +87,4 @@ fn of_picture(run: &Settled<'_>, times: &PictureTimes, sampled: &Sampled) -> Opt
         light,
     ];
     Some(std::array::from_fn(|i| (path[i + 1].0 as f64 - path[i].0 as f64) * 1e-9))
-}
-
-impl Budget {
-    /// Of the complete pictures after the warm-up whose pose was measured.
-    #[must_use]
-    pub fn of(outcome: &Outcome) -> Self {
-        if let Some(said) = HeadSaid::while_it_ran(outcome) {
-            return said.end_to_end;
-        }
-        let mut sum = BudgetSum::default();
-        sum.take(&outcome.settled());
-        sum.said()
-    }
-
-    /// From the pose to the light of each picture's middle, milliseconds, in order; of pictures that are kept.
-    #[must_use]
-    pub fn totals_ms(outcome: &Outcome) -> Vec<f64> {
-        let stages = of_pictures(&outcome.settled(), outcome.steady_pictures());
-        stages.iter().map(|stages| stages.iter().sum()).collect()
-    }
 }

@@ -88,7 +88,7 @@ impl Judging {
 
     /// The periods that can be judged now: not the first, nor one that the run may not have ended.
     fn fields(&mut self, run: &Settled<'_>) -> impl Iterator<Item = PeriodNumber> + Clone + use<> {
-        let end = PeriodNumber(run.experiment.length().saturating_sub(1)).min(run.until);
+        let end = PeriodNumber(run.fields.saturating_sub(1)).min(run.until);
         let fields = self.next.until(end);
         self.next = self.next.max(end);
         fields

@@ -1,10 +1,8 @@
 //! Pixel error: where each pixel's content is seen, against where it should be at the moment when it lights.
 
-use crate::error_sum::ErrorSum;
-use crate::head_sum::HeadSaid;
 use crate::percentiles::Percentiles;
 use pxpl5_display::Display;
-use pxpl5_run::{Cause, Outcome, Raster};
+use pxpl5_run::Raster;
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
@@ -95,40 +93,4 @@ impl From<Raster> for Showing {
             Raster::Vdrt => Self::RasterOffset,
         }
     }
-}
-
-impl PixelErrors {
-    /// Of a run with a head, its pictures as they were drawn; empty without one.
-    #[must_use]
-    pub fn of(outcome: &Outcome) -> Self {
-        Self::shown(outcome, Showing::Plain)
-    }
-
-    /// The same with its pictures shown so. Of a run that gave up its records ([`Outcome::has_forgotten`]) it is of all periods only as its
-    /// head shows pictures, and only where [`HeadSum`](crate::HeadSum) summed it up; else of the last ones.
-    #[must_use]
-    pub fn shown(outcome: &Outcome, showing: Showing) -> Self {
-        let Some(head) = outcome.head() else { return Self::default() };
-        let said = HeadSaid::while_it_ran(outcome).filter(|_| showing == head.head().raster().into());
-        said.map_or_else(|| Self::judged(outcome, showing, None), |said| said.error.clone())
-    }
-
-    /// The same without one cause of error: with the reports and poses that the run would have had, its times being as they are. Of a run
-    /// that gave up its records it is of the last periods alone.
-    #[must_use]
-    pub fn without(outcome: &Outcome, showing: Showing, cause: Cause) -> Self {
-        Self::judged(outcome, showing, Some(cause))
-    }
-
-    fn judged(outcome: &Outcome, showing: Showing, without: Option<Cause>) -> Self {
-        let mut sum = ErrorSum::of(showing, without);
-        sum.take(&outcome.settled());
-        sum.said()
-    }
-}
-
-/// Pixel errors on the raster before the eyes; `None` of a run without a head.
-#[must_use]
-pub fn pixel_errors(outcome: &Outcome) -> Option<PixelErrors> {
-    Some(PixelErrors::shown(outcome, outcome.head()?.head().raster().into()))
 }

@@ -1,6 +1,6 @@
 //! What a display with faces did, as numbers.
 
-use crate::turn_sum::Turns;
+use crate::turn_sum::{RotationPart, Turns};
 use address_recalculation::{AddressRecalculationPipeline, DisplayMemory, Latch};
 use pxpl5_run::{Outcome, Statistics};
 use serde::Serialize;
@@ -26,16 +26,6 @@ pub struct FacesReport {
     pub rotation_latency_ms: Option<Statistics>,
     /// Its parts, which add up to it.
     pub rotation_latency_parts_ms: Vec<RotationPart>,
-}
-
-/// A part of the latency of rotation.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct RotationPart {
-    /// Its name: see [`RotationLatency`](pxpl5_run::RotationLatency).
-    pub name: &'static str,
-    /// Over the middle pixel of all fields, milliseconds.
-    #[serde(flatten)]
-    pub statistics: Statistics,
 }
 
 /// A display memory over a run.

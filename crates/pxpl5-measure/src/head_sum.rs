@@ -4,7 +4,7 @@ use crate::budget::{Budget, BudgetSum};
 use crate::error_sum::ErrorSum;
 use crate::errors::PixelErrors;
 use crate::turn_sum::{TurnSum, Turns};
-use pxpl5_run::{Outcome, Settled, Summing};
+use pxpl5_run::{Settled, Summing};
 use std::any::Any;
 
 /// From the head to light, turns of a display with faces, and errors in pixels, for a run that keeps statistics only:
@@ -44,19 +44,3 @@ pub(crate) struct HeadSaid {
     pub(crate) turns: Turns,
     pub(crate) error: PixelErrors,
 }
-
-impl HeadSaid {
-    /// Of a run that was summed up while it went on.
-    pub(crate) fn while_it_ran(outcome: &Outcome) -> Option<&Self> {
-        outcome.said()
-    }
-}
-
-/// What is missing where a run with a head gave up its records and nobody summed them up: a sentence.
-pub(crate) fn untold(outcome: &Outcome) -> Option<String> {
-    let is_untold = outcome.head().is_some() && outcome.has_forgotten() && HeadSaid::while_it_ran(outcome).is_none();
-    is_untold.then(|| UNTOLD.to_owned())
-}
-
-const UNTOLD: &str = "what is said from the head to light, of its turns and of errors in pixels is of the last pictures alone: the run gave up \
-    its records, and nobody summed them up before (Experiment::summed_by, or Keep::Everything)";

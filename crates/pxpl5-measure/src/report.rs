@@ -1,10 +1,10 @@
 //! Results as numbers, with units in the names.
 
 use crate::budget::Budget;
-use crate::errors::{PixelErrors, pixel_errors};
+use crate::errors::PixelErrors;
 use crate::faces_report::FacesReport;
-use crate::head_sum::untold;
 use crate::latency::{NamedStatistics, SurfaceStatistics, latency_by_surface, latency_part_statistics};
+use crate::of_outcome::{pixel_errors, untold};
 use crate::too_heavy::TooHeavy;
 use parameters::Value;
 use pxpl5_display::Counter;

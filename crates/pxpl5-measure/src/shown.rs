@@ -137,8 +137,7 @@ impl Shown {
     }
 
     fn source(&self, run: &Settled<'_>, target: &CopyTarget) -> Option<Source> {
-        let Settled { experiment, record, .. } = run;
-        experiment.pipeline().source(record, target, &self.views, experiment.aim())
+        run.pipeline.source(run.record, target, &self.views, run.aim)
     }
 
     /// What a pixel that lights at `at` shows; `None` before anything came.

@@ -1,9 +1,18 @@
 //! How long a turn of the head takes to light, over all fields.
 
-use crate::faces_report::RotationPart;
-use crate::head_sum::HeadSaid;
-use pxpl5_run::{Outcome, RotationLatency, Samples, Settled, Statistics};
+use pxpl5_run::{RotationLatency, Samples, Settled, Statistics};
 use pxpl5_wire::PeriodNumber;
+use serde::Serialize;
+
+/// A part of the latency of rotation.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RotationPart {
+    /// Its name: see [`RotationLatency`](pxpl5_run::RotationLatency).
+    pub name: &'static str,
+    /// Over the middle pixel of all fields, milliseconds.
+    #[serde(flatten)]
+    pub statistics: Statistics,
+}
 
 /// Rotation latencies of the middle pixel of every field, milliseconds.
 #[derive(Debug, Default)]
@@ -41,18 +50,5 @@ impl TurnSum {
         let named = RotationLatency::default().parts().map(|(name, _)| name).into_iter().zip(&self.parts);
         let parts = named.map(|(name, samples)| RotationPart { name, statistics: samples.statistics() });
         Turns { latency_ms: Some(self.total.statistics()), parts_ms: parts.collect() }
-    }
-}
-
-impl Turns {
-    pub(crate) fn of(outcome: &Outcome) -> Self {
-        HeadSaid::while_it_ran(outcome).map_or_else(
-            || {
-                let mut sum = TurnSum::default();
-                sum.take(&outcome.settled());
-                sum.said()
-            },
-            |said| said.turns.clone(),
-        )
     }
 }

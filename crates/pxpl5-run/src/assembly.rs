@@ -1,5 +1,6 @@
 //! A machine with its programs, ready to run.
 
+use crate::assembled::Assembled;
 use crate::cut::moves;
 use crate::display_list::{display_list, hmd_before, poses, views};
 use crate::error::ExperimentError;
@@ -14,33 +15,6 @@ use crate::views::{FrameStarts, ReportTimes};
 use pxpl5_machine::{ConfigError, Machine, MachineConfig};
 use pxpl5_sim::Time;
 use std::sync::Arc;
-
-/// A machine with its programs, and what is written of a run while it goes on.
-#[derive(Debug)]
-pub(crate) struct Assembled {
-    pub(crate) machine: Machine,
-    pub(crate) head: Option<Arc<HeadViews>>,
-    pub(crate) notes: FaceNotes,
-}
-
-impl Assembled {
-    /// Records that are held of the run.
-    pub(crate) fn records(&self) -> usize {
-        let observation = self.machine.record().observation();
-        let traffic = observation.traffic.as_ref().map_or(0, |traffic| traffic.records());
-        observation.records() + traffic + self.head.as_ref().map_or(0, |head| head.records())
-    }
-
-    /// Gives up what was observed before one instant, and what is known of the head before another: nobody looks so far back.
-    pub(crate) fn forget_before(&mut self, instant: Time, of_head: Time) {
-        self.machine.forget_before(instant);
-        self.head.iter().for_each(|head| head.forget_before(of_head));
-        let record = self.machine.record();
-        let of_memories = record.ports().display().iter().enumerate();
-        of_memories
-            .for_each(|(memory, port)| self.notes.keep_from(memory, record.observation().first_swap_held(*port)));
-    }
-}
 
 impl Experiment {
     pub(crate) fn assemble(&self, preparation: Preparation) -> Result<Assembled, ExperimentError> {

@@ -1,16 +1,18 @@
 //! An experiment: a machine, a pipeline, a scene and a head motion.
 
+use crate::face_notes::FaceNotes;
 use crate::fingerprint::Fingerprint;
 use crate::head::Head;
+use crate::head_views::HeadViews;
 use crate::host::{BareHost, Host};
 use crate::keep::Keep;
 use crate::level::Level;
 use crate::pipeline::Pipeline;
 use crate::raster::Raster;
 use crate::rehearsal::Rehearsed;
-use crate::sums::Sums;
+use crate::sums::{Settled, Sums};
 use pxpl5_display::Aim;
-use pxpl5_machine::{MachineConfig, Parameter, Saving};
+use pxpl5_machine::{MachineConfig, Parameter, Record, Saving};
 use pxpl5_scene::Scene;
 use pxpl5_wire::PeriodNumber;
 use std::collections::BTreeSet;
@@ -210,6 +212,28 @@ impl Experiment {
     pub const fn summed_by(mut self, sums: Option<Sums>) -> Self {
         self.sums = sums;
         self
+    }
+
+    /// All that is kept of a run of it, but for its pictures.
+    pub(crate) fn settled<'a>(
+        &'a self,
+        record: &'a Record,
+        head: Option<&'a Arc<HeadViews>>,
+        notes: &'a FaceNotes,
+    ) -> Settled<'a> {
+        Settled {
+            pipeline: self.pipeline.as_ref(),
+            aim: self.aim(),
+            fields: self.fields,
+            record,
+            head,
+            notes,
+            arrivals: &record.observation().arrivals,
+            pictures: &[],
+            next: None,
+            until: self.end(),
+            samples: usize::MAX,
+        }
     }
 
     /// The most primitives of its scene that would all be shown in time, by the closed form; `None` where there is none.

@@ -78,7 +78,7 @@ impl LatchedHead {
     #[must_use]
     pub fn of_run(settled: &Settled<'_>) -> Option<Self> {
         let link = settled.record.config().host.link_span(ORIENTATION_WORDS);
-        Self::before(settled.record.display(), link, settled.experiment.aim())
+        Self::before(settled.record.display(), link, settled.aim)
     }
 }
 

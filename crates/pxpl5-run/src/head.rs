@@ -2,15 +2,16 @@
 
 use crate::fingerprint::Fingerprint;
 use crate::raster::Raster;
-use crate::report_schedule::Contents;
+use crate::report_schedule::{Arrivals, Coming, Contents};
 use pxpl5_display::Aim;
 use pxpl5_machine::Parameter;
+use pxpl5_sim::Time;
 use std::fmt;
 use std::sync::Arc;
-use tracking::SettingError;
-use tracking::motion::Motion;
+use tracking::motion::{Motion, Still};
 use tracking::predict::{Predictor, PredictorConfig, PredictorKind, Start, Training, Tuned, tune};
 use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
+use tracking::{Pose, SettingError};
 
 /// A motion that whoever follows it shares.
 pub(crate) type Moving = Arc<dyn Motion + Send + Sync>;
@@ -182,8 +183,19 @@ impl Head {
         Self { reports: Some(reports.into()), ..self }
     }
 
+    /// The reports that reach the host before an instant.
+    pub(crate) fn arrivals(&self, until: Time) -> Arrivals {
+        let reports = self.reports_of(Arc::new(Still(Pose::IDENTITY)));
+        Box::new(reports.map(Coming::of).take_while(move |coming| coming.arrives < until))
+    }
+
+    /// What all of its reports say.
+    pub(crate) fn contents(&self) -> Contents {
+        self.reports_of(Arc::clone(&self.motion))
+    }
+
     /// What its tracker says of a motion, or what was put in the place of that, in order of arrival.
-    pub(crate) fn reports_of(&self, motion: Moving) -> Contents {
+    fn reports_of(&self, motion: Moving) -> Contents {
         match &self.reports {
             Some(given) => Box::new(GivenReports { given: Arc::clone(given), next: 0 }),
             None => Box::new(self.tracker.reports(motion, self.seed)),

@@ -11,6 +11,7 @@
 //!
 //! **Not here:** the computer that it runs on. A clock and threads are handed in by a [`Host`]; scenes come as values.
 
+mod assembled;
 mod assembly;
 mod cut;
 mod display_list;

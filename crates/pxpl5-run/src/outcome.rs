@@ -1,6 +1,6 @@
 //! What came of an experiment, as data.
 
-use crate::assembly::Assembled;
+use crate::assembled::Assembled;
 use crate::due::{DuePictures, WARM_UP_PERIODS, WINDOW_DEFINITION};
 use crate::experiment::{Experiment, WARM_UP_PICTURES};
 use crate::face_notes::FaceNotes;
@@ -46,17 +46,8 @@ impl Outcome {
     /// All of the run, as far as it is kept, for whoever sums it up afterwards.
     #[must_use]
     pub fn settled(&self) -> Settled<'_> {
-        Settled {
-            experiment: &self.experiment,
-            record: &self.record,
-            head: self.head.as_ref(),
-            notes: &self.notes,
-            arrivals: &self.observation().arrivals,
-            pictures: self.pictures(),
-            next: None,
-            until: self.experiment.end(),
-            samples: usize::MAX,
-        }
+        let all = self.experiment.settled(&self.record, self.head.as_ref(), &self.notes);
+        Settled { pictures: self.pictures(), ..all }
     }
 
     /// What came of the sum that was taken while the run went on ([`Experiment::summed_by`]), if that is of this kind.

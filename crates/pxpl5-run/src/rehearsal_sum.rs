@@ -69,7 +69,7 @@ impl Summing for RehearsalSum {
         let sampled = head.sampled();
         let nexts = settled.pictures.iter().skip(1).chain(settled.next).map(Some).chain([None]);
         for (times, next) in settled.pictures.iter().zip(nexts) {
-            let shown = settled.experiment.pipeline.shown(settled.record, times, next);
+            let shown = settled.pipeline.shown(settled.record, times, next);
             self.take_picture(times, shown);
         }
         self.end_views(settled, &sampled);
@@ -113,8 +113,8 @@ impl RehearsalSum {
     /// Firmware that knows itself when its views are seen asks for no instant; it may show them in another order than that of their numbers.
     fn end_view(&mut self, settled: &Settled<'_>, sampled: &[Sampled], view: ViewNumber, shown: ShownView) {
         let ShownView { shown, is_complete } = shown;
-        let instant = settled.experiment.aim().instant(&shown);
-        if !settled.experiment.pipeline.knows_when_seen() {
+        let instant = settled.aim.instant(&shown);
+        if !settled.pipeline.knows_when_seen() {
             self.aimed_at.push(view.0, instant);
         }
         let first = sampled.partition_point(|sampled| sampled.number < view);

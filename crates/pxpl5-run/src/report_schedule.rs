@@ -1,11 +1,7 @@
 //! When a tracker's reports reach their host. It does not depend on what they say, so it is known ahead of a head that somebody moves.
 
-use crate::head::Head;
 use pxpl5_sim::Time;
 use std::collections::VecDeque;
-use std::sync::Arc;
-use tracking::Pose;
-use tracking::motion::Still;
 use tracking::tracker::TrackerReport;
 
 /// A report without what it says.
@@ -22,19 +18,6 @@ pub(crate) type Arrivals = Box<dyn Iterator<Item = Coming> + Send>;
 
 /// What reports say, in order of arrival, each made when somebody takes it.
 pub(crate) type Contents = Box<dyn Iterator<Item = TrackerReport> + Send>;
-
-impl Head {
-    /// The reports that reach the host before an instant.
-    pub(crate) fn arrivals(&self, until: Time) -> Arrivals {
-        let reports = self.reports_of(Arc::new(Still(Pose::IDENTITY)));
-        Box::new(reports.map(Coming::of).take_while(move |coming| coming.arrives < until))
-    }
-
-    /// What all of its reports say.
-    pub(crate) fn contents(&self) -> Contents {
-        self.reports_of(Arc::clone(&self.motion))
-    }
-}
 
 impl Coming {
     pub(crate) const fn of(report: TrackerReport) -> Self {

@@ -1,6 +1,6 @@
 //! A run in pieces: the machine at work, to be looked at whenever it stands.
 
-use crate::assembly::Assembled;
+use crate::assembled::Assembled;
 use crate::error::ExperimentError;
 use crate::experiment::{Experiment, Pixels, WARM_UP_PICTURES};
 use crate::ideal::ideal_picture;

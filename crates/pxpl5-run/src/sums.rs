@@ -1,9 +1,9 @@
 //! Sums over a run that are taken while it goes on, so that what they were taken of can be given up.
 
-use crate::experiment::Experiment;
 use crate::face_notes::FaceNotes;
 use crate::head_views::HeadViews;
-use crate::pipeline::PictureTimes;
+use crate::pipeline::{PictureTimes, Pipeline};
+use pxpl5_display::Aim;
 use pxpl5_machine::{Arrival, Record};
 use pxpl5_wire::PeriodNumber;
 use std::any::Any;
@@ -13,8 +13,12 @@ use std::sync::Arc;
 /// What of a run will not change any more and was not handed on before: of a run that keeps everything all of it, at its end.
 #[derive(Clone, Copy, Debug)]
 pub struct Settled<'a> {
-    /// What is run.
-    pub experiment: &'a Experiment,
+    /// What draws.
+    pub pipeline: &'a dyn Pipeline,
+    /// For which instant of what is shown from them views are drawn.
+    pub aim: Aim,
+    /// Periods of the first display that are simulated in all.
+    pub fields: u64,
     /// The machine and its records, as far as they are kept; those of later pictures and periods among them.
     pub record: &'a Record,
     /// The views of the head with its tracker, if there is one, as far as they are kept.

@@ -1,6 +1,6 @@
 //! How a long run goes on with bounded memory: what is behind it is summed up, and its records are given up.
 
-use crate::assembly::Assembled;
+use crate::assembled::Assembled;
 use crate::experiment::Experiment;
 use crate::face_notes::FaceNotes;
 use crate::head_views::HeadViews;
@@ -94,10 +94,9 @@ impl Window {
         let begin = before(record, needed).filter(|begin| *begin > record.observation().forgotten.before)?;
         let until = record.display().period_at(begin);
         let arrivals = &record.observation().arrivals[self.arrivals_taken..];
-        let (head, notes) = (run.head.as_ref(), &run.notes);
-        let samples = self.samples;
-        let next = held.first();
-        self.take(&Settled { experiment, record, head, notes, arrivals, pictures, next, until, samples });
+        let (next, samples) = (held.first(), self.samples);
+        let all = experiment.settled(record, run.head.as_ref(), &run.notes);
+        self.take(&Settled { arrivals, pictures, next, until, samples, ..all });
         self.taken_to = Some(settled_to);
         Some(begin)
     }
@@ -110,9 +109,9 @@ impl Window {
 
     /// Hands on what is settled to all who sum up.
     fn take(&mut self, settled: &Settled<'_>) {
-        let Settled { experiment, record, arrivals, pictures, .. } = settled;
+        let Settled { pipeline, record, arrivals, pictures, .. } = settled;
         self.tally.take_arrivals(arrivals, record.message_span());
-        self.tally.take(experiment.pipeline.as_ref(), record, pictures);
+        self.tally.take(*pipeline, record, pictures);
         self.sum.iter_mut().for_each(|sum| sum.take(settled));
     }
 
@@ -131,18 +130,9 @@ impl Window {
         self.tally.take_late(&pipeline.late_regions(record, end));
         let pictures = self.fresh(pipeline, record, end);
         let arrivals = &record.observation().arrivals[self.arrivals_taken..];
-        let (until, samples) = (experiment.end(), self.samples);
-        self.take(&Settled {
-            experiment,
-            record,
-            head,
-            notes,
-            arrivals,
-            pictures: &pictures,
-            next: None,
-            until,
-            samples,
-        });
+        let samples = self.samples;
+        let all = experiment.settled(record, head, notes);
+        self.take(&Settled { arrivals, pictures: &pictures, samples, ..all });
         Closed { tally: self.tally, said: self.sum.map(|sum| sum.said()), pictures }
     }
 }
