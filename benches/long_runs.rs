@@ -4,8 +4,14 @@
 #![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use pxpl5::{Experiment, Frameless, Keep, MachineConfig, Pixels, RenderingControl, Slats, scene, scene::Scene};
+use pxpl5::tracking::motion::Synthetic;
+use pxpl5::tracking::predict::PredictorKind;
+use pxpl5::tracking::tracker::TrackerConfig;
+use pxpl5::{
+    Experiment, Frameless, Head, HeadSum, Keep, MachineConfig, Pixels, RenderingControl, Slats, scene, scene::Scene,
+};
 use std::hint::black_box;
+use std::sync::Arc;
 
 /// A scene of so many triangles; 0 for all that it has.
 fn scene_of(name: &str, triangles: usize) -> Scene {
@@ -13,12 +19,23 @@ fn scene_of(name: &str, triangles: usize) -> Scene {
     if triangles > 0 { scene.decimated(triangles).expect("so many") } else { scene }
 }
 
+/// With a head whose pose is predicted, and all that a report says of it: latencies to light and pixel errors of each field.
+fn tracked(experiment: Experiment) -> Experiment {
+    let motion = Arc::new(Synthetic::recorded_use(3));
+    let head = Head::new(motion, TrackerConfig::fastrak(), PredictorKind::Kalman, 1).expect("in range");
+    experiment.head(head).summed_by(Some(HeadSum::begin))
+}
+
 /// With the fields of a short run; a long one has twenty times as many.
-fn experiments() -> [(&'static str, Experiment, u64); 3] {
+fn experiments() -> [(&'static str, Experiment, u64); 5] {
     let small = MachineConfig::small_hmd;
+    let control = Experiment::new(small(), RenderingControl::stereo(), scene_of("mig", 0));
+    let slats = Experiment::new(MachineConfig::slats(), Slats::split(), scene_of("mig", 60));
     [
-        ("rendering-control-mig", Experiment::new(small(), RenderingControl::stereo(), scene_of("mig", 0)), 250),
-        ("slats-60", Experiment::new(MachineConfig::slats(), Slats::split(), scene_of("mig", 60)), 500),
+        ("rendering-control-mig-tracked", tracked(control.clone()), 250),
+        ("rendering-control-mig", control, 250),
+        ("slats-60-tracked", tracked(slats.clone()), 500),
+        ("slats-60", slats, 500),
         ("frameless", Experiment::new(small(), Frameless::new(), scene_of("full-screen:4", 0)), 25),
     ]
 }

@@ -75,16 +75,16 @@ pub use pxpl5_machine::{
     Preset, Record, RunError, Saving, StageSpan, Swap, Traffic, Transfer,
 };
 pub use pxpl5_measure::{
-    Budget, ErrorCauses, ErrorPart, FieldError, HeadReport, LATENCY_PARTS, LatencyCurve, LatencyParts, Measure,
-    Measured, NamedStatistics, PartDefinition, Percentiles, PixelErrors, QUANTITIES, Quantity, RasterOffsets,
+    Budget, ErrorCauses, ErrorPart, FieldError, HeadReport, HeadSum, LATENCY_PARTS, LatencyCurve, LatencyParts,
+    Measure, Measured, NamedStatistics, PartDefinition, Percentiles, PixelErrors, QUANTITIES, Quantity, RasterOffsets,
     Registration, Report, Results, Showing, SurfaceStatistics, TooHeavy, picture, side_by_side,
 };
 pub use pxpl5_run::{
     Aim, BareHost, Cause, Code, DefinedStatistics, DuePictures, Estimates, Estimator, Experiment, ExperimentError,
-    FIELDS_RANGE, FIELDS_WITH_HEAD, Fingerprint, FinishedRegions, Frameless, Goal, Head, HeadError, HeadViews, Host,
-    Interpolation, Jitp, Keep, Key, KeyValue, KeyValues, Level, LimitCriterion, Outcome, Pause, PictureEnd,
-    PictureTimes, Pipeline, PipelineEntry, PipelineSettings, Pixels, Raster, Registry, RenderingControl, Sampled,
-    Samples, Setup, Slats, Source, Statistics, Stepper, Summary, TestScene, Viewpoint, WARM_UP_PERIODS,
+    FIELDS_RANGE, Fingerprint, FinishedRegions, Frameless, Goal, Head, HeadError, HeadViews, Host, Interpolation, Jitp,
+    Keep, Key, KeyValue, KeyValues, Level, LimitCriterion, Outcome, Pause, PictureEnd, PictureTimes, Pipeline,
+    PipelineEntry, PipelineSettings, Pixels, Raster, Registry, RenderingControl, Sampled, Samples, Settled, Setup,
+    Slats, Source, Statistics, Stepper, Summary, Summing, Sums, TestScene, Viewpoint, WARM_UP_PERIODS,
     WARM_UP_PICTURES, WINDOW_DEFINITION, out_of_range,
 };
 pub use pxpl5_sim::{Span, Time, TraceHash};

@@ -3,6 +3,7 @@
 use crate::error::CliError;
 use crate::estimate::{Estimate, Work};
 use clap::Args;
+use std::cell::OnceCell;
 use std::time::Instant;
 
 /// Most memory and time that a run may take.
@@ -37,12 +38,15 @@ const TELLING_SECONDS: f64 = 0.5;
 const TELLING_BYTES: f64 = 50e6;
 
 /// A run that goes on, and what this process had taken when it began.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Watch {
     budget: BudgetArgs,
     fields: u64,
     begun: Instant,
     bytes_before: Option<f64>,
+    /// Fields that were done at the first look, and what had been taken by then: what comes before a run (a rehearsal, a predictor that is
+    /// tuned) comes once and not for each field.
+    first: OnceCell<(u64, Taken)>,
 }
 
 impl BudgetArgs {
@@ -77,7 +81,7 @@ impl BudgetArgs {
 
     /// Of a run of so many fields, which begins now.
     pub(crate) fn watch(self, fields: u64) -> Watch {
-        Watch { budget: self, fields, begun: Instant::now(), bytes_before: resident_bytes() }
+        Watch { budget: self, fields, begun: Instant::now(), bytes_before: resident_bytes(), first: OnceCell::new() }
     }
 }
 
@@ -88,33 +92,40 @@ impl Watch {
     ///
     /// The estimate, and what to do about it.
     pub(crate) fn check(&self, done: u64) -> Result<(), String> {
-        let part = done.min(self.fields) as f64 / self.fields as f64;
-        let taken = Taken {
-            seconds: self.begun.elapsed().as_secs_f64(),
-            bytes: resident_bytes().zip(self.bytes_before).map_or(0.0, |(now, before)| (now - before).max(0.0)),
-        };
-        match self.budget.refusal(taken, part) {
+        let taken = self.taken();
+        let (first, before) = *self.first.get_or_init(|| (done, taken));
+        let part = (done.min(self.fields) - first.min(done)) as f64 / self.fields as f64;
+        match self.budget.refusal(before, taken.since(before), part) {
             Some(reason) => Err(format!("after {done} of {} fields {reason}; nothing was written", self.fields)),
             None => Ok(()),
         }
     }
+
+    fn taken(&self) -> Taken {
+        let bytes = resident_bytes().zip(self.bytes_before).map_or(0.0, |(now, before)| (now - before).max(0.0));
+        Taken { seconds: self.begun.elapsed().as_secs_f64(), bytes }
+    }
 }
 
 /// What part of a run has taken.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Taken {
     seconds: f64,
     bytes: f64,
 }
 
+impl Taken {
+    fn since(self, before: Self) -> Self {
+        Self { seconds: self.seconds - before.seconds, bytes: (self.bytes - before.bytes).max(0.0) }
+    }
+}
+
 impl BudgetArgs {
-    /// Why the whole is too much, when a part (above 0) of it has taken so much: it goes on as it began.
-    fn refusal(&self, taken: Taken, part: f64) -> Option<String> {
-        let megabytes = taken.bytes / part / 1e6;
-        let seconds = taken.seconds / part;
-        let megabytes = if taken.bytes > TELLING_BYTES { megabytes } else { 0.0 };
-        let seconds = if taken.seconds > TELLING_SECONDS { seconds } else { 0.0 };
-        self.excess(megabytes, seconds)
+    /// Why the whole is too much, when so much was taken before a part of it, and so much by the part: it goes on as it began.
+    fn refusal(&self, before: Taken, taken: Taken, part: f64) -> Option<String> {
+        let megabytes = if taken.bytes > TELLING_BYTES { taken.bytes / part / 1e6 } else { 0.0 };
+        let seconds = if taken.seconds > TELLING_SECONDS { taken.seconds / part } else { 0.0 };
+        self.excess(before.bytes / 1e6 + megabytes, before.seconds + seconds)
     }
 
     /// What is more than allowed, if anything is.
@@ -150,7 +161,7 @@ mod tests {
 
     #[test]
     fn a_run_goes_on_as_it_began_and_is_refused_with_what_it_would_take() {
-        let refusal = |seconds: f64, bytes: f64| BUDGET.refusal(Taken { seconds, bytes }, 0.1);
+        let refusal = |seconds: f64, bytes: f64| BUDGET.refusal(Taken::default(), Taken { seconds, bytes }, 0.1);
         assert_eq!((refusal(10.0, 100e6), refusal(0.4, 49e6)), (None, None));
         assert!(refusal(10.1, 0.0).is_some_and(|reason| reason.contains("take 101 s, more than 100")));
         assert!(refusal(0.0, 101e6).is_some_and(|reason| reason.contains("take 1010 MB, more than 1000")));
@@ -158,9 +169,22 @@ mod tests {
 
     #[test]
     fn what_was_too_short_to_tell_is_no_reason() {
-        let refusal = |seconds: f64, bytes: f64| BUDGET.refusal(Taken { seconds, bytes }, 1e-6);
+        let refusal = |seconds: f64, bytes: f64| BUDGET.refusal(Taken::default(), Taken { seconds, bytes }, 1e-6);
         assert_eq!(refusal(0.4, 49e6), None);
         assert!(refusal(0.6, 0.0).is_some());
+    }
+
+    #[test]
+    fn what_comes_before_a_run_counts_once_and_not_for_each_field() {
+        let refusal = |before: f64, seconds: f64| {
+            BUDGET.refusal(Taken { seconds: before, bytes: 0.0 }, Taken { seconds, bytes: 0.0 }, 0.1)
+        };
+        assert_eq!(refusal(90.0, 1.0), None, "100 s in all");
+        assert!(refusal(91.0, 1.0).is_some_and(|reason| reason.contains("take 101 s, more than 100")));
+        assert!(refusal(101.0, 0.0).is_some(), "too much already");
+        let watch = BUDGET.watch(1_000_000);
+        std::thread::sleep(std::time::Duration::from_secs_f64(1.5 * TELLING_SECONDS));
+        assert_eq!(watch.check(1), Ok(()), "what the first field needed took no 750,000 s");
     }
 
     #[cfg(target_os = "linux")]

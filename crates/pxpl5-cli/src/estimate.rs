@@ -2,7 +2,8 @@
 //!
 //! Memory, bytes:
 //! `BASE + GP gps + PRIMITIVE primitives + WAITING batch + kept`, where `kept = fields (FIELD + COPY copies)` of a run that keeps
-//! everything, and `fields STATISTICS + min(fields, WINDOW) BLOCK blocks` of one that keeps statistics and its last pictures. `batch` and `blocks` (copied in a field, at
+//! everything, and `fields STATISTICS + min(fields, WINDOW) BLOCK blocks` of one that keeps statistics and its last pictures; behind a tracker
+//! either has `min(fields, JUDGED) ERRORS` more. `batch` and `blocks` (copied in a field, at
 //! most what the ring takes) are those of frameless rendering.
 //!
 //! Time, seconds: `fields (FIELD_S + GP_S gps + BLOCK_S blocks) level`, `level` 1 or, of a cycle level, [`CYCLE_TIMES`].
@@ -25,6 +26,7 @@ pub(crate) struct Work {
     pub(crate) block: u64,
     pub(crate) is_cycle_level: bool,
     pub(crate) keeps_everything: bool,
+    pub(crate) is_tracked: bool,
     pub(crate) computes_all_pixels: bool,
 }
 
@@ -48,6 +50,9 @@ const COPY: f64 = 350.0;
 const STATISTICS: f64 = 10.0;
 const BLOCK: f64 = 100.0;
 const WINDOW: f64 = 240.0;
+/// Bytes that the pixel errors of a field take, and fields of which they are kept one by one.
+const ERRORS: f64 = 1e3;
+const JUDGED: f64 = 20_971.0;
 /// Seconds of the host for a field, and for a graphics processor and a block in it.
 const FIELD_S: f64 = 1e-3;
 const GP_S: f64 = 30e-6;
@@ -87,7 +92,8 @@ impl Work {
             batch: whole("batch"),
             block: whole("block"),
             is_cycle_level: plan.level == Level::Cycle,
-            keeps_everything: keeps_everything || plan.head.is_some() || !plan.pipeline.can_forget(),
+            keeps_everything: keeps_everything || !plan.pipeline.can_forget(),
+            is_tracked: plan.head.is_some(),
             computes_all_pixels: plan.pixels == Pixels::All,
         }
     }
@@ -109,11 +115,12 @@ impl Work {
         } else {
             fields * STATISTICS + fields.min(WINDOW) * BLOCK * self.blocks()
         };
+        let errors = if self.is_tracked { fields.min(JUDGED) * ERRORS } else { 0.0 };
         let pictures = if self.computes_all_pixels { PICTURES } else { 0.0 };
         let lists = PRIMITIVE * self.primitives as f64 + WAITING * self.batch as f64;
         let level = if self.is_cycle_level { CYCLE_TIMES } else { 1.0 };
         Estimate {
-            bytes: BASE + pictures + GP * gps + lists + kept,
+            bytes: BASE + pictures + GP * gps + lists + kept + errors,
             seconds: fields * (FIELD_S + GP_S * gps + BLOCK_S * self.blocks()) * level,
         }
     }
@@ -131,11 +138,12 @@ mod tests {
         block: 0,
         is_cycle_level: false,
         keeps_everything: false,
+        is_tracked: false,
         computes_all_pixels: false,
     };
 
     /// Of runs under `/usr/bin/time`: what it was, and MB that the process had at its peak.
-    const MEASURED: [(Work, f64); 9] = [
+    const MEASURED: [(Work, f64); 12] = [
         (SMALL, 13.8),
         (Work { fields: 12_000, keeps_everything: true, ..SMALL }, 61.4),
         (Work { fields: 120, primitives: 1_000_000, ..SMALL }, 195.2),
@@ -145,6 +153,9 @@ mod tests {
         (Work { fields: 120, block: 16, gps: 1_000, ..SMALL }, 130.9),
         (Work { fields: 480, block: 16, primitives: 8, keeps_everything: true, ..SMALL }, 228.9),
         (Work { is_cycle_level: true, ..SMALL }, 18.6),
+        (Work { fields: 4_000, gps: 1, primitives: 140, is_tracked: true, ..SMALL }, 20.1),
+        (Work { fields: 100_000, gps: 1, primitives: 140, is_tracked: true, ..SMALL }, 42.7),
+        (Work { fields: 215_784, gps: 1, primitives: 140, is_tracked: true, ..SMALL }, 47.1),
     ];
 
     #[test]

@@ -143,6 +143,12 @@ impl Observation {
         self.forgotten.first_swap.or_else(|| self.swaps.iter().map(|swap| swap.tick).min())
     }
 
+    /// How many swaps of a port came before the first one that is held; 0 where none is.
+    #[must_use]
+    pub fn first_swap_held(&self, port: NodeId) -> u64 {
+        self.swaps.iter().filter(|swap| swap.port == port).map(|swap| swap.number).min().unwrap_or_default()
+    }
+
     /// Most regions that have arrived of one picture, in the whole run.
     #[must_use]
     pub fn most_regions_of_a_picture(&self) -> u32 {

@@ -1,6 +1,6 @@
 //! Where the time goes from the head's pose to light.
 
-use pxpl5_run::{Outcome, PictureTimes, Sampled, Statistics};
+use pxpl5_run::{PictureTimes, Sampled, Samples, Settled, WARM_UP_PICTURES};
 use pxpl5_wire::ViewNumber;
 use std::collections::BTreeMap;
 
@@ -29,51 +29,62 @@ pub struct Budget {
 
 impl Default for Budget {
     fn default() -> Self {
-        Self::mean(&[])
+        BudgetSum::default().said()
     }
 }
 
-impl Budget {
-    /// Of the complete pictures after the warm-up whose pose was measured.
-    #[must_use]
-    pub fn of(outcome: &Outcome) -> Self {
-        Self::mean(&Self::of_pictures(outcome))
+/// Stages of the complete pictures after the warm-up whose pose was measured, milliseconds.
+#[derive(Debug, Default)]
+pub(crate) struct BudgetSum {
+    pictures: usize,
+    stages_ms: [Samples; STAGES],
+}
+
+/// Stages from the head's pose to light.
+pub(crate) const STAGES: usize = 6;
+
+impl BudgetSum {
+    pub(crate) fn take(&mut self, run: &Settled<'_>) {
+        if self.pictures == 0 {
+            self.stages_ms = std::array::from_fn(|_| Samples::keeping(run.samples));
+        }
+        let warm_up = WARM_UP_PICTURES.saturating_sub(self.pictures);
+        for stages in of_pictures(run, run.pictures.get(warm_up..).unwrap_or_default()) {
+            self.stages_ms.iter_mut().zip(stages).for_each(|(samples, ms)| samples.push(ms));
+        }
+        self.pictures += run.pictures.len();
     }
 
-    /// From the pose to the light of each picture's middle, milliseconds, in order.
-    #[must_use]
-    pub fn totals_ms(outcome: &Outcome) -> Vec<f64> {
-        Self::of_pictures(outcome).iter().map(|stages| stages.iter().sum()).collect()
-    }
-
-    fn of_pictures(outcome: &Outcome) -> Vec<[f64; 6]> {
-        let Some(head) = outcome.head() else { return Vec::new() };
-        let sampled: BTreeMap<ViewNumber, Sampled> = head.sampled().into_iter().map(|s| (s.number, s)).collect();
-        let pictures = outcome.complete_pictures();
-        pictures.filter_map(|times| Self::of_picture(outcome, times, sampled.get(&times.view)?)).collect()
-    }
-
-    /// The instants at which a picture's pose passed from stage to stage.
-    fn of_picture(outcome: &Outcome, times: &PictureTimes, sampled: &Sampled) -> Option<[f64; 6]> {
-        let light = outcome.pipeline().light(outcome.record(), times);
-        let taken_at = sampled.known.max(sampled.arrived_at?);
-        let path = [
-            sampled.measured_at?,
-            sampled.arrived_at?,
-            taken_at,
-            times.transform_at,
-            times.copied_at?,
-            times.shown_at,
-            light,
-        ];
-        Some(std::array::from_fn(|i| (path[i + 1].0 as f64 - path[i].0 as f64) * 1e-9))
-    }
-
-    fn mean(each: &[[f64; 6]]) -> Self {
-        let stage = |i: usize| Statistics::of(each.iter().map(|stages| stages[i])).mean;
-        let [tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms] = std::array::from_fn(stage);
+    /// The means.
+    pub(crate) fn said(self) -> Budget {
+        let n = self.stages_ms[0].count();
+        let means = self.stages_ms.map(|samples| samples.statistics().mean);
+        let [tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms] = means;
         let total_ms = tracking_ms + waiting_ms + sending_ms + drawing_ms + showing_ms + scanning_ms;
-        let n = each.len() as u64;
-        Self { tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, total_ms, n }
+        Budget { tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, total_ms, n }
     }
+}
+
+/// Of complete pictures whose pose was measured and is held.
+pub(crate) fn of_pictures(run: &Settled<'_>, pictures: &[PictureTimes]) -> Vec<[f64; STAGES]> {
+    let Some(head) = run.head else { return Vec::new() };
+    let sampled: BTreeMap<ViewNumber, Sampled> = head.sampled().into_iter().map(|s| (s.number, s)).collect();
+    let complete = pictures.iter().filter(|times| times.is_shown());
+    complete.filter_map(|times| of_picture(run, times, sampled.get(&times.view)?)).collect()
+}
+
+/// From each instant at which a picture's pose passed from stage to stage to the next one.
+fn of_picture(run: &Settled<'_>, times: &PictureTimes, sampled: &Sampled) -> Option<[f64; STAGES]> {
+    let light = run.pipeline.light(run.record, times);
+    let taken_at = sampled.known.max(sampled.arrived_at?);
+    let path = [
+        sampled.measured_at?,
+        sampled.arrived_at?,
+        taken_at,
+        times.transform_at,
+        times.copied_at?,
+        times.shown_at,
+        light,
+    ];
+    Some(std::array::from_fn(|i| (path[i + 1].0 as f64 - path[i].0 as f64) * 1e-9))
 }

@@ -1,7 +1,8 @@
 //! What a display with faces did, as numbers.
 
+use crate::turn_sum::{RotationPart, Turns};
 use address_recalculation::{AddressRecalculationPipeline, DisplayMemory, Latch};
-use pxpl5_run::{Outcome, RotationLatency, Statistics};
+use pxpl5_run::{Outcome, Statistics};
 use serde::Serialize;
 
 /// An address recalculation pipeline and its memories over a run.
@@ -25,16 +26,6 @@ pub struct FacesReport {
     pub rotation_latency_ms: Option<Statistics>,
     /// Its parts, which add up to it.
     pub rotation_latency_parts_ms: Vec<RotationPart>,
-}
-
-/// A part of the latency of rotation.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct RotationPart {
-    /// Its name: see [`RotationLatency`].
-    pub name: &'static str,
-    /// Over the middle pixel of all fields, milliseconds.
-    #[serde(flatten)]
-    pub statistics: Statistics,
 }
 
 /// A display memory over a run.
@@ -69,7 +60,7 @@ impl FacesReport {
             let counters = outcome.record().display().counters();
             counters.iter().find(|counter| counter.name == name).map_or(0, |counter| counter.count)
         };
-        let latencies = outcome.rotation_latencies();
+        let turns = Turns::of(outcome);
         let memories = outcome.display_memories().iter().enumerate();
         Some(Self {
             schema: Self::SCHEMA,
@@ -79,20 +70,10 @@ impl FacesReport {
             matrix_loads: counted("matrix loads"),
             matrix_refused: counted("matrices refused"),
             memories: memories.map(|(k, memory)| MemoryReport::of(outcome, k, memory)).collect(),
-            rotation_latency_ms: (!latencies.is_empty())
-                .then(|| Statistics::of(latencies.iter().map(|latency| latency.total().as_ms()))),
-            rotation_latency_parts_ms: parts(&latencies),
+            rotation_latency_ms: turns.latency_ms,
+            rotation_latency_parts_ms: turns.parts_ms,
         })
     }
-}
-
-fn parts(latencies: &[RotationLatency]) -> Vec<RotationPart> {
-    let names = latencies.first().map(|first| first.parts().map(|(name, _)| name));
-    let of = |(place, name): (usize, &'static str)| RotationPart {
-        name,
-        statistics: Statistics::of(latencies.iter().map(|latency| latency.parts()[place].1.as_ms())),
-    };
-    names.into_iter().flatten().enumerate().map(of).collect()
 }
 
 impl MemoryReport {

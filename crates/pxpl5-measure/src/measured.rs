@@ -1,8 +1,9 @@
 //! An outcome's measurements as methods of it.
 
 use crate::Report;
-use crate::errors::{PixelErrors, pixel_errors};
+use crate::errors::PixelErrors;
 use crate::latency::{SurfaceStatistics, latency_by_surface, latency_parts};
+use crate::of_outcome::pixel_errors;
 use crate::pictures::picture;
 use image::RgbImage;
 use pxpl5_run::{LatencyParts, Outcome};

@@ -4,7 +4,7 @@ use crate::shown::{Drawn, Shown, view_of};
 use glam::DVec2;
 use image::{Rgb, RgbImage};
 use pxpl5_display::Display;
-use pxpl5_run::{Estimator, Outcome, Raster};
+use pxpl5_run::{Estimator, Outcome, Raster, Settled};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use tracking::view::{HmdView, RasterOffset};
@@ -16,7 +16,7 @@ use tracking::{Pose, rotation};
 /// shifted by the yaw and the pitch between the pose that it was drawn for and this one, and during the field by their
 /// predicted rates. Roll and translation remain. A flat raster is shifted, not turned, so the edges keep an error.
 pub struct Vdrt<'a> {
-    estimator: Estimator<'a>,
+    estimator: Estimator,
     display: &'a dyn Display,
 }
 
@@ -29,20 +29,30 @@ impl std::fmt::Debug for Vdrt<'_> {
 impl<'a> Vdrt<'a> {
     /// A display behind what the host knows of a head.
     #[must_use]
-    pub const fn new(estimator: Estimator<'a>, display: &'a dyn Display) -> Self {
+    pub const fn new(estimator: Estimator, display: &'a dyn Display) -> Self {
         Self { estimator, display }
     }
 
     /// The offset of a field whose picture was drawn for a pose. Fields must be asked for in rising order.
     pub fn offset(&mut self, field: PeriodNumber, drawn_for: &Pose) -> RasterOffset {
-        let known = self.display.tick(field);
-        let first = self.display.first_light(0, field).unwrap_or(known);
-        let field_span = self.display.tick(field.next()).since(known);
-        let [begin, end] = [first, first + field_span].map(|at| self.estimator.pose(known, at));
-        let seconds = field_span.as_ms() * 1e-3;
-        let rate = rotation::difference(begin.orientation, end.orientation) / seconds;
-        RasterOffset::between(drawn_for, &begin, first.0).with_rates(&begin, rate)
+        offset(&mut self.estimator, self.display, field, drawn_for)
     }
+}
+
+/// The offset of a field whose picture was drawn for a pose, by what is known when it begins.
+pub(crate) fn offset(
+    estimator: &mut Estimator,
+    display: &dyn Display,
+    field: PeriodNumber,
+    drawn_for: &Pose,
+) -> RasterOffset {
+    let known = display.tick(field);
+    let first = display.first_light(0, field).unwrap_or(known);
+    let field_span = display.tick(field.next()).since(known);
+    let [begin, end] = [first, first + field_span].map(|at| estimator.pose(known, at));
+    let seconds = field_span.as_ms() * 1e-3;
+    let rate = rotation::difference(begin.orientation, end.orientation) / seconds;
+    RasterOffset::between(drawn_for, &begin, first.0).with_rates(&begin, rate)
 }
 
 /// The offset of every field of a run.
@@ -54,23 +64,20 @@ pub struct RasterOffsets<'a> {
 }
 
 impl<'a> RasterOffsets<'a> {
-    /// As a run's head has them; `None` unless it looks at a raster that is shifted.
+    /// As a run's head has them; `None` unless it looks at a raster that is shifted. A field of which nothing is drawn, or not for one pose,
+    /// has none.
     #[must_use]
     pub fn of(outcome: &'a Outcome) -> Option<Self> {
-        let shifted = outcome.head().filter(|head| head.head().raster() == Raster::Vdrt);
-        shifted.map(|head| Self::of_run(outcome, &Shown::of_run(outcome, head), Estimator::new(head, None)))
-    }
-
-    /// As they would be on such a raster. A field of which nothing is drawn, or not for one pose, has none.
-    pub(crate) fn of_run(outcome: &'a Outcome, shown: &Shown<'_>, estimator: Estimator<'_>) -> Self {
+        let head = outcome.head().filter(|head| head.head().raster() == Raster::Vdrt)?;
+        let run = outcome.settled();
+        let shown = Shown::of_run(&run, head);
         let display = outcome.record().display();
-        let mut vdrt = Vdrt::new(estimator, display);
-        let end = PeriodNumber::FIRST.after(outcome.fields());
-        let offsets = PeriodNumber::FIRST.until(end).map(|field| {
-            let pose = pose_of_field(display, shown, field)?;
+        let mut vdrt = Vdrt::new(Estimator::new(head, None), display);
+        let offsets = PeriodNumber::FIRST.until(run.until).map(|field| {
+            let pose = pose_of_field(&run, &shown, field)?;
             Some(vdrt.offset(field, &pose))
         });
-        Self { display, view: view_of(display), offsets: offsets.collect() }
+        Some(Self { display, view: view_of(display), offsets: offsets.collect() })
     }
 
     /// The offset in one period of the display; `None` where nothing is drawn, or not for one pose.
@@ -116,10 +123,11 @@ impl<'a> RasterOffsets<'a> {
 }
 
 /// The one pose that all of a field was drawn for.
-fn pose_of_field(display: &dyn Display, shown: &Shown<'_>, field: PeriodNumber) -> Option<Pose> {
+pub(crate) fn pose_of_field(run: &Settled<'_>, shown: &Shown, field: PeriodNumber) -> Option<Pose> {
+    let display = run.record.display();
     let x = display.surfaces().first()?.width / 2;
     let (y, _) = display.rows_lit(field);
-    match shown.drawn(x, y, field, display.lights(0, x, y, field)?)? {
+    match shown.drawn(run, [x, y], field, display.lights(0, x, y, field)?)? {
         Drawn::View(moment) => Some(moment.pose),
         Drawn::Between { .. } | Drawn::Shifted(..) | Drawn::Faces(_) => None,
     }

@@ -3,29 +3,30 @@
 use crate::content::{Content, Contents};
 use crate::shown::{Drawn, FacesSeen, Moment, Seen, Shown, view_of};
 use glam::{DVec2, DVec3};
-use pxpl5_run::{HeadViews, Outcome};
+use pxpl5_run::{HeadViews, Outcome, Settled};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
+use std::sync::Arc;
 use tracking::Pose;
 use tracking::view::{HmdView, PixelError, dual_list};
 
 /// Projects and compares.
 #[derive(Debug)]
-pub(crate) struct Judge<'a> {
+pub(crate) struct Judge {
     pub(crate) view: HmdView,
-    head: &'a HeadViews,
+    head: Arc<HeadViews>,
     /// What rays meet; nothing where errors are judged at a distance that was said.
     contents: Contents,
     /// Where rays end that meet nothing.
     distance_m: f64,
 }
 
-impl<'a> Judge<'a> {
-    pub(crate) fn new(outcome: &Outcome, head: &'a HeadViews) -> Self {
-        let view = view_of(outcome.record().display());
+impl Judge {
+    pub(crate) fn new(run: &Settled<'_>, head: &Arc<HeadViews>) -> Self {
+        let view = view_of(run.record.display());
         let at_content = head.head().judge_at_m().is_none();
         let contents = if at_content { Contents::of(head.scene()) } else { Contents::default() };
-        Self { view, head, contents, distance_m: head.distance_m() }
+        Self { view, head: Arc::clone(head), contents, distance_m: head.distance_m() }
     }
 
     /// The direction in head axes that a place of the picture shows, 1 m deep.
@@ -104,24 +105,26 @@ fn angle_between(a: DVec3, b: DVec3) -> f64 {
 /// Judges single pixels of a run.
 #[derive(Debug)]
 pub struct Registration<'a> {
-    judge: Judge<'a>,
-    shown: Shown<'a>,
+    run: Settled<'a>,
+    judge: Judge,
+    shown: Shown,
 }
 
 impl<'a> Registration<'a> {
-    /// Of a run; `None` when it had no head.
+    /// Of a run, as far as it is kept; `None` when it had no head.
     #[must_use]
     pub fn of(outcome: &'a Outcome) -> Option<Self> {
-        let head = outcome.head()?;
-        Some(Self { judge: Judge::new(outcome, head), shown: Shown::of_run(outcome, head) })
+        let run = outcome.settled();
+        let head = run.head?;
+        Some(Self { judge: Judge::new(&run, head), shown: Shown::of_run(&run, head), run })
     }
 
     /// The error of a pixel in a field that scans its line; `None` where no picture is shown that was complete in time, or where
     /// its content should be behind the eye.
     #[must_use]
     pub fn at(&self, x: u32, y: u32, field: PeriodNumber) -> Option<PixelError> {
-        let at = self.shown.outcome.record().display().lights(0, x, y, field)?;
-        let Seen::Complete(drawn) = self.shown.seen(x, y, field, at) else { return None };
+        let at = self.run.record.display().lights(0, x, y, field)?;
+        let Seen::Complete(drawn) = self.shown.seen(&self.run, [x, y], field, at) else { return None };
         self.judge.error(middle(x, y), &drawn, at)
     }
 }

@@ -1,17 +1,19 @@
 //! Results as numbers, with units in the names.
 
 use crate::budget::Budget;
-use crate::errors::{PixelErrors, pixel_errors};
+use crate::errors::PixelErrors;
 use crate::faces_report::FacesReport;
 use crate::latency::{NamedStatistics, SurfaceStatistics, latency_by_surface, latency_part_statistics};
+use crate::of_outcome::{pixel_errors, untold};
 use crate::too_heavy::TooHeavy;
 use parameters::Value;
 use pxpl5_display::Counter;
 use pxpl5_machine::{LateRegion, Record};
 use pxpl5_run::{Aim, DefinedStatistics, DuePictures, Head, Outcome, Raster};
-use pxpl5_sim::{Time, TraceHash};
+use pxpl5_sim::{Time, TraceHash, mix};
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::fmt::{self, Write};
 use tracking::predict::{PredictorConfig, Training};
 
 /// The numbers of one experiment.
@@ -187,7 +189,7 @@ impl Report {
                 .join(" "),
             display: record.display().name().to_owned(),
             overrides: config.overrides(),
-            warnings: experiment.warnings(),
+            warnings: experiment.warnings().into_iter().chain(untold(outcome)).collect(),
             display_faults: faults(record).collect(),
             n_gps: config.n_gps,
             n_renderers: config.n_renderers,
@@ -227,10 +229,41 @@ impl Report {
         let pictures =
             (self.pictures, self.shown, &self.updates_hz, &self.due, self.missed_retraces, self.ends_complete);
         let late = (self.late_regions, &self.first_late_regions, &self.display_counters);
+        let mut text = HashedText::default();
         // Numbers print with as many digits as tell them apart.
-        let text = format!("{latencies:?}{pictures:?}{late:?}{:?}{:?}", self.head, self.arp);
-        let facts: Vec<u64> = [9].into_iter().chain(text.bytes().map(u64::from)).collect();
-        hash.record(Time::ZERO, &facts);
+        let _ = write!(text, "{latencies:?}{pictures:?}{late:?}{:?}{:?}", self.head, self.arp);
+        hash.0 = hash.0.wrapping_add(text.0);
         self.trace_hash = hash.to_string();
+    }
+}
+
+/// The hash of a record at time zero of the facts 9 and the bytes of a text, which nobody holds: that of a long run has many.
+struct HashedText(u64);
+
+impl Default for HashedText {
+    fn default() -> Self {
+        Self(mix(mix(Time::ZERO.0) ^ mix(9)))
+    }
+}
+
+impl Write for HashedText {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.0 = text.bytes().fold(self.0, |hash, byte| mix(hash ^ mix(u64::from(byte))));
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_text_in_pieces_is_hashed_as_one_record() {
+        let text = "latency 33.4, pictures 12";
+        let mut record = TraceHash::default();
+        record.record(Time::ZERO, &[9].into_iter().chain(text.bytes().map(u64::from)).collect::<Vec<u64>>());
+        let mut hashed = HashedText::default();
+        let written = text.split_inclusive(' ').try_for_each(|piece| hashed.write_str(piece));
+        assert_eq!((written, hashed.0), (Ok(()), record.0));
     }
 }

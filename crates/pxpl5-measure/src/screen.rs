@@ -1,12 +1,12 @@
 //! Which region's pixels are on the screen at any instant, from the arrivals of a run.
 
-use pxpl5_machine::Record;
-use pxpl5_run::region_at;
+use pxpl5_machine::Arrival;
+use pxpl5_run::{Settled, region_at};
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, Lines, PeriodNumber, PictureNumber, RegionGrid, RegionId, SurfaceId};
 
-/// What the first surface of a run shows.
-#[derive(Debug)]
+/// What the first surface of a run shows, as far as it was told and did not forget.
+#[derive(Debug, Default)]
 pub(crate) struct Screen {
     cuts: Vec<Cut>,
     /// Ticks from which on the other buffer is shown, and how many swaps came before each.
@@ -40,22 +40,44 @@ impl Cut {
 }
 
 impl Screen {
-    pub(crate) fn of_record(record: &Record) -> Self {
-        let observation = record.observation();
-        let mut cuts: Vec<Cut> = Vec::new();
-        for arrival in observation.arrivals.iter().filter(|arrival| arrival.surface == SurfaceId(0)) {
-            let target = arrival.target;
-            let place = cuts.iter().position(|cut| Cut::key(&cut.of) == Cut::key(&target)).unwrap_or_else(|| {
-                let of = CopyTarget { region: RegionId(0), picture: PictureNumber::FIRST, ..target };
-                cuts.push(Cut { of, regions: vec![Vec::new(); target.grid.regions() as usize] });
-                cuts.len() - 1
-            });
-            if let Some(region) = cuts[place].regions.get_mut(usize::from(target.region.0)) {
-                region.push((arrival.last_part_at, target.picture));
-            }
+    /// Takes what has arrived since it was told last, and the swaps that are held.
+    pub(crate) fn take(&mut self, run: &Settled<'_>) {
+        let arrived = run.arrivals.iter().filter(|arrival| arrival.surface == SurfaceId(0));
+        arrived.for_each(|arrival| self.arrive(arrival));
+        let swaps = run.record.observation().swaps_of(SurfaceId(0));
+        self.swaps = swaps.map(|swap| (swap.tick, swap.number)).collect();
+    }
+
+    fn arrive(&mut self, arrival: &Arrival) {
+        let target = arrival.target;
+        let place = self.cuts.iter().position(|cut| Cut::key(&cut.of) == Cut::key(&target)).unwrap_or_else(|| {
+            let of = CopyTarget { region: RegionId(0), picture: PictureNumber::FIRST, ..target };
+            self.cuts.push(Cut { of, regions: vec![Vec::new(); target.grid.regions() as usize] });
+            self.cuts.len() - 1
+        });
+        if let Some(region) = self.cuts[place].regions.get_mut(usize::from(target.region.0)) {
+            region.push((arrival.last_part_at, target.picture));
         }
-        let swaps = observation.swaps_of(SurfaceId(0)).map(|swap| (swap.tick, swap.number)).collect();
-        Self { cuts, swaps }
+    }
+
+    /// Forgets what cannot be seen any more at an instant or later: what was covered by then.
+    pub(crate) fn forget_before(&mut self, instant: Time) {
+        for region in self.cuts.iter_mut().flat_map(|cut| &mut cut.regions) {
+            let there = region.partition_point(|arrived| arrived.0 <= instant);
+            region.drain(..there.saturating_sub(1));
+        }
+    }
+
+    /// All that it still knows of.
+    pub(crate) fn targets(&self) -> impl Iterator<Item = CopyTarget> {
+        self.cuts.iter().flat_map(|cut| {
+            let regions = (0..).map(RegionId).zip(&cut.regions);
+            let of_region = move |(region, arrived)| {
+                let arrived: &Vec<(Time, PictureNumber)> = arrived;
+                arrived.iter().map(move |(_, picture)| CopyTarget { region, picture: *picture, ..cut.of })
+            };
+            regions.flat_map(of_region)
+        })
     }
 
     /// What a pixel of a field shows when the beam is there; `None` before anything came.

@@ -4,10 +4,11 @@ pub(crate) use crate::drawn::{Drawn, FacesSeen, Moment};
 use crate::screen::Screen;
 use crate::turned::TurnedFaces;
 use pxpl5_display::{Display, Surface};
-use pxpl5_run::{Cause, Estimator, HeadViews, Outcome, Sampled, Source};
+use pxpl5_run::{Cause, Estimator, HeadViews, Sampled, Settled, Source};
 use pxpl5_sim::Time;
-use pxpl5_wire::{PeriodNumber, PictureNumber, ViewNumber};
+use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, ViewNumber};
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 use tracking::view::HmdView;
 
 /// What a pixel shows, as far as it can be judged.
@@ -21,80 +22,132 @@ pub(crate) enum Seen {
     Complete(Drawn),
 }
 
-/// Everything that is known of a run's views.
+/// Everything that is known of a run's views, and what is still to be seen of it while it goes on.
 #[derive(Debug)]
-pub(crate) struct Shown<'a> {
-    pub(crate) outcome: &'a Outcome,
+pub(crate) struct Shown {
     screen: Screen,
     views: BTreeMap<PictureNumber, ViewNumber>,
     /// Pictures that were complete in time.
     complete: BTreeSet<PictureNumber>,
-    moments: BTreeMap<ViewNumber, Moment>,
+    moments: BTreeMap<ViewNumber, Viewed>,
     /// Of a display with faces.
-    faces: Option<TurnedFaces<'a>>,
+    faces: Option<TurnedFaces>,
 }
 
-impl<'a> Shown<'a> {
-    pub(crate) fn of_run(outcome: &'a Outcome, head: &'a HeadViews) -> Self {
+/// What a view was drawn for, and what its host knew: the reports up to an instant.
+#[derive(Clone, Copy, Debug)]
+struct Viewed {
+    known: Time,
+    moment: Moment,
+}
+
+impl Shown {
+    /// Of a run of which nothing was told yet.
+    pub(crate) fn begin(run: &Settled<'_>, head: &Arc<HeadViews>) -> Self {
         Self {
-            outcome,
-            screen: Screen::of_record(outcome.record()),
-            views: outcome.pictures().iter().map(|times| (times.picture, times.view)).collect(),
-            complete: outcome.pictures().iter().filter(|times| times.is_shown()).map(|times| times.picture).collect(),
-            moments: head.sampled().into_iter().map(|sampled| (sampled.number, moment_of(&sampled))).collect(),
-            faces: TurnedFaces::of_run(outcome, head),
+            screen: Screen::default(),
+            views: BTreeMap::new(),
+            complete: BTreeSet::new(),
+            moments: BTreeMap::new(),
+            faces: TurnedFaces::begin(run, head),
         }
+    }
+
+    /// Of all that is kept of a run.
+    pub(crate) fn of_run(run: &Settled<'_>, head: &Arc<HeadViews>) -> Self {
+        let mut shown = Self::begin(run, head);
+        shown.take(run, head);
+        shown
+    }
+
+    /// Takes what is settled.
+    pub(crate) fn take(&mut self, run: &Settled<'_>, head: &HeadViews) {
+        self.screen.take(run);
+        self.views.extend(run.pictures.iter().map(|times| (times.picture, times.view)));
+        let complete = run.pictures.iter().filter(|times| times.is_shown());
+        self.complete.extend(complete.map(|times| times.picture));
+        self.moments.extend(head.sampled().iter().map(|sampled| (sampled.number, viewed(sampled))));
+        self.faces.iter_mut().for_each(|faces| faces.take(run));
+    }
+
+    /// Forgets what is not seen in the periods to come. Of views whose host knew what came later nothing is forgotten: their pictures may
+    /// still come.
+    pub(crate) fn forget(&mut self, run: &Settled<'_>) {
+        let instant = run.record.tick(run.until);
+        self.screen.forget_before(instant);
+        let still_seen = self.still_seen(run, instant);
+        self.moments.retain(|number, viewed| viewed.known >= instant || still_seen.contains(number));
+        let on_screen: BTreeSet<PictureNumber> = self.screen.targets().map(|target| target.picture).collect();
+        let moments = &self.moments;
+        self.views.retain(|picture, view| moments.contains_key(view) || on_screen.contains(picture));
+        self.complete.retain(|picture| self.views.contains_key(picture));
+        self.faces.iter_mut().for_each(|faces| faces.forget_before(instant));
+    }
+
+    /// Views that are seen at an instant or later although they are older, or may be: of display memories all that are not yet covered.
+    fn still_seen(&self, run: &Settled<'_>, instant: Time) -> BTreeSet<ViewNumber> {
+        if self.faces.is_some() {
+            return run.notes.all().iter().map(|note| note.view).collect();
+        }
+        let is_old = |target: &CopyTarget| {
+            let viewed = self.views.get(&target.picture).and_then(|view| self.moments.get(view));
+            viewed.is_some_and(|viewed| viewed.known < instant)
+        };
+        let sources = self.screen.targets().filter(is_old).filter_map(|target| self.source(run, &target));
+        sources.flat_map(views_of).collect()
     }
 
     /// What a pixel that lights at `at` shows, and whether its picture was complete in time.
-    pub(crate) fn seen(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Seen {
-        if self.faces.is_some() {
-            return self.drawn(x, y, field, at).map_or(Seen::Nothing, Seen::Complete);
+    pub(crate) fn seen(&self, run: &Settled<'_>, [x, y]: [u32; 2], field: PeriodNumber, at: Time) -> Seen {
+        if self.faces.is_none() {
+            let target = self.screen.shown(x, y, field, at);
+            if target.is_some_and(|target| !self.complete.contains(&target.picture)) {
+                return Seen::Incomplete;
+            }
         }
-        match self.screen.shown(x, y, field, at) {
-            Some(target) if !self.complete.contains(&target.picture) => Seen::Incomplete,
-            _ => self.drawn(x, y, field, at).map_or(Seen::Nothing, Seen::Complete),
-        }
+        self.drawn(run, [x, y], field, at).map_or(Seen::Nothing, Seen::Complete)
     }
 
-    /// The same run with the poses that some of its views would have had; all others show nothing.
-    pub(crate) fn with_poses(self, head: &'a HeadViews, of: &BTreeSet<ViewNumber>, without: Cause) -> Self {
+    /// Gives some of its views the poses that they would have had without a cause of error; all others show nothing then.
+    pub(crate) fn give_poses(&mut self, head: &Arc<HeadViews>, of: &BTreeSet<ViewNumber>, without: Cause) {
         let mut estimator = Estimator::new(head, Some(without));
         let mut sampled: Vec<Sampled> = head.sampled().into_iter().filter(|s| of.contains(&s.number)).collect();
         sampled.sort_by_key(|sampled| sampled.known);
         let moments = sampled.into_iter().map(|sampled| {
             let pose = estimator.pose(sampled.known, sampled.objects_at);
-            (sampled.number, Moment { pose, objects_at: sampled.objects_at })
+            (sampled.number, viewed(&Sampled { pose, ..sampled }))
         });
-        let faces = self.faces.map(|faces| faces.without(without));
-        Self { moments: moments.collect(), faces, ..self }
+        self.moments = moments.collect();
+        self.faces.iter_mut().for_each(|faces| faces.leave_out(without));
     }
 
     /// The views that a pixel shows which lights at `at`: one, or two between which it stands; none before anything came.
-    pub(crate) fn views_at(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Vec<ViewNumber> {
+    pub(crate) fn views_at(
+        &self,
+        run: &Settled<'_>,
+        [x, y]: [u32; 2],
+        field: PeriodNumber,
+        at: Time,
+    ) -> Vec<ViewNumber> {
         if let Some(faces) = &self.faces {
             return faces.views_at(field);
         }
-        match self.source(x, y, field, at) {
-            Some(Source::View(number)) => vec![number],
-            Some(Source::Between { from, to, .. }) => vec![from, to],
-            None => Vec::new(),
-        }
+        let target = self.screen.shown(x, y, field, at);
+        target.and_then(|target| self.source(run, &target)).map(views_of).unwrap_or_default()
     }
 
-    fn source(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Option<Source> {
-        let target = self.screen.shown(x, y, field, at)?;
-        let aim = self.outcome.experiment().aim();
-        self.outcome.pipeline().source(self.outcome.record(), &target, &self.views, aim)
+    fn source(&self, run: &Settled<'_>, target: &CopyTarget) -> Option<Source> {
+        run.pipeline.source(run.record, target, &self.views, run.aim)
     }
 
     /// What a pixel that lights at `at` shows; `None` before anything came.
-    pub(crate) fn drawn(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Option<Drawn> {
-        let moment = |number: ViewNumber| self.moments.get(&number).copied();
+    pub(crate) fn drawn(&self, run: &Settled<'_>, [x, y]: [u32; 2], field: PeriodNumber, at: Time) -> Option<Drawn> {
+        let moment = |number: ViewNumber| self.moments.get(&number).map(|viewed| viewed.moment);
         if let Some(faces) = &self.faces {
             return faces.drawn(x, y, field, moment).map(Drawn::Faces);
         }
-        Some(match self.source(x, y, field, at)? {
+        let target = self.screen.shown(x, y, field, at)?;
+        Some(match self.source(run, &target)? {
             Source::View(number) => Drawn::View(moment(number)?),
             Source::Between { from, to, part, on_screen } => {
                 Drawn::Between { from: moment(from)?, to: moment(to)?, part, on_screen }
@@ -103,8 +156,16 @@ impl<'a> Shown<'a> {
     }
 }
 
-fn moment_of(sampled: &Sampled) -> Moment {
-    Moment { pose: sampled.pose, objects_at: sampled.objects_at }
+fn views_of(source: Source) -> Vec<ViewNumber> {
+    match source {
+        Source::View(number) => vec![number],
+        Source::Between { from, to, .. } => vec![from, to],
+    }
+}
+
+fn viewed(sampled: &Sampled) -> Viewed {
+    let moment = Moment { pose: sampled.pose, objects_at: sampled.objects_at };
+    Viewed { known: sampled.known, moment }
 }
 
 /// The picture of the head-mounted display on the first surface of a display.

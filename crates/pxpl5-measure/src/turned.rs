@@ -3,49 +3,61 @@
 
 use crate::drawn::{FacesSeen, Moment};
 use glam::DQuat;
-use pxpl5_run::{Cause, Estimator, FaceHistory, HeadViews, LatchedHead, Outcome};
+use pxpl5_run::{Cause, Estimator, FaceHistory, HeadViews, LatchedHead, Settled};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::fmt;
+use std::sync::Arc;
 use tracking::Pose;
 
 /// Memories and orientations of a run.
-pub(crate) struct TurnedFaces<'a> {
+pub(crate) struct TurnedFaces {
     history: FaceHistory,
     latched: LatchedHead,
-    head: &'a HeadViews,
+    head: Arc<HeadViews>,
     without: Option<Cause>,
-    turns: RefCell<Turns<'a>>,
+    turns: RefCell<Turns>,
 }
 
 /// Orientations by the report that they rest on and the instant that they were predicted for.
-struct Turns<'a> {
-    estimator: Estimator<'a>,
+struct Turns {
+    estimator: Estimator,
     /// The last report that the estimator was asked about: it goes forward alone.
     asked: Time,
     known: BTreeMap<(Time, Time), DQuat>,
 }
 
-impl fmt::Debug for TurnedFaces<'_> {
+impl fmt::Debug for TurnedFaces {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("TurnedFaces").field("latched", &self.latched).finish_non_exhaustive()
     }
 }
 
-impl<'a> TurnedFaces<'a> {
+impl TurnedFaces {
     /// `None` where the display takes no faces.
-    pub(crate) fn of_run(outcome: &Outcome, head: &'a HeadViews) -> Option<Self> {
-        let history = FaceHistory::of(outcome)?;
-        let latched = LatchedHead::of(outcome)?;
-        Some(Self { history, latched, head, without: None, turns: RefCell::new(Turns::new(head, None)) })
+    pub(crate) fn begin(run: &Settled<'_>, head: &Arc<HeadViews>) -> Option<Self> {
+        let history = FaceHistory::held(run.record, run.notes)?;
+        let latched = LatchedHead::of_run(run)?;
+        let turns = RefCell::new(Turns::new(head, None));
+        Some(Self { history, latched, head: Arc::clone(head), without: None, turns })
     }
 
-    /// The same with the orientations that a run without a cause of error would have had.
-    pub(crate) fn without(self, cause: Cause) -> Self {
-        let without = Some(cause);
-        Self { without, turns: RefCell::new(Turns::new(self.head, without)), ..self }
+    /// Takes what is held of the updates that were shown.
+    pub(crate) fn take(&mut self, run: &Settled<'_>) {
+        self.history = FaceHistory::held(run.record, run.notes).unwrap_or_default();
+    }
+
+    /// Forgets orientations that rest on reports before an instant.
+    pub(crate) fn forget_before(&mut self, instant: Time) {
+        self.turns.get_mut().known.retain(|(report, _), _| *report >= instant);
+    }
+
+    /// Turns to the orientations that a run without a cause of error would have had.
+    pub(crate) fn leave_out(&mut self, cause: Cause) {
+        self.without = Some(cause);
+        self.turns = RefCell::new(Turns::new(&self.head, self.without));
     }
 
     /// The views that memories show in a field.
@@ -61,8 +73,8 @@ impl<'a> TurnedFaces<'a> {
         field: PeriodNumber,
         moment: impl Fn(ViewNumber) -> Option<Moment>,
     ) -> Option<FacesSeen> {
-        let (report, aimed_at) = self.latched.turned_by(self.head, x, y, field)?;
-        let orientation = self.turns.borrow_mut().at(self.head, self.without, report, aimed_at);
+        let (report, aimed_at) = self.latched.turned_by(&self.head, x, y, field)?;
+        let orientation = self.turns.borrow_mut().at(&self.head, self.without, report, aimed_at);
         let seen = self.history.at(field).filter_map(|shown| {
             let Moment { pose, objects_at } = moment(shown.note.view)?;
             let pose = Pose { orientation, ..pose };
@@ -73,12 +85,12 @@ impl<'a> TurnedFaces<'a> {
     }
 }
 
-impl<'a> Turns<'a> {
-    fn new(head: &'a HeadViews, without: Option<Cause>) -> Self {
+impl Turns {
+    fn new(head: &Arc<HeadViews>, without: Option<Cause>) -> Self {
         Self { estimator: Estimator::new(head, without), asked: Time::ZERO, known: BTreeMap::new() }
     }
 
-    fn at(&mut self, head: &'a HeadViews, without: Option<Cause>, report: Time, aimed_at: Time) -> DQuat {
+    fn at(&mut self, head: &Arc<HeadViews>, without: Option<Cause>, report: Time, aimed_at: Time) -> DQuat {
         if let Some(known) = self.known.get(&(report, aimed_at)) {
             return *known;
         }

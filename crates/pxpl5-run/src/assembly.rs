@@ -1,12 +1,13 @@
 //! A machine with its programs, ready to run.
 
+use crate::assembled::Assembled;
 use crate::cut::moves;
 use crate::display_list::{display_list, hmd_before, poses, views};
 use crate::error::ExperimentError;
 use crate::experiment::{Experiment, FIELDS_RANGE, Pixels};
 use crate::face_notes::FaceNotes;
 use crate::head::Head;
-use crate::head_views::{FIELDS_WITH_HEAD, HeadViews};
+use crate::head_views::HeadViews;
 use crate::level::{Level, with_clocks_of_instructions};
 use crate::pipeline::{Pipeline, Setup};
 use crate::preparation::Preparation;
@@ -15,18 +16,10 @@ use pxpl5_machine::{ConfigError, Machine, MachineConfig};
 use pxpl5_sim::Time;
 use std::sync::Arc;
 
-/// A machine with its programs, and what is written of a run while it goes on.
-pub(crate) struct Assembled {
-    pub(crate) machine: Machine,
-    pub(crate) head: Option<Arc<HeadViews>>,
-    pub(crate) notes: FaceNotes,
-}
-
 impl Experiment {
     pub(crate) fn assemble(&self, preparation: Preparation) -> Result<Assembled, ExperimentError> {
-        let expected = if self.head.is_some() { (FIELDS_RANGE.0, FIELDS_WITH_HEAD) } else { FIELDS_RANGE };
-        if !(expected.0..=expected.1).contains(&self.fields) {
-            return Err(ExperimentError::Fields { expected, found: self.fields });
+        if !(FIELDS_RANGE.0..=FIELDS_RANGE.1).contains(&self.fields) {
+            return Err(ExperimentError::Fields { expected: FIELDS_RANGE, found: self.fields });
         }
         let mut adapted = self.pipeline.adapt(self.config.clone());
         check_faces(&adapted, self.pipeline.as_ref())?;

@@ -1,14 +1,16 @@
 //! What a host knows of its head at an instant: from the reports of the run, or as it would be without one cause of error.
 
 use crate::head_views::{Follower, HeadViews};
+use crate::report_schedule::Coming;
 use pxpl5_sim::Time;
 use serde::Serialize;
+use std::fmt;
 use std::sync::Arc;
 use tracking::Pose;
 use tracking::motion::Shifted;
 use tracking::predict::ExactPredictor;
 use tracking::time::PS_PER_S;
-use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
+use tracking::tracker::{TrackerConfig, TrackerModel};
 
 /// Why content is seen where it should not be. Each can be turned off in the reports and poses of a run that has ended; the
 /// machine's times stay as they were.
@@ -50,24 +52,30 @@ impl Cause {
 const FED_PS: u64 = 2 * PS_PER_S;
 
 /// Answers where the head is thought to be, with what is known by an instant.
-pub struct Estimator<'a> {
-    views: &'a HeadViews,
-    way: Way<'a>,
+pub struct Estimator {
+    views: Arc<HeadViews>,
+    way: Way,
 }
 
-enum Way<'a> {
+enum Way {
     /// Reports are fed to one predictor as time goes on.
-    Following(Follower<'a>),
+    Following(Follower),
     /// The same, with all measurements up to the wanted instant.
-    AtOnce(Follower<'a>),
+    AtOnce(Follower),
     /// Every question has reports of its own, the newest of which arrives as it is asked.
     Fresh(TrackerModel),
 }
 
-impl<'a> Estimator<'a> {
+impl fmt::Debug for Estimator {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Estimator").field("views", &self.views).finish_non_exhaustive()
+    }
+}
+
+impl Estimator {
     /// As the run's host, or without one cause of error. [`Cause::ScanOut`] is none of poses: it changes nothing here.
     #[must_use]
-    pub fn new(views: &'a HeadViews, without: Option<Cause>) -> Self {
+    pub fn new(views: &Arc<HeadViews>, without: Option<Cause>) -> Self {
         let head = views.head();
         let tracker = head.tracker().config().clone();
         let way = match without {
@@ -75,12 +83,12 @@ impl<'a> Estimator<'a> {
             Some(Cause::Noise) => Way::Following(follower_of(views, tracker.without_noise())),
             Some(Cause::Latency) => Way::AtOnce(follower_of(views, tracker.without_latency())),
             Some(Cause::Prediction) => {
-                let exact = Box::new(ExactPredictor::new(head.motion(), head.predictor().gate));
-                Way::Following(Follower::new(Arc::clone(views.reports()), exact))
+                let exact = Box::new(ExactPredictor::new(Arc::clone(&head.motion), head.predictor().gate));
+                Way::Following(Follower::new(views.arrivals(), head.contents(), exact))
             }
             Some(Cause::Sampling) => Way::Fresh(model_of(tracker.without_polling())),
         };
-        Self { views, way }
+        Self { views: Arc::clone(views), way }
     }
 
     /// The pose in the scene at an instant, with what had arrived by `known`. To be asked in rising order of `known`.
@@ -89,7 +97,7 @@ impl<'a> Estimator<'a> {
         let tracked = match &mut self.way {
             Way::Following(follower) => follower.pose(known, at, start),
             Way::AtOnce(follower) => follower.pose(known.max(at), at, start),
-            Way::Fresh(tracker) => fresh(self.views, tracker, known, at),
+            Way::Fresh(tracker) => fresh(&self.views, tracker, known, at),
         };
         self.views.in_scene(&tracked)
     }
@@ -101,13 +109,13 @@ fn model_of(tracker: TrackerConfig) -> TrackerModel {
 }
 
 /// The run's predictor behind another tracker, for as long as the run's reports go.
-fn follower_of(views: &HeadViews, tracker: TrackerConfig) -> Follower<'static> {
-    let until = views.reports().last().map_or(0, |report| report.arrives_ps);
+fn follower_of(views: &HeadViews, tracker: TrackerConfig) -> Follower {
     let head = views.head();
     let model = model_of(tracker);
-    let reports = model.reports(head.motion(), head.seed);
-    let all: Arc<[TrackerReport]> = reports.take_while(|report| report.arrives_ps <= until).collect();
-    Follower::new(all, head.build_predictor())
+    let reports = || model.reports(Arc::clone(&head.motion), head.seed);
+    let until = views.last_report().unwrap_or_default();
+    let arrivals = reports().map(Coming::of).take_while(move |coming| coming.arrives <= until);
+    Follower::new(Box::new(arrivals), Box::new(reports()), head.build_predictor())
 }
 
 /// A pose from reports the newest of which arrives at `known`: those of a head that is so much further in its motion as the newest

@@ -1,15 +1,18 @@
 //! An experiment: a machine, a pipeline, a scene and a head motion.
 
+use crate::face_notes::FaceNotes;
 use crate::fingerprint::Fingerprint;
 use crate::head::Head;
+use crate::head_views::HeadViews;
 use crate::host::{BareHost, Host};
 use crate::keep::Keep;
 use crate::level::Level;
 use crate::pipeline::Pipeline;
 use crate::raster::Raster;
 use crate::rehearsal::Rehearsed;
+use crate::sums::{Settled, Sums};
 use pxpl5_display::Aim;
-use pxpl5_machine::{MachineConfig, Parameter, Saving};
+use pxpl5_machine::{MachineConfig, Parameter, Record, Saving};
 use pxpl5_scene::Scene;
 use pxpl5_wire::PeriodNumber;
 use std::collections::BTreeSet;
@@ -70,6 +73,7 @@ pub struct Experiment {
     pub(crate) head: Option<Arc<Head>>,
     pub(crate) on_demand: bool,
     pub(crate) estimates: Option<Estimates>,
+    pub(crate) sums: Option<Sums>,
     pub(crate) rehearsed: Option<Arc<Rehearsed>>,
 }
 
@@ -109,6 +113,7 @@ impl Experiment {
             head: None,
             on_demand: false,
             estimates: None,
+            sums: None,
             rehearsed: None,
         }
     }
@@ -199,6 +204,36 @@ impl Experiment {
     pub const fn estimated_by(mut self, estimates: Option<Estimates>) -> Self {
         self.estimates = estimates;
         self
+    }
+
+    /// Who sums up a run that keeps statistics only ([`Keep::Statistics`]) what its tally does not know: what a report says of a head rests on
+    /// records that such a run gives up. Of a run that keeps everything it is summed up when somebody asks.
+    #[must_use]
+    pub const fn summed_by(mut self, sums: Option<Sums>) -> Self {
+        self.sums = sums;
+        self
+    }
+
+    /// All that is kept of a run of it, but for its pictures.
+    pub(crate) fn settled<'a>(
+        &'a self,
+        record: &'a Record,
+        head: Option<&'a Arc<HeadViews>>,
+        notes: &'a FaceNotes,
+    ) -> Settled<'a> {
+        Settled {
+            pipeline: self.pipeline.as_ref(),
+            aim: self.aim(),
+            fields: self.fields,
+            record,
+            head,
+            notes,
+            arrivals: &record.observation().arrivals,
+            pictures: &[],
+            next: None,
+            until: self.end(),
+            samples: usize::MAX,
+        }
     }
 
     /// The most primitives of its scene that would all be shown in time, by the closed form; `None` where there is none.

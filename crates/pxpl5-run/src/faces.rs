@@ -1,8 +1,9 @@
 //! What was drawn onto faces around a head, and where the time of a turn goes.
 
-use crate::face_notes::FaceNote;
+use crate::face_notes::{FaceNote, FaceNotes};
 use crate::latched_head::{LatchedHead, ORIENTATION_WORDS, RotationLatency};
 use crate::outcome::Outcome;
+use crate::sums::Settled;
 use address_recalculation::{AddressRecalculationPipeline, DisplayMemory};
 use pxpl5_display::Display;
 use pxpl5_machine::Record;
@@ -24,12 +25,17 @@ pub struct FaceHistory {
 }
 
 impl FaceHistory {
-    /// Of a run; `None` where its display takes no faces.
+    /// Of a run, as far as it is kept; `None` where its display takes no faces.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Option<Self> {
-        let display = display(outcome.record())?;
-        let notes = outcome.face_notes().all();
-        let memories = (0..).zip(display.nodes()).map(|(memory, port)| shown(outcome.record(), &notes, memory, *port));
+        Self::held(outcome.record(), outcome.face_notes())
+    }
+
+    /// The same of what is held while a run goes on.
+    #[must_use]
+    pub fn held(record: &Record, notes: &FaceNotes) -> Option<Self> {
+        let display = display(record)?;
+        let memories = (0..).zip(display.nodes()).map(|(memory, port)| shown(record, notes, memory, *port));
         Some(Self { memories: memories.collect() })
     }
 
@@ -49,13 +55,11 @@ impl FaceHistory {
 }
 
 /// The updates of a memory are shown in their order, each by a swap; those of the swaps that are held.
-fn shown(record: &Record, notes: &[FaceNote], memory: usize, port: NodeId) -> Vec<ShownMemory> {
-    let of_memory: Vec<&FaceNote> = notes.iter().filter(|note| note.memory == memory).collect();
+fn shown(record: &Record, notes: &FaceNotes, memory: usize, port: NodeId) -> Vec<ShownMemory> {
+    let of_memory = notes.of_memory(memory);
     let swaps = record.observation().swaps.iter().filter(|swap| swap.port == port);
-    let shown = swaps.filter_map(|swap| {
-        let note = of_memory.get(usize::try_from(swap.number).ok()?)?;
-        Some(ShownMemory { note: (*note).clone(), from: swap.tick })
-    });
+    let shown =
+        swaps.filter_map(|swap| Some(ShownMemory { note: of_memory.get(&swap.number)?.clone(), from: swap.tick }));
     shown.collect()
 }
 
@@ -67,8 +71,14 @@ impl LatchedHead {
     /// Of a run; `None` where its display takes no faces.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Option<Self> {
-        let link = outcome.record().config().host.link_span(ORIENTATION_WORDS);
-        Self::before(outcome.record().display(), link, outcome.experiment().aim())
+        Self::of_run(&outcome.settled())
+    }
+
+    /// The same while a run goes on.
+    #[must_use]
+    pub fn of_run(settled: &Settled<'_>) -> Option<Self> {
+        let link = settled.record.config().host.link_span(ORIENTATION_WORDS);
+        Self::before(settled.record.display(), link, settled.aim)
     }
 }
 
@@ -83,13 +93,21 @@ impl Outcome {
     /// where the display takes no faces.
     #[must_use]
     pub fn rotation_latencies(&self) -> Vec<RotationLatency> {
-        let Some((latched, head)) = LatchedHead::of(self).zip(self.head()) else { return Vec::new() };
-        let Some(surface) = self.record().display().surfaces().first() else { return Vec::new() };
+        self.settled().rotation_latencies(PeriodNumber::FIRST)
+    }
+}
+
+impl Settled<'_> {
+    /// The rotation latency of the middle pixel of every settled field from one on, as far as it has one.
+    #[must_use]
+    pub fn rotation_latencies(&self, from: PeriodNumber) -> Vec<RotationLatency> {
+        let Some((latched, head)) = LatchedHead::of_run(self).zip(self.head) else { return Vec::new() };
+        let Some(surface) = self.record.display().surfaces().first() else { return Vec::new() };
         let x = surface.width / 2;
         let of_field = |field: PeriodNumber| {
             let y = surface.height / 2 + FieldParity::of_field(field).first_line();
             latched.latency(head, x, y, field)
         };
-        PeriodNumber::FIRST.until(PeriodNumber(self.fields())).filter_map(of_field).collect()
+        from.until(self.until).filter_map(of_field).collect()
     }
 }

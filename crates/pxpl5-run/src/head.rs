@@ -2,15 +2,19 @@
 
 use crate::fingerprint::Fingerprint;
 use crate::raster::Raster;
+use crate::report_schedule::{Arrivals, Coming, Contents};
 use pxpl5_display::Aim;
 use pxpl5_machine::Parameter;
 use pxpl5_sim::Time;
 use std::fmt;
 use std::sync::Arc;
-use tracking::SettingError;
-use tracking::motion::Motion;
+use tracking::motion::{Motion, Still};
 use tracking::predict::{Predictor, PredictorConfig, PredictorKind, Start, Training, Tuned, tune};
-use tracking::tracker::{Reports, TrackerConfig, TrackerModel, TrackerReport};
+use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
+use tracking::{Pose, SettingError};
+
+/// A motion that whoever follows it shares.
+pub(crate) type Moving = Arc<dyn Motion + Send + Sync>;
 
 /// Why a head cannot be simulated.
 pub type HeadError = SettingError;
@@ -32,7 +36,7 @@ const TUNING: &str = "for its interval and motion, version 1";
 /// A head, its tracker, a predictor, and the display before its eyes.
 #[derive(Clone)]
 pub struct Head {
-    pub(crate) motion: Arc<dyn Motion + Send + Sync>,
+    pub(crate) motion: Moving,
     pub(crate) tracker: TrackerModel,
     predictor: PredictorConfig,
     numbers: Numbers,
@@ -180,19 +184,22 @@ impl Head {
     }
 
     /// The reports that reach the host before an instant.
-    pub(crate) fn reports_until(&self, until: Time) -> Arc<[TrackerReport]> {
-        let in_time = |report: &TrackerReport| report.arrives_ps < until.0;
-        match &self.reports {
-            Some(reports) => reports.iter().copied().take_while(in_time).collect(),
-            None => self.tracker.reports(self.motion.as_ref(), self.seed).take_while(in_time).collect(),
-        }
+    pub(crate) fn arrivals(&self, until: Time) -> Arrivals {
+        let reports = self.reports_of(Arc::new(Still(Pose::IDENTITY)));
+        Box::new(reports.map(Coming::of).take_while(move |coming| coming.arrives < until))
     }
 
-    /// The same reports one after the other, of a motion that is not known ahead; `None` of others. When they arrive is known: it does not depend
-    /// on what they say.
-    pub(crate) fn reports_as_it_moves(&self) -> Option<Reports<Arc<dyn Motion + Send + Sync>>> {
-        let is_live = self.motion.grows() && self.reports.is_none();
-        is_live.then(|| self.tracker.reports(Arc::clone(&self.motion), self.seed))
+    /// What all of its reports say.
+    pub(crate) fn contents(&self) -> Contents {
+        self.reports_of(Arc::clone(&self.motion))
+    }
+
+    /// What its tracker says of a motion, or what was put in the place of that, in order of arrival.
+    fn reports_of(&self, motion: Moving) -> Contents {
+        match &self.reports {
+            Some(given) => Box::new(GivenReports { given: Arc::clone(given), next: 0 }),
+            None => Box::new(self.tracker.reports(motion, self.seed)),
+        }
     }
 
     /// For which instant of what is shown from them views are predicted.
@@ -320,5 +327,21 @@ impl Head {
 
     pub(crate) fn build_predictor(&self) -> Box<dyn Predictor> {
         self.predictor.build().expect("checked by Head::new")
+    }
+}
+
+/// Reports that were said, one after the other.
+struct GivenReports {
+    given: Arc<[TrackerReport]>,
+    next: usize,
+}
+
+impl Iterator for GivenReports {
+    type Item = TrackerReport;
+
+    fn next(&mut self) -> Option<TrackerReport> {
+        let report = self.given.get(self.next).copied();
+        self.next += 1;
+        report
     }
 }

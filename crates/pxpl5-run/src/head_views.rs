@@ -3,6 +3,7 @@
 use crate::display_list::view;
 use crate::head::Head;
 use crate::rehearsal::Rehearsal;
+use crate::report_schedule::{Arrivals, Coming, Contents, ReportSchedule};
 use crate::views::{Poses, ReportTimes, Views, ViewsWanted};
 use glam::{DQuat, DVec3};
 use pphigs::FrameView;
@@ -10,14 +11,11 @@ use pxpl5_scene::{Hmd, Scene};
 use pxpl5_sim::Time;
 use pxpl5_wire::ViewNumber;
 use std::fmt;
+use std::iter::Peekable;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tracking::Pose;
-use tracking::motion::Motion;
 use tracking::predict::Predictor;
-use tracking::tracker::{Reports, TrackerReport};
-
-/// Most fields of a run with a tracker: its reports are held in memory. An hour and more.
-pub const FIELDS_WITH_HEAD: u64 = 250_000;
+use tracking::tracker::TrackerReport;
 
 /// A pose that a pipeline asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,40 +43,39 @@ struct Newest {
     arrived_at: Option<Time>,
 }
 
-/// Reports fed to a predictor as time goes on.
-pub(crate) struct Follower<'a> {
-    reports: Arc<[TrackerReport]>,
-    /// Of a head that moves while the run goes on: the same reports, each made when it has arrived.
-    as_it_moves: Option<Box<Reports<Arc<dyn Motion + Send + Sync>>>>,
-    next: usize,
-    predictor: Box<dyn Predictor + 'a>,
+/// Reports fed to a predictor as time goes on. Each is made when it has arrived: of a head that somebody moves no more is known.
+pub(crate) struct Follower {
+    arrivals: Peekable<Arrivals>,
+    contents: Contents,
+    predictor: Box<dyn Predictor + Send>,
     newest: Newest,
 }
 
-impl<'a> Follower<'a> {
-    pub(crate) fn new(reports: Arc<[TrackerReport]>, predictor: Box<dyn Predictor + 'a>) -> Self {
-        Self { reports, as_it_moves: None, next: 0, predictor, newest: Newest::default() }
+impl Follower {
+    /// Follows what some reports say, as far as they come.
+    pub(crate) fn new(arrivals: Arrivals, contents: Contents, predictor: Box<dyn Predictor + Send>) -> Self {
+        Self { arrivals: arrivals.peekable(), contents, predictor, newest: Newest::default() }
     }
 
-    /// Of a head; its motion may become known while the run goes on.
-    fn of_head(head: &Head, reports: Arc<[TrackerReport]>) -> Follower<'static> {
-        let follower = Follower::new(reports, head.build_predictor());
-        Follower { as_it_moves: head.reports_as_it_moves().map(Box::new), ..follower }
+    /// Follows what reaches the host of a head before an instant.
+    fn of_head(head: &Head, until: Time) -> Self {
+        Self::new(head.arrivals(until), head.contents(), head.build_predictor())
     }
 
     /// Takes what had arrived by `known`; asked for earlier times it does not forget.
     fn follow(&mut self, known: Time) {
-        while let Some(report) = self.reports.get(self.next).filter(|report| report.arrives_ps <= known.0) {
-            let made = self.as_it_moves.as_deref_mut().and_then(Iterator::next);
-            let report = made.as_ref().unwrap_or(report);
-            let accepted = self.predictor.counts().accepted;
-            self.predictor.observe(report);
-            if self.predictor.counts().accepted > accepted {
-                let measured_at = Some(Time(report.measured_ps));
-                let arrived_at = Some(Time(report.arrives_ps));
-                self.newest = Newest { measured_at, arrived_at };
-            }
-            self.next += 1;
+        while self.arrivals.next_if(|coming| coming.arrives <= known).is_some() {
+            let Some(report) = self.contents.next() else { return };
+            self.take(&report);
+        }
+    }
+
+    fn take(&mut self, report: &TrackerReport) {
+        let accepted = self.predictor.counts().accepted;
+        self.predictor.observe(report);
+        if self.predictor.counts().accepted > accepted {
+            let Coming { arrives, measured } = Coming::of(*report);
+            self.newest = Newest { measured_at: Some(measured), arrived_at: Some(arrives) };
         }
     }
 
@@ -90,26 +87,25 @@ impl<'a> Follower<'a> {
     }
 }
 
-/// The views of a head as its tracker tells of them, with a record of each.
+/// The views of a head as its tracker tells of them, with a record of each that was not given up.
 pub struct HeadViews {
     head: Arc<Head>,
     scene: Arc<Scene>,
     hmd: Hmd,
     eyes: usize,
-    reports: Arc<[TrackerReport]>,
+    /// When the run ends: what comes later is no report of it.
+    until: Time,
+    schedule: Mutex<ReportSchedule>,
     rehearsal: Option<Rehearsal>,
     /// Where the scene wants its viewer at time zero.
     base: Pose,
     start: Pose,
-    state: Mutex<(Follower<'static>, Vec<Sampled>)>,
+    state: Mutex<(Follower, Vec<Sampled>)>,
 }
 
 impl fmt::Debug for HeadViews {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("HeadViews")
-            .field("head", &self.head)
-            .field("reports", &self.reports.len())
-            .finish_non_exhaustive()
+        f.debug_struct("HeadViews").field("head", &self.head).field("until", &self.until).finish_non_exhaustive()
     }
 }
 
@@ -122,12 +118,12 @@ impl HeadViews {
         until: Time,
         rehearsal: Option<Rehearsal>,
     ) -> Self {
-        let reports = head.reports_until(until);
         let of_scene = scene.motion().pose(0);
         let base = Pose { orientation: of_scene.orientation.normalize(), ..of_scene };
         let start = head.motion.pose(0);
-        let state = Mutex::new((Follower::of_head(&head, Arc::clone(&reports)), Vec::new()));
-        Self { head, scene: Arc::clone(scene), hmd, eyes, reports, rehearsal, base, start, state }
+        let schedule = Mutex::new(ReportSchedule::new(head.arrivals(until)));
+        let state = Mutex::new((Follower::of_head(&head, until), Vec::new()));
+        Self { head, scene: Arc::clone(scene), hmd, eyes, until, schedule, rehearsal, base, start, state }
     }
 
     /// The functions that a pipeline is set up with.
@@ -153,19 +149,37 @@ impl HeadViews {
     /// When what a report says was true, by the report's arrival at the host; `None` where there is no such report.
     #[must_use]
     pub fn measured_at(&self, arrived: Time) -> Option<Time> {
-        let place = self.reports.partition_point(|report| report.arrives_ps < arrived.0);
-        self.reports.get(place).map(|report| Time(report.measured_ps))
+        Some(self.schedule().from(arrived)?.measured)
     }
 
     /// The last report that had reached the host by an instant; `None` before the first.
     #[must_use]
     pub fn report_by(&self, instant: Time) -> Option<Time> {
-        let next = self.reports.partition_point(|report| report.arrives_ps <= instant.0);
-        self.reports[..next].last().map(|report| Time(report.arrives_ps))
+        Some(self.schedule().by(instant)?.arrives)
     }
 
-    fn state(&self) -> MutexGuard<'_, (Follower<'static>, Vec<Sampled>)> {
+    /// The last report of the run; `None` where there is none.
+    pub(crate) fn last_report(&self) -> Option<Time> {
+        self.report_by(self.until)
+    }
+
+    /// Poses and reports that are held.
+    pub(crate) fn records(&self) -> usize {
+        self.state().1.len() + self.schedule().held()
+    }
+
+    /// Gives up poses that were asked for before an instant, and reports that were old then: nobody looks so far back.
+    pub(crate) fn forget_before(&self, instant: Time) {
+        self.state().1.retain(|sampled| sampled.known >= instant);
+        self.schedule().forget_before(instant);
+    }
+
+    fn state(&self) -> MutexGuard<'_, (Follower, Vec<Sampled>)> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn schedule(&self) -> MutexGuard<'_, ReportSchedule> {
+        self.schedule.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn newest(&self, number: ViewNumber, time: Time) -> FrameView {
@@ -184,15 +198,13 @@ impl HeadViews {
 
     /// The first report that reaches the host at an instant or later.
     pub(crate) fn report_from(&self, instant: Time) -> Option<Time> {
-        let next = self.reports.partition_point(|report| report.arrives_ps < instant.0);
-        self.reports.get(next).map(|report| Time(report.arrives_ps))
+        Some(self.schedule().from(instant)?.arrives)
     }
 
     /// The first report that reaches the host after an instant; `None` if none does.
     #[must_use]
     pub fn report_after(&self, after: Time) -> Option<Time> {
-        let next = self.reports.partition_point(|report| report.arrives_ps <= after.0);
-        self.reports.get(next).map(|report| Time(report.arrives_ps))
+        Some(self.schedule().after(after)?.arrives)
     }
 
     /// A pose of the tracker in the scene: the motion's start is where the scene's own motion starts.
@@ -228,7 +240,7 @@ impl HeadViews {
         self.head.judge_at_m().unwrap_or_else(|| self.base.position.distance(centre.as_dvec3()).max(0.1))
     }
 
-    /// Every pose that was asked for, in order of the numbers.
+    /// Every pose that was asked for and not given up ([`Keep`](crate::Keep)), in order of the numbers.
     #[must_use]
     pub fn sampled(&self) -> Vec<Sampled> {
         let mut all = self.state().1.clone();
@@ -236,12 +248,14 @@ impl HeadViews {
         all
     }
 
-    pub(crate) fn follower(&self) -> Follower<'static> {
-        Follower::of_head(&self.head, Arc::clone(&self.reports))
+    /// Somebody who follows the same reports from the first one on, with a predictor of his own.
+    pub(crate) fn follower(&self) -> Follower {
+        Follower::of_head(&self.head, self.until)
     }
 
-    pub(crate) const fn reports(&self) -> &Arc<[TrackerReport]> {
-        &self.reports
+    /// What reaches the host while the run goes on.
+    pub(crate) fn arrivals(&self) -> Arrivals {
+        self.head.arrivals(self.until)
     }
 
     pub(crate) const fn start(&self) -> &Pose {

@@ -20,7 +20,7 @@ impl Outcome {
     /// [ties](IdealPicture::ties). `None` for a surface that the first display or the pipeline does not have.
     #[must_use]
     pub fn ideal_picture(&self, surface: impl Into<SurfaceId>, time: Time) -> Option<IdealPicture> {
-        ideal_picture(self.experiment(), self.record(), self.head(), surface.into(), time)
+        ideal_picture(self.experiment(), self.record(), self.head().map(AsRef::as_ref), surface.into(), time)
     }
 }
 

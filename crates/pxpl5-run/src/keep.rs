@@ -9,10 +9,11 @@ pub enum Keep {
     #[default]
     Everything,
     /// Statistics of the whole run, and everything of its last pictures: memory and time a field do not depend on the length of
-    /// the run. What follows a head keeps everything, since its pixels are judged when the run is over; so does a run whose
-    /// messages are recorded, and a pipeline that cannot do without ([`Pipeline::can_forget`](crate::Pipeline::can_forget)).
+    /// the run. What is said of a head is summed up too, by whoever was handed in ([`Experiment::summed_by`](crate::Experiment::summed_by)); a
+    /// report of a run with a head and without such a one says that this is missing. A run whose messages are recorded keeps everything, and
+    /// so does a pipeline that cannot do without ([`Pipeline::can_forget`](crate::Pipeline::can_forget)).
     Statistics,
-    /// As [`Keep::Statistics`], and where there is a head or messages are recorded too: what a page needs that shows a run as it goes on
+    /// As [`Keep::Statistics`], where messages are recorded too, and without sums of a head: what a page needs that shows a run as it goes on
     /// for hours. Of such a run pixel errors can be told of its last pictures alone, and traffic of its last periods.
     Recent,
 }

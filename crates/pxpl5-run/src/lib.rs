@@ -11,6 +11,7 @@
 //!
 //! **Not here:** the computer that it runs on. A clock and threads are handed in by a [`Host`]; scenes come as values.
 
+mod assembled;
 mod assembly;
 mod cut;
 mod display_list;
@@ -26,6 +27,7 @@ mod head;
 mod head_views;
 mod host;
 mod ideal;
+mod instants;
 mod keep;
 mod keys;
 mod latched_head;
@@ -40,6 +42,8 @@ mod preparation;
 mod raster;
 mod registry;
 mod rehearsal;
+mod rehearsal_sum;
+mod report_schedule;
 mod running;
 mod samples;
 mod says;
@@ -48,6 +52,7 @@ mod statistics;
 mod stepper;
 mod stops;
 mod summary;
+mod sums;
 mod tally;
 mod views;
 mod window;
@@ -63,7 +68,7 @@ pub use face_notes::{FaceNote, FaceNotes};
 pub use faces::{FaceHistory, ShownMemory};
 pub use fingerprint::Fingerprint;
 pub use head::{Head, HeadError};
-pub use head_views::{FIELDS_WITH_HEAD, HeadViews, Sampled};
+pub use head_views::{HeadViews, Sampled};
 pub use host::{BareHost, Host};
 pub use keep::Keep;
 pub use keys::{Key, KeyValue, KeyValues, PipelineSettings};
@@ -86,5 +91,6 @@ pub use so_far::SoFar;
 pub use statistics::{DefinedStatistics, Statistics};
 pub use stepper::{Pause, Stepper};
 pub use summary::{Summary, retraces};
+pub use sums::{Settled, Summing, Sums};
 pub use tally::{LATE_REGIONS_LISTED, SurfaceLatency, Tally};
 pub use views::{FrameStarts, Poses, ReportTimes, Views, ViewsWanted};

@@ -1,5 +1,6 @@
 //! What came of an experiment, as data.
 
+use crate::assembled::Assembled;
 use crate::due::{DuePictures, WARM_UP_PERIODS, WINDOW_DEFINITION};
 use crate::experiment::{Experiment, WARM_UP_PICTURES};
 use crate::face_notes::FaceNotes;
@@ -8,8 +9,9 @@ use crate::latency::{LatencyParts, parts};
 use crate::pipeline::{PictureTimes, Pipeline};
 use crate::statistics::Statistics;
 use crate::summary::Summary;
+use crate::sums::Settled;
 use crate::tally::{Tally, of_picture};
-use crate::window::{Window, field_ms};
+use crate::window::{Closed, Window, field_ms};
 use pxpl5_machine::{Observation, Record, StageSpan};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::PeriodNumber;
@@ -22,8 +24,7 @@ pub struct Outcome {
     record: Record,
     head: Option<Arc<HeadViews>>,
     notes: FaceNotes,
-    tally: Tally,
-    pictures: Vec<PictureTimes>,
+    closed: Closed,
     reached: PeriodNumber,
     host_seconds: Option<f64>,
 }
@@ -31,21 +32,40 @@ pub struct Outcome {
 impl Outcome {
     pub(crate) fn new(
         experiment: Experiment,
-        record: Record,
-        (head, notes): (Option<Arc<HeadViews>>, FaceNotes),
+        run: Assembled,
         window: Window,
         reached: PeriodNumber,
         host_seconds: Option<f64>,
     ) -> Self {
-        let end = record.tick(experiment.end());
-        let (tally, pictures) = window.close(experiment.pipeline.as_ref(), &record, (end, reached));
-        Self { experiment, record, head, notes, tally, pictures, reached, host_seconds }
+        let Assembled { machine, head, notes } = run;
+        let record = machine.into_record();
+        let closed = window.close(&experiment, &record, (head.as_ref(), &notes), reached);
+        Self { experiment, record, head, notes, closed, reached, host_seconds }
+    }
+
+    /// All of the run, as far as it is kept, for whoever sums it up afterwards.
+    #[must_use]
+    pub fn settled(&self) -> Settled<'_> {
+        let all = self.experiment.settled(&self.record, self.head.as_ref(), &self.notes);
+        Settled { pictures: self.pictures(), ..all }
+    }
+
+    /// What came of the sum that was taken while the run went on ([`Experiment::summed_by`]), if that is of this kind.
+    #[must_use]
+    pub fn said<T: 'static>(&self) -> Option<&T> {
+        self.closed.said.as_deref()?.downcast_ref()
+    }
+
+    /// Whether records of the run were given up ([`Keep`](crate::Keep)): what is asked now and was not summed up is of its last periods alone.
+    #[must_use]
+    pub fn has_forgotten(&self) -> bool {
+        self.observation().forgotten.before > Time::ZERO
     }
 
     /// What was summed up over the whole run.
     #[must_use]
     pub const fn tally(&self) -> &Tally {
-        &self.tally
+        &self.closed.tally
     }
 
     /// The experiment that was run, as it was asked for.
@@ -58,14 +78,15 @@ impl Outcome {
     /// of [`Tally::pictures`].
     #[must_use]
     pub fn pictures(&self) -> &[PictureTimes] {
-        &self.pictures
+        &self.closed.pictures
     }
 
     /// Those of them behind the first [`WARM_UP_PICTURES`] of the run.
     #[must_use]
     pub fn steady_pictures(&self) -> &[PictureTimes] {
-        let taken_before = self.tally.pictures as usize - self.pictures.len();
-        self.pictures.get(WARM_UP_PICTURES.saturating_sub(taken_before)..).unwrap_or_default()
+        let pictures = self.pictures();
+        let taken_before = self.tally().pictures as usize - pictures.len();
+        pictures.get(WARM_UP_PICTURES.saturating_sub(taken_before)..).unwrap_or_default()
     }
 
     /// Those of the steady ones that were complete in time: the others have no latency.
@@ -76,7 +97,7 @@ impl Outcome {
     /// Complete pictures that were shown in the whole run, the warm-up included.
     #[must_use]
     pub const fn shown(&self) -> u64 {
-        self.tally.shown
+        self.closed.tally.shown
     }
 
     /// The pictures that were due, and what became of them; `None` of a pipeline whose pictures never are, and of a run that
@@ -84,7 +105,7 @@ impl Outcome {
     #[must_use]
     pub fn due(&self) -> Option<DuePictures> {
         let every = self.pipeline().periods_a_picture(&self.record)?;
-        DuePictures::of_ends(self.tally.ends(), every, self.reached)
+        DuePictures::of_ends(self.closed.tally.ends(), every, self.reached)
     }
 
     /// When a picture is due here, what it takes to be in time, and which are counted.
@@ -105,7 +126,7 @@ impl Outcome {
             return self.due()?.updates_hz(self.field_ms());
         }
         let judged = PeriodNumber(WARM_UP_PERIODS)..self.reached;
-        let pictures = self.tally.shown_later() as f64 / self.pipeline().updates_per_picture(&self.record);
+        let pictures = self.closed.tally.shown_later() as f64 / self.pipeline().updates_per_picture(&self.record);
         let window_ms = judged.end.since(judged.start) as f64 * self.field_ms();
         (pictures > 0.0).then_some(pictures * 1e3 / window_ms)
     }
@@ -117,7 +138,7 @@ impl Outcome {
         let (_, fields_of_a_screen) = self.record.display().rows_lit(PeriodNumber::FIRST);
         let of_a_pass = self.pipeline().updates_per_picture(&self.record).ceil() as usize;
         let needed = of_a_pass.max(fields_of_a_screen as usize);
-        self.tally.shown_in_a_row >= needed as u64
+        self.closed.tally.shown_in_a_row >= needed as u64
     }
 
     /// The machine's boards as they stand at the end, and everything observed.
@@ -128,8 +149,8 @@ impl Outcome {
 
     /// The views that the head's tracker gave, if there was one.
     #[must_use]
-    pub fn head(&self) -> Option<&HeadViews> {
-        self.head.as_deref()
+    pub const fn head(&self) -> Option<&Arc<HeadViews>> {
+        self.head.as_ref()
     }
 
     /// The updates of display memories that were asked for, in order; none of a pipeline that draws no faces.
@@ -183,13 +204,13 @@ impl Outcome {
     /// Latency in milliseconds over the complete pictures after the warm-up, as the pipeline defines it.
     #[must_use]
     pub fn latency_ms(&self) -> Statistics {
-        self.tally.latency_ms.statistics()
+        self.closed.tally.latency_ms.statistics()
     }
 
     /// The same in periods of the first display: for NTSC, fields of 1001/60000 s.
     #[must_use]
     pub fn latency_fields(&self) -> Statistics {
-        self.tally.latency_ms.statistics_in(self.field_ms())
+        self.closed.tally.latency_ms.statistics_in(self.field_ms())
     }
 
     /// The parts of the latency of the complete pictures after the warm-up, as far as they are kept.
@@ -204,7 +225,7 @@ impl Outcome {
     /// The few numbers that every level of modelling gives, over the pictures after the warm-up.
     #[must_use]
     pub fn summary(&self) -> Summary {
-        let tally = &self.tally;
+        let tally = self.tally();
         let [first_copy, last_copy] = &tally.copy_ms;
         let mean_or_none = |mean: f64| if mean.is_nan() { 0.0 } else { mean };
         Summary {

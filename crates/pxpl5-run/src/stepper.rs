@@ -1,10 +1,8 @@
 //! A run in pieces: the machine at work, to be looked at whenever it stands.
 
-use crate::assembly::Assembled;
+use crate::assembled::Assembled;
 use crate::error::ExperimentError;
 use crate::experiment::{Experiment, Pixels, WARM_UP_PICTURES};
-use crate::face_notes::FaceNotes;
-use crate::head_views::HeadViews;
 use crate::ideal::ideal_picture;
 use crate::outcome::Outcome;
 use crate::preparation::Preparation;
@@ -19,7 +17,6 @@ use pxpl5_ring::OnChannel;
 use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, SurfaceId};
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
 /// Why a piece of a run is over.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -42,9 +39,7 @@ pub enum Pause {
 pub struct Stepper {
     experiment: Experiment,
     preparation: Preparation,
-    machine: Machine,
-    head: Option<Arc<HeadViews>>,
-    notes: FaceNotes,
+    run: Assembled,
     window: Window,
     begun_s: Option<f64>,
     now: Time,
@@ -55,14 +50,12 @@ pub struct Stepper {
 impl Stepper {
     pub(crate) fn begin(experiment: &Experiment, preparation: Preparation) -> Result<Self, ExperimentError> {
         let begun_s = experiment.host.seconds();
-        let Assembled { machine, head, notes } = experiment.assemble(preparation.clone())?;
-        let window = Window::new(experiment, machine.record());
+        let run = experiment.assemble(preparation.clone())?;
+        let window = Window::new(experiment, run.machine.record());
         Ok(Self {
             experiment: experiment.clone(),
             preparation,
-            machine,
-            head,
-            notes,
+            run,
             window,
             begun_s,
             now: Time::ZERO,
@@ -80,7 +73,7 @@ impl Stepper {
         }
         while self.now < target {
             let chunk = self.record().tick(self.period().after(PROGRESS_FIELDS)).min(target);
-            if let Err(error) = self.machine.run_until(chunk) {
+            if let Err(error) = self.run.machine.run_until(chunk) {
                 self.now = error.time();
                 return Pause::Failed(error);
             }
@@ -93,8 +86,8 @@ impl Stepper {
     pub fn run_until(&mut self, limit: Time, mut is_it: impl FnMut(&Self, &Happening) -> bool) -> Pause {
         let target = limit.min(self.end());
         loop {
-            let next = self.machine.next_happening();
-            match self.machine.step_before(target) {
+            let next = self.run.machine.next_happening();
+            match self.run.machine.step_before(target) {
                 Err(error) => {
                     self.now = error.time();
                     self.last = next;
@@ -108,7 +101,7 @@ impl Stepper {
             }
             self.last = next;
             if !self.breakpoints.is_empty() {
-                let hits = self.machine.take_hits();
+                let hits = self.run.machine.take_hits();
                 if !hits.is_empty() {
                     return Pause::Breakpoints(hits);
                 }
@@ -142,7 +135,7 @@ impl Stepper {
     /// Has code that comes to some addresses stop the run, instead of the addresses given before; only where the time of work comes from
     /// code ([`Level::Cycle`](crate::Level::Cycle)) does any.
     pub fn break_at(&mut self, addresses: BTreeSet<u32>) {
-        self.machine.break_at(&addresses);
+        self.run.machine.break_at(&addresses);
         self.breakpoints = addresses;
     }
 
@@ -157,7 +150,7 @@ impl Stepper {
             self.experiment.go_on()?;
             self.run_to(self.record().tick(self.period().after(PROGRESS_FIELDS)));
         }
-        self.machine.finish_pixels();
+        self.run.machine.finish_pixels();
         // What a look for a deadlock takes, behind the end of the run, is no time of it.
         let host_seconds = self.begun_s.zip(self.experiment.host.seconds()).map(|(begin, end)| end - begin);
         let mut error = self.failure().cloned();
@@ -165,11 +158,11 @@ impl Stepper {
         if error.is_none() && !self.experiment.on_demand && self.may_be_stuck() {
             error = self.deadlock();
         }
-        let Self { experiment, machine, head, notes, window, .. } = self;
-        let record = machine.into_record();
-        let stopped = error.as_ref().map(|error| record.display().period_at(error.time()));
+        let Self { experiment, run, window, .. } = self;
+        let display = run.machine.record().display();
+        let stopped = error.as_ref().map(|error| display.period_at(error.time()));
         let reached = stopped.unwrap_or(experiment.end()).min(experiment.end());
-        let outcome = Outcome::new(experiment.clone(), record, (head, notes), window, reached, host_seconds);
+        let outcome = Outcome::new(experiment.clone(), run, window, reached, host_seconds);
         match error {
             Some(error) => Err(ExperimentError::Run { error, partial: Box::new(outcome) }),
             None if shown_in(&outcome) <= WARM_UP_PICTURES as u64 => Err(too_short(&experiment, outcome)),
@@ -214,23 +207,23 @@ impl Stepper {
     /// Why the machine goes on no more, if it does not.
     #[must_use]
     pub const fn failure(&self) -> Option<&RunError> {
-        self.machine.failure()
+        self.run.machine.failure()
     }
 
     /// The machine with its boards and all that was observed so far.
     #[must_use]
     pub const fn machine(&self) -> &Machine {
-        &self.machine
+        &self.run.machine
     }
 
     pub(crate) const fn machine_mut(&mut self) -> &mut Machine {
-        &mut self.machine
+        &mut self.run.machine
     }
 
     /// What was observed so far; its hash is that of the trace up to now.
     #[must_use]
     pub const fn record(&self) -> &Record {
-        self.machine.record()
+        self.run.machine.record()
     }
 
     /// The experiment that is run.
@@ -242,7 +235,7 @@ impl Stepper {
     /// What the host or a graphics processor does; `None` for other boards, and those that the machine does not have.
     #[must_use]
     pub fn processor(&self, board: Board) -> Option<GpLook> {
-        Some(self.machine.board(board)?.look(self.now))
+        Some(self.run.machine.board(board)?.look(self.now))
     }
 
     /// What a renderer does.
@@ -281,14 +274,14 @@ impl Stepper {
     /// What a viewer of a surface should see of the scene as it is now: see [`Outcome::ideal_picture`].
     #[must_use]
     pub fn ideal_picture(&self, surface: SurfaceId) -> Option<IdealPicture> {
-        ideal_picture(&self.experiment, self.record(), self.head.as_deref(), surface, self.now)
+        ideal_picture(&self.experiment, self.record(), self.run.head.as_deref(), surface, self.now)
     }
 
     /// The run has come to an instant: what nobody will change any more is summed up.
     fn stand_at(&mut self, now: Time) {
         self.now = now;
         self.last = None;
-        self.window.look(self.experiment.pipeline.as_ref(), &mut self.machine, now);
+        self.window.look(&self.experiment, &mut self.run, now);
     }
 
     fn reached(&self, time: Time) -> Pause {
@@ -301,8 +294,8 @@ impl Stepper {
     /// Whether a machine at the end of the run may never go on. A pipeline that waits for a swap is at rest until the next tick; only
     /// a run that was over soon could have come to rest for ever in the last periods before its end, and not before.
     fn may_be_stuck(&self) -> bool {
-        let is_long = self.experiment.fields > SHORT_RUN && self.machine.idle_ticks() < IDLE_TICKS;
-        self.machine.is_at_rest() && !is_long
+        let is_long = self.experiment.fields > SHORT_RUN && self.run.machine.idle_ticks() < IDLE_TICKS;
+        self.run.machine.is_at_rest() && !is_long
     }
 
     /// Whether a machine that is at rest at the end of the run, which may be too short to tell, would be so for ever: the run
@@ -310,13 +303,13 @@ impl Stepper {
     fn deadlock(&self) -> Option<RunError> {
         let fields = self.experiment.fields + DEADLOCK_TICKS + 2;
         let longer = Experiment { fields, pixels: Pixels::Off, ..self.experiment.clone() };
-        let Assembled { mut machine, .. } = longer.assemble(self.preparation.clone()).ok()?;
+        let mut run = longer.assemble(self.preparation.clone()).ok()?;
         for field in longer.stops(&[]) {
-            let until = machine.record().tick(field);
-            if let Err(error) = machine.run_until(until) {
+            let until = run.machine.record().tick(field);
+            if let Err(error) = run.machine.run_until(until) {
                 return Some(error).filter(|error| matches!(error, RunError::Deadlock { .. }));
             }
-            machine.forget_before(until);
+            run.forget_before(until, until);
         }
         None
     }

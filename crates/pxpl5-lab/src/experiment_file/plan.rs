@@ -9,10 +9,10 @@ use crate::levels::summarise;
 use parameters::{ParameterError, Value as Number};
 use pxpl5_gp::CodeVersion;
 use pxpl5_machine::{ConfigError, MachineConfig, Parameter};
-use pxpl5_measure::{Measure, Results};
+use pxpl5_measure::{HeadSum, Measure, Results};
 use pxpl5_run::{
-    Experiment, ExperimentError, FIELDS_RANGE, FIELDS_WITH_HEAD, Key, KeyValue, KeyValues, Level, LimitCriterion,
-    Pipeline, PipelineEntry, PipelineSettings, Pixels, Registry, check_faces, out_of_range, times_of_table,
+    Experiment, ExperimentError, FIELDS_RANGE, Key, KeyValue, KeyValues, Level, LimitCriterion, Pipeline,
+    PipelineEntry, PipelineSettings, Pixels, Registry, check_faces, out_of_range, times_of_table,
 };
 use pxpl5_scene::Scene;
 use std::sync::Arc;
@@ -108,13 +108,12 @@ impl ExperimentFile {
         let pipeline = (entry.build)(&given);
         let seed = self.seed()?;
         let head = HeadChoice::read(self, pipeline.as_ref(), seed)?;
-        let most_fields = if head.is_some() { FIELDS_WITH_HEAD } else { FIELDS_RANGE.1 };
         Ok(Plan {
             title: self.text("title")?.map(str::to_owned),
             registry: Arc::clone(self.registry()),
             machine: self.machine(entry, pipeline.as_ref())?,
             scene: SceneChoice::read(self)?,
-            fields: self.integer("fields", FIELDS_RANGE.0..=most_fields)?.unwrap_or(120),
+            fields: self.integer("fields", FIELDS_RANGE.0..=FIELDS_RANGE.1)?.unwrap_or(120),
             seed,
             level: self.level(entry, head.is_some())?,
             limit: (entry.limit)(&given),
@@ -331,6 +330,7 @@ impl Plan {
         let entry = self.registry.pipeline(self.pipeline.name()).ok();
         let experiment = Experiment::with(self.machine.clone(), Arc::clone(&self.pipeline), scene)
             .estimated_by(entry.and_then(|entry| Some(entry.closed_form?.estimates)))
+            .summed_by(Some(HeadSum::begin))
             .fields(self.fields)
             .seed(self.seed)
             .pixels(self.pixels)

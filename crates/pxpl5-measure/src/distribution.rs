@@ -1,0 +1,118 @@
+//! Percentiles of more numbers than are kept.
+
+use crate::percentiles::Percentiles;
+use pxpl5_run::Samples;
+use std::collections::BTreeMap;
+
+/// Bits of a number's fraction that tell bins apart: a bin is 1/1024 of its numbers wide.
+const FRACTION_BITS: u32 = 10;
+const DROPPED_BITS: u32 = f64::MANTISSA_DIGITS - 1 - FRACTION_BITS;
+
+/// Numbers from 0 on whose percentiles are wanted. Up to a limit all of them are kept, and percentiles are theirs; beyond it they are counted
+/// in bins, and a percentile is the middle of its number's bin, which is at most a 2048th beside it. Number, mean and greatest stay those
+/// of all of them.
+#[derive(Clone, Debug)]
+pub(crate) struct Distribution {
+    samples: Samples,
+    limit: usize,
+    /// How many numbers have these first bits; only beyond the limit.
+    bins: BTreeMap<u64, u64>,
+}
+
+impl Distribution {
+    pub(crate) const fn keeping(limit: usize) -> Self {
+        Self { samples: Samples::keeping(limit), limit, bins: BTreeMap::new() }
+    }
+
+    pub(crate) fn push(&mut self, value: f64) {
+        if self.samples.count() == self.limit as u64 {
+            self.samples.iter().for_each(|kept| count(&mut self.bins, *kept));
+        }
+        if self.samples.count() >= self.limit as u64 {
+            count(&mut self.bins, value);
+        }
+        self.samples.push(value);
+    }
+
+    /// The first ones, at most as many as the limit.
+    pub(crate) fn kept(&self) -> &[f64] {
+        &self.samples
+    }
+
+    pub(crate) fn percentiles(&self) -> Percentiles {
+        let statistics = self.samples.statistics();
+        if statistics.n <= self.limit as u64 {
+            return Percentiles::of(self.samples.iter().copied());
+        }
+        let at = |percent: u64| self.ranked((statistics.n * percent).div_ceil(100).max(1));
+        Percentiles {
+            n: statistics.n,
+            mean: statistics.mean,
+            p50: at(50),
+            p90: at(90),
+            p99: at(99),
+            max: statistics.max,
+        }
+    }
+
+    /// The number of a rank, counted from 1 at the least, as far as its bin tells it.
+    fn ranked(&self, rank: u64) -> f64 {
+        let mut counted = 0;
+        let is_it = |(_, n): &(&u64, &u64)| {
+            counted += **n;
+            counted >= rank
+        };
+        self.bins.iter().find(is_it).map_or(f64::NAN, |(bin, _)| middle(*bin))
+    }
+}
+
+fn count(bins: &mut BTreeMap<u64, u64>, value: f64) {
+    *bins.entry(value.to_bits() >> DROPPED_BITS).or_default() += 1;
+}
+
+const fn middle(bin: u64) -> f64 {
+    f64::from_bits(bin << DROPPED_BITS | 1 << (DROPPED_BITS - 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers of many sizes in an order of no meaning.
+    fn numbers(n: u64) -> impl Iterator<Item = f64> + Clone {
+        (0..n).map(move |i| {
+            let place = i * 7_919 % n;
+            (place as f64 * 0.37).exp2().min(1e6) + place as f64 * 1e-3
+        })
+    }
+
+    #[test]
+    fn up_to_the_limit_percentiles_are_those_of_the_numbers_bit_for_bit() {
+        let mut all = Distribution::keeping(1_000);
+        numbers(1_000).for_each(|value| all.push(value));
+        assert_eq!(all.percentiles(), Percentiles::of(numbers(1_000)));
+        assert_eq!(all.kept().len(), 1_000);
+    }
+
+    #[test]
+    fn beyond_it_they_are_a_2048th_beside_them_at_most() {
+        for limit in [0, 1, 999] {
+            let mut counted = Distribution::keeping(limit);
+            numbers(1_000).for_each(|value| counted.push(value));
+            let found = counted.percentiles();
+            let expected = Percentiles::of(numbers(1_000));
+            assert_eq!((found.n, found.max), (expected.n, expected.max));
+            assert!((found.mean / expected.mean - 1.0).abs() < 1e-12, "{found:?} {expected:?}");
+            for (found, expected) in [(found.p50, expected.p50), (found.p90, expected.p90), (found.p99, expected.p99)] {
+                assert!((found / expected - 1.0).abs() <= 1.0 / 2_048.0, "{found} {expected}");
+            }
+            assert_eq!(counted.kept().len(), limit);
+        }
+    }
+
+    #[test]
+    fn of_nothing_there_is_no_number() {
+        assert_eq!(Distribution::keeping(0).percentiles().n, 0);
+        assert!(Distribution::keeping(5).percentiles().mean.is_nan());
+    }
+}

@@ -1,0 +1,219 @@
+//! Pixel errors, summed up period by period while a run goes on or when it is over.
+
+use crate::distribution::Distribution;
+use crate::errors::{CENTRE, FieldError, PixelErrors, Showing, UNJUDGED_FIELDS, grid};
+use crate::raster::{offset, pose_of_field};
+use crate::registration::{Judge, middle};
+use crate::shown::{Drawn, Moment, Seen, Shown};
+use pxpl5_run::{Cause, Estimator, HeadViews, Settled};
+use pxpl5_sim::Time;
+use pxpl5_wire::{PeriodNumber, ViewNumber};
+use std::collections::BTreeSet;
+use std::sync::Arc;
+use tracking::view::{PixelError, RasterOffset};
+
+/// Errors of a run's pictures as they are shown.
+#[derive(Debug, Default)]
+pub(crate) struct ErrorSum {
+    /// `None` for what is before the head's eyes.
+    showing: Option<Showing>,
+    without: Option<Cause>,
+    judging: Option<Judging>,
+    collected: Option<Collected>,
+}
+
+impl ErrorSum {
+    /// Of all of a run at once, with one cause of error turned off; else of one that goes on.
+    pub(crate) fn of(showing: Showing, without: Option<Cause>) -> Self {
+        Self { showing: Some(showing), without, ..Self::default() }
+    }
+
+    /// Judges the periods that are settled.
+    pub(crate) fn take(&mut self, run: &Settled<'_>) {
+        let Some(head) = run.head else { return };
+        let showing = self.showing.unwrap_or_else(|| head.head().raster().into());
+        let judging = self.judging.get_or_insert_with(|| Judging::begin(run, head, showing, self.without));
+        let collected = self.collected.get_or_insert_with(|| Collected::keeping(run.samples));
+        judging.shown.take(run, head);
+        let fields = judging.fields(run);
+        if let Some(cause) = self.without {
+            judging.give_poses(run, head, &fields, cause);
+        }
+        fields.for_each(|field| judging.judge(run, field, collected));
+        judging.shown.forget(run);
+    }
+
+    pub(crate) fn said(self) -> PixelErrors {
+        self.collected.map(Collected::said).unwrap_or_default()
+    }
+}
+
+/// What judges the pixels of a run.
+#[derive(Debug)]
+struct Judging {
+    judge: Judge,
+    shown: Shown,
+    content: Content,
+    /// Whether a pixel is judged at the instant that it was drawn for, and not when it lights.
+    at_one_instant: bool,
+    /// The first period that was not judged yet.
+    next: PeriodNumber,
+}
+
+/// What the pixels of a run show, as it is shown.
+#[derive(Debug)]
+enum Content {
+    Plain,
+    /// The raster is shifted by the offset of the field that is judged, if it has one.
+    Shifted(Estimator, Option<RasterOffset>),
+    Ideal(Estimator),
+}
+
+impl Judging {
+    fn begin(run: &Settled<'_>, head: &Arc<HeadViews>, showing: Showing, without: Option<Cause>) -> Self {
+        let estimator = Estimator::new(head, without);
+        let content = match showing {
+            Showing::Plain => Content::Plain,
+            Showing::RasterOffset => Content::Shifted(estimator, None),
+            Showing::Ideal => Content::Ideal(estimator),
+        };
+        Self {
+            judge: Judge::new(run, head),
+            shown: Shown::begin(run, head),
+            content,
+            at_one_instant: without == Some(Cause::ScanOut),
+            next: PeriodNumber(UNJUDGED_FIELDS),
+        }
+    }
+
+    /// The periods that can be judged now: not the first, nor one that the run may not have ended.
+    fn fields(&mut self, run: &Settled<'_>) -> impl Iterator<Item = PeriodNumber> + Clone + use<> {
+        let end = PeriodNumber(run.fields.saturating_sub(1)).min(run.until);
+        let fields = self.next.until(end);
+        self.next = self.next.max(end);
+        fields
+    }
+
+    /// Gives the views that are seen the poses that they would have had without a cause of error.
+    fn give_poses(
+        &mut self,
+        run: &Settled<'_>,
+        head: &Arc<HeadViews>,
+        fields: &(impl Iterator<Item = PeriodNumber> + Clone),
+        cause: Cause,
+    ) {
+        let display = run.record.display();
+        let shown = &self.shown;
+        let of_field = |field: PeriodNumber| {
+            let pixels = grid(display, field).into_iter();
+            pixels.flat_map(move |(x, y, at)| shown.views_at(run, [x, y], field, at))
+        };
+        let seen: BTreeSet<ViewNumber> = fields.clone().flat_map(of_field).collect();
+        self.shown.give_poses(head, &seen, cause);
+    }
+
+    fn judge(&mut self, run: &Settled<'_>, field: PeriodNumber, collected: &mut Collected) {
+        if let Content::Shifted(estimator, of_field) = &mut self.content {
+            let pose = pose_of_field(run, &self.shown, field);
+            *of_field = pose.map(|pose| offset(estimator, run.record.display(), field, &pose));
+        }
+        let mut of_field = Vec::new();
+        let mut centre = None;
+        for (i, (x, y, at)) in grid(run.record.display(), field).into_iter().enumerate() {
+            let seen = self.seen(run, [x, y], field, at);
+            let Some(error) = self.error([x, y], at, seen, collected) else { continue };
+            of_field.push(error);
+            if i == CENTRE {
+                centre = Some(error);
+            }
+        }
+        let begin = run.record.display().tick(field);
+        collected.take(field, begin, &of_field, centre);
+    }
+
+    fn seen(&mut self, run: &Settled<'_>, place: [u32; 2], field: PeriodNumber, at: Time) -> Seen {
+        match &mut self.content {
+            Content::Plain => self.shown.seen(run, place, field, at),
+            Content::Shifted(_, offset) => match self.shown.seen(run, place, field, at) {
+                Seen::Complete(Drawn::View(moment)) => {
+                    let shift = offset.map(|offset| offset.shift_px(&self.judge.view, at.0));
+                    shift.map_or(Seen::Nothing, |shift| Seen::Complete(Drawn::Shifted(moment, shift)))
+                }
+                Seen::Complete(_) => Seen::Nothing,
+                other => other,
+            },
+            Content::Ideal(estimator) => {
+                Seen::Complete(Drawn::View(Moment { pose: estimator.pose(at, at), objects_at: at }))
+            }
+        }
+    }
+
+    /// The error of a pixel, or why there is none.
+    fn error(&self, [x, y]: [u32; 2], at: Time, seen: Seen, collected: &mut Collected) -> Option<PixelError> {
+        let errors = &mut collected.errors;
+        let (error, unjudged) = match seen {
+            Seen::Nothing => (None, &mut errors.empty),
+            Seen::Incomplete => (None, &mut errors.incomplete),
+            Seen::Complete(drawn) => {
+                let judged_at = if self.at_one_instant { drawn.instant(at) } else { at };
+                (self.judge.error(middle(x, y), &drawn, judged_at), &mut errors.behind)
+            }
+        };
+        *unjudged += u64::from(error.is_none());
+        error
+    }
+}
+
+/// Errors as they are collected.
+#[derive(Debug)]
+struct Collected {
+    grid: [Distribution; 2],
+    centre: [Distribution; 2],
+    fields_kept: usize,
+    /// Counts, and errors field by field.
+    errors: PixelErrors,
+}
+
+/// Numbers of the grid that are kept for each that is kept of a field: 4 MiB of pixels and as much of degrees.
+const KEPT_OF_GRID: usize = 8;
+
+impl Collected {
+    fn keeping(fields: usize) -> Self {
+        let both = |limit| [Distribution::keeping(limit), Distribution::keeping(limit)];
+        let grid = both(fields.saturating_mul(KEPT_OF_GRID));
+        Self { grid, centre: both(fields), fields_kept: fields, errors: PixelErrors::default() }
+    }
+
+    /// Takes a field that begins at an instant.
+    fn take(&mut self, field: PeriodNumber, begin: Time, of_field: &[PixelError], centre: Option<PixelError>) {
+        of_field.iter().for_each(|error| push(&mut self.grid, error));
+        let Some(centre) = centre else { return };
+        push(&mut self.centre, &centre);
+        if self.errors.by_field.len() < self.fields_kept {
+            let mean_px = of_field.iter().map(|error| error.pixels).sum::<f64>() / of_field.len() as f64;
+            let time_s = begin.since(Time::ZERO).as_ms() * 1e-3;
+            self.errors.by_field.push(FieldError { field, time_s, mean_px, centre_px: centre.pixels });
+        }
+    }
+
+    fn said(self) -> PixelErrors {
+        let [pixels, degrees] = self.grid;
+        let [centre_px, centre_deg] = self.centre.map(|errors| errors.percentiles());
+        let of_grid = pixels.percentiles();
+        PixelErrors {
+            judged: of_grid.n,
+            pixels: of_grid,
+            degrees: degrees.percentiles(),
+            centre_px,
+            centre_deg,
+            all_px: pixels.kept().to_vec(),
+            ..self.errors
+        }
+    }
+}
+
+/// Pixels and degrees.
+fn push([pixels, degrees]: &mut [Distribution; 2], error: &PixelError) {
+    pixels.push(error.pixels);
+    degrees.push(error.degrees);
+}

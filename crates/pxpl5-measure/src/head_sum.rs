@@ -1,0 +1,46 @@
+//! What a report says of a head, summed up while a run goes on.
+
+use crate::budget::{Budget, BudgetSum};
+use crate::error_sum::ErrorSum;
+use crate::errors::PixelErrors;
+use crate::turn_sum::{TurnSum, Turns};
+use pxpl5_run::{Settled, Summing};
+use std::any::Any;
+
+/// From the head to light, turns of a display with faces, and errors in pixels, for a run that keeps statistics only:
+/// `experiment.keep(Keep::Statistics).summed_by(Some(HeadSum::begin))`.
+#[derive(Debug, Default)]
+pub struct HeadSum {
+    budget: BudgetSum,
+    turns: TurnSum,
+    errors: ErrorSum,
+}
+
+impl HeadSum {
+    /// Begins, for [`Experiment::summed_by`](pxpl5_run::Experiment::summed_by).
+    #[must_use]
+    pub fn begin() -> Box<dyn Summing> {
+        Box::<Self>::default()
+    }
+}
+
+impl Summing for HeadSum {
+    fn take(&mut self, settled: &Settled<'_>) {
+        self.budget.take(settled);
+        self.turns.take(settled);
+        self.errors.take(settled);
+    }
+
+    fn said(self: Box<Self>) -> Box<dyn Any + Send + Sync> {
+        let Self { budget, turns, errors } = *self;
+        Box::new(HeadSaid { end_to_end: budget.said(), turns: turns.said(), error: errors.said() })
+    }
+}
+
+/// What came of it.
+#[derive(Clone, Debug)]
+pub(crate) struct HeadSaid {
+    pub(crate) end_to_end: Budget,
+    pub(crate) turns: Turns,
+    pub(crate) error: PixelErrors,
+}

@@ -1,0 +1,54 @@
+//! How long a turn of the head takes to light, over all fields.
+
+use pxpl5_run::{RotationLatency, Samples, Settled, Statistics};
+use pxpl5_wire::PeriodNumber;
+use serde::Serialize;
+
+/// A part of the latency of rotation.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RotationPart {
+    /// Its name: see [`RotationLatency`](pxpl5_run::RotationLatency).
+    pub name: &'static str,
+    /// Over the middle pixel of all fields, milliseconds.
+    #[serde(flatten)]
+    pub statistics: Statistics,
+}
+
+/// Rotation latencies of the middle pixel of every field, milliseconds.
+#[derive(Debug, Default)]
+pub(crate) struct TurnSum {
+    next: PeriodNumber,
+    total: Samples,
+    parts: Vec<Samples>,
+}
+
+/// What came of them; nothing without a tracked head, and where the display takes no faces.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Turns {
+    pub(crate) latency_ms: Option<Statistics>,
+    pub(crate) parts_ms: Vec<RotationPart>,
+}
+
+impl TurnSum {
+    pub(crate) fn take(&mut self, run: &Settled<'_>) {
+        if self.parts.is_empty() {
+            self.total = Samples::keeping(run.samples);
+            self.parts = vec![self.total.clone(); RotationLatency::default().parts().len()];
+        }
+        for latency in run.rotation_latencies(self.next) {
+            self.total.push(latency.total().as_ms());
+            let parts = self.parts.iter_mut().zip(latency.parts());
+            parts.for_each(|(samples, (_, span))| samples.push(span.as_ms()));
+        }
+        self.next = run.until;
+    }
+
+    pub(crate) fn said(self) -> Turns {
+        if self.total.count() == 0 {
+            return Turns::default();
+        }
+        let named = RotationLatency::default().parts().map(|(name, _)| name).into_iter().zip(&self.parts);
+        let parts = named.map(|(name, samples)| RotationPart { name, statistics: samples.statistics() });
+        Turns { latency_ms: Some(self.total.statistics()), parts_ms: parts.collect() }
+    }
+}

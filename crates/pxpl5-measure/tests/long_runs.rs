@@ -1,0 +1,117 @@
+//! A run with a tracked head that keeps statistics only is reported as one that keeps everything, and holds no more the longer it is.
+
+use glam::DVec3;
+use pxpl5_machine::MachineConfig;
+use pxpl5_measure::{HeadSum, Measured, Report};
+use pxpl5_run::{Aim, Experiment, Head, Keep, Outcome, PipelineSettings, Pixels, Raster, Registry};
+use pxpl5_scene::{Scene, builtin};
+use std::sync::Arc;
+use tracking::motion::{Motion, Pan, Pendulum, Synthetic, Walk};
+use tracking::predict::PredictorKind;
+use tracking::tracker::{TrackerConfig, TrackerFault};
+
+fn scene(name: &str, triangles: usize) -> Scene {
+    let scene = builtin(name).expect("built in");
+    if triangles > 0 { scene.decimated(triangles).expect("it has so many") } else { scene }
+}
+
+fn experiment(pipeline: &str, machine: MachineConfig, scene: Scene, fields: u64) -> Experiment {
+    let pipeline = (Registry::of_papers().pipeline(pipeline).expect("listed").build)(&PipelineSettings::default());
+    let config = pipeline.adapt(machine);
+    let experiment = Experiment::with(config, pipeline, Arc::new(scene)).fields(fields).pixels(Pixels::Off);
+    experiment.summed_by(Some(HeadSum::begin))
+}
+
+fn head(motion: impl Motion + Send + Sync + 'static, tracker: TrackerConfig, kind: PredictorKind) -> Head {
+    Head::new(Arc::new(motion), tracker, kind, 7).expect("in range")
+}
+
+fn synthetic() -> Synthetic {
+    Synthetic::recorded_use(3)
+}
+
+/// Twenty metres to and fro, looking around.
+fn walk() -> Walk {
+    let corners = [DVec3::ZERO, DVec3::new(0.0, 0.0, -10.0), DVec3::new(1.0, 0.0, 0.0)];
+    Walk::new(&corners, 0.6).expect("a way").looking_around(5)
+}
+
+/// A tracker that says nothing for a second and a half of the run.
+fn silent_for_a_while() -> TrackerConfig {
+    let dropout = TrackerFault::Dropout { from_ps: 5_000_000_000_000, to_ps: 6_500_000_000_000 };
+    TrackerConfig { faults: vec![dropout], ..TrackerConfig::fastrak() }
+}
+
+/// Every family of pipelines, long enough that records are given up several times; trackers, predictors, rasters and aims between them.
+fn experiments() -> Vec<Experiment> {
+    let small = MachineConfig::small_hmd;
+    let fastrak = TrackerConfig::fastrak;
+    let slats = |fields| experiment("slats", MachineConfig::slats(), scene("mig", 60), fields);
+    let control = |fields| experiment("rendering-control", small(), scene("mig", 0), fields);
+    let faces = |name, fields| experiment(name, small(), scene("gallery", 0), fields);
+    let [none, velocity, kalman] = [PredictorKind::None, PredictorKind::ConstantVelocity, PredictorKind::Kalman];
+    vec![
+        slats(2_000).head(head(synthetic(), fastrak(), kalman)),
+        slats(2_000).head(head(Pan::at(60.0), TrackerConfig::flock_of_birds(), none).before(Raster::Vdrt)),
+        slats(2_000).head(head(synthetic(), silent_for_a_while(), velocity)),
+        control(2_000).head(head(synthetic(), fastrak(), velocity).aiming(Aim::FirstPixel)),
+        control(2_000).head(head(walk(), TrackerConfig::optical_ceiling(), kalman).before(Raster::Vdrt)),
+        control(1_500).head(head(synthetic(), TrackerConfig::polhemus_3space(), none)).on_demand(),
+        experiment("jitp-field", small(), scene("mig", 60), 1_500).head(head(synthetic(), fastrak(), kalman)),
+        experiment("jitp-scanline-racing", small(), scene("full-screen:4", 0), 500).head(head(
+            Pendulum::rig(),
+            fastrak(),
+            none,
+        )),
+        experiment("jitp-dual-view", small(), scene("full-screen:4", 0), 500).head(head(
+            synthetic(),
+            fastrak(),
+            kalman,
+        )),
+        experiment("frameless", small(), scene("full-screen:4", 0), 150).head(head(synthetic(), fastrak(), velocity)),
+        faces("arp-full", 1_500).head(head(synthetic(), fastrak(), kalman)),
+        faces("arp-priority-line", 1_500).head(head(synthetic(), TrackerConfig::flock_of_birds(), velocity)),
+        faces("arp-cells-warp-pixel", 1_500).head(head(synthetic(), fastrak(), none)),
+        faces("arp-ideal", 1_500).head(head(walk(), fastrak(), kalman)),
+    ]
+}
+
+fn run(experiment: &Experiment, keep: Keep) -> Outcome {
+    experiment.clone().keep(keep).run().expect("it runs")
+}
+
+/// All of a report but what it took of this computer; numbers print with as many digits as tell them apart.
+fn said(outcome: &Outcome) -> String {
+    format!("{:#?}", Report { host_seconds: None, ..outcome.report() })
+}
+
+#[test]
+fn what_is_kept_changes_nothing_that_is_said_of_a_head() {
+    for experiment in experiments() {
+        let head = experiment.tracked_head().expect("tracked");
+        let name = format!("{}, {:?}", experiment.pipeline().name(), head);
+        let everything = run(&experiment, Keep::Everything);
+        let statistics = run(&experiment, Keep::Statistics);
+        let [expected, found] = [&everything, &statistics].map(said);
+        let other = expected.lines().zip(found.lines()).find(|(expected, found)| expected != found);
+        assert_eq!(other, None, "{name}");
+        assert_eq!(expected.len(), found.len(), "{name}");
+        assert!(statistics.has_forgotten() && !everything.has_forgotten(), "{name}: records were given up");
+        let of_head = everything.report().head.expect("tracked");
+        assert!(of_head.error.judged > 500 && of_head.end_to_end.n > 50, "{name}: there is something to be said");
+        let [all, last] = [&everything, &statistics].map(|outcome| outcome.head().expect("tracked").sampled());
+        assert!(4 * last.len() < 3 * all.len(), "{name}: {} poses of {} are held", last.len(), all.len());
+        assert_eq!(last, all[all.len() - last.len()..], "{name}: the last ones");
+    }
+}
+
+#[test]
+fn of_records_that_nobody_summed_up_a_report_says_that_they_are_gone() {
+    let experiment = experiments().swap_remove(0);
+    let silent = run(&experiment.clone().summed_by(None), Keep::Statistics).report();
+    let said: Vec<&String> = silent.warnings.iter().filter(|warning| warning.contains("last pictures alone")).collect();
+    assert_eq!(said.len(), 1, "{:?}", silent.warnings);
+    for keep in [Keep::Everything, Keep::Statistics] {
+        assert_eq!(run(&experiment, keep).report().warnings, experiment.warnings(), "{keep:?}");
+    }
+}

@@ -1,0 +1,34 @@
+//! A run as it stands: what all hold of it who look back.
+
+use crate::face_notes::FaceNotes;
+use crate::head_views::HeadViews;
+use pxpl5_machine::Machine;
+use pxpl5_sim::Time;
+use std::sync::Arc;
+
+/// A machine with its programs, and what is written of a run while it goes on.
+#[derive(Debug)]
+pub(crate) struct Assembled {
+    pub(crate) machine: Machine,
+    pub(crate) head: Option<Arc<HeadViews>>,
+    pub(crate) notes: FaceNotes,
+}
+
+impl Assembled {
+    /// Records that are held of the run.
+    pub(crate) fn records(&self) -> usize {
+        let observation = self.machine.record().observation();
+        let traffic = observation.traffic.as_ref().map_or(0, |traffic| traffic.records());
+        observation.records() + traffic + self.head.as_ref().map_or(0, |head| head.records())
+    }
+
+    /// Gives up what was observed before one instant, and what is known of the head before another: nobody looks so far back.
+    pub(crate) fn forget_before(&mut self, instant: Time, of_head: Time) {
+        self.machine.forget_before(instant);
+        self.head.iter().for_each(|head| head.forget_before(of_head));
+        let record = self.machine.record();
+        let of_memories = record.ports().display().iter().enumerate();
+        of_memories
+            .for_each(|(memory, port)| self.notes.keep_from(memory, record.observation().first_swap_held(*port)));
+    }
+}

@@ -1,0 +1,147 @@
+//! What a run without prediction tells, summed up while it goes on.
+
+use crate::experiment::WARM_UP_PICTURES;
+use crate::head_views::{HeadViews, Sampled};
+use crate::instants::Instants;
+use crate::latched_head::LatchedHead;
+use crate::pipeline::PictureTimes;
+use crate::rehearsal::{Rehearsal, Rehearsed};
+use crate::sums::{Settled, Summing};
+use pxpl5_display::LightSpan;
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::{FieldParity, PeriodNumber, ViewNumber};
+use std::any::Any;
+use std::collections::BTreeMap;
+
+/// Least step of an interval for which a predictor is tuned, picoseconds: a millisecond. A finer one changes no number of a filter
+/// by a per cent.
+const INTERVAL_STEP_PS: u64 = 1_000_000_000;
+
+/// When views are shown, how long after their samples, and how far ahead orientations that a display latches are predicted.
+#[derive(Debug, Default)]
+pub(crate) struct RehearsalSum {
+    pictures: usize,
+    /// Views of which another picture may come.
+    going_on: BTreeMap<ViewNumber, ShownView>,
+    aimed_at: Instants,
+    leads: Mean,
+    intervals: Mean,
+    turns: Mean,
+    turned_to: PeriodNumber,
+}
+
+/// When a view is shown, in as many pictures as are of it.
+#[derive(Clone, Copy, Debug)]
+struct ShownView {
+    shown: LightSpan,
+    /// Whether a picture of it behind the warm-up was complete.
+    is_complete: bool,
+}
+
+/// A mean of milliseconds, summed up in the order in which they come.
+#[derive(Clone, Copy, Debug, Default)]
+struct Mean {
+    sum_ms: f64,
+    n: u64,
+}
+
+impl Mean {
+    fn add(&mut self, span: Span) {
+        self.sum_ms += span.as_ms();
+        self.n += 1;
+    }
+
+    /// No number of nothing.
+    fn ms(self) -> f64 {
+        self.sum_ms / self.n as f64
+    }
+
+    /// In whole steps; `None` of nothing.
+    fn rounded_ps(self) -> Option<u64> {
+        let steps = (self.ms() * 1e9 / INTERVAL_STEP_PS as f64).round();
+        (self.n > 0).then_some(steps as u64 * INTERVAL_STEP_PS)
+    }
+}
+
+impl Summing for RehearsalSum {
+    fn take(&mut self, settled: &Settled<'_>) {
+        let Some(head) = settled.head else { return };
+        let sampled = head.sampled();
+        let nexts = settled.pictures.iter().skip(1).chain(settled.next).map(Some).chain([None]);
+        for (times, next) in settled.pictures.iter().zip(nexts) {
+            let shown = settled.pipeline.shown(settled.record, times, next);
+            self.take_picture(times, shown);
+        }
+        self.end_views(settled, &sampled);
+        self.take_turns(settled, head);
+    }
+
+    fn said(self: Box<Self>) -> Box<dyn Any + Send + Sync> {
+        Box::new(self.rehearsed())
+    }
+}
+
+impl RehearsalSum {
+    /// What was told so far.
+    pub(crate) fn rehearsed(self) -> Rehearsed {
+        Rehearsed {
+            rehearsal: Rehearsal::new(self.aimed_at, (self.leads.ms() * 1e9) as u64),
+            interval_ps: self.intervals.rounded_ps(),
+            turn_interval_ps: self.turns.rounded_ps(),
+        }
+    }
+
+    fn take_picture(&mut self, times: &PictureTimes, shown: LightSpan) {
+        self.pictures += 1;
+        let is_complete = times.is_shown() && self.pictures > WARM_UP_PICTURES;
+        let view = self.going_on.entry(times.view).or_insert(ShownView { shown, is_complete });
+        view.shown.last = view.shown.last.max(shown.last);
+        view.is_complete |= is_complete;
+    }
+
+    /// Ends all views but the newest, of which the next picture may be too; that one with the run.
+    fn end_views(&mut self, settled: &Settled<'_>, sampled: &[Sampled]) {
+        let newest = self.going_on.pop_last();
+        let ended = std::mem::take(&mut self.going_on);
+        ended.iter().for_each(|(view, shown)| self.end_view(settled, sampled, *view, *shown));
+        match newest {
+            Some((view, shown)) if settled.next.is_none() => self.end_view(settled, sampled, view, shown),
+            newest => self.going_on.extend(newest),
+        }
+    }
+
+    /// Firmware that knows itself when its views are seen asks for no instant; it may show them in another order than that of their numbers.
+    fn end_view(&mut self, settled: &Settled<'_>, sampled: &[Sampled], view: ViewNumber, shown: ShownView) {
+        let ShownView { shown, is_complete } = shown;
+        let instant = settled.aim.instant(&shown);
+        if !settled.pipeline.knows_when_seen() {
+            self.aimed_at.push(view.0, instant);
+        }
+        let first = sampled.partition_point(|sampled| sampled.number < view);
+        let of_view = sampled[first..].iter().take_while(|sampled| sampled.number == view);
+        of_view.clone().for_each(|sampled| self.leads.add(instant.since(sampled.known)));
+        let measured_at = of_view.filter_map(|sampled| sampled.measured_at).last();
+        if let Some(measured_at) = measured_at.filter(|_| is_complete) {
+            self.intervals.add(instant.since(measured_at));
+        }
+    }
+
+    /// From the instant at which an orientation was true to the one that it is latched for, of the middle pixel of each field.
+    fn take_turns(&mut self, settled: &Settled<'_>, head: &HeadViews) {
+        let display = settled.record.display();
+        let Some((latched, surface)) = LatchedHead::of_run(settled).zip(display.surfaces().first()) else { return };
+        for field in self.turned_to.until(settled.until) {
+            let y = surface.height / 2 + FieldParity::of_field(field).first_line();
+            let span = turned(&latched, head, [surface.width / 2, y], field);
+            span.into_iter().for_each(|span| self.turns.add(span));
+        }
+        self.turned_to = settled.until;
+    }
+}
+
+/// Of a pixel; `None` before the first report.
+fn turned(latched: &LatchedHead, head: &HeadViews, [x, y]: [u32; 2], field: PeriodNumber) -> Option<Span> {
+    let (known, aimed): (Time, Time) = latched.turned_by(head, x, y, field)?;
+    let measured = head.measured_at(head.report_by(known)?)?;
+    Some(aimed.since(measured))
+}
