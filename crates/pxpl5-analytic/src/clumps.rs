@@ -1,7 +1,7 @@
 //! TRANSFORM and RENDER of Slats: clumps on their way to the renderers, on some machines at once.
 
+use super::model::{MOST_CHANNELS, PerTriangle, REGIONS, SlatsModel};
 use super::renderer::{Array, Commands, Costs, Fifos, Times};
-use super::slats::{PerTriangle, REGIONS, SlatsModel};
 use slats::CLUMP;
 
 /// Clumps of all GPs by turns; when the last one was accepted.
@@ -165,9 +165,6 @@ impl<const N: usize> Chain<N> {
         self.accepted = accepted;
     }
 }
-
-/// Channels that a ring can have.
-pub(super) const MOST_CHANNELS: usize = 8;
 
 /// When the channels of a port are free: the soonest one, which is taken next, and as many others as there are, in their order.
 struct Channels<const N: usize> {

@@ -21,13 +21,14 @@
 mod clumps;
 mod copies;
 mod load;
+mod model;
 mod renderer;
 mod rendering_control;
 mod slats;
 
 pub use load::Load;
+pub use model::{FieldTimes, PerTriangle, SlatsModel};
 pub use rendering_control::{StereoModel, StereoTimes, stereo_loads};
-pub use slats::{FieldTimes, PerTriangle, SlatsModel};
 
 use pxpl5_framebuffer::{FrameBufferConfig, Video};
 use pxpl5_machine::{ConfigError, MachineConfig};

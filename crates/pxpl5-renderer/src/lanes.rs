@@ -6,6 +6,7 @@ mod ellipse;
 mod enable;
 mod general;
 mod large;
+mod painter;
 mod roots;
 mod shade;
 mod shape;

@@ -2,8 +2,9 @@
 //! holds nearly all of them. What their expressions are at their first pixel is computed side by side.
 
 use super::bounds::{Boxes, Edges, PerTriangle};
+use super::painter::{PaintTriangle, TrianglePainter, Walk};
 use super::shape::{InFours, Shape};
-use super::triangle::{PaintTriangle, TrianglePainter, Walk};
+
 use crate::simd::{FOUR, SimdVector};
 use pxpl5_wire::{LANES, LinearLanes, TriangleBatch};
 

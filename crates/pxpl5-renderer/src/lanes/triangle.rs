@@ -2,7 +2,7 @@
 
 use super::bounds::{Area, Boxes, Edges, Spans};
 use super::columns::Values;
-use super::enable::Enable;
+use super::painter::{PaintTriangle, Tested, TrianglePainter, Walk};
 use super::shape::{InRow, Shape};
 use super::slim::SlimTriangles;
 use super::template::{Template, starts_anew};
@@ -13,37 +13,6 @@ use pxpl5_wire::{LANES, Linear, TriangleBatch, Word};
 use std::ops::Range;
 
 const WIDTH: usize = 128;
-
-/// A linear expression at some pixels in a row.
-#[derive(Clone, Copy)]
-pub(super) struct Walk<V> {
-    value: V,
-    step: V,
-}
-
-impl<V: SimdVector> Walk<V> {
-    #[inline(always)]
-    fn start(e: &Linear, x: i32, y: i32) -> Self {
-        Self { value: V::ramp(e.at(x, y), e.a), step: V::splat(e.a.wrapping_mul(V::LANES as i32)) }
-    }
-
-    /// At the pixels of a vector of [fours](crate::simd::FOUR), the first of which has this value. It is not walked along a row.
-    #[inline(always)]
-    pub(super) fn fours(first: i32, a: i32, b: i32) -> Self {
-        Self { value: V::ramp_of_fours(first, a, b), step: V::splat(0) }
-    }
-
-    /// Some rows below, in all of which together the expression grows by `b`.
-    #[inline(always)]
-    pub(super) fn below(&self, b: i32) -> Self {
-        Self { value: self.value.add(V::splat(b)), step: self.step }
-    }
-
-    #[inline(always)]
-    fn advance(&mut self) {
-        self.value = self.value.add(self.step);
-    }
-}
 
 /// A linear expression over the array's columns and rows, ready to be walked along from anywhere.
 #[derive(Clone, Copy)]
@@ -75,24 +44,6 @@ struct WideTriangle<V> {
     edges: [Slope<V>; 3],
     depth: Slope<V>,
     components: [Slope<V>; 3],
-}
-
-/// What triangles store in the pixels that pass.
-pub(super) trait PaintTriangle {
-    /// Takes the colour of the triangle that comes, where it has one.
-    fn begin(&mut self, colour: Word);
-    /// Stores pixels from index `at` where the mask is true.
-    fn store<V: SimdVector, S: Shape>(&mut self, walks: &[Walk<V>; 3], at: usize, mask: V::Mask);
-}
-
-/// Draws triangles into a region.
-pub(super) struct TrianglePainter<'a, P> {
-    /// Column and row of the picture that the array begins with.
-    pub(super) origin: [i32; 2],
-    pub(super) z_shift: u8,
-    pub(super) z: &'a mut Values,
-    pub(super) paint: P,
-    pub(super) enable: &'a mut Enable,
 }
 
 /// All triangles of one kind at the start of `words`, as many as follow each other. Gives their number.
@@ -166,13 +117,6 @@ struct CurrentTriangle<S> {
     surface: S,
     /// Somebody looks at Enable afterwards.
     keep: bool,
-}
-
-/// The depth test of a vector of pixels.
-pub(super) struct Tested<V: SimdVector> {
-    pub(super) old: V,
-    pub(super) new: V,
-    pub(super) mask: V::Mask,
 }
 
 impl<const N: usize, P: PaintTriangle> VectorKernel for DrawTriangles<'_, N, P> {
@@ -328,19 +272,6 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
             walks[1].advance();
             walks[2].advance();
         }
-    }
-
-    /// Where no edge is negative and the depth is nearer.
-    #[inline(always)]
-    pub(super) fn test<V: SimdVector, S: Shape>(
-        &self,
-        at: usize,
-        [p, q, r]: [Walk<V>; 3],
-        depth: Walk<V>,
-    ) -> Tested<V> {
-        let old = S::load::<V>(self.z, at);
-        let new = depth.value.shift_right(self.z_shift.into());
-        Tested { old, new, mask: p.value.or(q.value).or(r.value).passes(new, old) }
     }
 
     #[inline(always)]

@@ -2,8 +2,9 @@
 
 use super::Lanes;
 use super::columns::{ContextColumns, Values};
+use super::painter::TrianglePainter;
 use super::template::{CommandCost, starts_anew};
-use super::triangle::{DrawBatch, DrawTriangles, PaintGouraud, PaintPhong, TrianglePainter};
+use super::triangle::{DrawBatch, DrawTriangles, PaintGouraud, PaintPhong};
 use crate::array::Executed;
 use crate::command::{COMPONENTS_AT, CommandKind, PHONG_WORDS, TRIANGLE_WORDS};
 use crate::controller::FieldBits;

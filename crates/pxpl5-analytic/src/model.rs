@@ -1,0 +1,174 @@
+//! Slats on a machine, reduced to numbers.
+
+use super::copies::{CopyTimes, MOST_RENDERERS, Queue};
+use super::renderer::Cost;
+use crate::video_of;
+use pphigs::TransformCost;
+use pxpl5_gp::GpTiming;
+use pxpl5_machine::{ConfigError, MachineConfig};
+use pxpl5_renderer::CommandKind;
+use pxpl5_run::{DuePictures, PictureEnd, Pipeline, Slats, WARM_UP_PERIODS};
+use pxpl5_scene::Scene;
+use pxpl5_sim::Time;
+use pxpl5_wire::{PeriodNumber, RegionGrid};
+
+/// Field regions of both eyes.
+pub(super) const REGIONS: usize = 20;
+
+/// Channels that a ring can have.
+pub(super) const MOST_CHANNELS: usize = 8;
+
+/// Eyes, for each of which a structure is put in its place.
+const EYES: f64 = 2.0;
+
+/// The beginning of a pass over so many structures, of which some have spheres, for both eyes.
+fn begin_ns(gp: &GpTiming, structures: usize, sphere_views: usize) -> f64 {
+    let [structures, sphere_views] = [structures, sphere_views].map(|n| EYES * n as f64);
+    TransformCost { passes: 1.0, structures, sphere_views, ..TransformCost::default() }.ns(gp)
+}
+
+/// Slats on a machine, reduced to numbers.
+#[derive(Clone, Debug)]
+pub struct SlatsModel {
+    pub(super) fifo_words: f64,
+    pub(super) word_ns: f64,
+    pub(super) overhead_ns: f64,
+    pub(super) hop_ns: f64,
+    pub(super) gp: GpTiming,
+    /// The beginning of a pass.
+    pub(super) begin_ns: f64,
+    pub(super) message_ns: f64,
+    pub(super) command: Cost,
+    pub(super) select: Cost,
+    pub(super) clear: Cost,
+    pub(super) region_ns: f64,
+    pub(super) field_ns: f64,
+    /// From a retrace to the scan of the first line of the bottom regions.
+    bottom_ns: f64,
+    pub(super) renderers: usize,
+    pub(super) gps: usize,
+    pub(super) source_channels: usize,
+    pub(super) split: bool,
+}
+
+/// When things happened, in nanoseconds after the retrace at which the field's view was taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FieldTimes {
+    /// The last clump was accepted.
+    pub rendered_ns: f64,
+    /// Copy of the top regions, or of all.
+    pub top: CopyTimes,
+    /// Copy of the bottom regions of a split copy, after the retrace.
+    pub bottom: Option<CopyTimes>,
+    /// Whether everything came before its deadline.
+    pub in_time: bool,
+}
+
+/// What a triangle is for one eye, in the mean.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PerTriangle {
+    /// Entries in bins.
+    pub entries: f64,
+    /// Part of the triangles that the clipper cuts, 0 to 1.
+    pub clipped: f64,
+}
+
+impl SlatsModel {
+    /// Reduces a machine; the program's code is applied first. Triangles are of one structure.
+    ///
+    /// # Errors
+    ///
+    /// [`ConfigError`] for too few renderers.
+    pub fn new(config: &MachineConfig, program: Slats) -> Result<Self, ConfigError> {
+        let contexts = usize::from(program.layout().plan().contexts.max(1));
+        if config.n_renderers < REGIONS.div_ceil(contexts) {
+            let error = slats::SlatsConfigError::TooFewRenderers {
+                found: config.n_renderers,
+                expected: REGIONS.div_ceil(contexts),
+            };
+            return Err(ConfigError::Board(error.to_string()));
+        }
+        if program.code.is_some() {
+            return Self::new(&program.adapt(config.clone()), Slats { code: None, ..program });
+        }
+        let video = video_of(config)?;
+        let field_ns = video.retrace(PeriodNumber(1)).since(Time::ZERO).as_ms() * 1e6;
+        let even = PeriodNumber(2);
+        let bottom = video.line_start(2 * RegionGrid::FIELD.region_height, even);
+        let messages = (15_360.0_f64 / 1_024.0).ceil();
+        let word_ns = config.ring.word_ns as f64;
+        Ok(Self {
+            fifo_words: config.renderer.fifo_words as f64,
+            word_ns,
+            overhead_ns: config.ring.overhead_words as f64 * word_ns,
+            hop_ns: config.ring.hop_ns as f64,
+            gp: config.gp,
+            begin_ns: begin_ns(&config.gp, 1, 0),
+            message_ns: config.gp.message_ns as f64,
+            command: Cost::of_command(&config.renderer, CommandKind::Triangle),
+            select: Cost::of_command(&config.renderer, CommandKind::SelectRegion),
+            clear: Cost::of_command(&config.renderer, CommandKind::Clear),
+            region_ns: 15_360.0 * word_ns + messages * config.ring.overhead_words as f64 * word_ns,
+            field_ns,
+            bottom_ns: bottom.map_or(0.0, |at| at.since(video.retrace(even)).as_ms() * 1e6),
+            renderers: config.n_renderers.min(MOST_RENDERERS),
+            gps: config.n_gps,
+            source_channels: (config.ring.source_channels.min(config.ring.fifo_channels).min(config.ring.channels)
+                as usize)
+                .clamp(1, MOST_CHANNELS),
+            split: program.copy.is_split(),
+        })
+    }
+
+    /// The same for the structures of a scene.
+    #[must_use]
+    pub fn over(self, scene: &Scene) -> Self {
+        let sphere_views = scene.structures().iter().filter(|structure| !structure.spheres.is_empty()).count();
+        Self { begin_ns: begin_ns(&self.gp, scene.structures().len(), sphere_views), ..self }
+    }
+
+    /// What decides how many messages there are, and in which order they go.
+    pub(super) const fn structure(&self) -> (usize, usize, usize, bool) {
+        (self.renderers, self.gps, self.source_channels, self.split)
+    }
+
+    /// Field after field like this one: one is begun at every retrace at which the one before is done with its commands.
+    pub(super) fn due(&self, times: FieldTimes, fields: u64) -> Option<DuePictures> {
+        let copied_ns = times.bottom.unwrap_or(times.top).end_ns;
+        // A field is scanned during the one after that in which it is drawn.
+        let end = PictureEnd::of(copied_ns <= 2.0 * self.field_ns, times.in_time);
+        let messages = if self.split { 2.0 } else { 1.0 };
+        let apart = ((times.rendered_ns + messages * self.message_ns) / self.field_ns).ceil().max(1.0);
+        let begun = (WARM_UP_PERIODS..fields).step_by(apart as usize);
+        DuePictures::count(begun.map(|field| (PeriodNumber(field), end)), 1, PeriodNumber(fields))
+    }
+
+    /// The copies that each renderer makes, of the regions for which `wanted` holds.
+    pub(super) fn layout(&self, wanted: impl Fn(usize) -> bool) -> [Queue; MOST_RENDERERS] {
+        let mut queues = [Queue::default(); MOST_RENDERERS];
+        let per_half = REGIONS / 4;
+        // Left and right eye by turns; the odd renderers of a split copy begin right.
+        let regions = (0..REGIONS).zip((0..self.renderers).cycle());
+        for (region, renderer) in regions.filter(|(region, _)| wanted(*region)) {
+            let right = (region / per_half) % 2 == 1;
+            queues[renderer].push(right);
+        }
+        for queue in queues.iter_mut().take(self.renderers).skip(1).step_by(2).filter(|_| self.split) {
+            *queue = queue.reversed();
+        }
+        queues
+    }
+
+    /// Whether what ends then is in time.
+    pub(super) fn times(&self, rendered_ns: f64, top: CopyTimes, bottom: Option<CopyTimes>) -> FieldTimes {
+        let bottom_in_time = bottom.is_none_or(|times| times.end_ns <= self.field_ns + self.bottom_ns);
+        FieldTimes { rendered_ns, top, bottom, in_time: top.end_ns <= self.field_ns && bottom_in_time }
+    }
+
+    /// TRANSFORM of a clump of so many triangles for both eyes.
+    pub(super) fn clump_ns(&self, triangles: f64, each: PerTriangle) -> f64 {
+        let both_eyes = EYES * triangles;
+        let [entries, clipped] = [each.entries, each.clipped].map(|n| both_eyes * n);
+        TransformCost { triangles: both_eyes, entries, clipped, ..TransformCost::default() }.ns(&self.gp)
+    }
+}

@@ -1,0 +1,78 @@
+//! What drawing a triangle comes down to, whatever its shape: expressions at the pixels of a vector, the depth test, and what is stored.
+
+use super::columns::Values;
+use super::enable::Enable;
+use super::shape::Shape;
+use crate::simd::SimdVector;
+use pxpl5_wire::{Linear, Word};
+
+/// A linear expression at some pixels in a row.
+#[derive(Clone, Copy)]
+pub(super) struct Walk<V> {
+    pub(super) value: V,
+    pub(super) step: V,
+}
+
+impl<V: SimdVector> Walk<V> {
+    #[inline(always)]
+    pub(super) fn start(e: &Linear, x: i32, y: i32) -> Self {
+        Self { value: V::ramp(e.at(x, y), e.a), step: V::splat(e.a.wrapping_mul(V::LANES as i32)) }
+    }
+
+    /// At the pixels of a vector of [fours](crate::simd::FOUR), the first of which has this value. It is not walked along a row.
+    #[inline(always)]
+    pub(super) fn fours(first: i32, a: i32, b: i32) -> Self {
+        Self { value: V::ramp_of_fours(first, a, b), step: V::splat(0) }
+    }
+
+    /// Some rows below, in all of which together the expression grows by `b`.
+    #[inline(always)]
+    pub(super) fn below(&self, b: i32) -> Self {
+        Self { value: self.value.add(V::splat(b)), step: self.step }
+    }
+
+    #[inline(always)]
+    pub(super) fn advance(&mut self) {
+        self.value = self.value.add(self.step);
+    }
+}
+
+/// What triangles store in the pixels that pass.
+pub(super) trait PaintTriangle {
+    /// Takes the colour of the triangle that comes, where it has one.
+    fn begin(&mut self, colour: Word);
+    /// Stores pixels from index `at` where the mask is true.
+    fn store<V: SimdVector, S: Shape>(&mut self, walks: &[Walk<V>; 3], at: usize, mask: V::Mask);
+}
+
+/// Draws triangles into a region.
+pub(super) struct TrianglePainter<'a, P> {
+    /// Column and row of the picture that the array begins with.
+    pub(super) origin: [i32; 2],
+    pub(super) z_shift: u8,
+    pub(super) z: &'a mut Values,
+    pub(super) paint: P,
+    pub(super) enable: &'a mut Enable,
+}
+
+/// The depth test of a vector of pixels.
+pub(super) struct Tested<V: SimdVector> {
+    pub(super) old: V,
+    pub(super) new: V,
+    pub(super) mask: V::Mask,
+}
+
+impl<P: PaintTriangle> TrianglePainter<'_, P> {
+    /// Where no edge is negative and the depth is nearer.
+    #[inline(always)]
+    pub(super) fn test<V: SimdVector, S: Shape>(
+        &self,
+        at: usize,
+        [p, q, r]: [Walk<V>; 3],
+        depth: Walk<V>,
+    ) -> Tested<V> {
+        let old = S::load::<V>(self.z, at);
+        let new = depth.value.shift_right(self.z_shift.into());
+        Tested { old, new, mask: p.value.or(q.value).or(r.value).passes(new, old) }
+    }
+}
