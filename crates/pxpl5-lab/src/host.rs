@@ -1,6 +1,6 @@
 //! The computer that experiments run on: its clock, and threads that compute pixels apart from simulated time.
 
-use crossbeam_channel::{Receiver, Sender, bounded};
+use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 use pxpl5_machine::{PixelWorker, SameThread};
 use pxpl5_run::Host;
 use pxpl5_wire::PixelSource;
@@ -15,7 +15,8 @@ pub struct Workstation {
 }
 
 impl Workstation {
-    /// Regions that may wait for a worker thread; more would only hold memory.
+    /// Regions that may wait for a worker thread; more would only hold memory. Where so many wait, the thread that simulates computes the
+    /// next one itself.
     pub const WAITING_REGIONS: usize = 256;
 
     /// With a worker thread for each core.
@@ -53,43 +54,53 @@ impl Host for Workstation {
     }
 }
 
-/// A pool of threads that compute pixels.
+/// A pool of threads that compute pixels, which the simulating thread joins when it has nothing else to do.
 #[derive(Debug)]
 struct PixelThreads {
     regions: Sender<Arc<dyn PixelSource>>,
+    waiting: Receiver<Arc<dyn PixelSource>>,
     threads: Vec<JoinHandle<u64>>,
+    /// Regions that the simulating thread computed.
+    own: u64,
 }
 
 impl PixelThreads {
     fn start(threads: usize) -> Self {
-        let (regions, waiting) = bounded::<Arc<dyn PixelSource>>(Workstation::WAITING_REGIONS);
+        let (regions, waiting) = bounded(Workstation::WAITING_REGIONS);
         let threads = (0..threads).map(|_| start_thread(waiting.clone())).collect();
-        Self { regions, threads }
+        Self { regions, waiting, threads, own: 0 }
     }
 }
 
 /// A thread that computes regions until there will be no more, and counts them.
 fn start_thread(waiting: Receiver<Arc<dyn PixelSource>>) -> JoinHandle<u64> {
-    std::thread::spawn(move || {
-        waiting.iter().fold(0, |regions, region| {
-            let _ = region.pixels();
-            regions + 1
-        })
+    std::thread::spawn(move || compute_all(&waiting))
+}
+
+/// Computes regions until there will be no more; how many.
+fn compute_all(waiting: &Receiver<Arc<dyn PixelSource>>) -> u64 {
+    waiting.iter().fold(0, |regions, region| {
+        let _ = region.pixels();
+        regions + 1
     })
 }
 
 impl PixelWorker for PixelThreads {
     fn compute(&mut self, region: &Arc<dyn PixelSource>) {
-        // The workers live as long as this sender, so there is always a receiver.
-        let _ = self.regions.send(Arc::clone(region));
+        // Nobody waits for room: where no more regions may wait, there is work for this thread.
+        if let Err(TrySendError::Full(region)) = self.regions.try_send(Arc::clone(region)) {
+            let _ = region.pixels();
+            self.own += 1;
+        }
     }
 
     /// # Panics
     ///
     /// When a worker panicked: a bug of ours.
     fn finish(self: Box<Self>) -> u64 {
-        let Self { regions, threads } = *self;
+        let Self { regions, waiting, threads, own } = *self;
         drop(regions);
-        threads.into_iter().map(|thread| thread.join().expect("a pixel worker panicked")).sum()
+        let own = own + compute_all(&waiting);
+        threads.into_iter().map(|thread| thread.join().expect("a pixel worker panicked")).sum::<u64>() + own
     }
 }
