@@ -21,13 +21,32 @@ use std::path::Path;
 /// Rounds of each table.
 const ROUNDS: usize = 7;
 
+#[derive(Default)]
+struct Options {
+    is_check: bool,
+    /// The program that draws with the installed OpenGL.
+    opengl: Option<String>,
+}
+
+impl Options {
+    fn read(mut arguments: impl Iterator<Item = String>) -> Result<Self, String> {
+        let mut options = Self::default();
+        while let Some(argument) = arguments.next() {
+            match argument.as_str() {
+                "--check" => options.is_check = true,
+                "--opengl" => options.opengl = Some(arguments.next().ok_or("--opengl: expected a program, found nothing")?),
+                _ => return Err(format!("expected --check or --opengl PROGRAM, found {argument}")),
+            }
+        }
+        Ok(options)
+    }
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let is_check = arguments.iter().any(|argument| argument == "--check");
-    let opengl = arguments.iter().skip_while(|argument| *argument != "--opengl").nth(1);
+    let Options { is_check, opengl } = Options::read(std::env::args().skip(1))?;
     let rounds = if is_check { 1 } else { ROUNDS };
     let begin = page::load_average();
-    let goals = cases::goals(rounds, opengl.map(String::as_str))?;
+    let goals = cases::goals(rounds, opengl.as_deref())?;
     let savings = cases::savings(rounds.min(3))?;
     let threads = workers::table()?;
     let conditions = page::conditions(rounds, &begin);
