@@ -2,128 +2,14 @@
 
 mod support;
 
-use address_recalculation::{
-    AddressRecalculationPipeline, ArpConfig, ArpTiming, CubeFace, Latch, begin_update, face_region,
-    orientation_message, region_grid, swap_together,
-};
+use address_recalculation::{ArpConfig, CubeFace, Latch, face_region, orientation_message, swap_together};
 use glam::DQuat;
 use pxpl5_display::{Display, DisplayConfig, DisplayEvent, DisplayOutput};
-use pxpl5_sim::{Context, Time};
-use pxpl5_wire::{
-    Body, CopyTarget, Eye, Lines, NodeId, PeriodNumber, PictureNumber, PixelSource, RegionId, RegionPixels, Word,
-    swap_request,
-};
-use std::any::Any;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use pxpl5_sim::Time;
+use pxpl5_wire::{Body, Eye, NodeId, PeriodNumber, RegionPixels, swap_request};
+use std::sync::atomic::Ordering;
+use support::bench::{Bench, CONFIG, flat};
 use support::turned;
-
-/// 16,384 colours before 16,384 depths, and how often they were asked for.
-#[derive(Debug)]
-struct Flat {
-    colour: u32,
-    depth: u32,
-    asked: AtomicU64,
-}
-
-impl PixelSource for Flat {
-    fn pixels(&self) -> Arc<[Word]> {
-        self.asked.fetch_add(1, Ordering::Relaxed);
-        [vec![self.colour; 16_384], vec![self.depth; 16_384]].concat().into()
-    }
-}
-
-fn flat(colour: u32, depth: u32) -> Arc<Flat> {
-    Arc::new(Flat { colour, depth, asked: AtomicU64::new(0) })
-}
-
-/// A display, its clock, and what it put out.
-struct Bench {
-    display: Box<dyn Display>,
-    outputs: Vec<(Time, DisplayOutput)>,
-    texels: u32,
-}
-
-const CONFIG: ArpConfig = ArpConfig {
-    timing: ArpTiming { face_texels: 128, display_memories: 2, ..ArpTiming::PAPERS },
-    ..ArpConfig::MACHINE
-};
-
-impl Bench {
-    fn new(config: &ArpConfig) -> Self {
-        let nodes: Vec<NodeId> = (40..40 + config.ports(1) as u16).map(NodeId).collect();
-        let display = config.build(&nodes).expect("valid");
-        let mut bench = Self { display, outputs: Vec::new(), texels: config.timing.face_texels as u32 };
-        bench.tick(0);
-        bench
-    }
-
-    fn event(&mut self, at: Time, event: DisplayEvent) {
-        let mut context = Context::default();
-        self.display.handle(event, context.at(at));
-        self.outputs.extend(context.drain_outputs());
-    }
-
-    fn tick(&mut self, field: u64) {
-        let at = self.display.tick(PeriodNumber(field));
-        self.event(at, DisplayEvent::Tick(PeriodNumber(field)));
-    }
-
-    fn words(&mut self, at: Time, port: usize, words: Arc<[Word]>) {
-        self.event(at, DisplayEvent::Delivered { port, body: Body::Words(words) });
-    }
-
-    fn begin(&mut self, port: usize, buffer: u8, regions: &[u16]) {
-        let regions: Vec<RegionId> = regions.iter().copied().map(RegionId).collect();
-        self.words(Time(10), port, begin_update(self.texels, buffer, &regions));
-    }
-
-    fn target(&self, port: usize, buffer: u8, region: u16) -> CopyTarget {
-        let grid = region_grid(self.texels);
-        let frame_buffer = self.display.nodes()[port];
-        CopyTarget {
-            frame_buffer,
-            buffer,
-            lines: Lines::Frame,
-            grid,
-            region: RegionId(region),
-            picture: PictureNumber(0),
-        }
-    }
-
-    fn parts(&mut self, port: usize, buffer: u8, region: u16, source: &Arc<Flat>, parts: std::ops::Range<u32>) {
-        for part in parts {
-            let image: Arc<dyn PixelSource> = Arc::<Flat>::clone(source);
-            let pixels = RegionPixels { target: self.target(port, buffer, region), image, part, parts: 32 };
-            self.event(Time(100 + u64::from(part)), DisplayEvent::Delivered { port, body: Body::Pixels(pixels) });
-        }
-    }
-
-    /// A whole update of the buffer that is not shown, with the same region on every face.
-    fn update(&mut self, port: usize, buffer: u8, source: &Arc<Flat>) {
-        let regions: Vec<u16> = (0..region_grid(self.texels).regions() as u16).collect();
-        self.begin(port, buffer, &regions);
-        regions.iter().for_each(|region| self.parts(port, buffer, *region, source, 0..32));
-        self.words(Time(1_000), port, swap_request(buffer));
-    }
-
-    fn pixel(&self, field: u64, x: u32, y: u32) -> u32 {
-        let [red, green, blue] = self.display.seen(0, PeriodNumber(field)).expect("remembered").get_pixel(x, y).0;
-        u32::from_be_bytes([0, red, green, blue])
-    }
-
-    fn arp(&self) -> &AddressRecalculationPipeline {
-        (&*self.display as &dyn Any).downcast_ref().expect("an address recalculation pipeline")
-    }
-
-    fn arp_mut(&mut self) -> &mut AddressRecalculationPipeline {
-        (&mut *self.display as &mut dyn Any).downcast_mut().expect("an address recalculation pipeline")
-    }
-
-    fn fault(&self) -> String {
-        self.display.faults().1.unwrap_or_default()
-    }
-}
 
 #[test]
 fn an_update_is_shown_from_the_next_retrace_on() {

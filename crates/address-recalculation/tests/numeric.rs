@@ -79,6 +79,8 @@ fn case_6_an_equidistant_lens_sees_behind_the_head() {
     assert_eq!(CubeFace::of(seen), Some(CubeFace::PosX));
     Lens::Equidistant.check(&wide).expect("up to 360 degrees");
     Lens::Flat.check(&wide).expect_err("a plane has less than 180");
+    let odd = Picture { width: 3, height: 3, horizontal_deg: 200.0 };
+    assert_eq!(Lens::Equidistant.view(&odd, 1, 1), [0.0, 0.0, -1.0], "no distance has no direction");
 }
 
 /// The case lies on the edge between two texels: 1 + (1 + 1/3) / 2 x 510 = 341 exactly. In 16 bits the quotient 2/3 is 43,690,

@@ -1,6 +1,8 @@
 //! Faces and heads for tests.
 #![allow(dead_code, reason = "not every test needs all of it")]
 
+pub(crate) mod bench;
+
 use address_recalculation::{ArpConfig, CubeFace, DEPTH_FARTHEST, FaceSet, Orientation, TexelAddress, Vector};
 use glam::DQuat;
 use pxpl5_sim::SplitMix64;
