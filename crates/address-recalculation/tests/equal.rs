@@ -3,7 +3,9 @@
 mod support;
 
 use address_recalculation::literal::{BankedMemory, LiteralPipeline};
-use address_recalculation::{ArpConfig, ArpTiming, CompositionOrder, FaceSet, Lens, Lookup, Orientation, ScanTiming};
+use address_recalculation::{
+    ArpConfig, ArpTiming, CompositionOrder, FaceSet, Lens, Lookup, Orientation, ScanTiming, Vector,
+};
 use glam::DQuat;
 use proptest::prelude::*;
 use pxpl5_sim::SplitMix64;
@@ -130,6 +132,22 @@ fn they_agree_where_faces_meet() {
             let corner = (1.0 / 2_f64.sqrt()).atan();
             let pitch = [0.0, corner, -corner, 0.25 * std::f64::consts::PI][n as usize / 8 % 4];
             check(&config, &turned(yaw * DQuat::from_rotation_x(pitch)), u64::from(n as u32));
+        }
+    }
+}
+
+/// Directions in which two or three components are as long as each other lie on the edges: a quotient there is 0 or would be 1, which
+/// its word does not hold.
+#[test]
+fn they_agree_on_directions_that_faces_share() {
+    let all = (0..27).map(|n| [n % 3, n / 3 % 3, n / 9].map(|digit| f64::from(digit) - 1.0));
+    let shared: Vec<Vector> = all.filter(|vector| *vector != [0.0; 3]).collect();
+    let lens = Lens::Table(shared.iter().copied().cycle().take(31 * 14).collect());
+    for (quotient_bits, weight_bits) in [(8, 8), (8, 4), (16, 4), (8, 0)] {
+        for guard_texels in [0, 1] {
+            let timing = ArpTiming { face_texels: 128, guard_texels, quotient_bits, weight_bits, ..ArpTiming::PAPERS };
+            let config = ArpConfig { timing, scan: SMALL, lens: lens.clone(), ..ArpConfig::MACHINE };
+            check(&config, &Orientation::IDENTITY, quotient_bits + guard_texels);
         }
     }
 }
