@@ -52,6 +52,34 @@ fn a_table_of_vectors_is_read_and_its_lengths_do_not_matter() {
 }
 
 #[test]
+fn a_table_has_a_vector_for_each_pixel_row_by_row() {
+    let picture = Picture { width: 3, height: 2, ..TINY };
+    let text: Vec<String> = (1..=6).map(|n| format!("{n} 0 -1\n")).collect();
+    let read = |lines: &[String]| Lens::read(Cursor::new(lines.concat()), &picture).map_err(|error| error.to_string());
+    let lens = read(&text).expect("six vectors");
+    lens.check(&picture).expect("fits");
+    for (place, x) in (1..=6).zip([0, 1, 2].into_iter().cycle()) {
+        assert_eq!(lens.view(&picture, x, (place - 1) / 3), [f64::from(place), 0.0, -1.0]);
+    }
+    assert_eq!(lens.view(&picture, 2, 2), [0.0, 0.0, -1.0], "beyond the table it looks straight ahead");
+    let short = read(&text[..5]).expect_err("five vectors");
+    assert_eq!(short, "arp.lens table, line 6: expected 6 vectors, one for each pixel, found 5 vectors");
+    let other = lens.check(&Picture { height: 3, ..picture }).expect_err("another picture").to_string();
+    assert_eq!(other, "arp.lens: expected 9 vectors for 3 x 3 pixels, found 6 vectors");
+}
+
+/// The corner pixel of a picture of 2 x 1 lies at rho^2 = 1/4, where the slope is 1 + 3 x 1/4 x -4/3 = 0.
+#[test]
+fn a_lens_without_slope_and_a_picture_without_angle_are_refused() {
+    let error = Lens::Radial { k1: -4.0 / 3.0, k2: 0.0 }.check(&TINY).expect_err("flat there").to_string();
+    assert!(error.contains("found 0 for k1"), "{error}");
+    for lens in [Lens::Flat, Lens::Equidistant] {
+        lens.check(&Picture { horizontal_deg: 0.0, ..TINY }).expect_err("no angle");
+    }
+    Lens::Equidistant.check(&Picture { horizontal_deg: 360.0, ..TINY }).expect("all around");
+}
+
+#[test]
 fn a_table_that_cannot_be_read_is_refused_by_its_line() {
     let numbers = "expected three numbers, finite and not all 0, found";
     let cases = [
@@ -74,6 +102,23 @@ proptest! {
     #[test]
     fn no_table_makes_it_panic(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
         let _ = Lens::read(Cursor::new(bytes), &TINY);
+    }
+
+    /// The least slope found by going out in a thousand steps.
+    #[test]
+    fn a_lens_that_folds_before_the_corner_is_refused(
+        k1 in -1.5..1.5_f64,
+        k2 in -1.0..1.0_f64,
+        width in 1_u32..700,
+        height in 1_u32..700,
+    ) {
+        let picture = Picture { width, height, horizontal_deg: 60.0 };
+        let [right, down] = [width, height].map(|n| (f64::from(n) - 1.0) / f64::from(width));
+        let corner = right.hypot(down);
+        let slope = |rho: f64| 1.0 + 3.0 * k1 * rho.powi(2) + 5.0 * k2 * rho.powi(4);
+        let least = (0..=1_000).map(|n| slope(corner * f64::from(n) / 1_000.0)).fold(f64::INFINITY, f64::min);
+        prop_assume!(least.abs() > 1e-3);
+        prop_assert_eq!(Lens::Radial { k1, k2 }.check(&picture).is_ok(), least > 0.0, "least slope {}", least);
     }
 
     #[test]

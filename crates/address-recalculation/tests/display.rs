@@ -64,6 +64,9 @@ fn an_incomplete_update_is_never_shown_and_its_lateness_is_counted() {
     assert_eq!((stats.swaps, stats.missed, stats.regions), (2, 2, 8));
     let two_fields = bench.display.tick(PeriodNumber(4)).since(bench.display.tick(PeriodNumber(2)));
     assert_eq!(stats.lateness, two_fields);
+    let counters = bench.display.counters().into_iter().map(|counter| (counter.name, counter.count));
+    let counters: Vec<(&str, u64)> = counters.filter(|(name, _)| !name.starts_with("matri")).collect();
+    assert_eq!(counters, [("fields", 6), ("regions", 8), ("swaps", 2), ("swaps missed", 2)]);
     assert_eq!(bench.arp().memories(Eye::Left)[1].stats().missed, 0);
 }
 
@@ -146,7 +149,12 @@ type Send = fn(&mut Bench);
 
 #[test]
 fn what_cannot_be_used_is_a_counted_fault_without_effect() {
-    let cases: [(&str, Send); 8] = [
+    let cases: [(&str, Send); 9] = [
+        ("pixels for another port", |bench| {
+            bench.begin(0, 1, &[0]);
+            let pixels = RegionPixels { target: bench.target(1, 1, 0), image: flat(1, 1), part: 0, parts: 32 };
+            bench.event(Time(9), DisplayEvent::Delivered { port: 0, body: Body::Pixels(pixels) });
+        }),
         ("shown", |bench| bench.begin(0, 0, &[1])),
         ("shown", |bench| bench.parts(0, 0, 0, &flat(1, 1), 0..1)),
         ("announced", |bench| bench.parts(0, 1, 0, &flat(1, 1), 0..1)),
@@ -316,6 +324,11 @@ fn two_eyes_have_memories_and_orientations_of_their_own() {
     (1..3).for_each(|field| bench.tick(field));
     let seen = [0, 1].map(|eye| bench.display.seen(eye, PeriodNumber(1)).expect("remembered").get_pixel(9, 9).0[2]);
     assert_eq!(seen, [0x0A, 0x0B]);
+    let updated = bench.outputs.iter().filter_map(|(_, output)| match output {
+        DisplayOutput::Updated { surface, port, .. } => Some((*surface, *port)),
+        _ => None,
+    });
+    assert_eq!(updated.collect::<Vec<_>>(), [(0, nodes[0]), (1, nodes[3])]);
     let error = CONFIG.build(&nodes[..3]).expect_err("three ports").to_string();
     assert_eq!(error, "arp: expected 2 ports for one eye, 4 for two, found 3");
 }
@@ -326,5 +339,6 @@ fn what_is_shown_now_follows_the_newest_orientation() {
     coloured(&mut bench);
     bench.tick(1);
     let shown = bench.display.shown(0).expect("a picture");
+    assert_eq!(shown.dimensions(), (640, 480));
     assert!(shown.pixels().all(|pixel| pixel.0[2] == 0x60));
 }

@@ -49,7 +49,7 @@ fn cases_3_and_4_a_radial_lens() {
     let lens = Lens::Radial { k1: 0.32, k2: 0.0 };
     let flat = Lens::Flat.view(&PICTURE, 0, 0);
     let seen = lens.view(&PICTURE, 0, 0);
-    assert!((seen[0] / flat[0] - 1.498251563).abs() < 1e-9);
+    assert!([0, 1].iter().all(|i| (seen[*i] / flat[*i] - 1.498251563).abs() < 1e-9));
     let off_axis = seen[0].hypot(seen[1]).atan().to_degrees();
     assert!((off_axis - 47.186136).abs() < 1e-6, "{off_axis}");
     let edge = lens.view(&PICTURE, 639, 240);
@@ -175,6 +175,11 @@ fn case_14_solid_angles_of_all_texels_are_those_of_a_sphere() {
     assert!((6.0 * face - 4.0 * std::f64::consts::PI).abs() < 1e-9);
     assert!((at(256, 256) - 1.525856e-5).abs() < 1e-11, "{}", at(256, 256));
     assert!((at(0, 0) - 2.948055e-6).abs() < 1e-12, "{}", at(0, 0));
+    let wider = FaceGeometry { texels: 516, guard: 2 };
+    for (column, row) in [(0, 0), (256, 256), (511, 3)] {
+        let inside = TexelAddress { face: CubeFace::NegY, column: column + 2, row: row + 2 };
+        assert_eq!(wider.solid_angle(inside), at(column, row), "a guard moves texels and changes none");
+    }
 }
 
 /// A quaternion that is as likely as any other.
