@@ -208,6 +208,28 @@ fn of_several_memories_the_nearest_shows_and_the_lowest_on_ties() {
         }
         let empty: Vec<FaceSet> = (0..n).map(|k| painted(&config, DEPTH_FARTHEST, |_| k as u32)).collect();
         assert!(look(&config, &Orientation::IDENTITY, &empty, None).iter().all(|pixel| *pixel == 0x30_20_10));
+        let table = config.table().expect("valid");
+        let mut winners = vec![Some(0); 640];
+        let lookup = Lookup::new(&config, &table, empty.iter().collect(), None);
+        lookup.winners(640 * 7, &Orientation::IDENTITY.words(16), &mut winners);
+        assert!(winners.iter().all(Option::is_none), "nobody wins an empty texel");
+    }
+}
+
+/// Looks of one thread share their room: faces of another size, or other contents, leave nothing behind.
+#[test]
+fn a_look_does_not_depend_on_the_looks_before() {
+    let looks = [(128, 1), (256, 2), (128, 3), (128, 1), (256, 2)].map(|(face_texels, seed)| {
+        move || {
+            let timing = ArpTiming { face_texels, display_memories: 1, ..ArpTiming::PAPERS };
+            let config = ArpConfig { timing, ..ArpConfig::MACHINE };
+            let faces = [noise(&config, &mut SplitMix64::new(seed))];
+            look(&config, &turned(DQuat::from_rotation_y(0.6)), &faces, None)
+        }
+    });
+    for (number, look) in looks.into_iter().enumerate() {
+        let alone = std::thread::spawn(look).join().expect("it looks");
+        assert!(look() == alone, "look {number}");
     }
 }
 
