@@ -2,11 +2,15 @@
 
 mod support;
 
-use address_recalculation::{ArpConfig, CubeFace, Latch, face_region, orientation_message, swap_together};
+use address_recalculation::{
+    ArpConfig, CubeFace, Latch, begin_update, face_region, orientation_message, region_grid, swap_together,
+};
 use glam::DQuat;
 use pxpl5_display::{Display, DisplayConfig, DisplayEvent, DisplayOutput};
 use pxpl5_sim::Time;
-use pxpl5_wire::{Body, Eye, NodeId, PeriodNumber, RegionPixels, swap_request};
+use pxpl5_wire::{
+    Body, CopyTarget, Eye, FieldParity, Lines, NodeId, PeriodNumber, RegionId, RegionPixels, swap_request,
+};
 use std::sync::atomic::Ordering;
 use support::bench::{Bench, CONFIG, flat};
 use support::turned;
@@ -94,6 +98,7 @@ fn a_request_at_the_instant_of_a_retrace_waits_for_the_next() {
             _ => None,
         });
         assert_eq!(swapped, Some(shown_in));
+        assert_eq!(bench.arp().memories(Eye::Left)[0].stats().missed, 0, "it is not late");
     }
 }
 
@@ -112,6 +117,47 @@ fn memories_that_exchanged_objects_swap_together_or_not_at_all() {
     assert_eq!(buffers(&bench), [1, 1]);
     let missed = [0, 1].map(|k| bench.arp().memories(Eye::Left)[k].stats().missed);
     assert_eq!(missed, [1, 1]);
+}
+
+/// A request that comes at the retrace itself is none of it, so the other memory of the set waits too.
+#[test]
+fn a_set_of_which_one_is_asked_for_at_a_retrace_waits_for_the_next() {
+    let mut bench = Bench::new(&CONFIG);
+    let retrace = bench.display.tick(PeriodNumber(1));
+    [0, 1].into_iter().for_each(|port| bench.begin(port, 1, &[]));
+    bench.words(Time(1_000), 0, swap_together(1, 0b11));
+    bench.words(retrace, 1, swap_together(1, 0b11));
+    let buffers = |bench: &Bench| [0, 1].map(|k| bench.arp().memories(Eye::Left)[k].shown_buffer());
+    bench.tick(1);
+    assert_eq!(buffers(&bench), [0, 0]);
+    bench.tick(2);
+    assert_eq!(buffers(&bench), [1, 1]);
+}
+
+/// Regions are numbered face by face, row by row; a map has a bit for each, from the lowest of its first word on.
+#[test]
+fn a_map_has_a_bit_for_each_region_of_the_six_faces() {
+    for texels in [128, 256, 512] {
+        let across = texels / 128;
+        let all = CubeFace::ALL
+            .into_iter()
+            .flat_map(|face| (0..across).flat_map(move |row| (0..across).map(move |column| (face, column, row))));
+        for (number, (face, column, row)) in (0..).zip(all) {
+            assert_eq!(face_region(texels, face, column, row), Some(RegionId(number)));
+            let words = begin_update(texels, 1, &[RegionId(number)]);
+            let bits = (0..)
+                .zip(&words[2..])
+                .flat_map(|(word, map)| (0..32).filter(move |bit| map >> bit & 1 == 1).map(move |bit| 32 * word + bit));
+            assert_eq!(bits.collect::<Vec<u16>>(), [number], "{texels}");
+        }
+        for (column, row) in [(across, 0), (0, across)] {
+            assert_eq!(face_region(texels, CubeFace::PosX, column, row), None);
+        }
+        let count = 6 * across * across;
+        let beyond = begin_update(texels, 0, &[RegionId(count as u16)]);
+        assert_eq!(beyond.len() as u32, 2 + count.div_ceil(32));
+        assert!(beyond[1..].iter().all(|word| *word == 0), "there is no such region");
+    }
 }
 
 /// Where another update of the first memory stood for the one that belongs to the set, that one would wait for ever.
@@ -149,11 +195,19 @@ type Send = fn(&mut Bench);
 
 #[test]
 fn what_cannot_be_used_is_a_counted_fault_without_effect() {
-    let cases: [(&str, Send); 9] = [
+    let cases: [(&str, Send); 11] = [
+        ("not of six faces", |bench| {
+            let target = bench.target(0, 1, 0);
+            bench.pixels(CopyTarget { grid: region_grid(256), ..target });
+        }),
+        ("not of six faces", |bench| {
+            let target = bench.target(0, 1, 0);
+            bench.pixels(CopyTarget { lines: Lines::Field(FieldParity::Even), ..target });
+        }),
         ("pixels for another port", |bench| {
             bench.begin(0, 1, &[0]);
-            let pixels = RegionPixels { target: bench.target(1, 1, 0), image: flat(1, 1), part: 0, parts: 32 };
-            bench.event(Time(9), DisplayEvent::Delivered { port: 0, body: Body::Pixels(pixels) });
+            let target = bench.target(1, 1, 0);
+            bench.pixels(target);
         }),
         ("shown", |bench| bench.begin(0, 0, &[1])),
         ("shown", |bench| bench.parts(0, 0, 0, &flat(1, 1), 0..1)),

@@ -107,6 +107,12 @@ impl Bench {
         }
     }
 
+    /// The first message of a region for a target, to the first port.
+    pub(crate) fn pixels(&mut self, target: CopyTarget) {
+        let body = Body::Pixels(RegionPixels { target, image: flat(1, 1), part: 0, parts: 32 });
+        self.event(Time(9), DisplayEvent::Delivered { port: 0, body });
+    }
+
     /// A whole update of the buffer that is not shown, with the same region on every face.
     pub(crate) fn update(&mut self, port: usize, buffer: u8, source: &Arc<Flat>) {
         let regions: Vec<u16> = (0..region_grid(self.texels).regions() as u16).collect();
