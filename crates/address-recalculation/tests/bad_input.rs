@@ -29,9 +29,15 @@ fn numbers_are_refused_by_name() {
         refusal(ArpTiming { horizontal_deg: 200.0, ..papers })
             .contains("expected a horizontal angle above 0 and up to 170 deg")
     );
-    let scan = ScanTiming { left_blanking: 141, ..ScanTiming::PAPERS };
-    let error = ArpConfig { scan, ..ArpConfig::IDEAL }.check().expect_err("refused").to_string();
-    assert_eq!(error, "arp_scan.left_blanking must be 0 to 140, found 141");
+    // A line has 780 pixels, 640 of them visible; a field 262 whole lines, 240 of them visible.
+    for (scan, expected) in [
+        (ScanTiming { left_blanking: 141, ..ScanTiming::PAPERS }, "arp_scan.left_blanking must be 0 to 140, found 141"),
+        (ScanTiming { top_blanking: 23, ..ScanTiming::PAPERS }, "arp_scan.top_blanking must be 0 to 22, found 23"),
+        (ScanTiming { visible_lines: 263, ..ScanTiming::PAPERS }, "arp_scan.visible_lines must be 1 to 262, found 263"),
+    ] {
+        let error = ArpConfig { scan, ..ArpConfig::IDEAL }.check().expect_err("refused").to_string();
+        assert_eq!(error, expected);
+    }
     let scan = ScanTiming { pixel_ps: u64::MAX, ..ScanTiming::PAPERS };
     ArpConfig { scan, ..ArpConfig::IDEAL }.build(&[]).expect_err("refused");
 }

@@ -258,6 +258,9 @@ fn the_pipeline_is_shorter_than_a_microsecond() {
     assert!(slowest.depth().0 < 1_000_000);
     let stages = [1, 2, 3, 4, 5, 8].map(|n| ArpTiming { display_memories: n, ..ArpTiming::PAPERS }.stages());
     assert_eq!(stages, [24, 25, 26, 26, 27, 27]);
+    // Memory, interpolation and a level of comparators for each doubling.
+    let ahead = [1, 2, 3, 4, 5, 8].map(|n| ArpTiming { display_memories: n, ..ArpTiming::PAPERS }.read_ahead().0);
+    assert_eq!(ahead, [2, 3, 4, 4, 5, 5].map(|stages| 25_000 * stages));
 }
 
 /// Boards do not know each other; their numbers agree.
