@@ -9,7 +9,7 @@ use address_recalculation::{
 use glam::DQuat;
 use proptest::prelude::*;
 use pxpl5_sim::SplitMix64;
-use support::{noise, turned};
+use support::{noise, texels, turned};
 
 /// 31 x 14 pixels: lines that are no multiple of eight.
 const SMALL: ScanTiming = ScanTiming { visible_pixels: 31, visible_lines: 7, ..ScanTiming::PAPERS };
@@ -61,8 +61,12 @@ fn check(config: &ArpConfig, orientation: &Orientation, seed: u64) {
     let mut random = SplitMix64::new(seed);
     let memories: Vec<FaceSet> = (0..config.timing.display_memories).map(|_| noise(config, &mut random)).collect();
     let behind = config.has_background_memory.then(|| noise(config, &mut random));
-    let fast = by_lookup(config, orientation, &memories, behind.as_ref());
-    let literal = by_registers(config, orientation, &memories, behind.as_ref());
+    compare(config, orientation, &memories, behind.as_ref());
+}
+
+fn compare(config: &ArpConfig, orientation: &Orientation, memories: &[FaceSet], behind: Option<&FaceSet>) {
+    let fast = by_lookup(config, orientation, memories, behind);
+    let literal = by_registers(config, orientation, memories, behind);
     assert_eq!(fast, literal, "{config:?} {orientation:?}");
 }
 
@@ -132,6 +136,32 @@ fn they_agree_where_faces_meet() {
             let corner = (1.0 / 2_f64.sqrt()).atan();
             let pitch = [0.0, corner, -corner, 0.25 * std::f64::consts::PI][n as usize / 8 % 4];
             check(&config, &turned(yaw * DQuat::from_rotation_x(pitch)), u64::from(n as u32));
+        }
+    }
+}
+
+/// Depths that are one apart, of which means are rounded: towards an edge, into a corner of three texels, and on a face.
+#[test]
+fn they_agree_on_depths_one_apart() {
+    let corner = (1.0 / 2_f64.sqrt()).atan();
+    for (order, guard_texels) in CompositionOrder::ALL.into_iter().flat_map(|(_, order)| [(order, 0), (order, 1)]) {
+        let timing =
+            ArpTiming { face_texels: 128, guard_texels, display_memories: 3, horizontal_deg: 3.0, ..ArpTiming::PAPERS };
+        let config = ArpConfig { timing, scan: SMALL, order, ..ArpConfig::MACHINE };
+        let mut random = SplitMix64::new(guard_texels);
+        let memories: Vec<FaceSet> = (0..3)
+            .map(|_| {
+                let mut faces = FaceSet::new(128, config.format());
+                texels(128).for_each(|texel| {
+                    let bits = random.bits();
+                    faces.set(texel, bits as u32 & 0xFF_FFFF, 500 + u32::from(bits >> 60 == 0));
+                });
+                faces
+            })
+            .collect();
+        for pitch in [0.0, corner, -corner] {
+            let turn = DQuat::from_rotation_y(45_f64.to_radians()) * DQuat::from_rotation_x(pitch);
+            compare(&config, &turned(turn), &memories, None);
         }
     }
 }
