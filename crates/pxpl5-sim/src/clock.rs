@@ -35,6 +35,7 @@ impl Clock {
 
     /// The instant of edge `n`; the end of time for one behind it.
     #[must_use]
+    #[inline]
     pub const fn edge(&self, n: u64) -> Time {
         match n.checked_mul(self.numerator_ps) {
             Some(product) => Time(product / self.denominator),
