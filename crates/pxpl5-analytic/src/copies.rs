@@ -86,8 +86,11 @@ pub(super) fn make<const N: usize>(
 #[inline(always)]
 fn first_of_all<const N: usize>(arrays: &[Array<N>], left: &[Queue; MOST_RENDERERS]) -> Option<usize> {
     let waiting = || (0..arrays.len()).filter(|r| left[*r].0 != 0);
-    let there = |r: &usize| arrays[*r].free.0[0];
-    let first = waiting().min_by(|a, b| there(a).total_cmp(&there(b)))?;
+    let there = |r: usize| arrays[r].free.0[0];
+    let first = waiting().reduce(|first, r| if there(r) < there(first) { r } else { first })?;
+    if N == 1 {
+        return Some(first);
+    }
     let own = arrays[first].free.0;
     let mut not_first = [0; N];
     for r in waiting() {

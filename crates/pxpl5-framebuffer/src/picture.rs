@@ -42,17 +42,39 @@ impl Canvas {
 }
 
 impl CanvasRow<'_> {
-    /// Puts those pixels of a segment that are chosen; the image is computed only when one of them is missing.
-    pub(crate) fn put(self, image: &impl Deref<Target = Arc<[Word]>>, segment: &Segment, chosen: impl Fn(u32) -> bool) {
-        if self.0.iter().all(|word| word & PUT != 0) {
-            return;
-        }
+    /// Puts the pixels of a segment; the image is computed only when one of them is missing.
+    pub(crate) fn put(self, image: &impl Deref<Target = Arc<[Word]>>, segment: &Segment) {
         // An image that is too short leaves black.
-        let pixels = image.get(segment.image_range()).unwrap_or_default();
-        for ((i, word), pixel) in (0..).zip(self.0).zip(pixels) {
+        for (word, pixel) in self.missing(image, segment) {
+            *word = if *word & PUT == 0 { pixel | PUT } else { *word };
+        }
+    }
+
+    /// The same of those that are chosen.
+    pub(crate) fn put_chosen(
+        self,
+        image: &impl Deref<Target = Arc<[Word]>>,
+        segment: &Segment,
+        chosen: impl Fn(u32) -> bool,
+    ) {
+        for (i, (word, pixel)) in (0..).zip(self.missing(image, segment)) {
             if *word & PUT == 0 && chosen(i) {
                 *word = pixel | PUT;
             }
         }
+    }
+
+    /// All pixels with those of the image, unless none is missing.
+    fn missing<'a, I: Deref<Target = Arc<[Word]>>>(
+        self,
+        image: &'a I,
+        segment: &Segment,
+    ) -> impl Iterator<Item = (&'a mut Word, &'a Word)>
+    where
+        Self: 'a,
+    {
+        let all_put = self.0.iter().fold(PUT, |all, word| all & word) == PUT;
+        let pixels = if all_put { &[] } else { image.get(segment.image_range()).unwrap_or_default() };
+        self.0.iter_mut().zip(pixels)
     }
 }

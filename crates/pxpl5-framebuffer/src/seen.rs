@@ -99,9 +99,9 @@ impl SeenField {
                 };
                 let row = canvas.row([segment.x, row_of(segment.y)], segment.length);
                 if segment.message_at <= scanned_at {
-                    row.put(&pixels, &segment, |_| true);
+                    row.put(&pixels, &segment);
                 } else {
-                    row.put(&pixels, &segment, |i| self.in_time(&segment, i));
+                    row.put_chosen(&pixels, &segment, |i| self.in_time(&segment, i));
                 }
             }
         }
@@ -167,7 +167,7 @@ impl BufferContents {
             let pixels = LazyCell::new(|| region.image.pixels());
             for segment in region.segments(Span::ZERO) {
                 let row = canvas.row([segment.x, segment.y], segment.length);
-                row.put(&pixels, &segment, |_| true);
+                row.put(&pixels, &segment);
             }
         }
         canvas.into_image()
