@@ -3,12 +3,13 @@
 mod support;
 
 use address_recalculation::{
-    ArpConfig, ArpTiming, CubeFace, DEPTH_FARTHEST, FaceGeometry, FaceSet, Lens, Lookup, Orientation, TexelAddress,
-    Vector,
+    ArpConfig, ArpTiming, CubeFace, DEPTH_FARTHEST, FaceGeometry, FaceSet, Lens, LensTable, Lookup, Orientation,
+    TexelAddress, Vector,
 };
 use glam::{DMat3, DQuat, DVec3};
 use proptest::prelude::*;
 use pxpl5_sim::SplitMix64;
+use std::sync::LazyLock;
 use support::{noise, painted, texels, turned};
 
 const GUARDED: FaceGeometry = FaceGeometry { texels: 512, guard: 1 };
@@ -41,6 +42,8 @@ fn on_face(face: CubeFace, direction: Vector) -> [f64; 2] {
     let along = |axis: [i64; 3]| (0..3).map(|i| direction[i] * axis[i] as f64).sum::<f64>();
     [along(face.right()) / along(face.forward()), -along(face.up()) / along(face.forward())]
 }
+
+static TABLE: LazyLock<LensTable> = LazyLock::new(|| ArpConfig::IDEAL.table().expect("valid"));
 
 proptest! {
     #[test]
@@ -75,8 +78,7 @@ proptest! {
     #[test]
     fn orientations_along_the_axes_are_exact(index in 0_usize..24, x in 0_u32..640, y in 0_u32..480) {
         let orientation = axis_aligned()[index];
-        let table = ArpConfig::IDEAL.table().expect("valid");
-        let words = table.entry(x, y);
+        let words = TABLE.entry(x, y);
         let turned = orientation.words(16).turn(words).map(|word| word as f64 / 32_767.0);
         prop_assert_eq!(turned, orientation.turn(words.map(f64::from)));
     }
