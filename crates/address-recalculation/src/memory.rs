@@ -2,7 +2,7 @@
 
 use crate::face::{CubeFace, TexelAddress};
 use crate::protocol::region_grid;
-use crate::texel::{DEPTH_FARTHEST, FaceSet, TexelFormat};
+use crate::texel::{FaceSet, TexelFormat};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Lines, PixelSource, REGION_SIZE, RegionPixels, Word};
 use std::collections::{BTreeMap, BTreeSet};
@@ -63,8 +63,7 @@ impl MemoryKind {
         }
         if self.format.words() == 1 {
             let colours: Vec<u32> = low.iter().map(|word| crate::texel::widened(word & 0xFFFF)).collect();
-            let depths = low.iter().map(|word| if *word >> 16 == 0xFFFF { DEPTH_FARTHEST } else { *word >> 16 << 8 });
-            return faces.set_row(first, &colours, depths);
+            return faces.set_row(first, &colours, low.iter().map(|word| *word >> 16 << 8));
         }
         let Some(depths) = words.get(REGION_TEXELS + row.start..REGION_TEXELS + row.end) else { return };
         faces.set_row(first, low, depths.iter().copied());

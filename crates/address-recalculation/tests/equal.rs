@@ -148,18 +148,17 @@ fn they_agree_on_depths_one_apart() {
         let timing =
             ArpTiming { face_texels: 128, guard_texels, display_memories: 3, horizontal_deg: 3.0, ..ArpTiming::PAPERS };
         let config = ArpConfig { timing, scan: SMALL, order, ..ArpConfig::MACHINE };
-        let mut random = SplitMix64::new(guard_texels);
-        let memories: Vec<FaceSet> = (0..3)
-            .map(|_| {
+        for (seed, pitch) in (0..12).zip([0.0, corner, -corner].into_iter().cycle()) {
+            let mut random = SplitMix64::new(seed);
+            let mut any = || {
                 let mut faces = FaceSet::new(128, config.format());
                 texels(128).for_each(|texel| {
                     let bits = random.bits();
-                    faces.set(texel, bits as u32 & 0xFF_FFFF, 500 + u32::from(bits >> 60 == 0));
+                    faces.set(texel, bits as u32 & 0xFF_FFFF, 500 + (bits >> 63) as u32);
                 });
                 faces
-            })
-            .collect();
-        for pitch in [0.0, corner, -corner] {
+            };
+            let memories = [any(), any(), any()];
             let turn = DQuat::from_rotation_y(45_f64.to_radians()) * DQuat::from_rotation_x(pitch);
             compare(&config, &turned(turn), &memories, None);
         }

@@ -165,7 +165,9 @@ fn around_a_corner_the_mean_of_three_is_shown_in_either_order() {
         (1, [[5, 5, 9], [9, 9, 5]], 20),
         // A mean depth of 5.33 is one of 6; 30, 62 and 93 have the mean 61.67.
         (1, [[5, 5, 6], [5, 5, 5]], 62),
-        // Both are 5.33: the first memory shows.
+        // 5.67 and 5.33 are both 6, so the first memory shows.
+        (1, [[5, 6, 6], [5, 5, 6]], 20),
+        // Both are 5.33: the same.
         (1, [[5, 5, 6], [5, 6, 5]], 20),
     ] {
         let timing = ArpTiming { display_memories: 2, ..BARE };

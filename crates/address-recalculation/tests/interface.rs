@@ -3,7 +3,8 @@
 mod support;
 
 use address_recalculation::{
-    AddressUnit, ArpConfig, ArpTiming, FaceSet, Lookup, Orientation, ScanTiming, TexelAddress, face_region, region_grid,
+    AddressUnit, ArpConfig, ArpTiming, CubeFace, FaceSet, Footprint, Latch, Lens, Lookup, Orientation, ScanTiming,
+    TexelAddress, face_region, region_grid,
 };
 use glam::DQuat;
 use pxpl5_display::DisplayConfig;
@@ -87,7 +88,7 @@ fn a_word_of_16_and_16_bits_is_a_texel() {
 }
 
 /// The footprints of all pixels of a frame for one orientation, by the address unit.
-fn footprints(config: &ArpConfig, orientation: &Orientation) -> Vec<address_recalculation::Footprint> {
+fn footprints(config: &ArpConfig, orientation: &Orientation) -> Vec<Footprint> {
     let table = config.table().expect("valid");
     let matrix = orientation.words(config.timing.matrix_bits);
     let unit = AddressUnit::new(&config.timing);
@@ -145,6 +146,62 @@ fn those_regions_are_computed_that_a_pixel_reads() {
         assert_eq!([stats.split, stats.conflicts], [split, conflicts], "case {case}");
     }
     assert!(counts.len() > 2, "{counts:?} regions");
+}
+
+/// A picture that looks at one place alone, beside a border between pieces or across it: texels 127 and 128 lie in two pieces.
+#[test]
+fn of_neighbouring_pieces_those_are_computed_on_which_a_texel_lies() {
+    let timing = ArpTiming { display_memories: 1, ..ArpTiming::PAPERS };
+    let scan = ScanTiming { visible_pixels: 8, visible_lines: 2, ..ScanTiming::PAPERS };
+    // Places of texels on the face ahead, which has 254 of them between its edges and one more on each side.
+    let beside = |place: f64| (place - 0.5) / 127.0 - 1.0;
+    for (column, row, pieces) in [
+        (127.5, 60.5, vec![(0, 0), (1, 0)]),
+        (60.5, 127.5, vec![(0, 0), (0, 1)]),
+        (127.5, 127.5, vec![(0, 0), (1, 0), (0, 1), (1, 1)]),
+        (126.5, 128.5, vec![(0, 1)]),
+        (128.5, 126.5, vec![(1, 0)]),
+    ] {
+        let vector = [beside(column), -beside(row), -1.0];
+        let config = ArpConfig { timing, scan, lens: Lens::Table([vector; 32].into()), ..CONFIG };
+        let (mut bench, sources) = filled(&config, 32, 1);
+        (1..4).for_each(|field| bench.tick(field));
+        bench.display.seen(0, PeriodNumber(2)).expect("remembered");
+        let asked = (0..).zip(&sources).filter(|(_, source)| source.is_asked.load(Ordering::Relaxed));
+        let asked: BTreeSet<u16> = asked.map(|(region, _)| region).collect();
+        let piece = |(column, row)| face_region(256, CubeFace::NegZ, column, row).expect("on the face").0;
+        assert_eq!(asked, pieces.into_iter().map(piece).collect(), "{column}, {row}");
+    }
+}
+
+/// Latched by pixel, a matrix that comes in the middle of a line: what is left of it was looked up with the matrix before.
+#[test]
+fn a_line_of_two_orientations_is_a_part_of_each_picture() {
+    let timing = ArpTiming { display_memories: 1, ..ArpTiming::PAPERS };
+    let scan = ScanTiming { visible_pixels: 30, visible_lines: 10, ..ScanTiming::PAPERS };
+    let config = ArpConfig { timing, scan, latch: Latch::Pixel, ..CONFIG };
+    let (x, y) = (11, 8);
+    let latched = config.scan().expect("valid").latches(Latch::Pixel, x, y, PeriodNumber(2)).expect("an even line");
+    let later = turned(DQuat::from_rotation_y(0.4));
+    let (mut bench, _) = filled(&config, 32, 2);
+    (1..3).for_each(|field| bench.tick(field));
+    bench.arp_mut().load_orientation(Eye::Left, later.rows(), latched).expect("a rotation");
+    bench.tick(3);
+    let seen = bench.display.seen(0, PeriodNumber(2)).expect("remembered");
+    let faces: FaceSet = bench.arp().memories(Eye::Left)[0].shown_faces();
+    let table = config.table().expect("valid");
+    let pictures = [Orientation::IDENTITY, later].map(|orientation| {
+        let mut pixels = vec![0; seen.pixels().len()];
+        Lookup::new(&config, &table, vec![&faces], None).run(0, &orientation.words(16), &mut pixels);
+        pixels
+    });
+    for (at, pixel) in (0..).zip(seen.pixels()) {
+        // Odd lines are those of the field before.
+        let is_later = at / 30 % 2 == 0 && (at / 30, at % 30) >= (y, x);
+        let expected = pictures[usize::from(is_later)][at as usize];
+        assert_eq!(u32::from_be_bytes([0, pixel[0], pixel[1], pixel[2]]), expected, "{}, {}", at % 30, at / 30);
+    }
+    assert_ne!(pictures[0], pictures[1]);
 }
 
 #[test]

@@ -50,6 +50,7 @@ fn cases_3_and_4_a_radial_lens() {
     let flat = Lens::Flat.view(&PICTURE, 0, 0);
     let seen = lens.view(&PICTURE, 0, 0);
     assert!([0, 1].iter().all(|i| (seen[*i] / flat[*i] - 1.498251563).abs() < 1e-9));
+    assert_eq!(seen[2], -1.0, "straight ahead");
     let off_axis = seen[0].hypot(seen[1]).atan().to_degrees();
     assert!((off_axis - 47.186136).abs() < 1e-6, "{off_axis}");
     let edge = lens.view(&PICTURE, 639, 240);
