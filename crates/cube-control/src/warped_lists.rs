@@ -43,3 +43,84 @@ impl WarpedLists {
         warped
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::warp::FaceWarp;
+    use glam::{DVec3, Mat4, Vec3};
+    use pphigs::{DisplayStructure, EyeView, FrameView, ModelEdit};
+    use priority_rendering::{Cell, Dealing, Falloff};
+    use pxpl5_geometry::Culling;
+    use pxpl5_wire::ViewNumber;
+
+    /// A triangle for each structure, half a metre inside the border to the slower memory at x = 10 m.
+    fn list() -> Arc<DisplayList> {
+        let mut list = DisplayList::default();
+        let frames = [ModelFrame::World, ModelFrame::Head, ModelFrame::World, ModelFrame::World, ModelFrame::World];
+        for (n, frame) in frames.into_iter().enumerate() {
+            let at = |y: f32| Vec3::new(9.5, y + n as f32, 5.0);
+            list.positions.extend([at(0.0), at(0.3), at(0.6)]);
+            list.normals.extend([Vec3::X; 3]);
+            list.colours.extend([[100; 3]; 3]);
+            let first = 3 * n as u32;
+            list.triangles.push([first, first + 1, first + 2]);
+            list.structures.push(DisplayStructure {
+                triangles: n..n + 1,
+                spheres: 0..0,
+                frame,
+                culling: Culling::None,
+            });
+        }
+        Arc::new(list)
+    }
+
+    /// It holds all structures but the third, and moves the fourth.
+    fn update(number: u64) -> FaceUpdate {
+        let dealing = Dealing { home: Cell { x: 0, z: 0 }, side_m: 10.0, inner_rings: 0, memories: 2 };
+        let eye = EyeView { world_to_eye: Mat4::IDENTITY, head_to_eye: Mat4::IDENTITY, projection: Mat4::IDENTITY };
+        let edits = vec![ModelEdit { structure: 3, model: Mat4::IDENTITY }];
+        FaceUpdate {
+            number: PictureNumber(number),
+            memory: 0,
+            buffer: 0,
+            together: 0,
+            view: FrameView { number: ViewNumber::FIRST, eyes: vec![eye], edits },
+            structures: vec![true, true, false, true, true],
+            warp: Some(FaceWarp {
+                dealing,
+                falloff: Falloff::Smoothstep,
+                length_m: 4.0,
+                drawn_from: DVec3::new(5.0, 1.7, 5.0),
+                slower_from: DVec3::new(4.0, 1.5, 4.5),
+            }),
+        }
+    }
+
+    #[test]
+    fn what_is_held_and_stands_in_the_room_is_moved_and_nothing_else() {
+        let list = list();
+        let update = update(7);
+        let warp = update.warp.expect("said");
+        let placed = WarpedLists::default().placed(&list, &update);
+        for (vertex, (before, found)) in list.positions.iter().zip(&placed.positions).enumerate() {
+            let moved = warp.moved(before.as_dvec3(), 0).expect("a length").as_vec3();
+            assert!(moved.distance(*before) > 0.01, "{moved} {before}");
+            let expected = if [0, 4].contains(&(vertex / 3)) { moved } else { *before };
+            assert_eq!(*found, expected, "{vertex}");
+        }
+        let still = FaceUpdate { warp: None, ..update };
+        assert!(Arc::ptr_eq(&WarpedLists::default().placed(&list, &still), &list));
+    }
+
+    #[test]
+    fn the_lists_of_the_two_newest_updates_are_kept() {
+        let list = list();
+        let lists = WarpedLists::default();
+        let made: Vec<_> = (0..3).map(|number| lists.placed(&list, &update(number))).collect();
+        for (number, is_kept) in [(2, true), (1, true), (0, false)] {
+            let again = lists.placed(&list, &update(number));
+            assert_eq!(Arc::ptr_eq(&again, &made[number as usize]), is_kept, "{number}");
+        }
+    }
+}

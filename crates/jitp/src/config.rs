@@ -315,3 +315,6 @@ impl JitpConfig {
         self.beam.at(field, last, width - 1)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -187,6 +187,39 @@ fn words_of<'a>(all: &'a [Word], numbers: &Range<u32>, kind: CommandKind) -> &'a
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pxpl5_wire::FieldParity;
+
+    #[test]
+    fn rows_of_a_field_are_every_second_line_of_its_frame() {
+        for parity in [FieldParity::Even, FieldParity::Odd] {
+            let viewport = Viewport::field(parity);
+            let lines = [0, 1, 239].map(|row| line_of_row(&viewport, row));
+            let first = parity.first_line() as i32;
+            assert_eq!(lines, [first, first + 2, first + 478]);
+        }
+        assert_eq!([0, 1, 479].map(|row| line_of_row(&Viewport::FRAME, row)), [0, 1, 479]);
+    }
+
+    #[test]
+    fn every_message_but_the_last_is_as_full_as_it_can_be() {
+        let of = CommandKind::Triangle.words();
+        let parts = parts(PrimitiveCounts { triangles: 500, spheres: 77 });
+        for part in parts.iter().filter(|part| !part.last) {
+            let words: u32 = part.runs().iter().map(|run| run.count * run.words_each).sum();
+            assert!(words + CLOSING + of.max(CommandKind::Sphere.words()) > MAX_MESSAGE_WORDS, "{words}");
+        }
+        assert!(parts.iter().all(Part::draws));
+        assert!(!Part { first: true, triangles: 0..0, spheres: 0..0, last: true }.draws());
+        assert!(Part { first: true, triangles: 0..0, spheres: 0..1, last: true }.draws());
+    }
+
+    #[test]
+    fn words_of_commands_are_cut_out_between_their_neighbours() {
+        let of = CommandKind::Sphere.words();
+        let all: Vec<Word> = (0..5 * of).collect();
+        let expected: Vec<Word> = (2 * of..4 * of).collect();
+        assert_eq!(words_of(&all, &(2..4), CommandKind::Sphere), expected);
+    }
 
     #[test]
     fn messages_hold_every_primitive_once_and_none_is_too_long() {

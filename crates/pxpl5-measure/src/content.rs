@@ -216,6 +216,78 @@ mod tests {
     }
 
     #[test]
+    fn of_some_structures_only_those_are_met() {
+        let (contents, scene) = contents("mig");
+        let (centre, radius) = scene.bounding_sphere();
+        let eye = centre.as_dvec3() + DVec3::Z * 3.0 * f64::from(radius);
+        let all = vec![true; scene.structures().len()];
+        let none = vec![false; all.len()];
+        let directions = (-10..=10).map(|i| DVec3::new(f64::from(i) * 0.015, 0.0, -1.0));
+        let met: Vec<_> = directions.filter_map(|d| Some((d, contents.met(eye, d, Time::ZERO)?))).collect();
+        assert!(!met.is_empty());
+        for (direction, content) in met {
+            let of = |structures: &[bool]| contents.met_of(eye, direction, Time::ZERO, structures);
+            assert_eq!(of(&all).map(|(_, content)| content), Some(content));
+            assert_eq!(of(&none), None);
+            let depth = (contents.place(&content, Time::ZERO) - eye).z / direction.z;
+            assert!((of(&all).expect("met").0 - depth).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_triangle_is_met_inside_its_sides_at_the_depth_of_its_plane() {
+        let triangle = [DVec3::new(0.0, 0.0, -3.0), DVec3::new(2.0, 0.0, -3.0), DVec3::new(0.0, 1.0, -3.0)];
+        let origin = DVec3::new(0.5, 0.25, 1.0);
+        for i in -20..=20 {
+            for j in -20..=20 {
+                let at = DVec3::new(f64::from(i) * 0.13 + 0.01, f64::from(j) * 0.11 + 0.01, -3.0);
+                // 1 m of depth is half of the way to the plane.
+                let ray = Ray { origin, direction: (at - origin) / 2.0 };
+                let is_inside = at.x >= 0.0 && at.y >= 0.0 && at.x / 2.0 + at.y <= 1.0;
+                let found = ray.meets_triangle(&triangle);
+                assert_eq!(found.is_some(), is_inside, "{at}");
+                assert!(found.is_none_or(|depth| (depth - 2.0).abs() < 1e-12), "{at}: {found:?}");
+            }
+        }
+    }
+
+    /// The nearest point of a line to a centre is where a small step to either side comes no nearer.
+    #[test]
+    fn a_line_passes_a_centre_at_its_least_distance_and_enters_a_sphere_on_its_surface() {
+        let centre = DVec3::new(0.5, -1.0, -6.0);
+        for i in -10..=10 {
+            for j in -10..=10 {
+                let origin = DVec3::new(0.3, 0.2, 0.7);
+                let direction = DVec3::new(f64::from(i) * 0.1, f64::from(j) * 0.1, -2.0);
+                let ray = Ray { origin, direction };
+                let at = |t: f64| origin + direction * t;
+                let least = (0..=20_000).map(|n| at(f64::from(n) * 5e-4).distance(centre)).fold(f64::MAX, f64::min);
+                assert!(!ray.passes(centre, least * 0.999) && ray.passes(centre, least * 1.001), "{direction}");
+                let radius = 1.2;
+                let entered = ray.meets_sphere(centre, radius);
+                if (least - radius).abs() > 0.01 {
+                    assert_eq!(entered.is_some(), least < radius, "{direction}");
+                }
+                if let Some(t) = entered {
+                    assert!((at(t).distance(centre) - radius).abs() < 1e-6, "{direction}");
+                    assert!((at(t) - centre).dot(direction) <= 1e-6, "on the near side: {direction}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_patch_lies_in_a_sphere_around_the_middle_of_its_box() {
+        let corner = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
+        let triangles =
+            [[corner(1.0, 2.0, 3.0), corner(4.0, 2.5, 3.1), corner(2.0, 7.0, 3.2)], [corner(3.0, 3.0, -5.0); 3]];
+        let patch = Patch::of(&triangles);
+        assert!(patch.centre.distance(corner(2.5, 4.5, -0.9)) < 1e-12, "{}", patch.centre);
+        let greatest = triangles.iter().flatten().map(|corner| corner.distance(patch.centre)).fold(0.0, f64::max);
+        assert!(patch.radius > greatest && patch.radius < greatest * (1.0 + 1e-6), "{} {greatest}", patch.radius);
+    }
+
+    #[test]
     fn a_sphere_is_met_where_it_begins() {
         let ray = Ray { origin: DVec3::ZERO, direction: DVec3::NEG_Z };
         assert_eq!(ray.meets_sphere(DVec3::NEG_Z * 5.0, 2.0), Some(3.0));

@@ -110,6 +110,17 @@ mod tests {
         }
     }
 
+    /// From 1 to 2 bins are 1/1024 wide, from 4 to 8 four times that.
+    #[test]
+    fn a_bin_stands_for_its_middle() {
+        for (value, middle) in [(1.0, 1.0 + 1.0 / 2_048.0), (1.000_9, 1.0 + 1.0 / 2_048.0), (6.0, 6.0 + 4.0 / 2_048.0)]
+        {
+            let mut counted = Distribution::keeping(0);
+            counted.push(value);
+            assert_eq!(counted.percentiles().p50, middle, "{value}");
+        }
+    }
+
     #[test]
     fn of_nothing_there_is_no_number() {
         assert_eq!(Distribution::keeping(0).percentiles().n, 0);

@@ -51,3 +51,23 @@ impl Drawn {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DQuat;
+
+    #[test]
+    fn what_is_drawn_between_two_moments_is_drawn_for_its_part_of_the_time_between_them() {
+        let moment = |at: u64| Moment { pose: Pose::facing(DQuat::IDENTITY), objects_at: Time(at) };
+        let light = Time(9_000);
+        for (part, expected) in [(0.0, 1_000), (0.25, 1_500), (0.5, 2_000), (1.0, 3_000)] {
+            let between = Drawn::Between { from: moment(1_000), to: moment(3_000), part, on_screen: false };
+            assert_eq!(between.instant(light), Time(expected), "{part}");
+        }
+        assert_eq!(Drawn::View(moment(7)).instant(light), Time(7));
+        assert_eq!(Drawn::Shifted(moment(7), DVec2::ONE).instant(light), light);
+        let faces = FacesSeen { memories: Vec::new(), aimed_at: Time(5) };
+        assert_eq!(Drawn::Faces(faces).instant(light), Time(5));
+    }
+}

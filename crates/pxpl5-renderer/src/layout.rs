@@ -277,6 +277,50 @@ const fn quad(i: u32) -> FieldRange {
 mod tests {
     use super::*;
 
+    fn range(first: u32, width: u32) -> FieldRange {
+        FieldRange { name: format!("{first}"), first, width }
+    }
+
+    #[test]
+    fn ranges_overlap_where_they_have_a_bit_in_common() {
+        let bits = |range: &FieldRange| range.first..range.first + range.width;
+        let all: Vec<_> = (0..9).flat_map(|first| (1..5).map(move |width| range(first, width))).collect();
+        for a in &all {
+            for b in &all {
+                let common = bits(a).any(|bit| bits(b).contains(&bit));
+                assert_eq!(overlap(a, b), common, "{:?} {:?}", bits(a), bits(b));
+            }
+        }
+    }
+
+    #[test]
+    fn a_drawing_has_a_mark_for_each_four_bits_of_which_a_field_has_one() {
+        let ranges = [range(0, 4), range(5, 2), range(7, 6), range(200, 8)];
+        let drawn = draw(&ranges, &[const { None }; 4]);
+        for (range, line) in ranges.iter().zip(drawn.lines()) {
+            let bar = line.split('|').nth(1).expect("a bar");
+            let has = |bit: u32| bit >= range.first && bit < range.first + range.width;
+            let expected: String =
+                (0..MEMORY_BITS / 4).map(|n| if (4 * n..4 * n + 4).any(has) { '#' } else { '.' }).collect();
+            assert_eq!(bar, expected, "{line}");
+        }
+    }
+
+    #[test]
+    fn contexts_take_their_bits_each_and_there_is_one() {
+        let whole = |contexts, context_bits| {
+            let plan = ContextPlan { contexts, context_bits, ..SLATS };
+            conflicts(&plan, &[range(0, 4)])[0].clone()
+        };
+        assert_eq!(whole(4, (MEMORY_BITS / 4) as u8), None);
+        for contexts in [0, 5] {
+            let bits = contexts * MEMORY_BITS / 4;
+            let expected = format!("{contexts} contexts take {bits} bits");
+            assert_eq!(whole(contexts as u8, (MEMORY_BITS / 4) as u8), Some(expected));
+        }
+        assert!(conflicts(&SLATS, &[]).is_empty());
+    }
+
     #[test]
     fn the_three_layouts_fit() {
         for plan in [RENDERING_CONTROL_PHONG, SLATS, SLATS_QUARTERS] {

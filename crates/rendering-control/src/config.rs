@@ -78,3 +78,14 @@ impl RenderingControlConfig {
         Share::new(std::sync::Arc::clone(list), index, self.slaves.len())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_go_to_the_buffer_that_is_not_shown_beginning_with_the_second() {
+        let buffers = [0, 1, 2, 3].map(|frame| RenderingControlConfig::buffer_of(PictureNumber(frame)));
+        assert_eq!(buffers, [1, 0, 1, 0]);
+    }
+}

@@ -261,3 +261,17 @@ async fn tell_master(gp: &Gp, config: &RenderingControlConfig, order: &StageOrde
     let (words, body) = order.message();
     gp.send(config.master, words, body).await;
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_context_is_empty_when_a_token_of_each_of_its_regions_has_been_here() {
+        let mut state = SlaveState { regions_left: [3, 2], ..SlaveState::default() };
+        let tokens = [(0, false), (1, false), (0, false), (0, true), (1, true)];
+        for (context, is_last) in tokens {
+            assert_eq!(state.is_emptied(context), is_last, "{context}");
+        }
+    }
+}

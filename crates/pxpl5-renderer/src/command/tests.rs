@@ -124,6 +124,25 @@ proptest! {
     }
 
     #[test]
+    fn triangles_made_of_blank_ones_have_the_words_of_their_programs(
+        plain in triangle(),
+        with_normals in phong_triangle(),
+        before in any::<[u32; 2]>(),
+    ) {
+        let layout = phong();
+        let (Command::Triangle(a), Command::PhongTriangle(b)) = (&plain, &with_normals) else { panic!("triangles") };
+        let [mut found, mut expected] = [before.to_vec(), before.to_vec()];
+        TriangleEncoder::new(&layout).encode(a, &mut found);
+        PhongTriangleEncoder::new(&layout).expect("it has normals").encode(b, &mut found);
+        for command in [&plain, &with_normals] {
+            for instruction in command.program(&layout).expect("it has the fields") {
+                instruction.encode(&mut expected);
+            }
+        }
+        prop_assert_eq!(found, expected);
+    }
+
+    #[test]
     fn slats_commands_come_back_with_a_narrow_z(
         command in prop_oneof![triangle(), sphere(), control(), copy()],
     ) {
@@ -282,4 +301,14 @@ fn a_label_on_another_program_is_no_command() {
     words[13] ^= 1;
     let error = Command::decode(&words, 0, &phong()).unwrap_err();
     assert_eq!((error.position, error.kind), (0, DecodeErrorKind::NotTheCommand(3)));
+}
+
+/// 16,384 pixels of 32 bits, over 64 chips with 4 bits a clock each.
+#[test]
+fn the_backing_store_is_busy_with_blocks_alone() {
+    for kind in CommandKind::ALL {
+        let is_block = matches!(kind, CommandKind::StoreBacking | CommandKind::LoadBacking);
+        let expected = if is_block { 16_384 * 32 / (64 * 4) } else { 0 };
+        assert_eq!(kind.backing_clocks(), expected, "{kind:?}");
+    }
 }
