@@ -37,7 +37,7 @@ fn filled(config: &ArpConfig, parts: u32, seed: u64) -> (Bench, Vec<Arc<Words>>)
     let regions: Vec<u16> = (0..region_grid(bench.texels).regions() as u16).collect();
     bench.begin(0, 1, &regions);
     let sources = regions.iter().map(|region| {
-        let words = (0..parts * 1_024).map(|_| random.bits() as Word & 0xFFFF_FFFF).collect();
+        let words = (0..parts * 1_024).map(|_| random.bits() as Word).collect();
         let source = Arc::new(Words { words, is_asked: AtomicBool::new(false) });
         let image: Arc<dyn PixelSource> = Arc::<Words>::clone(&source);
         bench.parts_of(parts, (0, 1, *region), &image, 0..parts);
