@@ -34,7 +34,9 @@ impl Options {
         while let Some(argument) = arguments.next() {
             match argument.as_str() {
                 "--check" => options.is_check = true,
-                "--opengl" => options.opengl = Some(arguments.next().ok_or("--opengl: expected a program, found nothing")?),
+                "--opengl" => {
+                    options.opengl = Some(arguments.next().ok_or("--opengl: expected a program, found nothing")?)
+                }
                 _ => return Err(format!("expected --check or --opengl PROGRAM, found {argument}")),
             }
         }

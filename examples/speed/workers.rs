@@ -70,7 +70,9 @@ fn makespan(pieces: &[Piece], workers: usize) -> f64 {
 
 /// Regions begun until then by whoever is free first.
 fn take_until(then: f64, free: &mut [f64], waiting: &mut VecDeque<(f64, f64)>) {
-    while let (Some((handed_over, pixels)), Some(first)) = (waiting.front(), free.iter_mut().min_by(|a, b| a.total_cmp(b))) {
+    while let (Some((handed_over, pixels)), Some(first)) =
+        (waiting.front(), free.iter_mut().min_by(|a, b| a.total_cmp(b)))
+    {
         let begin = handed_over.max(*first);
         if begin > then {
             return;
