@@ -101,6 +101,23 @@ fn events_that_nothing_comes_between_are_as_good_as_one() {
     }
 }
 
+/// The messages of a region, sixteen at most, are two grants and one arrival, instead of one of each for every message. A strip of eight
+/// lines is one message.
+#[test]
+fn regions_that_are_copied_arrive_as_message_after_message() {
+    for (experiment, least) in experiments().into_iter().zip([10, 10, 0]) {
+        let experiment = experiment.pixels(Pixels::Lazy);
+        assert_same(&experiment, Saving::Trains, 10);
+        let [trains, apart] = [experiment.clone(), experiment.without(Saving::Trains)].map(|e| after(&e, 10));
+        let regions = apart.record().observation().arrivals.len() as u64;
+        let saved = apart.events() - trains.events();
+        assert!(saved >= least * regions, "{saved} of {} events, {regions} regions", apart.events());
+        assert_eq!(trains.record().ring().stats(), apart.record().ring().stats());
+        let counters = |machine: &Machine| machine.record().display().counters();
+        assert_eq!(counters(&trains), counters(&apart));
+    }
+}
+
 #[test]
 fn regions_without_primitives_look_as_if_they_had_been_drawn() {
     for experiment in experiments() {
@@ -150,6 +167,6 @@ fn savings_are_known_by_their_names() {
     let error = "idleness".parse::<Saving>().expect_err("no saving");
     assert_eq!(
         error,
-        "expected idle-boards, transfers, empty-regions, repeated-code, delayed-work, empty-bins, joint-events, found \"idleness\""
+        "expected idle-boards, transfers, empty-regions, repeated-code, delayed-work, empty-bins, joint-events, trains, found \"idleness\""
     );
 }

@@ -16,6 +16,7 @@ mod facts;
 mod host_line;
 mod machine;
 mod observation;
+mod parts;
 mod pixels;
 mod ports;
 mod preset;

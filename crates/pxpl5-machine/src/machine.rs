@@ -17,6 +17,7 @@ use crate::event::Event;
 use crate::facts::{facts, facts_of, facts_of_line};
 use crate::host_line::HostLine;
 use crate::observation::{Arrival, Observation, Swap};
+use crate::parts::Parts;
 use crate::pixels::PixelWorker;
 use crate::ports::Ports;
 use crate::record::Record;
@@ -36,6 +37,8 @@ use std::rc::Rc;
 pub struct Machine {
     record: Record,
     queue: EventQueue<Event>,
+    /// Messages of which displays have not been told.
+    parts: Parts,
     /// The host, then the graphics processors: all boards that run programs, by their port.
     processors: Vec<GpBoard>,
     contexts: Contexts,
@@ -84,7 +87,7 @@ impl Machine {
         let ports = Ports::plug(config, pictures);
         let renderers = ports.renderers.clone();
         let elastic = move |node: NodeId| !renderers.contains(&node);
-        let ring =
+        let mut ring =
             Ring::new(config.ring, ports.count(), elastic).map_err(|error| ConfigError::Board(error.to_string()))?;
         let host = GpBoard::new(ports.host, config.host.board(), cycle());
         let gps = ports.gps.iter().map(|node| GpBoard::new(*node, config.gp, cycle()));
@@ -92,6 +95,8 @@ impl Machine {
         let renderer = |node: &NodeId| Renderer::new(*node, config.renderer, config.ring.word(), cycle(), pool.clone());
         let displays = config.displays.iter().zip(&ports.displays).map(|(display, nodes)| display.build(nodes));
         let displays = displays.collect::<Result<Vec<_>, _>>()?;
+        let patient = displays.iter().filter(|display| display.may_be_told_late());
+        patient.flat_map(|display| display.nodes()).for_each(|port| ring.tell_late(*port));
         Ok(Self {
             processors: [host].into_iter().chain(gps).collect(),
             swaps: BTreeMap::new(),
@@ -106,6 +111,7 @@ impl Machine {
                 events: 0,
             },
             queue: EventQueue::new(),
+            parts: Parts::default(),
             contexts: Contexts::default(),
             host_lines: Vec::new(),
             pixels: None,
@@ -147,12 +153,14 @@ impl Machine {
             Saving::DelayedWork => self.processors.iter_mut().for_each(GpBoard::announce_every_end),
             Saving::EmptyBins => self.processors.iter_mut().for_each(GpBoard::pay_one_by_one),
             Saving::JointEvents => self.joint_events = false,
+            Saving::Trains => self.record.ring.tell_in_time(),
         }
     }
 
-    /// Records messages, busy channels and FIFOs from now on.
+    /// Records messages, busy channels and FIFOs, each when it happens. To be called before the machine has run.
     pub fn record_traffic(&mut self) {
         self.record.observation.traffic = Some(Box::default());
+        self.record.ring.tell_in_time();
         self.record.ring.watch();
         self.record.renderers.iter_mut().for_each(Renderer::watch_fifo);
     }
@@ -232,6 +240,7 @@ impl Machine {
     /// [`RunError`]; everything observed before it is kept.
     pub fn run_until(&mut self, end: Time) -> Result<(), RunError> {
         while self.takes_event_before(end).is_some() {}
+        self.tell_displays(end);
         self.failure.clone().map_or(Ok(()), Err)
     }
 
@@ -242,6 +251,7 @@ impl Machine {
     /// [`RunError`], of this event or of one before: a machine that has failed goes on no more.
     pub fn step_before(&mut self, end: Time) -> Result<Option<Time>, RunError> {
         let taken = self.takes_event_before(end);
+        self.tell_displays(taken.unwrap_or(end));
         self.failure.clone().map_or(Ok(taken), Err)
     }
 
@@ -261,6 +271,28 @@ impl Machine {
         self.queue.peek().map(|(time, event)| event.happening(time, &self.record.ports))
     }
 
+    /// Tells displays of all that has arrived before an instant, to which there is no event any more, if it has not been told.
+    fn tell_displays(&mut self, before: Time) {
+        let before = self.failure.as_ref().map_or(before, |failure| failure.time().min(before));
+        (0..self.record.displays.len()).for_each(|display| self.tell_display(display, before));
+    }
+
+    fn tell_display(&mut self, display: usize, before: Time) {
+        if !self.record.displays[display].may_be_told_late() {
+            return;
+        }
+        let Self { record: Record { ring, .. }, contexts: Contexts { ring: context, .. }, queue, parts, .. } = self;
+        ring.catch_up(before, context.at(before));
+        schedule_brought(queue, parts, context, self.joint_events);
+        for port in 0..self.record.ports.displays[display].len() {
+            let node = self.record.ports.displays[display][port];
+            while let Some((arrived, message)) = self.parts.take(node, before) {
+                self.record.hash.record(arrived, &facts(2, &message));
+                self.display_event(arrived, display, DisplayEvent::Delivered { port, body: message.body });
+            }
+        }
+    }
+
     fn handle(&mut self, now: Time, event: Event) {
         self.work_events += u64::from(!event.is_of_displays());
         match event {
@@ -277,7 +309,10 @@ impl Machine {
             Event::Gp(board, event) => self.gp_event(now, board, event),
             Event::Renderer(board, event) => self.renderer_event(now, board, event),
             Event::HostLine(line) => self.host_says(now, line),
-            Event::Display(display, event) => self.display_event(now, display, event),
+            Event::Display(display, event) => {
+                self.tell_display(display, now);
+                self.display_event(now, display, event);
+            }
             Event::Tick(display, period) => self.tick(now, display, period),
             Event::Edge => self.edge(now),
         }
@@ -292,6 +327,7 @@ impl Machine {
 
     /// A display's clock ticks; that of the first one is the sync generator of the first graphics processor.
     fn tick(&mut self, now: Time, display: usize, period: PeriodNumber) {
+        self.tell_display(display, now);
         self.display_event(now, display, DisplayEvent::Tick(period));
         let next = period.next();
         self.queue.schedule(self.record.displays[display].tick(next), Phase::Arrive, Event::Tick(display, next));
@@ -340,8 +376,8 @@ impl Machine {
     }
 
     fn ring_event(&mut self, now: Time, event: RingEvent) {
-        let Self { record: Record { ring, observation, .. }, contexts: Contexts { ring: context, .. }, queue, .. } =
-            self;
+        let Self { record, contexts: Contexts { ring: context, .. }, queue, parts, .. } = self;
+        let Record { ring, observation, .. } = record;
         let mut traffic = observation.traffic.as_deref_mut();
         if let (Some(traffic), RingEvent::Accept { destination, last_word_at }) = (&mut traffic, &event) {
             traffic.accept(*destination, *last_word_at);
@@ -351,7 +387,7 @@ impl Machine {
             traffic.channels(now, ring.busy_channels());
         }
         schedule_own(queue, context, Event::Ring);
-        schedule_brought(queue, context, self.joint_events);
+        schedule_brought(queue, parts, context, self.joint_events);
     }
 
     /// The answer of a renderer leaves it after a cycle. What it says of the end of a message holds from then on, before which nothing
@@ -362,14 +398,14 @@ impl Machine {
             return self.queue.schedule(at, Phase::Arrive, Event::Ring(event));
         }
         debug_assert!(at > now, "nothing leaves a board at once");
-        let Self { record: Record { ring, observation, .. }, contexts: Contexts { ring: context, .. }, queue, .. } =
-            self;
+        let Self { record, contexts: Contexts { ring: context, .. }, queue, parts, .. } = self;
+        let Record { ring, observation, .. } = record;
         if let Some(traffic) = observation.traffic.as_deref_mut() {
             traffic.accept(destination, last_word_at);
         }
         ring.handle(event, context.at(at));
         schedule_own(queue, context, Event::Ring);
-        schedule_brought(queue, context, true);
+        schedule_brought(queue, parts, context, true);
     }
 
     /// What the ring has brought to a board enters the trace now.
@@ -385,7 +421,7 @@ impl Machine {
                 let board = usize::from(message.destination.0 - record.ports.renderers[0].0);
                 self.renderer_event(now, board, RendererEvent::Announce { message, first_word_at });
             }
-            RingOutput::Delivered(message) => {
+            RingOutput::Part(message) | RingOutput::Delivered(message) => {
                 record.hash.record(now, &facts(2, &message));
                 if let Some(traffic) = &mut traffic {
                     traffic.deliver(&message, now, record.ring.timing().word());
@@ -409,6 +445,7 @@ impl Machine {
     fn deliver(&mut self, now: Time, message: Message) {
         match self.record.ports.of_display(message.destination) {
             Some((display, port)) => {
+                self.tell_display(display, now);
                 self.display_event(now, display, DisplayEvent::Delivered { port, body: message.body });
             }
             None => self.gp_event(now, usize::from(message.destination.0), GpEvent::Delivered(message)),
@@ -422,6 +459,7 @@ impl Machine {
         for (port, body) in messages {
             self.record.hash.record(now, &facts_of_line(port, &body));
             compute_pixels(&mut self.pixels, &body);
+            self.tell_display(0, now);
             self.display_event(now, 0, DisplayEvent::Delivered { port, body });
         }
     }

@@ -31,11 +31,14 @@ pub enum Saving {
     /// to its sender, an announcement and the renderer's answer. Without it each is an event of its own, as in a run that is
     /// stepped through.
     JointEvents,
+    /// The messages of a region that is copied follow each other by what the ring knows of them, and a display that may be told late
+    /// is told of all but the last when it is asked for something. Without it the grant of each is an event, and so is its arrival.
+    Trains,
 }
 
 impl Saving {
     /// Every saving that an experiment can give up.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::IdleBoards,
         Self::Transfers,
         Self::EmptyRegions,
@@ -43,6 +46,7 @@ impl Saving {
         Self::DelayedWork,
         Self::EmptyBins,
         Self::JointEvents,
+        Self::Trains,
     ];
 
     /// The name by which the command knows it.
@@ -56,6 +60,7 @@ impl Saving {
             Self::DelayedWork => "delayed-work",
             Self::EmptyBins => "empty-bins",
             Self::JointEvents => "joint-events",
+            Self::Trains => "trains",
         }
     }
 }

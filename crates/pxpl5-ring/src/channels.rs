@@ -80,13 +80,13 @@ impl RingChannels {
         self.flights[channel] = Some(flight);
         // A free channel has no end.
         if let Some(end) = ends_at {
-            self.ends(channel, end);
+            self.end_at(channel, end);
         }
         channel
     }
 
     /// Says when the message on a channel ends, once.
-    pub(crate) fn ends(&mut self, channel: usize, at: Time) {
+    pub(crate) fn end_at(&mut self, channel: usize, at: Time) {
         let before = std::mem::replace(&mut self.ends_at[channel], at);
         debug_assert_eq!(before, UNKNOWN, "an end that is known stays");
         let earlier = self.due.iter().rev().take_while(|end| end.0 < at).count();
@@ -98,10 +98,9 @@ impl RingChannels {
         self.due.last().map(|end| end.0)
     }
 
-    /// The earliest known end of a message to one of some destinations.
-    pub(crate) fn first_end_at(&self, is_one: impl Fn(NodeId) -> bool) -> Option<Time> {
-        let is_to_one = |channel: usize| self.flight(channel).is_some_and(|flight| is_one(flight.destination));
-        self.due.iter().rev().find(|end| is_to_one(end.1)).map(|end| end.0)
+    /// The ends that are known, the earliest first, and what ends.
+    pub(crate) fn ends(&self) -> impl Iterator<Item = (Time, &MessageInFlight)> {
+        self.due.iter().rev().filter_map(|(end, channel)| Some((*end, self.flight(*channel)?)))
     }
 
     /// The end of the message on a channel, if it is known.

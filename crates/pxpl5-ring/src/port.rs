@@ -44,6 +44,13 @@ pub struct Request {
     pub order: u32,
 }
 
+impl Request {
+    /// Whether nobody waits for its end but the next message of its transfer.
+    pub(crate) const fn is_part(&self) -> bool {
+        self.hold && self.ticket.is_none()
+    }
+}
+
 /// What the ring puts out.
 #[derive(Clone, Debug)]
 pub enum RingOutput {
@@ -58,6 +65,9 @@ pub enum RingOutput {
     },
     /// To `message.destination`, which is elastic: the last word has arrived.
     Delivered(Message),
+    /// To `message.destination`, which is [told late](crate::Ring::tell_late): the last word arrives then, or did; more messages of the
+    /// transfer follow, and nobody waits for this one.
+    Part(Message),
     /// To the sender of a message with a ticket: the last word has been accepted.
     Sent {
         /// Port of the sender.

@@ -33,6 +33,8 @@ pub struct Ring {
     watched: bool,
     /// Whether every word is an event.
     word_by_word: bool,
+    /// Whether any receiver is patient.
+    any_patient: bool,
     stats: RingStats,
     refusals: Refusals,
 }
@@ -42,6 +44,8 @@ struct SourcePort {
     queue: VecDeque<QueuedRequest>,
     /// Messages on channels, at most `source_channels`.
     in_flight: u64,
+    /// When the train that it sends will be over, or has been.
+    train_until: Time,
 }
 
 #[derive(Clone, Debug)]
@@ -53,6 +57,8 @@ struct QueuedRequest {
 #[derive(Clone, Debug)]
 struct DestinationPort {
     elastic: bool,
+    /// Whether it may be told late of messages that keep it for the next one.
+    patient: bool,
     channel: Option<usize>,
     reserved_for: Option<NodeId>,
     /// Heads that wait for it.
@@ -93,6 +99,7 @@ impl Ring {
             arbitrations: Vec::new(),
             watched: false,
             word_by_word: false,
+            any_patient: false,
             stats: RingStats { channel_busy: vec![Span::ZERO; n_channels], ..RingStats::default() },
             refusals: Refusals::default(),
         })
@@ -109,8 +116,51 @@ impl Ring {
         self.word_by_word = true;
     }
 
+    /// Has an elastic receiver told by [`RingOutput::Part`] of messages that keep its port for the next one, perhaps after they have
+    /// arrived. Messages of such a transfer, a *train*, then follow each other without an event for each; whoever looks says for
+    /// which instant ([`Ring::catch_up`]). Receivers that are not elastic stay as they are.
+    pub fn tell_late(&mut self, destination: NodeId) {
+        if let Some(port) = self.destinations.get_mut(usize::from(destination.0)) {
+            port.patient = port.elastic;
+            self.any_patient |= port.elastic;
+        }
+    }
+
+    /// Tells every receiver of every message when it has arrived, as if [`Ring::tell_late`] had not been called; only before anything was sent.
+    pub fn tell_in_time(&mut self) {
+        self.destinations.iter_mut().for_each(|port| port.patient = false);
+        self.any_patient = false;
+    }
+
+    /// Brings trains up to an instant, and not including it, before which there is no event any more.
+    pub fn catch_up(&mut self, before: Time, context: &mut RingContext) {
+        while let Some(end) = self.train_goes_on_at().filter(|end| *end < before) {
+            self.settle(end);
+            self.grant_all(end, context);
+        }
+    }
+
+    /// When the next message of a train ends and another follows, of which there may be no event.
+    fn train_goes_on_at(&self) -> Option<Time> {
+        if !self.any_patient || self.heads.is_empty() {
+            return None;
+        }
+        self.channels.ends().find(|(end, flight)| self.train_until(flight) > *end).map(|end| end.0)
+    }
+
+    /// When the train that a message is of is over: at its own end, if no other of its transfer that nobody waits for is behind it.
+    /// [`Time::ZERO`] for what is of no train.
+    fn train_until(&self, flight: &MessageInFlight) -> Time {
+        let is_of_one = flight.hold && self.destination(flight).patient;
+        if is_of_one { self.sources[usize::from(flight.source.0)].train_until } else { Time::ZERO }
+    }
+
     /// Handles one event at `context.now()`; what follows from it is scheduled or put out through `context`.
     pub fn handle(&mut self, event: RingEvent, context: &mut RingContext) {
+        // An answer may be told of before its instant, and nothing that it decides is different before a train's next message.
+        if !matches!(event, RingEvent::Accept { .. }) {
+            self.catch_up(context.now(), context);
+        }
         match event {
             RingEvent::Request(request) => self.request(request, context),
             RingEvent::Accept { destination, last_word_at } => self.accept(destination, last_word_at, context),
@@ -123,8 +173,12 @@ impl Ring {
         let now = context.now();
         self.arbitrations.retain(|at| *at > now);
         self.settle(now);
-        self.grant_all(context);
+        self.grant_all(now, context);
         self.arbitrate_at_next_end(context);
+    }
+
+    fn destination(&self, flight: &MessageInFlight) -> &DestinationPort {
+        &self.destinations[usize::from(flight.destination.0)]
     }
 
     /// The numbers that the ring was built with.
@@ -242,11 +296,28 @@ impl Ring {
         } else if self.heads.is_empty() {
             None
         } else {
-            self.channels.first_end_at(|destination| self.destinations[usize::from(destination.0)].heads > 0)
+            self.first_end_waited_for()
         };
         if let Some(end) = next {
             self.arbitrate_at(end.max(context.now()), context);
         }
+    }
+
+    /// The first end of a message to a receiver that a head waits for. Of a train it is the end of the last message that keeps the port:
+    /// until then its own messages alone can be granted there, each at the end of the one before, because nobody lacks a channel; should
+    /// somebody come to lack one, that is at an event, which asks for every end.
+    fn first_end_waited_for(&self) -> Option<Time> {
+        let mut first: Option<Time> = None;
+        for (end, flight) in self.channels.ends() {
+            if first.is_some_and(|first| first <= end) {
+                break;
+            }
+            if self.destination(flight).heads > 0 {
+                let until = self.train_until(flight).max(end);
+                first = Some(first.map_or(until, |first| first.min(until)));
+            }
+        }
+        first
     }
 
     /// Whether a head waits for a channel, whoever leaves one.
@@ -306,8 +377,7 @@ impl Ring {
 
     /// One pass is enough: a grant makes nothing free, and the head that it brings forward comes after it in order. Where nothing was
     /// made free since the last pass, the heads that it left can go no more than they could then: those of this instant alone are looked at.
-    fn grant_all(&mut self, context: &mut RingContext) {
-        let now = context.now();
+    fn grant_all(&mut self, now: Time, context: &mut RingContext) {
         let is_for_all = std::mem::take(&mut self.unblocked);
         let mut place =
             if is_for_all { 0 } else { self.heads.iter().rposition(|h| h.since < now).map_or(0, |p| p + 1) };
@@ -315,7 +385,7 @@ impl Ring {
             let QueueHead { source, destination, .. } = self.heads[place];
             if self.destinations[usize::from(destination.0)].takes_from(source) && self.has_channel_to(destination) {
                 self.take_head(place);
-                self.grant(source, context);
+                self.grant(source, now, context);
             } else {
                 place += 1;
             }
@@ -326,13 +396,12 @@ impl Ring {
         self.channels.has_free() && (self.is_elastic(destination) || self.to_fifos < self.timing.fifo_channels)
     }
 
-    fn grant(&mut self, source: NodeId, context: &mut RingContext) {
+    fn grant(&mut self, source: NodeId, now: Time, context: &mut RingContext) {
         let port = &mut self.sources[usize::from(source.0)];
         let Some(QueuedRequest { at, request }) = port.queue.pop_front() else {
             return;
         };
         port.in_flight += 1;
-        let now = context.now();
         let more = port.in_flight < self.timing.source_channels;
         let waited = now.since(at);
         self.stats.waiting += waited;
@@ -366,18 +435,33 @@ impl Ring {
     /// Puts a message on a channel, whose number is returned. Its end is known at once where the receiver is elastic,
     /// else at the answer to the announcement; a ring that moves every word waits for the words.
     fn carry(&mut self, flight: MessageInFlight, message: Message, context: &mut RingContext) -> usize {
+        let granted = flight.granted;
         if self.word_by_word {
             let channel = self.channels.occupy(MessageInFlight { message: Some(Box::new(message)), ..flight }, None);
-            context.schedule(context.now() + self.word, Phase::Arrive, RingEvent::Slot { channel });
+            context.schedule(granted + self.word, Phase::Arrive, RingEvent::Slot { channel });
             return channel;
         }
         if !self.is_elastic(flight.destination) {
             self.announce(&flight, message, context);
             return self.channels.occupy(flight, None);
         }
-        let end = flight.granted + self.timing.occupancy(flight.words);
+        let end = granted + self.timing.occupancy(flight.words);
+        if flight.hold && self.destination(&flight).patient {
+            self.begin_train(&flight, end);
+        }
         self.deliver(&flight, message, end, context);
         self.channels.occupy(flight, Some(end))
+    }
+
+    /// A message that keeps its port ends then: until when the messages behind it that do so too would go, of which nobody is told in time.
+    fn begin_train(&mut self, flight: &MessageInFlight, end: Time) {
+        let port = &mut self.sources[usize::from(flight.source.0)];
+        if port.train_until >= end {
+            return;
+        }
+        let waiting = port.queue.iter().map(|queued| &queued.request);
+        let train = waiting.take_while(|next| next.message.destination == flight.destination && next.is_part());
+        port.train_until = end + train.map(|next| self.timing.occupancy(next.message.words)).sum();
     }
 
     /// A slot of overhead or of a word is over: after the first one a receiver with a FIFO is told, after the last one
@@ -394,7 +478,7 @@ impl Ring {
                 let now = context.now();
                 self.deliver(&flight, *message, now, context);
                 self.channels.put_back(channel, flight);
-                self.channels.ends(channel, now);
+                self.channels.end_at(channel, now);
                 self.arbitrate_at_next_end(context);
                 return;
             }
@@ -409,8 +493,12 @@ impl Ring {
     }
 
     fn deliver(&self, flight: &MessageInFlight, message: Message, end: Time, context: &mut RingContext) {
-        context.output(end + flight.latency, RingOutput::Delivered(message));
-        tell_sender(flight, end + flight.latency, context);
+        let at = end + flight.latency;
+        if flight.hold && flight.ticket.is_none() && self.destination(flight).patient {
+            return context.output(at, RingOutput::Part(message));
+        }
+        context.output(at, RingOutput::Delivered(message));
+        tell_sender(flight, at, context);
     }
 
     fn announce(&self, flight: &MessageInFlight, message: Message, context: &mut RingContext) {
@@ -429,7 +517,7 @@ impl Ring {
         let accepted = last_word_at.max(earliest);
         let end = now.max(Time(accepted.0 - flight.latency.0));
         tell_sender(flight, accepted.max(now + self.word), context);
-        self.channels.ends(channel, end);
+        self.channels.end_at(channel, end);
         self.arbitrate_at_next_end(context);
         if last_word_at < earliest {
             let error = RingError::AcceptedEarly { destination, expected: earliest, found: last_word_at };
@@ -495,7 +583,7 @@ impl SourcePort {
 
 impl DestinationPort {
     const fn new(elastic: bool) -> Self {
-        Self { elastic, channel: None, reserved_for: None, heads: 0 }
+        Self { elastic, patient: false, channel: None, reserved_for: None, heads: 0 }
     }
 
     fn takes_from(&self, source: NodeId) -> bool {

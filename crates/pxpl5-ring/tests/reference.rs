@@ -7,7 +7,8 @@ use pxpl5_ring::reference::{CarriedMessage, Elastic, PlannedMessage, SteppedRing
 use pxpl5_ring::{Ring, RingError, RingTiming};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::NodeId;
-use support::{Receiver, Stepped, Times, run_fast, run_prepared};
+use std::collections::BTreeMap;
+use support::{ELASTIC, Receiver, Stepped, Times, run_fast, run_prepared, run_trains};
 
 #[derive(Clone, Debug)]
 struct RingCase {
@@ -75,7 +76,7 @@ fn step(case: &RingCase) -> Vec<CarriedMessage> {
 }
 
 /// When the sender is told: with the last word, but one word time after the receiver's answer at least.
-fn told(case: &RingCase, message: usize, message_carried: &CarriedMessage) -> Time {
+fn told_at(case: &RingCase, message: usize, message_carried: &CarriedMessage) -> Time {
     let t = case.traffic[message];
     match case.receivers[usize::from(t.destination.0)] {
         Receiver::Elastic => message_carried.last_word_at,
@@ -94,8 +95,12 @@ fn compare(case: &RingCase, carried: &[CarriedMessage], ring: &Ring, times: &Tim
     for (message, message_carried) in carried.iter().enumerate() {
         let number = message as u64;
         prop_assert_eq!(times.accepted[&number], message_carried.last_word_at, "message {}", message);
-        prop_assert_eq!(times.sent[&number], told(case, message, message_carried), "message {}", message);
+        prop_assert_eq!(times.sent[&number], told_at(case, message, message_carried), "message {}", message);
     }
+    compare_sums(case, carried, ring)
+}
+
+fn compare_sums(case: &RingCase, carried: &[CarriedMessage], ring: &Ring) -> Result<(), TestCaseError> {
     for (channel, busy) in ring.stats().channel_busy.iter().enumerate() {
         let on_channel = carried.iter().filter(|message_carried| message_carried.channel == channel);
         let slots: Span = on_channel.map(|message_carried| message_carried.released - message_carried.granted).sum();
@@ -118,6 +123,26 @@ proptest! {
             let (ring, times) = run_prepared(case.timing, &case.receivers, &case.traffic, Some(seed), prepare);
             compare(&case, &carried, &ring, &times)?;
         }
+    }
+
+    /// Whoever is told late is told the same, and by the time at which somebody looks. Each transfer is handed over as a whole, so no train
+    /// is left standing.
+    #[test]
+    fn a_train_goes_as_its_messages_would_one_by_one(case in cases(), seed in any::<u64>()) {
+        let carried = step(&case);
+        let mut missing = Vec::new();
+        let look = |now: Time, times: &Times| {
+            let all = carried.iter().enumerate().filter(|(_, message)| message.last_word_at < now);
+            missing.extend(all.filter(|(number, _)| !times.accepted.contains_key(&(*number as u64))).map(|m| (now, m.0)));
+        };
+        let (ring, times, _) = run_trains(case.timing, &case.receivers, &case.traffic, Some(seed), look);
+        prop_assert_eq!(missing, []);
+        let all: BTreeMap<u64, Time> = (0..).zip(&carried).map(|(number, message)| (number, message.last_word_at)).collect();
+        prop_assert_eq!(&times.accepted, &all);
+        let told = (0..).zip(&carried).filter(|(number, _)| !case.traffic[*number].hold);
+        let told: BTreeMap<u64, Time> = told.map(|(number, message)| (number as u64, told_at(&case, number, message))).collect();
+        prop_assert_eq!(&times.sent, &told);
+        compare_sums(&case, &carried, &ring)?;
     }
 
     #[test]
@@ -190,4 +215,25 @@ fn both_agree_when_twenty_messages_want_eight_channels_at_once() {
     let last = times.accepted.values().max().expect("some");
     assert_eq!(*last, Time::ZERO + tick * 3 + Span::from_us(8 * 52));
     assert_eq!(ring.stats().channel_busy[7], Span::from_us(7 * 52));
+}
+
+/// The fifteen messages of a region, and what another board sends to the same port meanwhile: a request, the grants of the first and of the
+/// last message, and of what waits behind it.
+#[test]
+fn a_train_is_two_grants_whatever_its_length() {
+    let region = |at_ns, source, n: u32| {
+        (0..n).map(move |part| PlannedMessage { hold: part + 1 < n, ..planned(at_ns, source, 9, 1_024) })
+    };
+    for n in [3, 15] {
+        let traffic: Vec<_> = region(0, 1, n).chain([planned(1_000, 2, 9, 10)]).collect();
+        let (ring, times, events) = run_trains(RingTiming::PAPERS, &ELASTIC[..20], &traffic, None, |_, _| {});
+        let slots = Span::from_ns((16 + 1_024) * 50);
+        let latency = RingTiming::PAPERS.latency(NodeId(1), NodeId(9), 20);
+        let arrivals: Vec<Time> = (1..=u64::from(n)).map(|k| Time::ZERO + slots * k + latency).collect();
+        assert_eq!(times.accepted.values().take(n as usize).copied().collect::<Vec<_>>(), arrivals);
+        assert_eq!(ring.stats().messages, u64::from(n) + 1);
+        let requests = u64::from(n) + 1;
+        // At 0, where the other board asks, at the end of the last message but one, and at the end of the last.
+        assert_eq!(events, requests + 4);
+    }
 }

@@ -66,6 +66,7 @@ impl Experiment {
         let mut stepper = Stepper::begin(self, self.prepare()?)?;
         // Whoever steps wants to see each event.
         stepper.machine_mut().give_up(Saving::JointEvents);
+        stepper.machine_mut().give_up(Saving::Trains);
         Ok(stepper)
     }
 

@@ -81,25 +81,63 @@ pub(crate) fn run_prepared(
     if let Some(seed) = shuffle {
         queue.shuffle_ties(seed);
     }
-    for (i, t) in (0..).zip(traffic) {
-        let request = Request { hold: t.hold, ..request(i, t.source.0, t.destination.0, t.words) };
-        queue.schedule(t.at, Phase::Arrive, RingEvent::Request(request));
-    }
-    run_queue(ring, queue, receivers)
+    let requests = (0..)
+        .zip(traffic)
+        .map(|(i, t)| (t.at, Request { hold: t.hold, ..request(i, t.source.0, t.destination.0, t.words) }));
+    requests.for_each(|(at, request)| queue.schedule(at, Phase::Arrive, RingEvent::Request(request)));
+    run_queue(ring, queue, receivers, |_, _| {})
 }
 
-fn run_queue(mut ring: Ring, mut queue: EventQueue<RingEvent>, receivers: &[Receiver]) -> (Ring, Times) {
+/// The same where every elastic receiver is told late, and the sender of a message that keeps its receiver's port is told nothing; with the
+/// number of events. `look` sees what has arrived before an instant, after each event.
+pub(crate) fn run_trains(
+    timing: RingTiming,
+    receivers: &[Receiver],
+    traffic: &[PlannedMessage],
+    shuffle: Option<u64>,
+    look: impl FnMut(Time, &Times),
+) -> (Ring, Times, u64) {
+    let mut ring =
+        Ring::new(timing, receivers.len() as u16, |node| receivers[usize::from(node.0)].is_elastic()).expect("valid");
+    (0..receivers.len() as u16).for_each(|node| ring.tell_late(NodeId(node)));
+    let mut queue = EventQueue::new();
+    if let Some(seed) = shuffle {
+        queue.shuffle_ties(seed);
+    }
+    for (i, t) in (0..).zip(traffic) {
+        let ticket = (!t.hold).then_some(i);
+        let request = Request { hold: t.hold, ticket, ..request(i, t.source.0, t.destination.0, t.words) };
+        queue.schedule(t.at, Phase::Arrive, RingEvent::Request(request));
+    }
+    let mut events = 0;
+    let mut look = look;
+    let (ring, times) = run_queue(ring, queue, receivers, |now, times| {
+        events += 1;
+        look(now, times);
+    });
+    (ring, times, events)
+}
+
+fn run_queue(
+    mut ring: Ring,
+    mut queue: EventQueue<RingEvent>,
+    receivers: &[Receiver],
+    mut look: impl FnMut(Time, &Times),
+) -> (Ring, Times) {
     let mut fifos = vec![VecDeque::new(); receivers.len()];
     let mut context = Context::default();
     let mut times = Times::default();
     while let Some((now, _, event)) = queue.next_event() {
         ring.handle(event, context.at(now));
+        ring.catch_up(now, &mut context);
         for (time, phase, event) in context.drain_events() {
             queue.schedule(time, phase, event);
         }
         for (time, output) in context.drain_outputs() {
             match output {
-                RingOutput::Delivered(message) => drop(times.accepted.insert(number(&message), time)),
+                RingOutput::Part(message) | RingOutput::Delivered(message) => {
+                    times.accepted.insert(number(&message), time);
+                }
                 RingOutput::Sent { ticket, .. } => drop(times.sent.insert(ticket, time)),
                 RingOutput::Refused { error, .. } => panic!("{error}"),
                 RingOutput::Announce { message, first_word_at, word } => {
@@ -113,6 +151,7 @@ fn run_queue(mut ring: Ring, mut queue: EventQueue<RingEvent>, receivers: &[Rece
                 }
             }
         }
+        look(now, &times);
     }
     ring.settle(Time(u64::MAX));
     (ring, times)
