@@ -1,7 +1,6 @@
 //! How what boards put out becomes events.
 
 use crate::event::Event;
-use crate::parts::Parts;
 use pxpl5_ring::{Request, RingEvent, RingOutput};
 use pxpl5_sim::{Context, EventQueue, Phase, Time};
 
@@ -14,11 +13,9 @@ pub(crate) fn schedule_own<E, O>(
     context.each_event(|time, phase, event| queue.schedule(time, phase, event_of(event)));
 }
 
-/// Puts what the ring brings to boards into the queue; a delivery and the news of it to its sender are one event where they may be. What a
-/// display may be told late of is no event.
+/// Puts what the ring brings to boards into the queue; a delivery and the news of it to its sender are one event where they may be.
 pub(crate) fn schedule_brought(
     queue: &mut EventQueue<Event>,
-    parts: &mut Parts,
     context: &mut Context<RingEvent, RingOutput>,
     joint: bool,
 ) {
@@ -34,10 +31,6 @@ pub(crate) fn schedule_brought(
                 let event = Event::DeliveredAndSent(message, *ticket);
                 outputs.next();
                 event
-            }
-            (RingOutput::Part(message), _) => {
-                parts.add(time, message);
-                continue;
             }
             (output, _) => Event::FromRing(output),
         };
@@ -103,7 +96,7 @@ mod tests {
             let sent = RingOutput::Sent { source: NodeId(*source), ticket: 77 };
             context.output(Time(*time), if *is_delivery { delivered } else { sent });
         }
-        schedule_brought(&mut queue, &mut Parts::default(), &mut context, joint);
+        schedule_brought(&mut queue, &mut context, joint);
         queued(queue)
     }
 

@@ -59,9 +59,7 @@ impl Event {
 fn brought(output: &RingOutput, ports: &Ports) -> (Board, &'static str) {
     match output {
         RingOutput::Announce { message, .. } => (ports.board(message.destination), "message announced"),
-        RingOutput::Part(message) | RingOutput::Delivered(message) => {
-            (ports.board(message.destination), "message delivered")
-        }
+        RingOutput::Delivered(message) => (ports.board(message.destination), "message delivered"),
         RingOutput::Sent { source, .. } => (ports.board(*source), "message accepted by its receiver"),
         RingOutput::Refused { source, .. } => (ports.board(*source), "message refused"),
     }

@@ -16,7 +16,6 @@ mod facts;
 mod host_line;
 mod machine;
 mod observation;
-mod parts;
 mod pixels;
 mod ports;
 mod preset;

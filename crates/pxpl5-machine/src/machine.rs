@@ -17,7 +17,6 @@ use crate::event::Event;
 use crate::facts::{facts, facts_of, facts_of_line};
 use crate::host_line::HostLine;
 use crate::observation::{Arrival, Observation, Swap};
-use crate::parts::Parts;
 use crate::pixels::PixelWorker;
 use crate::ports::Ports;
 use crate::record::Record;
@@ -37,8 +36,6 @@ use std::rc::Rc;
 pub struct Machine {
     record: Record,
     queue: EventQueue<Event>,
-    /// Messages of which displays have not been told.
-    parts: Parts,
     /// The host, then the graphics processors: all boards that run programs, by their port.
     processors: Vec<GpBoard>,
     contexts: Contexts,
@@ -65,7 +62,7 @@ struct Contexts {
     display: DisplayContext,
 }
 
-/// Ticks of the first display without any other event after which a machine with waiting programs is said to be deadlocked.
+/// Ticks of the first display with no other event between or ahead after which a machine with waiting programs is said to be deadlocked.
 pub const DEADLOCK_TICKS: u64 = 120;
 
 /// Events that a tick of the first display causes by itself: the signal to the first GP, and the poll of its programs.
@@ -111,7 +108,6 @@ impl Machine {
                 events: 0,
             },
             queue: EventQueue::new(),
-            parts: Parts::default(),
             contexts: Contexts::default(),
             host_lines: Vec::new(),
             pixels: None,
@@ -281,12 +277,9 @@ impl Machine {
         if !self.record.displays[display].may_be_told_late() {
             return;
         }
-        let Self { record: Record { ring, .. }, contexts: Contexts { ring: context, .. }, queue, parts, .. } = self;
-        ring.catch_up(before, context.at(before));
-        schedule_brought(queue, parts, context, self.joint_events);
         for port in 0..self.record.ports.displays[display].len() {
             let node = self.record.ports.displays[display][port];
-            while let Some((arrived, message)) = self.parts.take(node, before) {
+            while let Some((arrived, message)) = self.record.ring.take_part(node, before) {
                 self.record.hash.record(arrived, &facts(2, &message));
                 self.display_event(arrived, display, DisplayEvent::Delivered { port, body: message.body });
             }
@@ -332,14 +325,15 @@ impl Machine {
         let next = period.next();
         self.queue.schedule(self.record.displays[display].tick(next), Phase::Arrive, Event::Tick(display, next));
         if display == 0 {
-            self.queue.schedule(now, Phase::Arrive, Event::Gp(1, GpEvent::Retrace(period)));
             self.watch(now);
+            self.queue.schedule(now, Phase::Arrive, Event::Gp(1, GpEvent::Retrace(period)));
         }
     }
 
-    /// Notices when nothing has happened for long though programs wait.
+    /// Notices when nothing has happened for long though programs wait, and nothing is going to: work may take longer than that.
     fn watch(&mut self, now: Time) {
-        self.idle_ticks = if self.work_events <= EVENTS_OF_A_TICK { self.idle_ticks + 1 } else { 0 };
+        let is_idle = self.work_events <= EVENTS_OF_A_TICK && self.is_at_rest();
+        self.idle_ticks = if is_idle { self.idle_ticks + 1 } else { 0 };
         self.work_events = 0;
         if self.idle_ticks < DEADLOCK_TICKS {
             return;
@@ -376,7 +370,7 @@ impl Machine {
     }
 
     fn ring_event(&mut self, now: Time, event: RingEvent) {
-        let Self { record, contexts: Contexts { ring: context, .. }, queue, parts, .. } = self;
+        let Self { record, contexts: Contexts { ring: context, .. }, queue, .. } = self;
         let Record { ring, observation, .. } = record;
         let mut traffic = observation.traffic.as_deref_mut();
         if let (Some(traffic), RingEvent::Accept { destination, last_word_at }) = (&mut traffic, &event) {
@@ -387,7 +381,7 @@ impl Machine {
             traffic.channels(now, ring.busy_channels());
         }
         schedule_own(queue, context, Event::Ring);
-        schedule_brought(queue, parts, context, self.joint_events);
+        schedule_brought(queue, context, self.joint_events);
     }
 
     /// The answer of a renderer leaves it after a cycle. What it says of the end of a message holds from then on, before which nothing
@@ -398,14 +392,14 @@ impl Machine {
             return self.queue.schedule(at, Phase::Arrive, Event::Ring(event));
         }
         debug_assert!(at > now, "nothing leaves a board at once");
-        let Self { record, contexts: Contexts { ring: context, .. }, queue, parts, .. } = self;
+        let Self { record, contexts: Contexts { ring: context, .. }, queue, .. } = self;
         let Record { ring, observation, .. } = record;
         if let Some(traffic) = observation.traffic.as_deref_mut() {
             traffic.accept(destination, last_word_at);
         }
         ring.handle(event, context.at(at));
         schedule_own(queue, context, Event::Ring);
-        schedule_brought(queue, parts, context, true);
+        schedule_brought(queue, context, true);
     }
 
     /// What the ring has brought to a board enters the trace now.
@@ -421,7 +415,7 @@ impl Machine {
                 let board = usize::from(message.destination.0 - record.ports.renderers[0].0);
                 self.renderer_event(now, board, RendererEvent::Announce { message, first_word_at });
             }
-            RingOutput::Part(message) | RingOutput::Delivered(message) => {
+            RingOutput::Delivered(message) => {
                 record.hash.record(now, &facts(2, &message));
                 if let Some(traffic) = &mut traffic {
                     traffic.deliver(&message, now, record.ring.timing().word());

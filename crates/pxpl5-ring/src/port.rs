@@ -65,9 +65,6 @@ pub enum RingOutput {
     },
     /// To `message.destination`, which is elastic: the last word has arrived.
     Delivered(Message),
-    /// To `message.destination`, which is [told late](crate::Ring::tell_late): the last word arrives then, or did; more messages of the
-    /// transfer follow, and nobody waits for this one.
-    Part(Message),
     /// To the sender of a message with a ticket: the last word has been accepted.
     Sent {
         /// Port of the sender.

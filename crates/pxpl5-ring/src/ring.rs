@@ -33,8 +33,8 @@ pub struct Ring {
     watched: bool,
     /// Whether every word is an event.
     word_by_word: bool,
-    /// Whether any receiver is patient.
-    any_patient: bool,
+    /// Messages on channels that are of a train and not its last.
+    trains: u32,
     stats: RingStats,
     refusals: Refusals,
 }
@@ -57,8 +57,10 @@ struct QueuedRequest {
 #[derive(Clone, Debug)]
 struct DestinationPort {
     elastic: bool,
-    /// Whether it may be told late of messages that keep it for the next one.
+    /// Whether it is told late of messages that keep it for the next one.
     patient: bool,
+    /// Such messages of which it has not been told, with their arrivals, in order.
+    parts: VecDeque<(Time, Message)>,
     channel: Option<usize>,
     reserved_for: Option<NodeId>,
     /// Heads that wait for it.
@@ -99,7 +101,7 @@ impl Ring {
             arbitrations: Vec::new(),
             watched: false,
             word_by_word: false,
-            any_patient: false,
+            trains: 0,
             stats: RingStats { channel_busy: vec![Span::ZERO; n_channels], ..RingStats::default() },
             refusals: Refusals::default(),
         })
@@ -116,50 +118,70 @@ impl Ring {
         self.word_by_word = true;
     }
 
-    /// Has an elastic receiver told by [`RingOutput::Part`] of messages that keep its port for the next one, perhaps after they have
-    /// arrived. Messages of such a transfer, a *train*, then follow each other without an event for each; whoever looks says for
-    /// which instant ([`Ring::catch_up`]). Receivers that are not elastic stay as they are.
+    /// Has an elastic receiver told late of messages without a ticket that keep its port for the next one: whoever looks asks for them
+    /// ([`Ring::take_part`]). Those of one transfer, a *train*, then follow each other without an event for each. Receivers that are not
+    /// elastic stay as they are.
     pub fn tell_late(&mut self, destination: NodeId) {
         if let Some(port) = self.destinations.get_mut(usize::from(destination.0)) {
             port.patient = port.elastic;
-            self.any_patient |= port.elastic;
         }
     }
 
-    /// Tells every receiver of every message when it has arrived, as if [`Ring::tell_late`] had not been called; only before anything was sent.
+    /// Tells every receiver of every message when it arrives, as if [`Ring::tell_late`] had not been called; only before anything was sent.
     pub fn tell_in_time(&mut self) {
         self.destinations.iter_mut().for_each(|port| port.patient = false);
-        self.any_patient = false;
     }
 
-    /// Brings trains up to an instant, and not including it, before which there is no event any more.
-    pub fn catch_up(&mut self, before: Time, context: &mut RingContext) {
-        while let Some(end) = self.train_goes_on_at().filter(|end| *end < before) {
+    /// Takes the next message of which a receiver is [told late](Ring::tell_late), if it has arrived before an instant; with its arrival.
+    /// There is no event of the ring before that instant any more.
+    pub fn take_part(&mut self, destination: NodeId, before: Time) -> Option<(Time, Message)> {
+        self.catch_up(before);
+        let parts = &mut self.destinations.get_mut(usize::from(destination.0))?.parts;
+        let has_arrived = parts.front().is_some_and(|(arrival, _)| *arrival < before);
+        if has_arrived { parts.pop_front() } else { None }
+    }
+
+    /// Brings trains up to an instant, and not including it, before which there is no event any more: channels are left and taken, and
+    /// parts are on their way, as of then.
+    pub fn catch_up(&mut self, before: Time) {
+        while self.trains > 0
+            && let Some(end) = self.train_goes_on_at().filter(|end| *end < before)
+        {
             self.settle(end);
-            self.grant_all(end, context);
+            self.go_on(end);
         }
     }
 
-    /// When the next message of a train ends and another follows, of which there may be no event.
+    /// When the next message of a train ends that another follows, of which there may be no event.
     fn train_goes_on_at(&self) -> Option<Time> {
-        if !self.any_patient || self.heads.is_empty() {
-            return None;
-        }
-        self.channels.ends().find(|(end, flight)| self.train_until(flight) > *end).map(|end| end.0)
+        self.channels.ends().find(|(_, flight)| flight.goes_on).map(|(end, _)| end)
     }
 
-    /// When the train that a message is of is over: at its own end, if no other of its transfer that nobody waits for is behind it.
-    /// [`Time::ZERO`] for what is of no train.
-    fn train_until(&self, flight: &MessageInFlight) -> Time {
-        let is_of_one = flight.hold && self.destination(flight).patient;
-        if is_of_one { self.sources[usize::from(flight.source.0)].train_until } else { Time::ZERO }
+    /// The next messages of trains of which one has ended take channels. No other head can go at that instant: none waits for a
+    /// channel, and none for a receiver that was left, or there would be an event.
+    fn go_on(&mut self, now: Time) {
+        self.unblocked = false;
+        let mut place = 0;
+        while place < self.heads.len() {
+            let source = self.heads[place].source;
+            if !self.can_go(place) {
+                place += 1;
+                continue;
+            }
+            self.take_head(place);
+            if let Some((flight, message)) = self.take_first(source, now) {
+                let to_tell = self.carry_to_end(flight, message);
+                debug_assert!(to_tell.is_none(), "nobody is told of what a train brings");
+            }
+            self.add_head_behind(source, now);
+        }
     }
 
     /// Handles one event at `context.now()`; what follows from it is scheduled or put out through `context`.
     pub fn handle(&mut self, event: RingEvent, context: &mut RingContext) {
         // An answer may be told of before its instant, and nothing that it decides is different before a train's next message.
         if !matches!(event, RingEvent::Accept { .. }) {
-            self.catch_up(context.now(), context);
+            self.catch_up(context.now());
         }
         match event {
             RingEvent::Request(request) => self.request(request, context),
@@ -175,10 +197,6 @@ impl Ring {
         self.settle(now);
         self.grant_all(now, context);
         self.arbitrate_at_next_end(context);
-    }
-
-    fn destination(&self, flight: &MessageInFlight) -> &DestinationPort {
-        &self.destinations[usize::from(flight.destination.0)]
     }
 
     /// The numbers that the ring was built with.
@@ -312,8 +330,8 @@ impl Ring {
             if first.is_some_and(|first| first <= end) {
                 break;
             }
-            if self.destination(flight).heads > 0 {
-                let until = self.train_until(flight).max(end);
+            if self.destinations[usize::from(flight.destination.0)].heads > 0 {
+                let until = if flight.goes_on { self.sources[usize::from(flight.source.0)].train_until } else { end };
                 first = Some(first.map_or(until, |first| first.min(until)));
             }
         }
@@ -362,6 +380,7 @@ impl Ring {
             self.to_fifos -= u64::from(!destination.elastic);
             let source = &mut self.sources[usize::from(flight.source.0)];
             source.in_flight -= 1;
+            self.trains -= u32::from(flight.goes_on);
             // Below the limit the next message has been a head all along.
             if source.in_flight + 1 == self.timing.source_channels {
                 self.at_limit -= 1;
@@ -382,8 +401,8 @@ impl Ring {
         let mut place =
             if is_for_all { 0 } else { self.heads.iter().rposition(|h| h.since < now).map_or(0, |p| p + 1) };
         while self.channels.has_free() && place < self.heads.len() {
-            let QueueHead { source, destination, .. } = self.heads[place];
-            if self.destinations[usize::from(destination.0)].takes_from(source) && self.has_channel_to(destination) {
+            if self.can_go(place) {
+                let source = self.heads[place].source;
                 self.take_head(place);
                 self.grant(source, now, context);
             } else {
@@ -392,25 +411,35 @@ impl Ring {
         }
     }
 
+    fn can_go(&self, place: usize) -> bool {
+        let QueueHead { source, destination, .. } = self.heads[place];
+        self.destinations[usize::from(destination.0)].takes_from(source) && self.has_channel_to(destination)
+    }
+
     fn has_channel_to(&self, destination: NodeId) -> bool {
         self.channels.has_free() && (self.is_elastic(destination) || self.to_fifos < self.timing.fifo_channels)
     }
 
     fn grant(&mut self, source: NodeId, now: Time, context: &mut RingContext) {
+        let Some((flight, message)) = self.take_first(source, now) else { return };
+        self.carry(flight, message, context);
+        self.add_head_behind(source, now);
+    }
+
+    /// The first message of a source leaves its queue for a channel.
+    fn take_first(&mut self, source: NodeId, now: Time) -> Option<(MessageInFlight, Message)> {
         let port = &mut self.sources[usize::from(source.0)];
-        let Some(QueuedRequest { at, request }) = port.queue.pop_front() else {
-            return;
-        };
+        let QueuedRequest { at, request } = port.queue.pop_front()?;
         port.in_flight += 1;
-        let more = port.in_flight < self.timing.source_channels;
         let waited = now.since(at);
         self.stats.waiting += waited;
         self.stats.longest_wait = self.stats.longest_wait.max(waited);
-        let flight = self.flight(&request, now);
-        let node = usize::from(flight.destination.0);
-        self.to_fifos += u64::from(!self.destinations[node].elastic);
-        self.destinations[node].channel = Some(self.carry(flight, request.message, context));
-        if more {
+        Some((self.flight(&request, now), request.message))
+    }
+
+    /// A source's next message is a head, if it may send on one more channel.
+    fn add_head_behind(&mut self, source: NodeId, now: Time) {
+        if self.sources[usize::from(source.0)].in_flight < self.timing.source_channels {
             self.add_head(now, source);
         } else {
             self.at_limit += 1;
@@ -427,41 +456,74 @@ impl Ring {
             hold: request.hold,
             granted: now,
             latency: self.timing.latency(source, destination, self.n_nodes()),
+            goes_on: false,
             slots_left: self.timing.overhead_words + u64::from(words),
             message: None,
         }
     }
 
-    /// Puts a message on a channel, whose number is returned. Its end is known at once where the receiver is elastic,
-    /// else at the answer to the announcement; a ring that moves every word waits for the words.
-    fn carry(&mut self, flight: MessageInFlight, message: Message, context: &mut RingContext) -> usize {
-        let granted = flight.granted;
+    /// Puts a message on a channel. Its end is known at once where the receiver is elastic, else at the answer to the announcement; a ring
+    /// that moves every word waits for the words.
+    fn carry(&mut self, flight: MessageInFlight, message: Message, context: &mut RingContext) {
         if self.word_by_word {
-            let channel = self.channels.occupy(MessageInFlight { message: Some(Box::new(message)), ..flight }, None);
-            context.schedule(granted + self.word, Phase::Arrive, RingEvent::Slot { channel });
-            return channel;
-        }
-        if !self.is_elastic(flight.destination) {
+            let begins = flight.granted;
+            let channel = self.occupy(MessageInFlight { message: Some(Box::new(message)), ..flight }, None);
+            context.schedule(begins + self.word, Phase::Arrive, RingEvent::Slot { channel });
+        } else if !self.is_elastic(flight.destination) {
             self.announce(&flight, message, context);
-            return self.channels.occupy(flight, None);
+            self.occupy(flight, None);
+        } else {
+            let MessageInFlight { source, ticket, .. } = flight;
+            if let Some((at, message)) = self.carry_to_end(flight, message) {
+                deliver(message, at, (source, ticket), context);
+            }
         }
-        let end = granted + self.timing.occupancy(flight.words);
-        if flight.hold && self.destination(&flight).patient {
-            self.begin_train(&flight, end);
-        }
-        self.deliver(&flight, message, end, context);
-        self.channels.occupy(flight, Some(end))
     }
 
-    /// A message that keeps its port ends then: until when the messages behind it that do so too would go, of which nobody is told in time.
-    fn begin_train(&mut self, flight: &MessageInFlight, end: Time) {
-        let port = &mut self.sources[usize::from(flight.source.0)];
-        if port.train_until >= end {
-            return;
+    fn occupy(&mut self, flight: MessageInFlight, end: Option<Time>) -> usize {
+        let destination = &mut self.destinations[usize::from(flight.destination.0)];
+        self.to_fifos += u64::from(!destination.elastic);
+        let channel = self.channels.occupy(flight, end);
+        destination.channel = Some(channel);
+        channel
+    }
+
+    /// Puts a message to an elastic receiver on a channel, and gives it back with its arrival if somebody is told of that in time.
+    fn carry_to_end(&mut self, flight: MessageInFlight, message: Message) -> Option<(Time, Message)> {
+        let end = flight.granted + self.timing.occupancy(flight.words);
+        let goes_on = flight.hold && self.is_in_train(&flight, end);
+        self.trains += u32::from(goes_on);
+        let to_tell = self.keep_part(&flight, message, end + flight.latency);
+        self.occupy(MessageInFlight { goes_on, ..flight }, Some(end));
+        to_tell
+    }
+
+    /// Keeps a message for a receiver that is told of it late; gives back any other.
+    fn keep_part(&mut self, flight: &MessageInFlight, message: Message, at: Time) -> Option<(Time, Message)> {
+        let port = &mut self.destinations[usize::from(flight.destination.0)];
+        if !port.patient || !flight.is_part() {
+            return Some((at, message));
         }
-        let waiting = port.queue.iter().map(|queued| &queued.request);
-        let train = waiting.take_while(|next| next.message.destination == flight.destination && next.is_part());
-        port.train_until = end + train.map(|next| self.timing.occupancy(next.message.words)).sum();
+        port.parts.push_back((at, message));
+        None
+    }
+
+    /// Whether a message that keeps its port, and ends then, is followed there by one of which nobody is told in time; and until when such
+    /// follow, if they are not held up.
+    fn is_in_train(&mut self, flight: &MessageInFlight, end: Time) -> bool {
+        let source = &mut self.sources[usize::from(flight.source.0)];
+        let waiting = source.queue.iter().map(|queued| &queued.request);
+        let mut train = waiting.take_while(|next| next.message.destination == flight.destination && next.is_part());
+        if !self.destinations[usize::from(flight.destination.0)].patient || train.next().is_none() {
+            return false;
+        }
+        // What was reckoned at the first message holds, but where a want of channels has held the train up.
+        if source.train_until <= end {
+            let waiting = source.queue.iter().map(|queued| &queued.request);
+            let train = waiting.take_while(|next| next.message.destination == flight.destination && next.is_part());
+            source.train_until = end + train.map(|next| self.timing.occupancy(next.message.words)).sum();
+        }
+        true
     }
 
     /// A slot of overhead or of a word is over: after the first one a receiver with a FIFO is told, after the last one
@@ -476,7 +538,9 @@ impl Ring {
         match message {
             Some(message) if elastic => {
                 let now = context.now();
-                self.deliver(&flight, *message, now, context);
+                if let Some((at, message)) = self.keep_part(&flight, *message, now + flight.latency) {
+                    deliver(message, at, (flight.source, flight.ticket), context);
+                }
                 self.channels.put_back(channel, flight);
                 self.channels.end_at(channel, now);
                 self.arbitrate_at_next_end(context);
@@ -490,15 +554,6 @@ impl Ring {
 
     fn is_elastic(&self, node: NodeId) -> bool {
         self.destinations[usize::from(node.0)].elastic
-    }
-
-    fn deliver(&self, flight: &MessageInFlight, message: Message, end: Time, context: &mut RingContext) {
-        let at = end + flight.latency;
-        if flight.hold && flight.ticket.is_none() && self.destination(flight).patient {
-            return context.output(at, RingOutput::Part(message));
-        }
-        context.output(at, RingOutput::Delivered(message));
-        tell_sender(flight, at, context);
     }
 
     fn announce(&self, flight: &MessageInFlight, message: Message, context: &mut RingContext) {
@@ -516,7 +571,7 @@ impl Ring {
         let earliest = flight.granted + self.timing.occupancy(flight.words) + flight.latency;
         let accepted = last_word_at.max(earliest);
         let end = now.max(Time(accepted.0 - flight.latency.0));
-        tell_sender(flight, accepted.max(now + self.word), context);
+        tell_sender((flight.source, flight.ticket), accepted.max(now + self.word), context);
         self.channels.end_at(channel, end);
         self.arbitrate_at_next_end(context);
         if last_word_at < earliest {
@@ -554,9 +609,15 @@ fn port_name(node: NodeId) -> String {
     format!("ring port {}", node.0)
 }
 
-fn tell_sender(flight: &MessageInFlight, at: Time, context: &mut RingContext) {
-    if let Some(ticket) = flight.ticket {
-        context.output(at, RingOutput::Sent { source: flight.source, ticket });
+/// A message with its last word is with an elastic receiver.
+fn deliver(message: Message, at: Time, sender: (NodeId, Option<u64>), context: &mut RingContext) {
+    context.output(at, RingOutput::Delivered(message));
+    tell_sender(sender, at, context);
+}
+
+fn tell_sender((source, ticket): (NodeId, Option<u64>), at: Time, context: &mut RingContext) {
+    if let Some(ticket) = ticket {
+        context.output(at, RingOutput::Sent { source, ticket });
     }
 }
 
@@ -583,7 +644,7 @@ impl SourcePort {
 
 impl DestinationPort {
     const fn new(elastic: bool) -> Self {
-        Self { elastic, patient: false, channel: None, reserved_for: None, heads: 0 }
+        Self { elastic, patient: false, parts: VecDeque::new(), channel: None, reserved_for: None, heads: 0 }
     }
 
     fn takes_from(&self, source: NodeId) -> bool {

@@ -15,10 +15,12 @@ use crate::window::{Closed, Window, field_ms};
 use pxpl5_machine::{Observation, Record, StageSpan};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::PeriodNumber;
+use std::fmt;
 use std::sync::Arc;
 
 /// What came of an experiment: the machine's [`Record`] and the pictures that were shown. It may be sent to another thread.
-#[derive(Debug)]
+///
+/// It prints as a line: errors carry one, and whoever unwraps a result shall not be shown every vertex of the scene.
 pub struct Outcome {
     experiment: Experiment,
     record: Record,
@@ -27,6 +29,18 @@ pub struct Outcome {
     closed: Closed,
     reached: PeriodNumber,
     host_seconds: Option<f64>,
+}
+
+impl fmt::Debug for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Outcome")
+            .field("pipeline", &self.experiment.pipeline().name())
+            .field("scene", &self.experiment.scene().name())
+            .field("reached", &self.reached)
+            .field("shown", &self.tally().shown)
+            .field("trace_hash", &self.record.trace_hash())
+            .finish_non_exhaustive()
+    }
 }
 
 impl Outcome {

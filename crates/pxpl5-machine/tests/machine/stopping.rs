@@ -76,6 +76,24 @@ fn who_is_sent_something_now_and_then_is_not_deadlocked() {
     assert_eq!(run(false).map_err(|error| error.time()), Err(us(100 * (1 + DEADLOCK_TICKS))));
 }
 
+/// TRANSFORM of a large scene on one processor takes longer than a deadlock does to be noticed; what waits for it then waits for nothing.
+#[test]
+fn work_that_takes_long_is_no_deadlock_until_it_is_over() {
+    let ticks = 3 * DEADLOCK_TICKS;
+    let run = |until: u64| {
+        let mut machine = machine();
+        load_waiting(&mut machine, FIRST_GP);
+        load(&mut machine, SECOND_GP, move |gp| async move {
+            gp.spend(Span::from_us(100 * ticks)).await;
+            Ok(())
+        });
+        machine.switch_on();
+        machine.run_until(us(100 * until + 1)).map_err(|error| error.time())
+    };
+    assert_eq!(run(ticks), Ok(()));
+    assert_eq!(run(2 * ticks), Err(us(100 * (ticks + DEADLOCK_TICKS))));
+}
+
 #[test]
 fn everybody_who_waits_is_told_with_what_he_waits_for() {
     let mut machine = machine();

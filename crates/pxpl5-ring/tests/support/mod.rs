@@ -129,13 +129,12 @@ fn run_queue(
     let mut times = Times::default();
     while let Some((now, _, event)) = queue.next_event() {
         ring.handle(event, context.at(now));
-        ring.catch_up(now, &mut context);
         for (time, phase, event) in context.drain_events() {
             queue.schedule(time, phase, event);
         }
         for (time, output) in context.drain_outputs() {
             match output {
-                RingOutput::Part(message) | RingOutput::Delivered(message) => {
+                RingOutput::Delivered(message) => {
                     times.accepted.insert(number(&message), time);
                 }
                 RingOutput::Sent { ticket, .. } => drop(times.sent.insert(ticket, time)),
@@ -151,10 +150,21 @@ fn run_queue(
                 }
             }
         }
+        take_parts(&mut ring, now, &mut times);
         look(now, &times);
     }
+    take_parts(&mut ring, Time(u64::MAX), &mut times);
     ring.settle(Time(u64::MAX));
     (ring, times)
+}
+
+/// What receivers that are told late are told of before an instant.
+fn take_parts(ring: &mut Ring, before: Time, times: &mut Times) {
+    for node in (0..ring.n_nodes()).map(NodeId) {
+        while let Some((arrived, message)) = ring.take_part(node, before) {
+            times.accepted.insert(number(&message), arrived);
+        }
+    }
 }
 
 struct WordSlots {

@@ -301,7 +301,7 @@ impl<'a> Machine<'a> {
                 let board = usize::from(message.destination.0) - first;
                 self.renderer_event(now, board, RendererEvent::Announce { message, first_word_at });
             }
-            RingOutput::Part(message) | RingOutput::Delivered(message) => {
+            RingOutput::Delivered(message) => {
                 if usize::from(message.source.0) >= first {
                     self.last_tile_at = now;
                 }
