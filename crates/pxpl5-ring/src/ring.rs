@@ -7,6 +7,8 @@ use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, Message, NodeId};
 use std::collections::VecDeque;
 
+const NEVER: Time = Time(u64::MAX);
+
 type RingContext = Context<RingEvent, RingOutput>;
 
 /// The ring: state of its ports, channels and arbiter.
@@ -33,8 +35,8 @@ pub struct Ring {
     watched: bool,
     /// Whether every word is an event.
     word_by_word: bool,
-    /// Messages on channels that are of a train and not its last.
-    trains: u32,
+    /// When the next message of a train ends that another follows, of which there may be no event.
+    train_goes_on_at: Time,
     stats: RingStats,
     refusals: Refusals,
 }
@@ -101,7 +103,7 @@ impl Ring {
             arbitrations: Vec::new(),
             watched: false,
             word_by_word: false,
-            trains: 0,
+            train_goes_on_at: NEVER,
             stats: RingStats { channel_busy: vec![Span::ZERO; n_channels], ..RingStats::default() },
             refusals: Refusals::default(),
         })
@@ -144,17 +146,11 @@ impl Ring {
     /// Brings trains up to an instant, and not including it, before which there is no event any more: channels are left and taken, and
     /// parts are on their way, as of then.
     pub fn catch_up(&mut self, before: Time) {
-        while self.trains > 0
-            && let Some(end) = self.train_goes_on_at().filter(|end| *end < before)
-        {
+        while self.train_goes_on_at < before {
+            let end = self.train_goes_on_at;
             self.settle(end);
             self.go_on(end);
         }
-    }
-
-    /// When the next message of a train ends that another follows, of which there may be no event.
-    fn train_goes_on_at(&self) -> Option<Time> {
-        self.channels.ends().find(|(_, flight)| flight.goes_on).map(|(end, _)| end)
     }
 
     /// The next messages of trains of which one has ended take channels. No other head can go at that instant: none waits for a
@@ -373,6 +369,10 @@ impl Ring {
     /// its sums are up to date afterwards.
     pub fn settle(&mut self, now: Time) {
         let lacked_channel = self.lacks_channel();
+        if self.train_goes_on_at <= now {
+            let mut later = self.channels.ends().filter(|(end, flight)| flight.goes_on && *end > now);
+            self.train_goes_on_at = later.next().map_or(NEVER, |(end, _)| end);
+        }
         while let Some((channel, ended, flight)) = self.channels.take_ended(now) {
             let destination = &mut self.destinations[usize::from(flight.destination.0)];
             destination.release(&flight);
@@ -380,7 +380,6 @@ impl Ring {
             self.to_fifos -= u64::from(!destination.elastic);
             let source = &mut self.sources[usize::from(flight.source.0)];
             source.in_flight -= 1;
-            self.trains -= u32::from(flight.goes_on);
             // Below the limit the next message has been a head all along.
             if source.in_flight + 1 == self.timing.source_channels {
                 self.at_limit -= 1;
@@ -492,7 +491,9 @@ impl Ring {
     fn carry_to_end(&mut self, flight: MessageInFlight, message: Message) -> Option<(Time, Message)> {
         let end = flight.granted + self.timing.occupancy(flight.words);
         let goes_on = flight.hold && self.is_in_train(&flight, end);
-        self.trains += u32::from(goes_on);
+        if goes_on {
+            self.train_goes_on_at = self.train_goes_on_at.min(end);
+        }
         let to_tell = self.keep_part(&flight, message, end + flight.latency);
         self.occupy(MessageInFlight { goes_on, ..flight }, Some(end));
         to_tell
