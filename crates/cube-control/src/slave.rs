@@ -5,10 +5,8 @@ use crate::faces::{CubePass, context_of};
 use crate::master::copy_order;
 use crate::protocol::{Token, UpdateOrder};
 use crate::update::FaceUpdate;
-use pphigs::{
-    DisplayList, Editing, Handing, PROGRAM_BYTES, Pass, RegionEnvelope, Share, has_region_messages, region_messages,
-};
-use pxpl5_gp::{Account, Fault, Gp, Priority, Stage};
+use pphigs::{DisplayList, Editing, Handing, PROGRAM_BYTES, Pass, RegionEnvelope, Share, region_messages};
+use pxpl5_gp::{Account, Fault, Gp, Priority, Received, Stage};
 use pxpl5_wire::{Body, CommandList, NodeId, PictureNumber, RegionId, SurfaceId};
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -142,24 +140,14 @@ async fn token_program(gp: Gp, config: CubeControlConfig, index: usize, state: S
     loop {
         let received = gp.next_message().await;
         let order = UpdateOrder::read(&received, gp.node());
-        if let Ok(UpdateOrder::Token(token)) = order
-            && gp.pays_at_once()
-            && TokenBin::of(&config, &state, token).is_none_or(|bin| bin.is_empty())
-        {
-            // The token goes on when it has been received and sent, and nothing of this level happens between.
-            gp.spend_messages(2).await;
-            gp.send_prepared([passed_on(&config, index, token)]);
-            free_bins(&gp, &state, token)?;
+        if let Ok(UpdateOrder::Token(token)) = order {
+            walk(&gp, &config, index, &state, &received, token).await?;
             continue;
         }
         gp.pay_for(&received).await;
         match order? {
             UpdateOrder::Send(update) => state.borrow_mut().updates.push_back(update),
             UpdateOrder::Edit(update) => state.borrow_mut().next_edit = update.next(),
-            UpdateOrder::Token(token) => {
-                walk(&gp, &config, index, &state, token).await?;
-                free_bins(&gp, &state, token)?;
-            }
             other => return Err(Fault::Protocol { node: gp.node(), found: format!("at a slave: {other:?}") }),
         }
     }
@@ -171,18 +159,16 @@ async fn walk(
     config: &CubeControlConfig,
     index: usize,
     state: &SharedSlaveState,
+    received: &Received,
     token: Token,
 ) -> Result<(), Fault> {
     let renderer = config.renderers[usize::from(token.renderer)];
-    if let Some(bin) = TokenBin::of(config, state, token) {
-        gp.work(&bin.handing()).await?;
-        for list in bin.messages() {
-            gp.clump_buffer_free().await;
-            gp.send(renderer, list.words(), Body::Commands(list)).await;
-        }
-    }
-    gp.send_batch(vec![passed_on(config, index, token)]).await;
-    Ok(())
+    let bin = TokenBin::of(config, state, token);
+    let lists = bin.as_ref().map_or_else(Vec::new, TokenBin::messages);
+    let messages = lists.into_iter().map(|list| (renderer, list.words(), Body::Commands(list))).collect();
+    let handing = bin.as_ref().map(TokenBin::handing);
+    gp.answer(received, handing.as_ref(), messages, passed_on(config, index, token)).await?;
+    free_bins(gp, state, token)
 }
 
 /// A slave's bin of a token's region, with what its messages begin and end.
@@ -209,10 +195,6 @@ impl TokenBin {
         let Self { pass, region, envelope, .. } = self;
         let (context, view) = (self.context as u8, self.face as u8);
         Handing { pass, context, view, region: *region, envelope: *envelope }
-    }
-
-    fn is_empty(&self) -> bool {
-        !has_region_messages(&self.pass, self.region, self.envelope)
     }
 
     fn messages(&self) -> Vec<CommandList> {

@@ -35,6 +35,9 @@ pub struct RegionEnvelope {
 /// The messages that hold a region's bin in its envelope, as few as their length allows.
 #[must_use]
 pub fn region_messages(pass: &Arc<Pass>, region: RegionId, context: u8, envelope: RegionEnvelope) -> Vec<CommandList> {
+    if pass.counts(region).total() == 0 && !envelope.begin && pass.ending_words(envelope) == 0 {
+        return Vec::new();
+    }
     let parts = (0..).zip(Parts::new(pass, region, envelope));
     let words = || Arc::new(RegionWords { pass: Arc::clone(pass), region, context, envelope }) as Arc<dyn CommandWords>;
     let words = pass.picture().pixels.then(words);
@@ -45,12 +48,6 @@ pub fn region_messages(pass: &Arc<Pass>, region: RegionId, context: u8, envelope
         content: words.as_ref().map(|words| CommandContent::new(Arc::clone(words), number)),
     };
     parts.map(list).collect()
-}
-
-/// Whether there is any such message, without making them.
-#[must_use]
-pub fn has_region_messages(pass: &Pass, region: RegionId, envelope: RegionEnvelope) -> bool {
-    pass.counts(region).total() > 0 || envelope.begin || pass.ending_words(envelope) > 0
 }
 
 /// A message that only copies regions, each from its context.

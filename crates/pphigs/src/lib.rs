@@ -50,8 +50,7 @@ mod windows;
 pub use begin::{Beginning, Editing};
 pub use code::{KernelOutput, Transforming};
 pub use commands::{
-    BIN_ENTRY_BYTES, PROGRAM_BYTES, RegionEnvelope, copy_message, gouraud_sphere, has_region_messages, region_messages,
-    shade,
+    BIN_ENTRY_BYTES, PROGRAM_BYTES, RegionEnvelope, copy_message, gouraud_sphere, region_messages, shade,
 };
 pub use cost::TransformCost;
 pub use counts::PrimitiveCounts;

@@ -4,8 +4,9 @@
 //! ([`Processor::receive_message`], [`Processor::send_chain`]); programs do not know which.
 
 use crate::cpu::Priority;
-use crate::firmware::{Batch, ChainLink, Fault, Gp, Received, Ticket};
+use crate::firmware::{Batch, Cause, ChainLink, Fault, Gp, Received, Ticket};
 use crate::processor::Processor;
+use crate::work::Work;
 use pxpl5_sim::Span;
 use pxpl5_wire::{Body, Message, NodeId};
 
@@ -37,17 +38,71 @@ impl Gp {
         self.software(|processor| processor.receive_message(received.source, &received.body)).await;
     }
 
-    /// Whether this program may pay for several messages at once: each takes the time of the table, and no other program of
-    /// its board comes between. Code runs message by message, because another program's may have to run in between.
+    /// Answers a message: pays for receiving it, does work, sends some messages one after the other, each when the clump buffer is free, and
+    /// one more in the background. What follows on each other without a wait is spent in one, where that is the same
+    /// ([`Gp::pays_at_once`]).
+    ///
+    /// # Errors
+    ///
+    /// [`Fault::Processor`] when code does not come to its end.
+    pub async fn answer(
+        &self,
+        received: &Received,
+        work: Option<&impl Work>,
+        messages: Vec<(NodeId, u32, Body)>,
+        last: (NodeId, u32, Body),
+    ) -> Result<(), Fault> {
+        let mut messages = messages.into_iter();
+        if self.pays_at_once() {
+            let timing = self.timing();
+            let message = Span::from_ns(timing.message_ns);
+            let begin = message + work.map_or(Span::ZERO, |work| work.by_table(&timing));
+            match messages.next() {
+                None => {
+                    self.spend(begin + message).await;
+                    self.start(self.unheld([last]));
+                    return Ok(());
+                }
+                Some(first) if self.has_free_clump_buffer() => {
+                    self.spend(begin + message).await;
+                    self.start(self.unheld([first]));
+                }
+                Some(first) => {
+                    self.spend(begin).await;
+                    self.clump_buffer_free().await;
+                    self.send_batch(vec![first]).await;
+                }
+            }
+        } else {
+            self.pay_for(received).await;
+            if let Some(work) = work {
+                self.work(work).await?;
+            }
+        }
+        for message in messages {
+            self.clump_buffer_free().await;
+            self.send_batch(vec![message]).await;
+        }
+        self.send_batch(vec![last]).await;
+        Ok(())
+    }
+
+    /// Whether this program may spend the times of several things at once: each is that of the table, and the other program of its board
+    /// neither runs between nor sends anything. Code runs thing by thing, because another program's may have to run in between. A
+    /// program of the foreground that has just spent its time may send at this very instant.
     #[must_use]
     pub fn pays_at_once(&self) -> bool {
         let shared = self.shared.borrow();
-        self.priority == Priority::Interrupt && !shared.pays_one_by_one && shared.processor.is_none()
+        let may_send_now = shared.waits[Priority::Foreground as usize].ended_by == Cause::Work
+            && shared.cpu.is_done(Priority::Foreground);
+        let by_table = !shared.pays_one_by_one && shared.processor.is_none() && shared.timing.message_ns > 0;
+        self.priority == Priority::Interrupt && by_table && !may_send_now
     }
 
-    /// Pays for so many messages in a row by the table, where [`Gp::pays_at_once`] allows it.
-    pub async fn spend_messages(&self, count: u64) {
-        self.spend(Span::from_ns(self.timing().message_ns) * count).await;
+    /// Whether [`Gp::clump_buffer_free`] would not wait.
+    fn has_free_clump_buffer(&self) -> bool {
+        let shared = self.shared.borrow();
+        shared.accepted >= shared.issued
     }
 
     /// Sends one message in the background: pays the software cost, then queues it behind earlier ones.
@@ -89,11 +144,6 @@ impl Gp {
         let ticket = Ticket(shared.issued);
         shared.batches.push_back(Batch { ticket, links });
         ticket
-    }
-
-    /// Hands a chain to the DMA that was paid for by [`Gp::spend_messages`].
-    pub fn send_prepared(&self, batch: impl IntoIterator<Item = (NodeId, u32, Body)>) -> Ticket {
-        self.start(self.unheld(batch))
     }
 
     fn unheld(&self, batch: impl IntoIterator<Item = (NodeId, u32, Body)>) -> Chain {
@@ -216,7 +266,10 @@ mod tests {
     /// Code runs message by message; of the table's times several make one.
     #[test]
     fn several_are_paid_for_at_once_by_the_table_alone() {
-        let [table, code] = [false, true].map(|code| board(1_000, code).handle_for(Priority::Interrupt).pays_at_once());
-        assert_eq!((table, code), (true, false));
+        let pays_at_once = |ns, code| board(ns, code).handle_for(Priority::Interrupt).pays_at_once();
+        assert_eq!(
+            [pays_at_once(1_000, false), pays_at_once(1_000, true), pays_at_once(0, false)],
+            [true, false, false]
+        );
     }
 }

@@ -1,6 +1,7 @@
 //! What programs see of their board, and what the board tells others: each promise of [`Gp`] and [`GpBoard`] alone. Times are sums of spans
 //! that the test sets; numbers of events follow from which waits each of them can end.
 
+use proptest::prelude::*;
 use pxpl5_gp::{
     Account, CodeVersion, Fault, Gp, GpBoard, GpEvent, GpOutput, GpTiming, Mark, OutOfMemory, PLACE_BITS, Priority,
     Processor, ProcessorFault, ProgramLook, Stage, StageEdge, WaitingMail, Work,
@@ -283,7 +284,7 @@ fn memory_that_does_not_fit_stops_the_program() {
 }
 
 #[test]
-fn a_message_can_be_taken_for_nothing_and_several_be_paid_for_at_once() {
+fn a_message_can_be_taken_for_nothing() {
     let notes = Notes::default();
     let told = Rc::clone(&notes);
     let mut rig = Rig::new().with(Priority::Interrupt, |gp| async move {
@@ -292,17 +293,15 @@ fn a_message_can_be_taken_for_nothing_and_several_be_paid_for_at_once() {
         let sources = [gp.take_message(), gp.take_message(), gp.take_message()];
         let sources = sources.map(|received| received.map_or(0, |received| u64::from(received.source.0)));
         sources.iter().for_each(|source| note(&told, &gp, *source));
-        gp.spend_messages(3).await;
-        note(&told, &gp, 0);
         // A chain without messages has been accepted.
-        gp.accepted(gp.send_prepared([])).await;
+        gp.accepted(gp.send_batch(Vec::new()).await).await;
         note(&told, &gp, 1);
         Ok(())
     });
     rig = rig.fed(100, message(3)).fed(200, message(8)).fed(300, GpEvent::Retrace(PeriodNumber(1)));
     rig.events();
-    let paid = ns(300 + 3 * MESSAGE_NS);
-    assert_eq!(*notes.borrow(), [(ns(300), 3), (ns(300), 8), (ns(300), 0), (paid, 0), (paid, 1)]);
+    let paid = ns(300 + MESSAGE_NS);
+    assert_eq!(*notes.borrow(), [(ns(300), 3), (ns(300), 8), (ns(300), 0), (paid, 1)]);
     rig.board.pay_one_by_one();
     assert!(!rig.board.handle_for(Priority::Interrupt).pays_at_once());
     assert!(!Rig::new().board.handle_for(Priority::Foreground).pays_at_once(), "interrupts come between");
@@ -413,5 +412,93 @@ fn breakpoints_are_met_where_there_is_a_processor() {
         assert_eq!((&addresses[..], rig.board.take_hits().len()), (expected, 0));
         let memory = rig.board.with_processor(Processor::memory_bytes);
         assert_eq!(memory, code.map(|_| 8 << 20), "of a board as built");
+    }
+}
+
+/// Work of so many nanoseconds by the table.
+struct Handing(u64);
+
+impl Work for Handing {
+    fn by_table(&self, _: &GpTiming) -> Span {
+        Span::from_ns(self.0)
+    }
+
+    fn by_code(&self, timing: &GpTiming, _: &mut Processor) -> Result<Span, ProcessorFault> {
+        Ok(self.by_table(timing))
+    }
+}
+
+/// An order for the interrupt's program: when it comes, how long its work takes if it has any, and how many messages answer it besides the last.
+type Order = (u64, Option<u64>, usize);
+
+/// What a board sends and when, its busy time and the events that took. Its foreground works so long again and again, and sends a message
+/// after each; the n-th message is accepted `delays[n]` after it has left, in hundreds of ns, and again from the first.
+fn answers(
+    orders: &[Order],
+    foreground: &[u64],
+    delays: &[u64],
+    one_by_one: bool,
+) -> (Vec<(Time, u16, u64)>, Span, u64) {
+    let all = Rc::new(RefCell::new(orders.to_vec()));
+    let mut rig = Rig::new().with(Priority::Interrupt, |gp| async move {
+        loop {
+            let received = gp.next_message().await;
+            let (_, work, count) = all.borrow_mut().remove(0);
+            let messages = (0..count as u16).map(|n| (NodeId(1 + n), 1, word(0).1)).collect();
+            let work = work.map(|hundreds| Handing(100 * hundreds));
+            gp.answer(&received, work.as_ref(), messages, (NodeId(0), 1, word(0).1)).await?;
+        }
+    });
+    let spans = foreground.to_vec();
+    rig = rig.with(Priority::Foreground, |gp| async move {
+        for span in spans {
+            gp.spend(Span::from_ns(100 * span)).await;
+            gp.send(NodeId(8), 1, word(0).1).await;
+        }
+        gp.until("nothing", || None::<()>).await;
+        Ok(())
+    });
+    if one_by_one {
+        rig.board.pay_one_by_one();
+    }
+    rig = orders.iter().fold(rig, |rig, (at, ..)| rig.fed(100 * at, message(7)));
+    let mut told = 0;
+    while let Some(next) = rig.bench.queue().next_time() {
+        rig.run_to(next.0 / 1_000);
+        while let Some((time, GpOutput::Send { ticket, .. })) = rig.bench.outputs.get(told) {
+            let (at, event) = (*time + Span::from_ns(100 * delays[told % delays.len()]), GpEvent::Accepted(*ticket));
+            rig.bench.feed(at, Phase::Arrive, event);
+            told += 1;
+        }
+    }
+    let events = rig.bench.queue().events_taken();
+    let sent = rig.bench.outputs.iter();
+    let sent = sent.map(|(time, GpOutput::Send { message, ticket, .. })| (*time, message.destination.0, *ticket));
+    (sent.collect(), rig.board.busy(), events)
+}
+
+proptest! {
+    /// Whatever comes between: messages during the answer, a foreground that sends at the same instant, receivers that take their time.
+    #[test]
+    fn an_answer_that_is_paid_for_in_one_leaves_when_one_by_one_would_have(
+        orders in proptest::collection::vec((0u64..120, proptest::option::of(0u64..20), 0usize..4), 1..12),
+        foreground in proptest::collection::vec(0u64..40, 0..6),
+        delays in proptest::collection::vec(1u64..60, 1..8)
+    ) {
+        let [one, each] = [false, true].map(|one_by_one| answers(&orders, &foreground, &delays, one_by_one));
+        prop_assert_eq!(one.0, each.0);
+        prop_assert_eq!(one.1, each.1);
+        prop_assert!(one.2 <= each.2);
+    }
+}
+
+/// Receiving and work of 0.3 us, then each message; the second begins when the first is accepted, a cycle and 0.1 us after its software.
+#[test]
+fn an_answer_takes_a_message_for_what_is_received_and_for_each_that_is_sent() {
+    for (count, expected_ns) in [(0, vec![3_300]), (1, vec![3_300, 4_300]), (2, vec![3_300, 4_425, 5_425])] {
+        let (sent, busy, _) = answers(&[(10, Some(3), count)], &[], &[1], false);
+        let times: Vec<Time> = sent.iter().map(|(time, ..)| *time).collect();
+        assert_eq!(times, expected_ns.into_iter().map(|at| ns(at) + CYCLE).collect::<Vec<_>>());
+        assert_eq!(busy, Span::from_ns(300 + (count as u64 + 2) * MESSAGE_NS));
     }
 }

@@ -6,9 +6,9 @@ use crate::protocol::{StageOrder, Token};
 use crate::rules::EyeDrawing;
 use pphigs::{
     BIN_ENTRY_BYTES, Editing, FrameView, Handing, PROGRAM_BYTES, Pass, RegionEnvelope, Share, Transforming,
-    has_region_messages, region_messages,
+    region_messages,
 };
-use pxpl5_gp::{Account, Fault, Gp, Priority, Stage};
+use pxpl5_gp::{Account, Fault, Gp, Priority, Received, Stage};
 use pxpl5_wire::{Body, NodeId, PictureNumber, RegionId};
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -168,14 +168,8 @@ async fn token_program(
     loop {
         let received = gp.next_message().await;
         let order = StageOrder::read(&received, gp.node());
-        if let Ok(StageOrder::Token(token)) = order
-            && gp.pays_at_once()
-            && is_empty(&config, &state, token)
-        {
-            // The token goes on when it has been received and sent, and nothing of this level happens between.
-            gp.spend_messages(2).await;
-            gp.send_prepared([passed_on(&config, index, token)]);
-            free_bins(&gp, &state, token.drawing)?;
+        if let Ok(StageOrder::Token(token)) = order {
+            walk(&gp, &config, index, &state, &received, token).await?;
             continue;
         }
         gp.pay_for(&received).await;
@@ -187,10 +181,6 @@ async fn token_program(
                 state.next_transform = config.first_of(frame).after(1);
             }
             StageOrder::Transform(drawing) => state.borrow_mut().next_transform = drawing.after(1),
-            StageOrder::Token(token) => {
-                walk(&gp, &config, index, &state, token).await?;
-                free_bins(&gp, &state, token.drawing)?;
-            }
             other => return Err(Fault::Protocol { node: gp.node(), found: format!("at a slave: {other:?}") }),
         }
     }
@@ -202,26 +192,18 @@ async fn walk(
     config: &RenderingControlConfig,
     index: usize,
     state: &SharedSlaveState,
+    received: &Received,
     token: Token,
 ) -> Result<(), Fault> {
     let renderer = config.renderers[usize::from(token.renderer)];
     let context = (token.drawing.0 % 2) as u8;
     let pass = state.borrow().bins[usize::from(context)].clone();
-    if let Some(pass) = &pass {
-        gp.work(&Handing { pass, context, view: 0, region: token.region, envelope: envelope(config, token) }).await?;
-    }
-    for list in pass.map_or_else(Vec::new, |pass| region_messages(&pass, token.region, 0, envelope(config, token))) {
-        gp.clump_buffer_free().await;
-        gp.send(renderer, list.words(), Body::Commands(list)).await;
-    }
-    gp.send_batch(vec![passed_on(config, index, token)]).await;
-    Ok(())
-}
-
-/// Whether this slave has nothing for the token's region.
-fn is_empty(config: &RenderingControlConfig, state: &SharedSlaveState, token: Token) -> bool {
-    let pass = &state.borrow().bins[(token.drawing.0 % 2) as usize];
-    pass.as_ref().is_none_or(|pass| !has_region_messages(pass, token.region, envelope(config, token)))
+    let envelope = envelope(config, token);
+    let handing = pass.as_ref().map(|pass| Handing { pass, context, view: 0, region: token.region, envelope });
+    let lists = pass.as_ref().map_or_else(Vec::new, |pass| region_messages(pass, token.region, 0, envelope));
+    let messages = lists.into_iter().map(|list| (renderer, list.words(), Body::Commands(list))).collect();
+    gp.answer(received, handing.as_ref(), messages, passed_on(config, index, token)).await?;
+    free_bins(gp, state, token.drawing)
 }
 
 /// What tells the next slave, or the master, of a token.
