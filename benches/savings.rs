@@ -35,7 +35,7 @@ fn savings(criterion: &mut Criterion) {
     for (name, experiment) in experiments() {
         for saving in Saving::ALL {
             // Slats has neither tokens nor interrupts that are worth it.
-            if name == "slats-140" && saving == Saving::EmptyBins {
+            if name == "slats-140" && saving == Saving::JointWork {
                 continue;
             }
             let pixels = if saving == Saving::EmptyRegions { Pixels::All } else { Pixels::Off };

@@ -84,10 +84,10 @@ fn delayed_work_ends_when_it_would_have_been_announced() {
 #[test]
 fn tokens_that_find_an_empty_bin_go_on_when_two_payments_would_have_let_them() {
     for experiment in experiments() {
-        assert_same(&experiment.pixels(Pixels::Lazy), Saving::EmptyBins, 10);
+        assert_same(&experiment.pixels(Pixels::Lazy), Saving::JointWork, 10);
     }
     let few = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), mig(12));
-    assert_same(&few.pixels(Pixels::Lazy), Saving::EmptyBins, 20);
+    assert_same(&few.pixels(Pixels::Lazy), Saving::JointWork, 20);
 }
 
 #[test]
@@ -167,6 +167,6 @@ fn savings_are_known_by_their_names() {
     let error = "idleness".parse::<Saving>().expect_err("no saving");
     assert_eq!(
         error,
-        "expected idle-boards, transfers, empty-regions, repeated-code, delayed-work, empty-bins, joint-events, trains, found \"idleness\""
+        "expected idle-boards, transfers, empty-regions, repeated-code, delayed-work, joint-work, joint-events, trains, found \"idleness\""
     );
 }

@@ -32,7 +32,7 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(0..=1024))]
     threads: Option<u64>,
     /// Do without a saving, to see what it is worth: idle-boards, transfers, empty-regions, repeated-code, delayed-work,
-    /// empty-bins or joint-events; may be repeated.
+    /// joint-work, joint-events or trains; may be repeated.
     #[arg(long, value_name = "SAVING")]
     without: Vec<Saving>,
     /// Write report.json, results.csv, pictures.csv, experiment.toml, timeline.svg and the last pictures into this folder.

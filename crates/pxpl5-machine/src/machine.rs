@@ -147,7 +147,7 @@ impl Machine {
             Saving::EmptyRegions => self.record.renderers.iter_mut().for_each(Renderer::draw_every_region),
             Saving::RepeatedCode => self.processors.iter_mut().for_each(GpBoard::count_every_clock),
             Saving::DelayedWork => self.processors.iter_mut().for_each(GpBoard::announce_every_end),
-            Saving::EmptyBins => self.processors.iter_mut().for_each(GpBoard::pay_one_by_one),
+            Saving::JointWork => self.processors.iter_mut().for_each(GpBoard::pay_one_by_one),
             Saving::JointEvents => self.joint_events = false,
             Saving::Trains => self.record.ring.tell_in_time(),
         }

@@ -24,9 +24,9 @@ pub enum Saving {
     /// Work that interrupts delay is looked at when it would have ended without them. Without it each delay announces the end
     /// anew, and leaves an event behind.
     DelayedWork,
-    /// A token that finds an empty bin is paid for once, receiving and sending together. Without it the processor is asked
-    /// between the two.
-    EmptyBins,
+    /// What a slave does for a token without a wait between is one piece of work: receiving it, handing its bin over, and the software
+    /// of the first message that leaves. Without it the processor is asked after each.
+    JointWork,
     /// What nothing can come between is one event: the messages that a board hands to the ring at once, a delivery and the news of it
     /// to its sender, an announcement and the renderer's answer. Without it each is an event of its own, as in a run that is
     /// stepped through.
@@ -44,7 +44,7 @@ impl Saving {
         Self::EmptyRegions,
         Self::RepeatedCode,
         Self::DelayedWork,
-        Self::EmptyBins,
+        Self::JointWork,
         Self::JointEvents,
         Self::Trains,
     ];
@@ -58,7 +58,7 @@ impl Saving {
             Self::EmptyRegions => "empty-regions",
             Self::RepeatedCode => "repeated-code",
             Self::DelayedWork => "delayed-work",
-            Self::EmptyBins => "empty-bins",
+            Self::JointWork => "joint-work",
             Self::JointEvents => "joint-events",
             Self::Trains => "trains",
         }

@@ -40,7 +40,7 @@ fn without_the_computed_end_every_word_is_an_event() {
 
 #[test]
 fn processors_give_up_what_is_theirs() {
-    for given_up in [None, Some(Saving::EmptyBins)] {
+    for given_up in [None, Some(Saving::JointWork)] {
         let mut machine = machine();
         given_up.into_iter().for_each(|saving| machine.give_up(saving));
         let at_once = machine.processor(FIRST_GP, Priority::Interrupt).pays_at_once();
