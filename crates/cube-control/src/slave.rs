@@ -165,7 +165,7 @@ async fn walk(
     let renderer = config.renderers[usize::from(token.renderer)];
     let bin = TokenBin::of(config, state, token);
     let lists = bin.as_ref().map_or_else(Vec::new, TokenBin::messages);
-    let messages = lists.into_iter().map(|list| (renderer, list.words(), Body::Commands(list))).collect();
+    let messages = lists.into_iter().map(|list| (renderer, list.words(), Body::Commands(list)));
     let handing = bin.as_ref().map(TokenBin::handing);
     gp.answer(received, handing.as_ref(), messages, passed_on(config, index, token)).await?;
     free_bins(gp, state, token)

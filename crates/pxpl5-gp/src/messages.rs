@@ -49,10 +49,9 @@ impl Gp {
         &self,
         received: &Received,
         work: Option<&impl Work>,
-        messages: Vec<(NodeId, u32, Body)>,
+        mut messages: impl Iterator<Item = (NodeId, u32, Body)>,
         last: (NodeId, u32, Body),
     ) -> Result<(), Fault> {
-        let mut messages = messages.into_iter();
         if self.pays_at_once() {
             let timing = self.timing();
             let message = Span::from_ns(timing.message_ns);

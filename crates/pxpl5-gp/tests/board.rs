@@ -444,7 +444,7 @@ fn answers(
         loop {
             let received = gp.next_message().await;
             let (_, work, count) = all.borrow_mut().remove(0);
-            let messages = (0..count as u16).map(|n| (NodeId(1 + n), 1, word(0).1)).collect();
+            let messages = (0..count as u16).map(|n| (NodeId(1 + n), 1, word(0).1));
             let work = work.map(|hundreds| Handing(100 * hundreds));
             gp.answer(&received, work.as_ref(), messages, (NodeId(0), 1, word(0).1)).await?;
         }

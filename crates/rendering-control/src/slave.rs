@@ -201,7 +201,7 @@ async fn walk(
     let envelope = envelope(config, token);
     let handing = pass.as_ref().map(|pass| Handing { pass, context, view: 0, region: token.region, envelope });
     let lists = pass.as_ref().map_or_else(Vec::new, |pass| region_messages(pass, token.region, 0, envelope));
-    let messages = lists.into_iter().map(|list| (renderer, list.words(), Body::Commands(list))).collect();
+    let messages = lists.into_iter().map(|list| (renderer, list.words(), Body::Commands(list)));
     gp.answer(received, handing.as_ref(), messages, passed_on(config, index, token)).await?;
     free_bins(gp, state, token.drawing)
 }
