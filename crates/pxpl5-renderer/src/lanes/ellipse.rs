@@ -114,6 +114,47 @@ mod tests {
         assert!(inside > 100_000, "{inside}");
     }
 
+    /// Small whole numbers leave nothing to the margin: no row begins or ends within it beside a pixel.
+    #[test]
+    fn columns_end_where_the_ellipse_does() {
+        let mut random = Random::new(10);
+        for _ in 0..1000 {
+            let [x, y] = [(); 2].map(|()| random.between(-40, 170));
+            let [xx, yy] = [(); 2].map(|()| -random.between(1, 4));
+            let xy = random.between(-1, 2);
+            let r = random.between(1, 60);
+            let one = r * r + xx * x * x + xy * x * y + yy * y * y;
+            let q = Quadratic { xx, xy, yy, x: -2 * xx * x - xy * y, y: -2 * yy * y - xy * x, one };
+            let ellipse = Ellipse::where_positive(&q);
+            let columns =
+                |row: i32| -> Vec<usize> { (0..128).filter(|x| q.at(*x, row) >= 0).map(|x| x as usize).collect() };
+            for row in 0..128 {
+                let expected = columns(row);
+                if ellipse.rows().contains(&(row as usize)) {
+                    let found: Vec<usize> = ellipse.columns(row as usize).collect();
+                    assert_eq!(found, expected, "{q:?} {row}");
+                } else {
+                    assert_eq!(expected, [], "{q:?} {row}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn rows_end_where_the_circle_does() {
+        let mut random = Random::new(11);
+        for _ in 0..1000 {
+            let [x, y] = [(); 2].map(|()| random.between(-40, 170));
+            let r = random.between(1, 60);
+            let scale = random.between(1, 100);
+            let one = scale * (r * r - x * x - y * y);
+            let q = Quadratic { xx: -scale, xy: 0, yy: -scale, x: 2 * scale * x, y: 2 * scale * y, one };
+            let rows: Vec<usize> = Ellipse::where_positive(&q).rows().collect();
+            let expected: Vec<usize> = (0..128).filter(|row| (*row as i64 - y).abs() <= r).collect();
+            assert_eq!(rows, expected, "({x}, {y}) {r}");
+        }
+    }
+
     #[test]
     fn a_circle_is_bounded_by_its_square() {
         let q = Quadratic { xx: -1, xy: 0, yy: -1, x: 40, y: 60, one: 25 - 400 - 900 };
