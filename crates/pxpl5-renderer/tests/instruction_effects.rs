@@ -205,6 +205,49 @@ fn first(controller: &Controller, field: Operand) -> usize {
     usize::from(field.address) + if field.relative { controller.base } else { 0 }
 }
 
+/// Whether fields may not lie as they do: all lie in pixel memory; an operand begins where the destination does or has no bit in
+/// common with it, which alone will do for what multiplies, divides, takes a root or subtracts from an expression.
+fn is_refused(controller: &Controller, instruction: &ArrayInstruction) -> bool {
+    use ArrayInstruction as I;
+    let bits = |field: Operand| first(controller, field)..first(controller, field) + usize::from(field.width);
+    let in_common = |a: Operand, b: Operand| bits(a).any(|bit| bits(b).contains(&bit));
+    let askew = |a: Operand, b: Operand| in_common(a, b) && bits(a).start != bits(b).start;
+    let (fields, overlaps) = match *instruction {
+        I::EnableLoad(field) | I::EnableStore(field) | I::EnableAnd(field) => (vec![field], false),
+        I::Evaluate { usage, .. } => match usage {
+            ExpressionUse::DisableNegative => (vec![], false),
+            ExpressionUse::Load { field, .. }
+            | ExpressionUse::Add { field, .. }
+            | ExpressionUse::DisableNotLess { field, .. } => (vec![field], false),
+            ExpressionUse::LoadMinus { field, subtrahend, .. } => {
+                (vec![field, subtrahend], in_common(field, subtrahend))
+            }
+        },
+        I::ShiftRight { destination: d, source, .. }
+        | I::ShiftLeft { destination: d, source, .. }
+        | I::Saturate { destination: d, source } => (vec![d, source], askew(d, source)),
+        I::SquareRoot { destination: d, radicand: a } | I::MultiplyConstant { destination: d, source: a, .. } => {
+            (vec![d, a], in_common(d, a))
+        }
+        I::Arithmetic { op, destination: d, a, b } => {
+            let overlaps = match op {
+                ArithmeticOp::Multiply => in_common(d, a) || in_common(d, b),
+                ArithmeticOp::Divide => in_common(d, a) || in_common(d, b) || in_common(a, b),
+                _ => askew(d, a) || askew(d, b),
+            };
+            (vec![d, a, b], overlaps)
+        }
+        I::Compare { a, b, .. } => (vec![a, b], false),
+        I::CompareConstant { a: field, .. }
+        | I::LoadConstant { destination: field, .. }
+        | I::StoreBlock { field, .. }
+        | I::LoadBlock { field, .. }
+        | I::Output { field, .. } => (vec![field], false),
+        I::EnableAll { .. } | I::EnableNone | I::EnableInvert | I::Select { .. } | I::Wait => (vec![], false),
+    };
+    overlaps || fields.into_iter().any(|field| bits(field).end > 208)
+}
+
 impl Controller {
     fn take(&mut self, instruction: &ArrayInstruction) {
         match *instruction {
@@ -281,7 +324,9 @@ impl<A: PixelArray> Followed<A> {
     fn run(&mut self, instruction: &ArrayInstruction) {
         let mut words = Vec::new();
         instruction.encode(&mut words);
-        if let Ok(executed) = self.array.execute(&words) {
+        let result = self.array.execute(&words);
+        assert_eq!(result.is_err(), is_refused(&self.controller, instruction), "{instruction:?}");
+        if let Ok(executed) = result {
             assert_eq!((executed.instructions, executed.clocks), (1, instruction.clocks().into()), "{instruction:?}");
             self.controller.take(instruction);
             self.model.iter_mut().for_each(|pixel| pixel.execute(&self.controller, instruction));
