@@ -3,10 +3,10 @@
 use pxpl5_renderer::conformance::{self, Mismatch, Random};
 use pxpl5_renderer::isa::{ArrayInstruction, Expression, ExpressionUse, Operand};
 use pxpl5_renderer::{
-    BitSerial, Clear, Command, CopyRegion, Lanes, Layout, PhongTriangleCommand, PixelArray, SelectRegion,
-    TriangleCommand, Vectors,
+    BitSerial, Clear, Command, CopyRegion, Lanes, Layout, PhongSphereCommand, PhongTriangleCommand, PixelArray,
+    SelectRegion, Shade, SphereBody, SphereCommand, TriangleCommand, Vectors,
 };
-use pxpl5_wire::{CopyTarget, FieldParity, Linear, Lines, NodeId, PictureNumber, RegionGrid, RegionId};
+use pxpl5_wire::{CopyTarget, FieldParity, Linear, Lines, NodeId, PictureNumber, Quadratic, RegionGrid, RegionId};
 use std::time::{Duration, Instant};
 
 /// Rounds of each layout without the variable.
@@ -128,6 +128,73 @@ fn edge([ax, ay]: [i32; 2], [bx, by]: [i32; 2]) -> Linear {
 /// A plane whose values use about `bits` bits over the array.
 fn plane(random: &mut Random, bits: u32) -> Linear {
     Linear { a: random.signed(bits - 8), b: random.signed(bits - 8), c: random.signed(bits) }
+}
+
+/// Its radius is up to 40 pixels, its middle in the array or near it; parts of it are nearer than others.
+fn sphere(random: &mut Random, layout: &Layout) -> Command {
+    let [x, y] = [(); 2].map(|()| i64::from(below(random, 168) - 20));
+    let r = i64::from(1 + below(random, 40));
+    let scale = 1 + random.below(5000) as i64;
+    let silhouette = Quadratic {
+        xx: -scale,
+        xy: 0,
+        yy: -scale,
+        x: 2 * scale * x,
+        y: 2 * scale * y,
+        one: scale * (r * r - x * x - y * y),
+    };
+    let [root_shift, depth_shift] = [25, 21].map(|n| below(random, n) as u8);
+    let body = SphereBody { silhouette, root_shift, depth: plane(random, 31), depth_shift };
+    let [p, q, r] = [(); 3].map(|()| plane(random, 22));
+    if layout.normal(0).is_some() {
+        Command::PhongSphere(PhongSphereCommand { body, normal: [p, q], colour: 0x12_3456 })
+    } else {
+        let root_factor = [(); 3].map(|()| random.signed(10) as i16);
+        Command::Sphere(SphereCommand { body, colour: [p, q, r], root_factor })
+    }
+}
+
+#[test]
+fn spheres_agree_on_every_vector_unit() {
+    for vectors in Vectors::available() {
+        for layout in [Layout::rendering_control_phong(), Layout::slats()] {
+            let mut random = Random::new(78);
+            let mut definition = BitSerial::new(&layout);
+            let mut subject = Lanes::with_vectors(&layout, vectors);
+            conformance::scramble(&mut random, &mut definition, &mut subject);
+            for _ in 0..8 {
+                let spheres: Vec<_> = (0..4).map(|_| sphere(&mut random, &layout)).collect();
+                let mut words = Vec::new();
+                spheres.iter().for_each(|s| s.encode(&layout, &mut words).expect("the layout has what it needs"));
+                check(conformance::agree(&mut definition, &mut subject, &words, &spheres));
+            }
+        }
+    }
+}
+
+/// Noise is shaded, whose depths are hardly anywhere those of the far plane, and some triangles on it.
+#[test]
+fn shading_agrees_on_every_vector_unit() {
+    let layout = Layout::rendering_control_phong();
+    for vectors in Vectors::available() {
+        let mut random = Random::new(79);
+        let mut definition = BitSerial::new(&layout);
+        let mut subject = Lanes::with_vectors(&layout, vectors);
+        conformance::scramble(&mut random, &mut definition, &mut subject);
+        for cleared in [false, false, true, true] {
+            let mut words = Vec::new();
+            let mut add = |command: Command| command.encode(&layout, &mut words).expect("the layout has what it needs");
+            if cleared {
+                add(Command::Clear(Clear { colour: 0x65_4321 }));
+                (0..20).for_each(|_| add(small_triangle(&mut random, &layout)));
+            }
+            let [light, half] = [(); 2].map(|()| [(); 3].map(|()| random.signed(12) as i16));
+            let [ambient, diffuse, specular, ..] = random.next().to_le_bytes();
+            let shade = Shade { light, half, ambient, diffuse, specular };
+            add(Command::Shade(shade));
+            check(conformance::agree(&mut definition, &mut subject, &words, &shade));
+        }
+    }
 }
 
 fn pick(random: &mut Random, from: &[i32]) -> i32 {

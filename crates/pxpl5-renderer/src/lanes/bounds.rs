@@ -263,12 +263,21 @@ mod tests {
         Linear { a: random.signed(12), b: random.signed(12), c: random.signed(20) }
     }
 
-    #[test]
-    fn no_pixel_inside_all_edges_is_outside_of_the_bounds() {
+    /// Coefficients of any size, so that many edges wrap in the array.
+    fn any_edge(random: &mut Random) -> Linear {
+        let [a, b, c] = [(); 3].map(|()| {
+            let bits = 1 + random.below(32) as u32;
+            random.signed(bits)
+        });
+        Linear { a, b, c }
+    }
+
+    /// Pixels of such triangles.
+    fn pixels_lie_within(triangles: u32, edge: fn(&mut Random) -> Linear) -> usize {
         let mut random = Random::new(5);
         let mut inside = 0;
-        for _ in 0..2000 {
-            let edges = [(); 3].map(|()| random_edge(&mut random));
+        for _ in 0..triangles {
+            let edges = [(); 3].map(|()| edge(&mut random));
             let pixels = touched(&edges);
             inside += pixels.len();
             let Some(bounds) = bounds(&edges) else {
@@ -284,6 +293,18 @@ mod tests {
                 assert!((left..right).contains(&x), "{edges:?} {x} {y} {bounds:?}");
             }
         }
+        inside
+    }
+
+    #[test]
+    fn no_pixel_inside_all_edges_is_outside_of_the_bounds() {
+        let inside = pixels_lie_within(2000, random_edge);
+        assert!(inside > 100_000, "{inside}");
+    }
+
+    #[test]
+    fn edges_that_wrap_leave_no_pixel_out() {
+        let inside = pixels_lie_within(1000, any_edge);
         assert!(inside > 100_000, "{inside}");
     }
 
