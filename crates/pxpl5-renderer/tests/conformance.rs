@@ -130,8 +130,9 @@ fn plane(random: &mut Random, bits: u32) -> Linear {
     Linear { a: random.signed(bits - 8), b: random.signed(bits - 8), c: random.signed(bits) }
 }
 
-/// Its radius is up to 40 pixels, its middle in the array or near it; parts of it are nearer than others.
-fn sphere(random: &mut Random, layout: &Layout) -> Command {
+/// Its radius is up to 40 pixels, its middle in the array or near it. The second one has other colours at the same depths, none of
+/// which is nearer.
+fn sphere_twice(random: &mut Random, layout: &Layout) -> [Command; 2] {
     let [x, y] = [(); 2].map(|()| i64::from(below(random, 168) - 20));
     let r = i64::from(1 + below(random, 40));
     let scale = 1 + random.below(5000) as i64;
@@ -145,12 +146,14 @@ fn sphere(random: &mut Random, layout: &Layout) -> Command {
     };
     let [root_shift, depth_shift] = [25, 21].map(|n| below(random, n) as u8);
     let body = SphereBody { silhouette, root_shift, depth: plane(random, 31), depth_shift };
-    let [p, q, r] = [(); 3].map(|()| plane(random, 22));
+    let components = [(); 3].map(|()| plane(random, 22));
+    let [p, q, r] = components;
     if layout.normal(0).is_some() {
-        Command::PhongSphere(PhongSphereCommand { body, normal: [p, q], colour: 0x12_3456 })
+        let coloured = |colour| Command::PhongSphere(PhongSphereCommand { body, normal: [p, q], colour });
+        [0x12_3456, 0x65_4321].map(coloured)
     } else {
         let root_factor = [(); 3].map(|()| random.signed(10) as i16);
-        Command::Sphere(SphereCommand { body, colour: [p, q, r], root_factor })
+        [components, [q, r, p]].map(|colour| Command::Sphere(SphereCommand { body, colour, root_factor }))
     }
 }
 
@@ -163,11 +166,36 @@ fn spheres_agree_on_every_vector_unit() {
             let mut subject = Lanes::with_vectors(&layout, vectors);
             conformance::scramble(&mut random, &mut definition, &mut subject);
             for _ in 0..8 {
-                let spheres: Vec<_> = (0..4).map(|_| sphere(&mut random, &layout)).collect();
+                let spheres: Vec<_> = (0..2).flat_map(|_| sphere_twice(&mut random, &layout)).collect();
                 let mut words = Vec::new();
                 spheres.iter().for_each(|s| s.encode(&layout, &mut words).expect("the layout has what it needs"));
                 check(conformance::agree(&mut definition, &mut subject, &words, &spheres));
             }
+        }
+    }
+}
+
+/// Whoever reads Enable behind a command, before it is set again, finds what the command left there.
+#[test]
+fn enable_is_read_behind_a_command() {
+    for layout in [Layout::rendering_control_phong(), Layout::slats()] {
+        let mut random = Random::new(80);
+        let mut definition = BitSerial::new(&layout);
+        let mut subject = Lanes::new(&layout);
+        conformance::scramble(&mut random, &mut definition, &mut subject);
+        for triangles in 0..20 {
+            let mut words = Vec::new();
+            for command in sphere_twice(&mut random, &layout) {
+                command.encode(&layout, &mut words).expect("the layout has what it needs");
+                ArrayInstruction::EnableStore(Operand::absolute(200, 1)).encode(&mut words);
+            }
+            for _ in 0..triangles {
+                let triangle = small_triangle(&mut random, &layout);
+                triangle.encode(&layout, &mut words).expect("the layout has what it needs");
+            }
+            ArrayInstruction::EnableStore(Operand::absolute(201, 1)).encode(&mut words);
+            (0..40).for_each(|_| ArrayInstruction::EnableAll { label: 0 }.encode(&mut words));
+            check(conformance::agree(&mut definition, &mut subject, &words, &triangles));
         }
     }
 }

@@ -399,23 +399,32 @@ fn values_do_what_the_table_says() {
     }
 }
 
-/// Signs are known at corners of blocks where an expression does not wrap in the array, which these only just do not.
-#[test]
-fn signs_are_right_where_an_expression_reaches_the_largest_number_and_the_smallest() {
-    for vectors in Vectors::available() {
-        let array = BitSerial::with_vectors(&Layout::slats(), vectors).skipping();
-        let mut followed = Followed::new(array, &mut Random::new(30));
-        for slope in [1 << 24, -(1 << 24)] {
-            for (a, b) in [(slope, 0), (0, slope)] {
-                for (end, at) in [(i32::MAX, slope > 0), (i32::MIN, slope < 0)] {
-                    let c = if at { end.wrapping_sub(127_i32.wrapping_mul(slope)) } else { end };
-                    let expression = Expression::Linear(Linear { a, b, c });
-                    followed.run(&ArrayInstruction::EnableAll { label: 0 });
-                    let sign = ArrayInstruction::Evaluate { expression, usage: ExpressionUse::DisableNegative };
-                    followed.run(&sign);
-                    followed.check(&sign);
-                }
+/// At 0, and where an expression only just does not wrap in the array, so that signs are known at the corners of blocks.
+fn follow_signs(array: impl PixelArray) {
+    let mut followed = Followed::new(array, &mut Random::new(30));
+    let mut expressions = vec![Expression::Linear(Linear::default()), Expression::Quadratic(Quadratic::default())];
+    for slope in [1 << 24, -(1 << 24)] {
+        for (a, b) in [(slope, 0), (0, slope)] {
+            for (end, is_last) in [(i32::MAX, slope > 0), (i32::MIN, slope < 0)] {
+                let c = if is_last { end.wrapping_sub(127_i32.wrapping_mul(slope)) } else { end };
+                expressions.push(Expression::Linear(Linear { a, b, c }));
             }
         }
     }
+    for expression in expressions {
+        followed.run(&ArrayInstruction::EnableAll { label: 0 });
+        let sign = ArrayInstruction::Evaluate { expression, usage: ExpressionUse::DisableNegative };
+        followed.run(&sign);
+        followed.check(&sign);
+    }
+}
+
+#[test]
+fn signs_are_right_at_0_and_at_the_largest_number_and_the_smallest() {
+    let layout = Layout::slats();
+    for vectors in Vectors::available() {
+        follow_signs(BitSerial::with_vectors(&layout, vectors));
+        follow_signs(BitSerial::with_vectors(&layout, vectors).skipping());
+    }
+    follow_signs(Lanes::new(&layout));
 }

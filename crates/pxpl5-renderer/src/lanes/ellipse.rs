@@ -138,13 +138,14 @@ mod tests {
         assert!(inside > 100_000, "{inside}");
     }
 
-    /// Squares of such coefficients are not whole any more, and where a row touches a circle nothing is left of them.
+    /// Squares of such coefficients are not whole any more, and of a single pixel, or of the row where a circle ends, nothing is
+    /// left of their difference.
     #[test]
-    fn circles_reach_their_last_row_however_numbers_round() {
+    fn small_circles_reach_their_last_row_however_numbers_round() {
         let mut random = Random::new(13);
         for _ in 0..1000 {
-            let [x, y] = [(); 2].map(|()| random.between(30, 98));
-            let r = random.between(1, 30);
+            let [x, y] = [(); 2].map(|()| random.between(10, 118));
+            let r = random.between(0, 4);
             let scale = random.between(1 << 26, 1 << 27);
             let one = scale * (r * r - x * x - y * y);
             let q = Quadratic { xx: -scale, xy: 0, yy: -scale, x: 2 * scale * x, y: 2 * scale * y, one };
@@ -176,7 +177,7 @@ mod tests {
                     let found: Vec<usize> = ellipse.columns(row as usize).collect();
                     assert_eq!(found, expected, "{q:?} {row}");
                 } else {
-                    assert_eq!(expected, [], "{q:?} {row}");
+                    assert!(expected.is_empty(), "{q:?} {row}");
                 }
             }
         }
