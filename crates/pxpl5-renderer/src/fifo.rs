@@ -473,6 +473,17 @@ mod tests {
     }
 
     #[test]
+    fn a_run_of_no_commands_is_none() {
+        let run = |count, ns| EqualCommands { words_each: 29, count, span_each: Some(Span::from_ns(ns)) };
+        let accepted = |runs: &[EqualCommands]| {
+            let mut fifo = InputFifo::new(100, WORD);
+            (message(&mut fifo, Time::ZERO, runs.to_vec()).accepted, fifo.free_at)
+        };
+        let [some, none] = [run(9, 6_675), run(0, 9_000)];
+        assert_eq!(accepted(&[none, some, none, some]), accepted(&[some, some]));
+    }
+
+    #[test]
     fn a_thirty_triangle_clump_stalls_its_sender_by_what_the_fifo_cannot_hold() {
         // 30 commands of 29 words, 6.675 us each. The first starts when its 29 words are in (1.45 us). Word k >= 448
         // waits for the command that holds word k - 448, so the last word (869) waits for the start of command
