@@ -397,11 +397,13 @@ mod tests {
             let [a, b, c] = [V::load(&self.a), V::load(&self.b), V::load(&self.c)];
             let words: [u64; 8] =
                 std::array::from_fn(|k| u64::from(self.b[2 * k + 1]) << 32 | u64::from(self.b[2 * k]));
+            // Pixel memory may end behind the last four.
+            let fours = ROW * (V::LANES / FOUR - 1) + FOUR;
             let [passes, nowhere] = [a.passes(b, c), V::splat(-1).passes(b, c)];
             let mut stored = self.b;
             a.store(passes, c, &mut stored);
             let mut stored_fours = self.rows;
-            a.store_fours(passes, c, &mut stored_fours);
+            a.store_fours(passes, c, &mut stored_fours[..fours]);
             let mut mask = [7; 16];
             V::store_mask(passes, &mut mask);
             let any = [(passes, nowhere), (nowhere, passes), (nowhere, nowhere)].map(|(p, q)| V::any_of(p, q).into());
@@ -410,7 +412,7 @@ mod tests {
                 ("ramp", numbers(V::ramp(FIRST, STEP))),
                 ("ramp of fours", numbers(V::ramp_of_fours(FIRST, STEP, DOWN))),
                 ("load", numbers(a)),
-                ("load fours", numbers(V::load_fours(&self.rows))),
+                ("load fours", numbers(V::load_fours(&self.rows[..fours]))),
                 ("load words", numbers(V::load_words(&words))),
                 ("spread", numbers(V::spread(BITS))),
                 ("signs", vec![a.signs()]),
