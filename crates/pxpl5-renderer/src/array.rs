@@ -115,18 +115,3 @@ pub enum FaultKind {
         operand: u8,
     },
 }
-
-/// Runs the lists of a region one after the other and returns what they sent to frame buffers.
-///
-/// # Errors
-/// The index of the first list with a fault, and the fault.
-pub fn execute_all<'a>(
-    array: &mut impl PixelArray,
-    lists: impl IntoIterator<Item = &'a [Word]>,
-) -> Result<Vec<OutputRegion>, (usize, ArrayFault)> {
-    let mut outputs = Vec::new();
-    for (i, words) in lists.into_iter().enumerate() {
-        outputs.extend(array.execute(words).map_err(|fault| (i, fault))?.outputs);
-    }
-    Ok(outputs)
-}

@@ -458,6 +458,32 @@ mod tests {
     }
 
     #[test]
+    fn of_a_clump_behind_a_copy_what_has_no_room_comes_in_behind_it() {
+        let mut fifo = InputFifo::new(100, WORD);
+        let copy = EqualCommands { words_each: 10, count: 1, span_each: None };
+        let clump = EqualCommands { words_each: 30, count: 5, span_each: Some(Span::from_ns(6_675)) };
+        message(&mut fifo, Time::ZERO, [copy]);
+        assert_eq!(message(&mut fifo, Time(500_000), [clump]).accepted, None);
+        // Of 150 words 100 have room. The first triangle makes some for 30 more when the copy ends, the second 6.675 us later for the
+        // last 20.
+        let resumed = fifo.resume(Time(80_000_000));
+        assert_eq!(resumed.accepted, Some(Time(80_000_000 + 6_675_000 + 20 * 50_000)));
+        // Behind the fifth.
+        assert_eq!(fifo.free_at, Some(Time(80_000_000 + 5 * 6_675_000)));
+    }
+
+    #[test]
+    fn a_run_of_no_commands_is_none() {
+        let run = |count, ns| EqualCommands { words_each: 29, count, span_each: Some(Span::from_ns(ns)) };
+        let accepted = |runs: &[EqualCommands]| {
+            let mut fifo = InputFifo::new(100, WORD);
+            (message(&mut fifo, Time::ZERO, runs.to_vec()).accepted, fifo.free_at)
+        };
+        let [some, none] = [run(9, 6_675), run(0, 9_000)];
+        assert_eq!(accepted(&[none, some, none, some]), accepted(&[some, some]));
+    }
+
+    #[test]
     fn a_thirty_triangle_clump_stalls_its_sender_by_what_the_fifo_cannot_hold() {
         // 30 commands of 29 words, 6.675 us each. The first starts when its 29 words are in (1.45 us). Word k >= 448
         // waits for the command that holds word k - 448, so the last word (869) waits for the start of command

@@ -52,8 +52,8 @@
 //!   is set, by zeros otherwise. A comparison, minimum or maximum needs operands of equal signedness.
 //! - Linear expressions are evaluated modulo 2^32, quadratic ones modulo 2^48; both are two's complement.
 //! - Expressions hold absolute screen coordinates; the controller applies the region's origin.
-//! - An operand may overlap the destination only where both start at the same bit; multiply, divide and square root
-//!   allow no overlap.
+//! - An operand may overlap the destination only where both start at the same bit; multiply, divide, square root and load
+//!   minus allow no overlap.
 //! - Divide: f := min(a / b, 2^w - 1), all ones for b = 0; a := a - f b. Operands are unsigned and w <= wa.
 //! - An illegal word or operand is a fault: the instruction and the rest of its list have no effect.
 

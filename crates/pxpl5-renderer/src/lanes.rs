@@ -278,12 +278,13 @@ mod tests {
             }
         }
 
-        /// The same, with the edges of triangles of some pixels, over the region's borders too.
+        /// The same, with the edges of triangles of some columns and as many rows or more, over the region's borders too.
         fn slim(layout: Layout, random: &mut Random, with_normals: bool) -> Self {
             let mut all = Self::random(layout, random, with_normals);
             for i in 0..LANES {
                 let place = [128, 64].map(|origin| 16 * (origin + (random.signed(9) & 127)));
-                let mut corners = [(); 3].map(|()| place.map(|place| place + random.signed(6)));
+                let tall = [6, 6, 10, 13][random.below(4) as usize];
+                let mut corners = [(); 3].map(|()| [place[0] + random.signed(6), place[1] + random.signed(tall)]);
                 let [[ax, ay], [bx, by], [cx, cy]] = corners;
                 if (bx - ax) * (cy - ay) < (cx - ax) * (by - ay) {
                     corners.swap(1, 2);

@@ -61,7 +61,7 @@ mod layout;
 mod look;
 mod simd;
 
-pub use array::{ArrayFault, EMPTY_PLANE, Executed, FaultKind, OutputRegion, PIXELS, PixelArray, Plane, execute_all};
+pub use array::{ArrayFault, EMPTY_PLANE, Executed, FaultKind, OutputRegion, PIXELS, PixelArray, Plane};
 pub use bit_serial::BitSerial;
 pub use board::{Renderer, RendererEvent, RendererOutput, RendererStats};
 pub use command::{

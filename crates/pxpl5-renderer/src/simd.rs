@@ -367,4 +367,145 @@ mod tests {
             }
         }
     }
+
+    /// What a unit does, by name, and how many lanes it has.
+    type Done = Vec<(&'static str, Vec<u32>)>;
+
+    /// Numbers for as many lanes as any unit has, and rows of pixels.
+    struct Everything {
+        a: [u32; 16],
+        b: [u32; 16],
+        c: [u32; 16],
+        rows: [u32; 4 * ROW],
+    }
+
+    const FIRST: i32 = i32::MAX - 5;
+    const STEP: i32 = 70_001;
+    const DOWN: i32 = -900_000_001;
+    const BITS: u64 = 0xFEDC_BA98_7654_B2D1;
+
+    impl VectorKernel for &Everything {
+        type Output = (usize, Done);
+
+        #[inline(always)]
+        fn run<V: SimdVector>(self) -> Self::Output {
+            let numbers = |v: V| -> Vec<u32> {
+                let mut words = [0; 8];
+                v.store_words(&mut words[..V::LANES / 2]);
+                (0..V::LANES).map(|k| (words[k / 2] >> (32 * (k % 2))) as u32).collect()
+            };
+            let [a, b, c] = [V::load(&self.a), V::load(&self.b), V::load(&self.c)];
+            let words: [u64; 8] =
+                std::array::from_fn(|k| u64::from(self.b[2 * k + 1]) << 32 | u64::from(self.b[2 * k]));
+            // Pixel memory may end behind the last four.
+            let fours = ROW * (V::LANES / FOUR - 1) + FOUR;
+            let [passes, nowhere] = [a.passes(b, c), V::splat(-1).passes(b, c)];
+            let mut stored = self.b;
+            a.store(passes, c, &mut stored);
+            let mut stored_fours = self.rows;
+            a.store_fours(passes, c, &mut stored_fours[..fours]);
+            let mut mask = [7; 16];
+            V::store_mask(passes, &mut mask);
+            let any = [(passes, nowhere), (nowhere, passes), (nowhere, nowhere)].map(|(p, q)| V::any_of(p, q).into());
+            let mut done = vec![
+                ("splat", numbers(V::splat(-7))),
+                ("ramp", numbers(V::ramp(FIRST, STEP))),
+                ("ramp of fours", numbers(V::ramp_of_fours(FIRST, STEP, DOWN))),
+                ("load", numbers(a)),
+                ("load fours", numbers(V::load_fours(&self.rows[..fours]))),
+                ("load words", numbers(V::load_words(&words))),
+                ("spread", numbers(V::spread(BITS))),
+                ("signs", vec![a.signs()]),
+                ("add", numbers(a.add(b))),
+                ("or", numbers(a.or(b))),
+                ("and", numbers(a.and(b))),
+                ("xor", numbers(a.xor(b))),
+                ("any of", any.to_vec()),
+                ("store", stored.to_vec()),
+                ("store fours", stored_fours.to_vec()),
+                ("store mask", mask.map(u32::from).to_vec()),
+            ];
+            done.extend((0..32).map(|t| ("bit", numbers(a.bit(t)))));
+            (V::LANES, done)
+        }
+    }
+
+    impl Everything {
+        /// The same number by number.
+        fn by_numbers(&self, lanes: usize) -> Done {
+            let Self { a, b, c, rows } = self;
+            let each = |f: &dyn Fn(usize) -> i32| -> Vec<u32> { (0..lanes).map(|k| f(k) as u32).collect() };
+            let at = |k: usize| k / FOUR * ROW + k % FOUR;
+            let ones = |truth: bool| -i32::from(truth);
+            let passes = |k: usize| k < lanes && a[k] as i32 >= 0 && (b[k] as i32) < c[k] as i32;
+            let any = (0..lanes).any(passes);
+            let mut stored = *b;
+            let mut stored_fours = *rows;
+            let mut mask = [7; 16];
+            for k in 0..lanes {
+                stored[k] = if passes(k) { a[k] } else { c[k] };
+                stored_fours[at(k)] = stored[k];
+                mask[k] = if passes(k) { 255 } else { 0 };
+            }
+            let mut done = vec![
+                ("splat", each(&|_| -7)),
+                ("ramp", each(&|k| FIRST.wrapping_add(STEP * k as i32))),
+                (
+                    "ramp of fours",
+                    each(&|k| {
+                        FIRST.wrapping_add(STEP * (k % FOUR) as i32).wrapping_add(DOWN.wrapping_mul((k / FOUR) as i32))
+                    }),
+                ),
+                ("load", each(&|k| a[k] as i32)),
+                ("load fours", each(&|k| rows[at(k)] as i32)),
+                ("load words", each(&|k| b[k] as i32)),
+                ("spread", each(&|k| ones(BITS >> k & 1 == 1))),
+                ("signs", vec![(0..lanes).map(|k| (a[k] >> 31) << k).sum()]),
+                ("add", each(&|k| (a[k] as i32).wrapping_add(b[k] as i32))),
+                ("or", each(&|k| (a[k] | b[k]) as i32)),
+                ("and", each(&|k| (a[k] & b[k]) as i32)),
+                ("xor", each(&|k| (a[k] ^ b[k]) as i32)),
+                ("any of", vec![any.into(), any.into(), 0]),
+                ("store", stored.to_vec()),
+                ("store fours", stored_fours.to_vec()),
+                ("store mask", mask.to_vec()),
+            ];
+            done.extend((0..32).map(|t| ("bit", each(&|k| ones(a[k] >> t & 1 == 1)))));
+            done
+        }
+    }
+
+    #[test]
+    fn every_unit_does_what_numbers_do_one_by_one() {
+        let mut random = crate::conformance::Random::new(40);
+        for round in 0..200 {
+            // Some are the same, or are small.
+            let bits = [1, 4, 32][round % 3];
+            let [a, b, c] = [(); 3].map(|()| [(); 16].map(|()| random.signed(bits) as u32));
+            let rows = [(); 4 * ROW].map(|()| random.next() as u32);
+            let everything = Everything { a, b, c, rows };
+            for vectors in Vectors::available() {
+                let (lanes, done) = PresentVectors::or_portable(vectors).run(&everything);
+                assert_eq!(lanes, if vectors == Vectors::Avx512 { 16 } else { 8 });
+                for (found, expected) in done.into_iter().zip(everything.by_numbers(lanes)) {
+                    assert_eq!(found, expected, "{vectors:?} {a:x?} {b:x?} {c:x?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_unit_that_is_absent_is_the_portable_one_and_the_best_is_the_last_that_is_allowed() {
+        let available = Vectors::available();
+        assert_eq!(available.first(), Some(&Vectors::Portable));
+        assert!(cfg!(target_arch = "wasm32") || !available.contains(&Vectors::Simd128));
+        for wanted in Vectors::ALL {
+            let expected = if available.contains(&wanted) { wanted } else { Vectors::Portable };
+            assert_eq!(PresentVectors::or_portable(wanted), PresentVectors(expected));
+        }
+        for most in available {
+            most.at_most();
+            assert_eq!(Vectors::best(), most);
+        }
+    }
 }

@@ -2,9 +2,9 @@
 
 mod support;
 
-use pxpl5_renderer::{Clear, Command, CommandKind, Lanes, PixelArray, SelectRegion};
+use pxpl5_renderer::{Clear, Command, CommandKind, Lanes, PixelArray, SelectRegion, TriangleCommand};
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{Body, CommandList, CopyContent, CopyOrder, CopyTarget, CopyWay, Word};
+use pxpl5_wire::{Body, CommandList, CopyContent, CopyOrder, CopyTarget, CopyWay, Linear, Word};
 use std::sync::Arc;
 use support::{Bench, WORD, list, list_of, order, run};
 
@@ -68,6 +68,38 @@ fn depths_that_are_copied_too_follow_the_colours_and_lie_at_the_far_plane_where_
     assert_eq!(image.len(), 20_000);
     assert!(image[..10_000].iter().all(|pixel| *pixel == 0x10_20_30));
     assert!(image[10_000..].iter().all(|depth| *depth == FARTHEST));
+}
+
+/// Slats' 20 bits of depth are the upper ones of 24, and of 32 on the way.
+#[test]
+fn depths_of_what_was_drawn_are_the_upper_bits_of_24() {
+    let inside = Linear::constant(1);
+    let depth = Linear::constant(0x1234_5678);
+    let triangle = Command::Triangle(TriangleCommand { edges: [inside; 3], depth, colour: [Linear::constant(0); 3] });
+    let order = order(1, CopyWay::ThroughBacking, CopyContent::ColourAndDepth);
+    let mut bench = Bench::new();
+    bench.announce(BEGIN, list_of(&[select(0), clear(0x10_20_30), triangle, copy(order.target)], &[order]));
+    bench.run();
+    assert!(images(&bench)[0][10_000..].iter().all(|depth| *depth == 0x12_3450));
+}
+
+/// What is drawn behind a copy in the same list is not in it, nor what is copied to somewhere else.
+#[test]
+fn what_comes_behind_a_copy_is_not_in_it() {
+    for saves in [true, false] {
+        let mut bench = Bench::new();
+        if !saves {
+            bench.device.draw_every_region();
+        }
+        let orders = [1, 0].map(|region| order(region, CopyWay::ThroughBacking, CopyContent::Colour));
+        let [first, second] = orders.map(|order| copy(order.target));
+        let commands = [select(0), clear(0x10_20_30), first, clear(0x40_50_60), second, clear(0x70_80_90)];
+        bench.announce(BEGIN, list_of(&commands, &orders));
+        bench.delivered(BEGIN + Span::from_us(900));
+        bench.run();
+        let colours: Vec<Word> = images(&bench).iter().map(|image| image[0]).collect();
+        assert_eq!(colours, [0x10_20_30, 0x40_50_60], "{saves}");
+    }
 }
 
 #[test]

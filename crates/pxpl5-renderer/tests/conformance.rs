@@ -3,10 +3,13 @@
 use pxpl5_renderer::conformance::{self, Mismatch, Random};
 use pxpl5_renderer::isa::{ArrayInstruction, Expression, ExpressionUse, Operand};
 use pxpl5_renderer::{
-    BitSerial, Clear, Command, CopyRegion, Lanes, Layout, PhongTriangleCommand, PixelArray, SelectRegion,
-    TriangleCommand, Vectors,
+    ArrayFault, BitSerial, Clear, Command, CopyRegion, Executed, Lanes, Layout, PhongSphereCommand,
+    PhongTriangleCommand, PixelArray, Plane, SelectRegion, Shade, SphereBody, SphereCommand, TriangleCommand, Vectors,
 };
-use pxpl5_wire::{CopyTarget, FieldParity, Linear, Lines, NodeId, PictureNumber, RegionGrid, RegionId};
+use pxpl5_wire::{
+    CopyTarget, FieldParity, Linear, Lines, NodeId, PictureNumber, Quadratic, RegionGrid, RegionId, Word,
+};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Rounds of each layout without the variable.
@@ -130,6 +133,101 @@ fn plane(random: &mut Random, bits: u32) -> Linear {
     Linear { a: random.signed(bits - 8), b: random.signed(bits - 8), c: random.signed(bits) }
 }
 
+/// Its radius is up to 40 pixels, its middle in the array or near it. The second one has other colours at the same depths, none of
+/// which is nearer.
+fn sphere_twice(random: &mut Random, layout: &Layout) -> [Command; 2] {
+    let [x, y] = [(); 2].map(|()| i64::from(below(random, 168) - 20));
+    let r = i64::from(1 + below(random, 40));
+    let scale = 1 + random.below(5000) as i64;
+    let silhouette = Quadratic {
+        xx: -scale,
+        xy: 0,
+        yy: -scale,
+        x: 2 * scale * x,
+        y: 2 * scale * y,
+        one: scale * (r * r - x * x - y * y),
+    };
+    let [root_shift, depth_shift] = [25, 21].map(|n| below(random, n) as u8);
+    let body = SphereBody { silhouette, root_shift, depth: plane(random, 31), depth_shift };
+    let components = [(); 3].map(|()| plane(random, 22));
+    let [p, q, r] = components;
+    if layout.normal(0).is_some() {
+        let coloured = |colour| Command::PhongSphere(PhongSphereCommand { body, normal: [p, q], colour });
+        [0x12_3456, 0x65_4321].map(coloured)
+    } else {
+        let root_factor = [(); 3].map(|()| random.signed(10) as i16);
+        [components, [q, r, p]].map(|colour| Command::Sphere(SphereCommand { body, colour, root_factor }))
+    }
+}
+
+#[test]
+fn spheres_agree_on_every_vector_unit() {
+    for vectors in Vectors::available() {
+        for layout in [Layout::rendering_control_phong(), Layout::slats()] {
+            let mut random = Random::new(78);
+            let mut definition = BitSerial::new(&layout);
+            let mut subject = Lanes::with_vectors(&layout, vectors);
+            conformance::scramble(&mut random, &mut definition, &mut subject);
+            for _ in 0..8 {
+                let spheres: Vec<_> = (0..2).flat_map(|_| sphere_twice(&mut random, &layout)).collect();
+                let mut words = Vec::new();
+                spheres.iter().for_each(|s| s.encode(&layout, &mut words).expect("the layout has what it needs"));
+                check(conformance::agree(&mut definition, &mut subject, &words, &spheres));
+            }
+        }
+    }
+}
+
+/// Whoever reads Enable behind a command, before it is set again, finds what the command left there.
+#[test]
+fn enable_is_read_behind_a_command() {
+    for layout in [Layout::rendering_control_phong(), Layout::slats()] {
+        let mut random = Random::new(80);
+        let mut definition = BitSerial::new(&layout);
+        let mut subject = Lanes::new(&layout);
+        conformance::scramble(&mut random, &mut definition, &mut subject);
+        for triangles in 0..20 {
+            let mut words = Vec::new();
+            for command in sphere_twice(&mut random, &layout) {
+                command.encode(&layout, &mut words).expect("the layout has what it needs");
+                ArrayInstruction::EnableStore(Operand::absolute(200, 1)).encode(&mut words);
+            }
+            for _ in 0..triangles {
+                let triangle = small_triangle(&mut random, &layout);
+                triangle.encode(&layout, &mut words).expect("the layout has what it needs");
+            }
+            ArrayInstruction::EnableStore(Operand::absolute(201, 1)).encode(&mut words);
+            (0..40).for_each(|_| ArrayInstruction::EnableAll { label: 0 }.encode(&mut words));
+            check(conformance::agree(&mut definition, &mut subject, &words, &triangles));
+        }
+    }
+}
+
+/// Noise is shaded, whose depths are hardly anywhere those of the far plane, and some triangles on it.
+#[test]
+fn shading_agrees_on_every_vector_unit() {
+    let layout = Layout::rendering_control_phong();
+    for vectors in Vectors::available() {
+        let mut random = Random::new(79);
+        let mut definition = BitSerial::new(&layout);
+        let mut subject = Lanes::with_vectors(&layout, vectors);
+        conformance::scramble(&mut random, &mut definition, &mut subject);
+        for cleared in [false, false, true, true] {
+            let mut words = Vec::new();
+            let mut add = |command: Command| command.encode(&layout, &mut words).expect("the layout has what it needs");
+            if cleared {
+                add(Command::Clear(Clear { colour: 0x65_4321 }));
+                (0..20).for_each(|_| add(small_triangle(&mut random, &layout)));
+            }
+            let [light, half] = [(); 2].map(|()| [(); 3].map(|()| random.signed(12) as i16));
+            let [ambient, diffuse, specular, ..] = random.next().to_le_bytes();
+            let shade = Shade { light, half, ambient, diffuse, specular };
+            add(Command::Shade(shade));
+            check(conformance::agree(&mut definition, &mut subject, &words, &shade));
+        }
+    }
+}
+
 fn pick(random: &mut Random, from: &[i32]) -> i32 {
     from[random.below(from.len() as u64) as usize]
 }
@@ -248,6 +346,105 @@ fn both_arrays_send_the_same_pixels_of_a_context_to_a_frame_buffer() {
     // Pixel (70, 3) from its 24 planes.
     let planes = (0..24).map(|i| (a.plane(88 + i)[2 * 3 + 1] >> 6 & 1) << i);
     assert_eq!(u64::from(outputs[0].pixels[3 * 128 + 70]), planes.sum::<u64>());
+}
+
+/// The definition, with one bit turned over behind every list.
+struct Wrong(BitSerial);
+
+impl PixelArray for Wrong {
+    fn execute(&mut self, words: &[Word]) -> Result<Executed, ArrayFault> {
+        let result = self.0.execute(words);
+        let mut plane = self.0.plane(130);
+        plane[9] ^= 1;
+        self.0.set_plane(130, &plane);
+        result
+    }
+
+    fn plane(&self, bit: usize) -> Plane {
+        self.0.plane(bit)
+    }
+
+    fn set_plane(&mut self, bit: usize, plane: &Plane) {
+        self.0.set_plane(bit, plane);
+    }
+
+    fn enable(&self) -> Plane {
+        self.0.enable()
+    }
+
+    fn set_enable(&mut self, plane: &Plane) {
+        self.0.set_enable(plane);
+    }
+
+    fn read_colour(&self, width: u32, height: u32) -> Arc<[Word]> {
+        self.0.read_colour(width, height)
+    }
+
+    fn reset(&mut self) {
+        self.0.reset();
+    }
+
+    fn faults(&self) -> u64 {
+        self.0.faults()
+    }
+}
+
+#[test]
+fn every_part_of_the_suite_finds_a_wrong_array() {
+    let layout = Layout::slats();
+    let arrays = || (BitSerial::new(&layout), Wrong(BitSerial::new(&layout)));
+    let (mut a, mut b) = arrays();
+    let found = conformance::instructions(&mut a, &mut b).expect_err("it is wrong behind the first");
+    assert!(found.difference.starts_with("bit 130 of pixel (64, 4)"), "{found}");
+    let (mut a, mut b) = arrays();
+    conformance::commands(&layout, &mut a, &mut b).expect_err("it is wrong behind the first");
+    let (mut a, mut b) = arrays();
+    let found = conformance::random_round(&layout, 7, &mut a, &mut b).expect_err("it is wrong behind the first");
+    assert_eq!(found.after, "\"round 7, step 0\"");
+}
+
+/// Of eight planes one has no bit set, one all of them, one a quarter, one three quarters and four the half.
+#[test]
+fn noise_is_the_same_in_both_arrays_and_has_long_runs_too() {
+    let layout = Layout::slats();
+    let [mut a, mut b] = [(); 2].map(|()| BitSerial::new(&layout));
+    let mut counts = [0; 5];
+    for round in 0..5 {
+        conformance::scramble(&mut Random::new(round), &mut a, &mut b);
+        check(conformance::agree(&mut a, &mut b, &[], &"noise"));
+        for bit in 0..208 {
+            let ones: u32 = a.plane(bit).iter().map(|word| word.count_ones()).sum();
+            // In quarters of the pixels; their share varies by less than a fiftieth.
+            let kind = (0..5).find(|quarters| ones.abs_diff(quarters * 4096) < 320).expect("one of these");
+            counts[kind as usize] += 1;
+            assert!(kind > 0 && kind < 4 || ones == kind * 4096, "{ones}");
+        }
+    }
+    // 130 of each, but 520 of the half.
+    for (kind, count) in counts.into_iter().enumerate() {
+        let expected = if kind == 2 { 420..620 } else { 80..190 };
+        assert!(expected.contains(&count), "{counts:?}");
+    }
+}
+
+/// It says which bit of which pixel is first, what it is not, and in how many pixels the plane is wrong.
+#[test]
+fn a_mismatch_names_the_first_pixel_and_counts_them() {
+    let layout = Layout::slats();
+    for (places, told) in [
+        (vec![(3, 5)], "bit 9 of pixel (69, 1) is not 1; 1 pixels differ"),
+        (vec![(3, 6)], "bit 9 of pixel (70, 1) is not 0; 1 pixels differ"),
+        (vec![(250, 63), (4, 0), (4, 9)], "bit 9 of pixel (0, 2) is not 1; 3 pixels differ"),
+        (vec![(255, 33)], "bit 9 of pixel (97, 127) is not 1; 1 pixels differ"),
+    ] {
+        let [mut a, mut b] = [(); 2].map(|()| BitSerial::new(&layout));
+        let mut plane: Plane = [!(1 << 6); 256];
+        a.set_plane(9, &plane);
+        places.iter().for_each(|(word, bit)| plane[*word] ^= 1 << bit);
+        b.set_plane(9, &plane);
+        let mismatch = conformance::agree(&mut a, &mut b, &[], &"nothing").unwrap_err();
+        assert_eq!(mismatch.difference, told);
+    }
 }
 
 #[test]

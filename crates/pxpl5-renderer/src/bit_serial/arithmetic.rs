@@ -117,10 +117,10 @@ impl Tile {
     fn saturate(&mut self, destination: FieldBits, source: FieldBits) {
         let w = destination.width;
         let wa = source.width;
-        let digits = if source.signed { wa - 1 } else { wa };
         let source = self.source(source);
         let mut over = EMPTY;
-        for i in w..digits {
+        // A sign counts as well, and then as nothing: where it is set the result is 0.
+        for i in w..wa {
             planes::or(&mut over, &source.bit(&self.memory, i));
         }
         self.clock += wa.saturating_sub(w).max(1) as u64;
@@ -227,7 +227,7 @@ impl Tile {
     fn add_product(&mut self, destination: FieldBits, x: &SerialOperand, j: usize, gate: &TilePlane, negative: bool) {
         let top = j + x.bits.width;
         // The sign of what the product has so far, if a clock at `top` is left to add to it.
-        let extends = x.bits.signed && j > 0 && top < destination.width;
+        let extends = x.bits.signed && top < destination.width;
         let extension = if extends { self.memory[destination.first + top - 1] } else { EMPTY };
         let mut carry = EMPTY;
         for i in j..destination.width.min(top + 1) {

@@ -1,7 +1,8 @@
 use super::*;
 use crate::RendererTiming;
 use crate::isa::timing::{CLOCK_HZ, SET_UP_CLOCKS};
-use crate::isa::{Expression, ExpressionUse};
+use crate::isa::{Expression, ExpressionUse, Operand};
+use crate::layout::ContextPlan;
 use proptest::prelude::*;
 use pxpl5_sim::{Clock, Cycles};
 use pxpl5_wire::{CopyTarget, FieldParity, Linear, Lines, NodeId, PictureNumber, Quadratic, RegionGrid, RegionId};
@@ -301,6 +302,54 @@ fn a_label_on_another_program_is_no_command() {
     words[13] ^= 1;
     let error = Command::decode(&words, 0, &phong()).unwrap_err();
     assert_eq!((error.position, error.kind), (0, DecodeErrorKind::NotTheCommand(3)));
+}
+
+#[test]
+fn a_label_of_no_command_is_named() {
+    let mut words = Vec::new();
+    ArrayInstruction::EnableAll { label: 0xEE }.encode(&mut words);
+    let error = Command::decode(&words, 0, &phong()).unwrap_err();
+    assert_eq!((error.position, error.kind), (0, DecodeErrorKind::NotTheCommand(0xEE)));
+}
+
+/// A root has 12 bits, or 10 in 30 bits of scratch; beside it depth lies, or the square of the root.
+#[test]
+fn spheres_need_room_for_a_root_and_the_wider_of_depth_and_square() {
+    for z in 8..=24 {
+        for scratch in 20..=40 {
+            let z_field = Operand::context(24, z);
+            let plan = *Layout::slats().plan();
+            let plan = ContextPlan { contexts: 1, z: z_field, scratch: Some(Operand::absolute(100, scratch)), ..plan };
+            let layout = Layout::new(plan).expect("they lie apart");
+            let root = if scratch >= 36 { 12 } else { 10 };
+            let has_room = scratch >= 30 && scratch >= root + z.max(2 * root);
+            assert_eq!(CommandKind::Sphere.clocks(&layout).is_ok(), has_room, "{z} {scratch}");
+        }
+    }
+}
+
+/// Operands are those of a root of 12 bits. One of 10 is a quarter of it, of a sixteenth of the square.
+#[test]
+fn shifts_of_a_sphere_make_up_for_a_shorter_root() {
+    let body = SphereBody { root_shift: 3, depth_shift: 5, ..SphereBody::default() };
+    let sphere = Command::Sphere(SphereCommand { body, ..SphereCommand::default() });
+    for (layout, root, depth) in [(phong(), 3, 5), (Layout::slats(), 3 + 4, 5 + 2)] {
+        let program = sphere.program(&layout).expect("it has room");
+        let shifts: Vec<u8> = program
+            .iter()
+            .filter_map(|instruction| match instruction {
+                ArrayInstruction::Evaluate {
+                    expression: Expression::QuadraticAgain,
+                    usage: ExpressionUse::Load { shift, .. },
+                } => Some(*shift),
+                ArrayInstruction::Evaluate { usage: ExpressionUse::LoadMinus { left_shift, .. }, .. } => {
+                    Some(*left_shift)
+                }
+                _ => None,
+            })
+            .collect();
+        assert_eq!(shifts, [root, depth]);
+    }
 }
 
 /// 16,384 pixels of 32 bits, over 64 chips with 4 bits a clock each.

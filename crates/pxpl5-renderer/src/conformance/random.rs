@@ -223,3 +223,188 @@ fn edge(p: [i64; 2], q: [i64; 2]) -> Linear {
     let c = dy * p[0] - dx * p[1];
     Linear { a: -dy as i32, b: dx as i32, c: c.div_euclid(16) as i32 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::{BTreeMap, BTreeSet};
+
+    /// Some of everything, so that a test of an array meets it.
+    #[test]
+    fn commands_come_in_the_shares_that_are_meant() {
+        let layout = Layout::rendering_control_phong();
+        let mut random = Random::new(1);
+        let mut counts = BTreeMap::new();
+        for _ in 0..4000 {
+            let name = format!("{:?}", random.command(&layout).kind());
+            *counts.entry(name).or_insert(0) += 1;
+        }
+        for backing in ["WaitBacking", "StoreBacking", "LoadBacking"] {
+            let count = counts.remove(backing).unwrap_or(0);
+            assert!((35..110).contains(&count), "{backing} {count}");
+        }
+        let shares: BTreeMap<_, _> = counts.iter().map(|(name, count)| (&name[..], (count + 100) / 200)).collect();
+        let expected = [
+            ("Clear", 1),
+            ("PhongSphere", 2),
+            ("PhongTriangle", 4),
+            ("SelectRegion", 1),
+            ("Shade", 1),
+            ("Sphere", 3),
+            ("Triangle", 7),
+        ];
+        assert_eq!(shares, BTreeMap::from(expected));
+    }
+
+    #[test]
+    fn lists_have_commands_that_come_again_instructions_and_now_and_then_a_wrong_word() {
+        let layout = Layout::slats();
+        let mut random = Random::new(2);
+        let mut wrong = 0;
+        let mut commands = 0;
+        for _ in 0..1000 {
+            let words = random.list(&layout);
+            wrong += u32::from(ArrayInstruction::decode_all(&words).is_err());
+            commands += words.iter().filter(|word| **word >> 24 == 1).count();
+        }
+        // Up to one list of 16, in which most words are numbers; one to four commands each, of which Slats lacks a third.
+        assert!((5..63).contains(&wrong), "{wrong}");
+        assert!((1000..3000).contains(&commands), "{commands}");
+        let lengths: BTreeSet<usize> = (0..300)
+            .map(|_| {
+                let mut words = Vec::new();
+                random.instructions(&mut words);
+                ArrayInstruction::decode_all(&words).expect("all are legal").len()
+            })
+            .collect();
+        assert_eq!(lengths, (1..=6).collect());
+    }
+
+    #[test]
+    fn what_is_repainted_is_the_same_shape_in_another_colour() {
+        let layout = Layout::rendering_control_phong();
+        let mut random = Random::new(3);
+        for _ in 0..200 {
+            let command = random.command(&layout);
+            let again = repainted(command);
+            let differs = match (command, again) {
+                (Command::Triangle(a), Command::Triangle(b)) => (a.edges, a.depth) == (b.edges, b.depth) && a != b,
+                (Command::PhongTriangle(a), Command::PhongTriangle(b)) => {
+                    PhongTriangleCommand { colour: b.colour, ..a } == b && a != b
+                }
+                (Command::Sphere(a), Command::Sphere(b)) => a.body == b.body && a != b,
+                (Command::PhongSphere(a), Command::PhongSphere(b)) => {
+                    PhongSphereCommand { colour: b.colour, ..a } == b && a != b
+                }
+                (a, b) => a == b,
+            };
+            assert!(differs, "{command:?} {again:?}");
+        }
+    }
+
+    #[test]
+    fn an_edge_is_zero_at_its_ends_and_positive_on_its_left() {
+        let mut random = Random::new(4);
+        for _ in 0..1000 {
+            let [p, q] = [(); 2].map(|()| [random.between(-900, 900), random.between(-900, 900)]);
+            let e = edge(p, q);
+            let at = |[x, y]: [i64; 2]| i64::from(e.a) * x + i64::from(e.b) * y + 16 * i64::from(e.c);
+            // The constant is cut to whole pixels.
+            assert!((-15..=0).contains(&at(p)) && (-15..=0).contains(&at(q)), "{p:?} {q:?} {e:?}");
+            let left = [p[0] - 40 * (q[1] - p[1]).signum(), p[1] + 40 * (q[0] - p[0]).signum()];
+            assert!(p == q || at(left) > 0, "{p:?} {q:?} {e:?}");
+        }
+    }
+
+    /// Edges of a triangle add up to none.
+    #[test]
+    fn most_edges_are_those_of_a_triangle_of_any_size() {
+        let mut random = Random::new(5);
+        let mut sizes = BTreeMap::new();
+        for _ in 0..4000 {
+            let edges = random.edges();
+            let sum = |f: fn(&Linear) -> i32| edges.iter().map(|e| i64::from(f(e))).sum::<i64>();
+            if (sum(|e| e.a), sum(|e| e.b)) != (0, 0) {
+                continue;
+            }
+            let longest = edges.iter().map(|e| e.a.unsigned_abs().max(e.b.unsigned_abs())).max();
+            *sizes.entry(longest.and_then(u32::checked_ilog10)).or_insert(0) += 1;
+        }
+        // Nine of ten. In sixteenths of pixels, from less than one to thousands of them.
+        assert!((3500..3700).contains(&sizes.values().sum::<u32>()), "{sizes:?}");
+        assert!((1..=5).all(|digits| sizes.get(&Some(digits)).copied().unwrap_or(0) > 30), "{sizes:?}");
+    }
+
+    /// Where both slopes are 0 an ellipse has its middle, a pixel around the screen, and there its scale times its radius squared.
+    #[test]
+    fn most_silhouettes_are_ellipses_around_a_pixel() {
+        let mut random = Random::new(6);
+        let mut radii = [0; 4];
+        let mut tilted = 0;
+        for _ in 0..4000 {
+            let q = random.silhouette();
+            let scale = -q.xx;
+            if scale <= 0 || q.yy != q.xx || !(scale as u64).is_power_of_two() {
+                continue;
+            }
+            assert!(q.xy.abs() <= scale / 2, "{q:?}");
+            tilted += u32::from(q.xy != 0);
+            let determinant = 4 * scale * scale - q.xy * q.xy;
+            let [x, y] = [2 * scale * q.x + q.xy * q.y, 2 * scale * q.y + q.xy * q.x];
+            assert_eq!((x % determinant, y % determinant), (0, 0), "{q:?}");
+            let [x, y] = [x / determinant, y / determinant];
+            assert!((-20..660).contains(&x) && (-20..500).contains(&y), "{q:?} {x} {y}");
+            let square = q.at(x as i32, y as i32);
+            let radius = (square / scale).isqrt();
+            assert_eq!(scale * radius * radius, square, "{q:?}");
+            assert!((1..500).contains(&radius), "{q:?} {radius}");
+            radii[(radius >= 2) as usize + (radius >= 10) as usize + (radius >= 60) as usize] += 1;
+        }
+        // Seven of eight, in four sizes of up to 2, 10, 60 and 500, each from 1 on.
+        assert!(radii.iter().sum::<i32>() > 3300 && radii.iter().all(|count| *count > 400), "{radii:?}");
+        assert!(tilted > 2500, "{tilted}");
+    }
+
+    #[test]
+    fn numbers_are_from_all_over_their_ranges() {
+        let layout = Layout::slats();
+        let mut random = Random::new(7);
+        let mut places = BTreeSet::new();
+        let mut blocks = BTreeSet::new();
+        for _ in 0..2000 {
+            if let Command::SelectRegion(select) = random.select(&layout) {
+                places.insert((select.context, select.left / 128, select.top));
+                assert_eq!(select.left % 128, 0);
+            }
+            match random.backing() {
+                Command::StoreBacking(StoreBacking { block, address })
+                | Command::LoadBacking(LoadBacking { block, address }) => {
+                    blocks.insert(block);
+                    assert!(address <= 176);
+                }
+                _ => {}
+            }
+        }
+        assert_eq!((places.len(), blocks.len()), (4 * 5 * 4, 3));
+        let vectors: BTreeSet<i16> = (0..500).flat_map(|_| random.vector()).collect();
+        assert!(vectors.len() > 900 && vectors.iter().all(|v| (-1500..1500).contains(v)));
+        // A plane uses some nine bits less for what it grows by.
+        let planes: Vec<Linear> = (0..500).map(|_| random.plane(32)).collect();
+        assert!(planes.iter().all(|p| p.a.unsigned_abs() <= 1 << 22 && p.b.unsigned_abs() <= 1 << 22));
+        assert!(planes.iter().any(|p| p.a.abs() > 1 << 21) && planes.iter().any(|p| p.c.abs() > 1 << 30));
+        let wild: Vec<Linear> = (0..500).map(|_| random.wild()).collect();
+        let constant = wild.iter().filter(|e| (e.a, e.b) == (0, 0)).count();
+        assert!((90..200).contains(&constant), "{constant}");
+        assert!(wild.iter().any(|e| e.a.unsigned_abs() > 1 << 30) && wild.iter().any(|e| e.a != 0 && e.a.abs() < 9));
+        let shades: Vec<Shade> = (0..50).map(|_| random.shade()).collect();
+        assert!(shades.windows(2).all(|two| two[0] != two[1]));
+        let spheres: Vec<SphereCommand> = (0..50).map(|_| random.sphere()).collect();
+        let phong: Vec<PhongSphereCommand> = (0..50).map(|_| random.phong_sphere()).collect();
+        assert!(spheres.windows(2).all(|two| two[0] != two[1] && two[0].body != two[1].body));
+        assert!(phong.windows(2).all(|two| two[0] != two[1]));
+        let triangles: Vec<TriangleCommand> = (0..50).map(|_| random.triangle()).collect();
+        let with_normals: Vec<PhongTriangleCommand> = (0..50).map(|_| random.phong_triangle()).collect();
+        assert!(triangles.windows(2).all(|two| two[0] != two[1]));
+        assert!(with_normals.windows(2).all(|two| two[0] != two[1]));
+    }
+}

@@ -263,12 +263,21 @@ mod tests {
         Linear { a: random.signed(12), b: random.signed(12), c: random.signed(20) }
     }
 
-    #[test]
-    fn no_pixel_inside_all_edges_is_outside_of_the_bounds() {
+    /// Coefficients of any size or none, constants near their ends too, so that many edges wrap in the array.
+    fn any_edge(random: &mut Random) -> Linear {
+        let [a, b, c] = [(); 3].map(|()| {
+            let bits = 1 + random.below(32) as u32;
+            random.signed(bits) * i32::from(random.below(4) > 0)
+        });
+        Linear { a, b, c: [c, c ^ i32::MAX][random.below(2) as usize] }
+    }
+
+    /// Pixels of such triangles.
+    fn pixels_lie_within(triangles: u32, edge: fn(&mut Random) -> Linear) -> usize {
         let mut random = Random::new(5);
         let mut inside = 0;
-        for _ in 0..2000 {
-            let edges = [(); 3].map(|()| random_edge(&mut random));
+        for _ in 0..triangles {
+            let edges = [(); 3].map(|()| edge(&mut random));
             let pixels = touched(&edges);
             inside += pixels.len();
             let Some(bounds) = bounds(&edges) else {
@@ -284,7 +293,69 @@ mod tests {
                 assert!((left..right).contains(&x), "{edges:?} {x} {y} {bounds:?}");
             }
         }
+        inside
+    }
+
+    #[test]
+    fn no_pixel_inside_all_edges_is_outside_of_the_bounds() {
+        let inside = pixels_lie_within(2000, random_edge);
         assert!(inside > 100_000, "{inside}");
+    }
+
+    #[test]
+    fn edges_that_wrap_leave_no_pixel_out() {
+        let inside = pixels_lie_within(2000, any_edge);
+        assert!(inside > 100_000, "{inside}");
+    }
+
+    /// Counted round so that its edges are positive inside; none where its corners lie on a line.
+    fn triangle(random: &mut Random) -> Option<([[i32; 2]; 3], [Linear; 3])> {
+        let mut corners = [(); 3].map(|()| [random.between(-70, 200) as i32, random.between(-70, 200) as i32]);
+        let [[ax, ay], [bx, by], [cx, cy]] = corners;
+        let area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay);
+        if area < 0 {
+            corners.swap(1, 2);
+        }
+        let edge = |[px, py]: [i32; 2], [qx, qy]: [i32; 2]| Linear {
+            a: py - qy,
+            b: qx - px,
+            c: (qy - py) * px - (qx - px) * py,
+        };
+        let [p, q, r] = corners;
+        (area != 0).then(|| (corners, [edge(p, q), edge(q, r), edge(r, p)]))
+    }
+
+    /// Corners and slopes of whole numbers leave nothing to the margin: no row begins or ends within it beside a pixel.
+    #[test]
+    fn bounds_end_where_the_triangle_does() {
+        let mut random = Random::new(6);
+        let mut rows_of_their_own = 0;
+        for (corners, edges) in (0..3000).filter_map(|_| triangle(&mut random)) {
+            let [x, y] = [0, 1].map(|i| corners.map(|corner| corner[i]));
+            let first = |v: [i32; 3]| v.into_iter().min().unwrap().max(0);
+            let end = |v: [i32; 3]| v.into_iter().max().unwrap().min(127) + 1;
+            let expected = (first(x) < end(x) && first(y) < end(y)).then(|| Area {
+                left: first(x) as usize,
+                right: end(x) as usize,
+                top: first(y) as usize,
+                bottom: end(y) as usize,
+            });
+            let bounds = bounds(&edges);
+            assert_eq!(bounds.map(|bounds| bounds.area), expected, "{corners:?}");
+            let Some(bounds) = bounds.filter(|bounds| bounds.limits.is_some()) else { continue };
+            let area = bounds.area;
+            for first in (area.top..area.bottom).step_by(LANES) {
+                let spans = bounds.spans(first);
+                for y in first..area.bottom.min(first + LANES) {
+                    let inside: Vec<i32> = (0..128).filter(|x| edges.iter().all(|e| e.at(*x, y as i32) >= 0)).collect();
+                    let [left, right] = [spans.left[y - first], spans.right[y - first]];
+                    let found: Vec<i32> = (left..right).collect();
+                    assert_eq!(found, inside, "{corners:?} {y}");
+                    rows_of_their_own += u32::from(left > area.left as i32 && right < area.right as i32);
+                }
+            }
+        }
+        assert!(rows_of_their_own > 10_000, "{rows_of_their_own}");
     }
 
     #[test]

@@ -114,6 +114,90 @@ mod tests {
         assert!(inside > 100_000, "{inside}");
     }
 
+    /// Coefficients of any size, so that many leave 48 bits in the array: then they are two's complement numbers of 48.
+    #[test]
+    fn quadratics_that_wrap_leave_no_pixel_out() {
+        let mut random = Random::new(12);
+        let mut inside = 0;
+        for _ in 0..2000 {
+            let [xx, xy, yy, x, y, one] = [(); 6].map(|()| {
+                let bits = random.below(48);
+                random.between(-(1 << bits), 1 << bits) * i64::from(random.below(4) > 0)
+            });
+            let q = Quadratic { xx: -xx.abs(), xy, yy, x, y, one };
+            let ellipse = Ellipse::where_positive(&q);
+            for row in (0..128).step_by(9) {
+                let columns = ellipse.columns(row as usize);
+                for column in (0..128).filter(|column| q.at(*column, row) << 16 >= 0) {
+                    inside += 1;
+                    assert!(ellipse.rows().contains(&(row as usize)), "{q:?} {column} {row}");
+                    assert!(columns.contains(&(column as usize)), "{q:?} {column} {row}");
+                }
+            }
+        }
+        assert!(inside > 100_000, "{inside}");
+    }
+
+    /// Squares of such coefficients are not whole any more, and of a single pixel, or of the row where a circle ends, nothing is
+    /// left of their difference.
+    #[test]
+    fn small_circles_reach_their_last_row_however_numbers_round() {
+        let mut random = Random::new(13);
+        for _ in 0..1000 {
+            let [x, y] = [(); 2].map(|()| random.between(10, 118));
+            let r = random.between(0, 4);
+            let scale = random.between(1 << 26, 1 << 27);
+            let one = scale * (r * r - x * x - y * y);
+            let q = Quadratic { xx: -scale, xy: 0, yy: -scale, x: 2 * scale * x, y: 2 * scale * y, one };
+            let ellipse = Ellipse::where_positive(&q);
+            for row in [y - r, y + r].map(|row| row as usize) {
+                assert!(ellipse.rows().contains(&row), "{q:?} {row}");
+                assert!(ellipse.columns(row).contains(&(x as usize)), "{q:?} {row}");
+            }
+        }
+    }
+
+    /// Small whole numbers leave nothing to the margin: no row begins or ends within it beside a pixel.
+    #[test]
+    fn columns_end_where_the_ellipse_does() {
+        let mut random = Random::new(10);
+        for _ in 0..1000 {
+            let [x, y] = [(); 2].map(|()| random.between(-40, 170));
+            let [xx, yy] = [(); 2].map(|()| -random.between(1, 4));
+            let xy = random.between(-1, 2);
+            let r = random.between(1, 60);
+            let one = r * r + xx * x * x + xy * x * y + yy * y * y;
+            let q = Quadratic { xx, xy, yy, x: -2 * xx * x - xy * y, y: -2 * yy * y - xy * x, one };
+            let ellipse = Ellipse::where_positive(&q);
+            let columns =
+                |row: i32| -> Vec<usize> { (0..128).filter(|x| q.at(*x, row) >= 0).map(|x| x as usize).collect() };
+            for row in 0..128 {
+                let expected = columns(row);
+                if ellipse.rows().contains(&(row as usize)) {
+                    let found: Vec<usize> = ellipse.columns(row as usize).collect();
+                    assert_eq!(found, expected, "{q:?} {row}");
+                } else {
+                    assert!(expected.is_empty(), "{q:?} {row}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn rows_end_where_the_circle_does() {
+        let mut random = Random::new(11);
+        for _ in 0..1000 {
+            let [x, y] = [(); 2].map(|()| random.between(-40, 170));
+            let r = random.between(1, 60);
+            let scale = random.between(1, 100);
+            let one = scale * (r * r - x * x - y * y);
+            let q = Quadratic { xx: -scale, xy: 0, yy: -scale, x: 2 * scale * x, y: 2 * scale * y, one };
+            let rows: Vec<usize> = Ellipse::where_positive(&q).rows().collect();
+            let expected: Vec<usize> = (0..128).filter(|row| (*row as i64 - y).abs() <= r).collect();
+            assert_eq!(rows, expected, "({x}, {y}) {r}");
+        }
+    }
+
     #[test]
     fn a_circle_is_bounded_by_its_square() {
         let q = Quadratic { xx: -1, xy: 0, yy: -1, x: 40, y: 60, one: 25 - 400 - 900 };

@@ -134,6 +134,6 @@ fn shade_pixel(shade: &Shade, n: [i32; 3], colour: u32) -> [u32; RESULTS] {
 fn cosine(vector: [i16; 3], n: [i32; 3], root: u32) -> (u32, u32) {
     let dot = n[0] * twelve(vector[0]) + n[1] * twelve(vector[1]) + n[2] * twelve(vector[2]);
     let dot = dot << 8 >> 8;
-    let (quotient, rest) = divide_10(dot.clamp(0, (1 << 23) - 1) as u32, root);
+    let (quotient, rest) = divide_10(dot.max(0) as u32, root);
     (quotient, rest | dot as u32 & 1 << 23)
 }

@@ -303,7 +303,8 @@ fn take_edges<const N: usize>(commands: &[[Word; N]], edges: &mut Edges) {
 #[inline(always)]
 fn one_vector(left: usize, right: usize, lanes: usize) -> Option<usize> {
     let aligned = left / lanes * lanes;
-    let begin = if right <= aligned + lanes { aligned } else { left.min(WIDTH - lanes) };
+    // Where another vector would follow this one, there is room behind the first column as well.
+    let begin = if right <= aligned + lanes { aligned } else { left };
     (right <= begin + lanes).then_some(begin)
 }
 
