@@ -2,6 +2,7 @@
 
 use crate::config::{Beam, BlockOrder, DrawingSchedule, Interpolation, JitpConfig, Viewpoint};
 use crate::drawing::{DrawnList, Ends, Window};
+use crate::finding::Finding;
 use crate::pieces::{messages, window};
 use crate::timing::JitpTiming;
 use crate::whole::{WholeList, picture};
@@ -350,4 +351,30 @@ fn what_is_counted_on_a_strip_between_two_views_is_what_is_drawn() {
             }
         }
     }
+}
+
+/// What a board pays for a strip between two views: its interpolation, and then the search.
+#[test]
+fn by_code_a_strip_between_two_views_takes_as_long_as_both_of_its_parts() {
+    let spans = [false, true].map(|is_one_work| {
+        let config = strips(8);
+        let mut scene = Scene::new(&config, CodeVersion::Compiled, 80, [150, 10]);
+        let ends = scene.between(80, 0.05, Interpolation::Screen);
+        let drawn = DrawnList::between(scene.share.list(), &ends, 0.5, Interpolation::Screen, scene.viewport);
+        let regions = config.strip_regions(12);
+        let windows = scene.windows(&regions);
+        let (counts, met) = drawn.count(&windows);
+        let parts = [scene.part, MemoryPart::of(4, 5)];
+        let interpolating = drawn.interpolating(&scene.share, &windows, picture(scene.viewport, config.layout), parts);
+        let viewport = scene.viewport;
+        let searching = Searching { part: parts[1], viewport, grid: config.grid(), windows: &regions, counts: &counts };
+        let (timing, processor) = (&GpTiming::PAPERS, &mut scene.processor);
+        if is_one_work {
+            let finding = Finding { searching, interpolating, met, interpolate_ns: 0 };
+            return finding.by_code(timing, processor).expect("it returns");
+        }
+        let interpolated = interpolating.expect("between two views").run_code(timing, processor).expect("it returns");
+        interpolated.expect("it has kernels") + searching.by_code(timing, processor).expect("it returns")
+    });
+    assert_eq!(spans[0], spans[1]);
 }
