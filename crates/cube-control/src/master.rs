@@ -327,7 +327,7 @@ pub(crate) fn copy_order(config: &CubeControlConfig, target: CopyTarget) -> Copy
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::slave::tests::{config, update};
+    use crate::slave::tests::{TOKEN, config, update};
     use pxpl5_gp::{GpBoard, GpTiming, Priority};
     use pxpl5_sim::Span;
     use pxpl5_wire::NodeId;
@@ -335,14 +335,6 @@ mod tests {
     /// The last region may arrive before the master hears that its commands were accepted.
     #[test]
     fn an_update_is_over_when_its_regions_have_arrived_and_its_commands_were_accepted() {
-        let token = Token {
-            update: PictureNumber::FIRST,
-            region: RegionId(0),
-            renderer: 0,
-            slaves_left: 0,
-            of: 1,
-            copies: true,
-        };
         for accepted_first in [true, false] {
             let board = GpBoard::new(NodeId(1), GpTiming::PAPERS, Span(25_000));
             let mut master = CubeMaster::new(board.handle_for(Priority::Foreground), config());
@@ -354,7 +346,7 @@ mod tests {
             (rendering.unassigned, rendering.tokens_out) = (VecDeque::new(), 1);
             for is_token in [accepted_first, !accepted_first] {
                 assert_eq!((master.completed.copied, master.under_way.len()), (0, 1), "{accepted_first}");
-                if is_token { master.note_accepted(token) } else { master.note_copied(0) }
+                if is_token { master.note_accepted(TOKEN) } else { master.note_copied(0) }
             }
             assert_eq!((master.completed.rendered, master.completed.copied), (1, 1));
             assert!(master.under_way.is_empty());

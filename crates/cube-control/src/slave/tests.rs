@@ -16,6 +16,10 @@ const BOARD: NodeId = NodeId(2);
 const TRIANGLES: u64 = 3;
 const BIN_BYTES: u64 = TRIANGLES * BIN_ENTRY_BYTES;
 
+/// The one of an update, at the last slave.
+pub(crate) const TOKEN: Token =
+    Token { update: PictureNumber::FIRST, region: RegionId(0), renderer: 0, slaves_left: 1, of: 1, copies: true };
+
 /// Faces of one region each.
 pub(crate) fn config() -> CubeControlConfig {
     let size = 128;
@@ -95,15 +99,8 @@ impl Rig {
 
     /// The one token of an update.
     fn send_token(&mut self, number: u64) {
-        let update = PictureNumber(number);
-        self.deliver(&UpdateOrder::Token(Token {
-            update,
-            region: RegionId(0),
-            renderer: 0,
-            slaves_left: 1,
-            of: 1,
-            copies: true,
-        }));
+        let token = Token { update: PictureNumber(number), ..TOKEN };
+        self.deliver(&UpdateOrder::Token(token));
     }
 
     /// After what it had to do.
@@ -177,6 +174,24 @@ fn bins_that_are_too_small_for_one_update_are_a_fault() {
         available_bytes: BIN_BYTES - 1,
     };
     assert_eq!(rig.board.fault(), Some(&Fault::Memory(fault)));
+}
+
+/// Received and sent on: paid for at once, or one after the other.
+#[test]
+fn a_token_that_finds_an_empty_bin_goes_on_at_the_same_instant_however_it_is_paid_for() {
+    let [at_once, one_by_one] = [false, true].map(|one_by_one| {
+        let mut rig = Rig::new(BIN_BYTES);
+        if one_by_one {
+            rig.board.pay_one_by_one();
+        }
+        rig.send(0);
+        let before = rig.bench.outputs.len();
+        // Neither the first slave nor the last has anything to add for a face that shows nothing.
+        rig.deliver(&UpdateOrder::Token(Token { slaves_left: 2, of: 6, ..TOKEN }));
+        rig.bench.outputs[before..].iter().map(|(time, _)| *time).collect::<Vec<Time>>()
+    });
+    assert_eq!(at_once, one_by_one);
+    assert_eq!(at_once.len(), 1, "the token alone");
 }
 
 /// All of the memory of a board that runs code.
