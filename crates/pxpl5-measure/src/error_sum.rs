@@ -217,3 +217,29 @@ fn push([pixels, degrees]: &mut [Distribution; 2], error: &PixelError) {
     pixels.push(error.pixels);
     degrees.push(error.degrees);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec2;
+
+    /// Five fields of which three are kept one by one; the middle pixel of each is off by its number, and so many degrees.
+    #[test]
+    fn so_many_fields_are_kept_one_by_one_and_all_of_them_counted() {
+        let mut collected = Collected::keeping(3);
+        for field in 1..=5 {
+            let error = PixelError { offset_px: DVec2::ZERO, pixels: field as f64, degrees: field as f64 / 8.0 };
+            let of_field = [error, PixelError { pixels: 0.0, degrees: 0.0, ..error }];
+            collected.take(PeriodNumber(field), Time(field), &of_field, Some(error));
+        }
+        let said = collected.said();
+        let kept: Vec<u64> = said.by_field.iter().map(|error| error.field.0).collect();
+        assert_eq!(kept, [1, 2, 3]);
+        assert_eq!(
+            (said.judged, said.pixels.n, said.degrees.n, said.centre_px.n, said.centre_deg.n),
+            (10, 10, 10, 5, 5)
+        );
+        assert!((said.centre_px.mean - 3.0).abs() < 1e-12 && (said.centre_deg.mean - 3.0 / 8.0).abs() < 1e-12);
+        assert!((said.degrees.mean - 1.5 / 8.0).abs() < 1e-12, "half of them are 0");
+    }
+}
