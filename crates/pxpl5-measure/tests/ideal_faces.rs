@@ -1,12 +1,13 @@
 //! What remains wrong of what is drawn without error for one instant of its field.
 
+use address_recalculation::Latch;
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::Registration;
 use pxpl5_run::{Aim, Experiment, FacePipeline, FacePolicy, FaceSource, Head, Jitp, Pipeline, Pixels, Viewpoint};
 use pxpl5_scene::builtin;
 use pxpl5_wire::PeriodNumber;
 use std::sync::Arc;
-use tracking::motion::Slide;
+use tracking::motion::{Slide, Synthetic};
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
 
@@ -40,5 +41,24 @@ fn under_a_slide_a_pixel_is_off_by_the_way_since_the_first_of_its_field() {
             assert!((error.offset_px.x - expected).abs() < 0.01, "{name}, {x} {y}: {:?} {expected}", error.offset_px);
             assert!(error.offset_px.y.abs() < 0.01, "{name}, {x} {y}: {:?}", error.offset_px);
         }
+    }
+}
+
+/// Orientations are predicted from reports that go forward alone: whoever asks for an earlier pixel gets what he would have got at first.
+#[test]
+fn errors_are_the_same_in_whatever_order_they_are_asked_for() {
+    let pipeline =
+        FacePipeline { source: FaceSource::Ideal, latch: Latch::Line, ..FacePipeline::new(FacePolicy::Full) };
+    let config = pipeline.adapt(MachineConfig::small_hmd());
+    let motion = Arc::new(Synthetic::recorded_use(1));
+    let head = Head::new(motion, TrackerConfig::fastrak(), PredictorKind::ConstantVelocity, 1).expect("in range");
+    let experiment = Experiment::new(config, pipeline, builtin("sphere:100").expect("even")).fields(44).head(head);
+    let outcome = experiment.pixels(Pixels::Off).run().expect("it runs");
+    let registration = Registration::of(&outcome).expect("there is a head");
+    for (x, y, field) in [(0, 0, 40), (320, 240, 40), (320, 241, 31), (10, 2, 42), (10, 2, 20), (10, 2, 42)] {
+        let field = PeriodNumber(field);
+        let alone = Registration::of(&outcome).expect("there is a head").at(x, y, field);
+        assert!(alone.is_some_and(|error| error.pixels > 0.0), "{x} {y} {field:?}");
+        assert_eq!(registration.at(x, y, field), alone, "{x} {y} {field:?}");
     }
 }

@@ -85,23 +85,34 @@ fn said(outcome: &Outcome) -> String {
     format!("{:#?}", Report { host_seconds: None, ..outcome.report() })
 }
 
+fn assert_same(experiment: &Experiment) {
+    let head = experiment.tracked_head().expect("tracked");
+    let name = format!("{}, {:?}", experiment.pipeline().name(), head);
+    let everything = run(experiment, Keep::Everything);
+    let statistics = run(experiment, Keep::Statistics);
+    let [expected, found] = [&everything, &statistics].map(said);
+    let other = expected.lines().zip(found.lines()).find(|(expected, found)| expected != found);
+    assert_eq!(other, None, "{name}");
+    assert_eq!(expected.len(), found.len(), "{name}");
+    assert!(statistics.has_forgotten() && !everything.has_forgotten(), "{name}: records were given up");
+    let of_head = everything.report().head.expect("tracked");
+    assert!(of_head.error.judged > 500 && of_head.end_to_end.n > 50, "{name}: there is something to be said");
+    let [all, last] = [&everything, &statistics].map(|outcome| outcome.head().expect("tracked").sampled());
+    assert!(4 * last.len() < 3 * all.len(), "{name}: {} poses of {} are held", last.len(), all.len());
+    assert_eq!(last, all[all.len() - last.len()..], "{name}: the last ones");
+}
+
 #[test]
 fn what_is_kept_changes_nothing_that_is_said_of_a_head() {
-    for experiment in experiments() {
-        let head = experiment.tracked_head().expect("tracked");
-        let name = format!("{}, {:?}", experiment.pipeline().name(), head);
-        let everything = run(&experiment, Keep::Everything);
-        let statistics = run(&experiment, Keep::Statistics);
-        let [expected, found] = [&everything, &statistics].map(said);
-        let other = expected.lines().zip(found.lines()).find(|(expected, found)| expected != found);
-        assert_eq!(other, None, "{name}");
-        assert_eq!(expected.len(), found.len(), "{name}");
-        assert!(statistics.has_forgotten() && !everything.has_forgotten(), "{name}: records were given up");
-        let of_head = everything.report().head.expect("tracked");
-        assert!(of_head.error.judged > 500 && of_head.end_to_end.n > 50, "{name}: there is something to be said");
-        let [all, last] = [&everything, &statistics].map(|outcome| outcome.head().expect("tracked").sampled());
-        assert!(4 * last.len() < 3 * all.len(), "{name}: {} poses of {} are held", last.len(), all.len());
-        assert_eq!(last, all[all.len() - last.len()..], "{name}: the last ones");
+    experiments().iter().for_each(assert_same);
+}
+
+/// The same in a few seconds: a display that is drawn field by field, one with two buffers, one with faces.
+#[test]
+fn what_is_kept_changes_nothing_that_is_said_of_a_head_in_shorter_runs() {
+    let [slats, _, _, _, control, .., faces, _, _] = &experiments()[..] else { panic!("fourteen") };
+    for (experiment, fields) in [(slats, 1_000), (control, 600), (faces, 1_000)] {
+        assert_same(&experiment.clone().fields(fields));
     }
 }
 
