@@ -141,13 +141,13 @@ fn a_number_that_would_do_is_said_where_it_is_less_than_there_is() {
     fn said<const IN_TIME: u64>(_: &Experiment) -> Option<u64> {
         Some(IN_TIME)
     }
-    let fields_needed = |_: &Experiment| None;
-    let cases: [(fn(&Experiment) -> Option<u64>, Option<u64>, &str); 5] = [
-        (said::<0>, Some(0), "not even one"),
-        (said::<9>, Some(9), "(--triangles 9)"),
-        (said::<10>, None, "pxpl5 limit"),
-        (said::<11>, None, "pxpl5 limit"),
-        (|_| None, None, "pxpl5 limit"),
+    let by = |triangles_in_time| Estimates { fields_needed: |_| None, triangles_in_time };
+    let cases = [
+        (by(said::<0>), Some(0), "not even one"),
+        (by(said::<9>), Some(9), "(--triangles 9)"),
+        (by(said::<10>), None, "pxpl5 limit"),
+        (by(said::<11>), None, "pxpl5 limit"),
+        (by(|_| None), None, "pxpl5 limit"),
     ];
     let (first_period, last_period) = (PeriodNumber(4), PeriodNumber(11));
     let due = DuePictures {
@@ -160,10 +160,10 @@ fn a_number_that_would_do_is_said_where_it_is_less_than_there_is() {
         incomplete: 2,
         missed: 0,
     };
-    for (triangles_in_time, expected, advice) in cases {
+    for (estimates, expected, advice) in cases {
         let scene = builtin("sphere:10").expect("built in");
         let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene);
-        let experiment = experiment.estimated_by(Some(Estimates { fields_needed, triangles_in_time }));
+        let experiment = experiment.estimated_by(Some(estimates));
         let heavy = TooHeavy::of(&experiment, &due).expect("late ones");
         assert_eq!((heavy.due, heavy.not_shown, heavy.triangles, heavy.triangles_in_time), (8, 3, 10, expected));
         assert!(heavy.advice.contains(advice), "{heavy}");
