@@ -82,6 +82,7 @@ fn the_last_three_fields_stay_transformed() {
 /// views the last part is for these.
 #[test]
 fn fields_that_stay_transformed_lie_apart() {
+    assert_eq!(OF_STRIP, MemoryPart::of(4, 5));
     for (viewpoint, views, of) in [(Viewpoint::Field, 1, 4), (DUAL, 2, 5)] {
         let (mut rig, state) = slave_of(viewpoint);
         let of_fields: Vec<MemoryPart> = (0..4).map(|part| MemoryPart::of(part, of)).collect();
