@@ -16,6 +16,7 @@ pub(crate) struct Screen {
 /// All that came for one buffer in one cut, by region, in order of arrival.
 #[derive(Debug)]
 struct Cut {
+    /// Its first target, whose region and picture say nothing here.
     of: CopyTarget,
     regions: Vec<Vec<(Time, PictureNumber)>>,
 }
@@ -51,8 +52,7 @@ impl Screen {
     fn arrive(&mut self, arrival: &Arrival) {
         let target = arrival.target;
         let place = self.cuts.iter().position(|cut| Cut::key(&cut.of) == Cut::key(&target)).unwrap_or_else(|| {
-            let of = CopyTarget { region: RegionId(0), picture: PictureNumber::FIRST, ..target };
-            self.cuts.push(Cut { of, regions: vec![Vec::new(); target.grid.regions() as usize] });
+            self.cuts.push(Cut { of: target, regions: vec![Vec::new(); target.grid.regions() as usize] });
             self.cuts.len() - 1
         });
         if let Some(region) = self.cuts[place].regions.get_mut(usize::from(target.region.0)) {
