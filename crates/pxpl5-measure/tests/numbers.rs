@@ -135,18 +135,23 @@ fn a_load_that_is_too_heavy_is_told_with_what_would_do() {
     assert_eq!(run("jitp-scanline", "full-screen:2", 40).report().too_heavy, None);
 }
 
-/// How many triangles would do is said where the closed form knows, and where these are fewer than there are: ten spheres and no triangle.
+/// How many primitives would do is said where the closed form knows, and where these are fewer than there are.
 #[test]
 fn a_number_that_would_do_is_said_where_it_is_less_than_there_is() {
-    fn said<const IN_TIME: u64>(_: &Experiment) -> Option<u64> {
-        Some(IN_TIME)
+    fn all(experiment: &Experiment) -> u64 {
+        (experiment.scene().triangles().len() + experiment.scene().spheres().len()) as u64
     }
     let by = |triangles_in_time| Estimates { fields_needed: |_| None, triangles_in_time };
+    let scene = Arc::new(builtin("molecules").expect("built in"));
+    assert!(!scene.triangles().is_empty() && !scene.spheres().is_empty(), "of both kinds");
+    let experiment = Experiment::with(MachineConfig::slats(), Arc::new(Slats::split()), scene);
+    let n = all(&experiment);
+    let fewer = format!("(--triangles {})", n - 1);
     let cases = [
-        (by(said::<0>), Some(0), "not even one"),
-        (by(said::<9>), Some(9), "(--triangles 9)"),
-        (by(said::<10>), None, "pxpl5 limit"),
-        (by(said::<11>), None, "pxpl5 limit"),
+        (by(|_| Some(0)), Some(0), "not even one"),
+        (by(|experiment| Some(all(experiment) - 1)), Some(n - 1), fewer.as_str()),
+        (by(|experiment| Some(all(experiment))), None, "pxpl5 limit"),
+        (by(|experiment| Some(all(experiment) + 1)), None, "pxpl5 limit"),
         (by(|_| None), None, "pxpl5 limit"),
     ];
     let (first_period, last_period) = (PeriodNumber(4), PeriodNumber(11));
@@ -161,11 +166,9 @@ fn a_number_that_would_do_is_said_where_it_is_less_than_there_is() {
         missed: 0,
     };
     for (estimates, expected, advice) in cases {
-        let scene = builtin("sphere:10").expect("built in");
-        let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene);
-        let experiment = experiment.estimated_by(Some(estimates));
+        let experiment = experiment.clone().estimated_by(Some(estimates));
         let heavy = TooHeavy::of(&experiment, &due).expect("late ones");
-        assert_eq!((heavy.due, heavy.not_shown, heavy.triangles, heavy.triangles_in_time), (8, 3, 10, expected));
+        assert_eq!((heavy.due, heavy.not_shown, heavy.triangles, heavy.triangles_in_time), (8, 3, n, expected));
         assert!(heavy.advice.contains(advice), "{heavy}");
         assert_eq!(TooHeavy::of(&experiment, &DuePictures { shown: 8, late: 0, incomplete: 0, ..due }), None);
     }
