@@ -251,9 +251,11 @@ mod tests {
     /// Of a run that gives up its records no more is held at its end than when it gave them up for the first time.
     #[test]
     fn what_is_held_of_a_run_does_not_grow_with_it() {
-        for (name, scene, fields) in
-            [("slats", "sphere:10", 1_000), ("rendering-control", "sphere:10", 1_000), ("arp-full", "gallery", 2_000)]
-        {
+        for (name, scene, fields) in [
+            ("slats", "sphere:10", 1_000),
+            ("rendering-control", "sphere:10", 1_000),
+            ("arp-full-line", "gallery", 2_000),
+        ] {
             let pipeline = (Registry::of_papers().pipeline(name).expect("listed").build)(&PipelineSettings::default());
             let config = pipeline.adapt(MachineConfig::small_hmd());
             let motion = Arc::new(Synthetic::recorded_use(3));
