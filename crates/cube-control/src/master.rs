@@ -323,3 +323,33 @@ pub(crate) fn copy_order(config: &CubeControlConfig, target: CopyTarget) -> Copy
     let way = CopyWay::ThroughBacking;
     CopyOrder { target, context: 0, way, acknowledge: Some(config.master), content: config.faces.content }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::slave::tests::{TOKEN, config, update};
+    use pxpl5_gp::{GpBoard, GpTiming, Priority};
+    use pxpl5_sim::Span;
+    use pxpl5_wire::NodeId;
+
+    /// The last region may arrive before the master hears that its commands were accepted.
+    #[test]
+    fn an_update_is_over_when_its_regions_have_arrived_and_its_commands_were_accepted() {
+        for accepted_first in [true, false] {
+            let board = GpBoard::new(NodeId(1), GpTiming::PAPERS, Span(25_000));
+            let mut master = CubeMaster::new(board.handle_for(Priority::Foreground), config());
+            master.note_sent(update(0));
+            master.note_transformed(PictureNumber::FIRST, &[1, 0, 0, 0, 0, 0]);
+            master.begin_render();
+            let rendering = master.rendering.as_mut().expect("it is transformed");
+            // As after the token of its one region.
+            (rendering.unassigned, rendering.tokens_out) = (VecDeque::new(), 1);
+            for is_token in [accepted_first, !accepted_first] {
+                assert_eq!((master.completed.copied, master.under_way.len()), (0, 1), "{accepted_first}");
+                if is_token { master.note_accepted(TOKEN) } else { master.note_copied(0) }
+            }
+            assert_eq!((master.completed.rendered, master.completed.copied), (1, 1));
+            assert!(master.under_way.is_empty());
+        }
+    }
+}

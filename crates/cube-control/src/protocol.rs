@@ -146,8 +146,10 @@ mod tests {
         let view = FrameView { number: ViewNumber(3), eyes: Vec::new(), edits: Vec::new() };
         let structures = (0..70).map(|i| i % 3 == 0).collect();
         let sent = FaceUpdate { number: update, memory: 3, buffer: 1, together: 0b1011, view, structures, warp: None };
+        let warped = FaceUpdate { warp: Some(crate::warp::tests::warp()), ..sent.clone() };
         let orders = [
             UpdateOrder::Send(sent),
+            UpdateOrder::Send(warped),
             UpdateOrder::Edit(PictureNumber(1)),
             UpdateOrder::Edited(PictureNumber(2)),
             UpdateOrder::EditsDone(update),

@@ -242,15 +242,4 @@ async fn tell_master(gp: &Gp, config: &CubeControlConfig, order: &UpdateOrder) {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_context_is_empty_when_all_tokens_of_its_update_have_been_here_and_can_be_filled_again() {
-        let mut state = SlaveState::default();
-        let tokens = [(0, 3, false), (1, 2, false), (0, 3, false), (0, 3, true), (1, 2, true)];
-        for (context, of, is_last) in tokens.into_iter().chain(tokens) {
-            assert_eq!(state.is_emptied(context, of), is_last, "{context}");
-        }
-    }
-}
+pub(crate) mod tests;

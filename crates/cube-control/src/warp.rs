@@ -76,19 +76,22 @@ const fn joined(low: Word, high: Word) -> u64 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
-    #[test]
-    fn a_warp_survives_its_words() {
-        let dealing = Dealing { home: Cell { x: -3, z: 1 << 40 }, side_m: 5.0, inner_rings: 1, memories: 4 };
-        let warp = FaceWarp {
-            dealing,
+    pub(crate) fn warp() -> FaceWarp {
+        FaceWarp {
+            dealing: Dealing { home: Cell { x: -3, z: 1 << 40 }, side_m: 5.0, inner_rings: 1, memories: 4 },
             falloff: Falloff::Smoothstep,
             length_m: 4.5,
             drawn_from: DVec3::new(0.1, 1.7, -2.0),
             slower_from: DVec3::new(0.0, -1.7, 1e6),
-        };
+        }
+    }
+
+    #[test]
+    fn a_warp_survives_its_words() {
+        let warp = warp();
         let words: [Word; WARP_WORDS] = warp.to_words().try_into().expect("as many as are said");
         assert_eq!(FaceWarp::from_words(&words), Some(warp));
     }

@@ -298,7 +298,7 @@ impl<'a> Tallies<'a> {
 
 /// Positions in the view lie on straight lines between two views where the matrices do:
 /// (M0 p) (1 - s) + (M1 p) s = (M0 (1 - s) + M1 s) p.
-fn interpolated(from: &FrameView, to: &FrameView, s: f64) -> FrameView {
+pub(crate) fn interpolated(from: &FrameView, to: &FrameView, s: f64) -> FrameView {
     let eyes = from.eyes.iter().zip(&to.eyes).map(|(a, b)| EyeView {
         world_to_eye: matrix_between(&a.world_to_eye, &b.world_to_eye, s),
         head_to_eye: matrix_between(&a.head_to_eye, &b.head_to_eye, s),

@@ -49,6 +49,8 @@ mod master;
 mod ordering;
 mod pieces;
 mod protocol;
+#[cfg(test)]
+mod rig;
 mod slave;
 pub mod timing;
 mod whole;

@@ -208,24 +208,4 @@ fn before(time: Time, span: Span) -> Time {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_order_lasts_as_long_as_the_slaves_last_one_and_its_blocks_stand_for_a_pass() {
-        let mut flight = Flight::new(2, 3);
-        // A pass is three orders; which slave takes which is said, and when.
-        let orders = [(0, 100), (1, 130), (1, 190), (0, 260), (0, 400), (1, 430)];
-        let expected = [(0, 0), (0, 0), (60, 0), (160, 160), (140, 270), (240, 240)];
-        for ((slave, now), (drawing, standing)) in orders.into_iter().zip(expected) {
-            let found = flight.ordered(slave, Time(now));
-            assert_eq!((found.drawing, found.standing), (Span(drawing), Span(standing)), "{slave} at {now}");
-        }
-    }
-
-    #[test]
-    fn nothing_is_before_time_begins() {
-        assert_eq!(before(Time(5), Span(3)), Time(2));
-        assert_eq!(before(Time(3), Span(5)), Time::ZERO);
-    }
-}
+mod tests;

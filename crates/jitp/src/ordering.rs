@@ -20,3 +20,28 @@ impl Work for Ordering<'_> {
         put_together(processor, &self.0.words(), self.0.head_words())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rig::{MASTER, view};
+    use pxpl5_gp::CodeVersion;
+    use pxpl5_sim::Time;
+    use pxpl5_wire::PeriodNumber;
+
+    /// Six instructions move a word (pphigs's kernels/order.s), each at least a clock of 25 ns; misses of caches are a few clocks a word.
+    #[test]
+    fn by_code_an_order_takes_at_least_six_clocks_a_word() {
+        let views = |n: u64| (0..n).map(view).collect();
+        for order in [
+            DrawingOrder::Field { field: PeriodNumber(3), views: views(1) },
+            DrawingOrder::Field { field: PeriodNumber(3), views: views(2) },
+            DrawingOrder::Strip { field: PeriodNumber(3), strip: 7, deadline: Time(9), view: None },
+        ] {
+            let mut processor = Processor::new(MASTER, 8 << 20, CodeVersion::Scheduled, i860::Config::cycle());
+            let span = Ordering(&order).by_code(&GpTiming::PAPERS, &mut processor).expect("it returns");
+            let least = Span::from_ns(25 * 6 * order.words().len() as u64);
+            assert!(span > least && span < least * 4, "{span} for {least}: {order:?}");
+        }
+    }
+}

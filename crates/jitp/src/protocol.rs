@@ -199,4 +199,11 @@ mod tests {
             assert_eq!(DrawingOrder::from_words(&words[..length]), None, "{length}");
         }
     }
+
+    #[test]
+    fn a_field_without_a_view_is_no_order() {
+        let (_, body) = DrawingOrder::Field { field: PeriodNumber(1), views: Vec::new() }.message();
+        let Body::Words(words) = body else { panic!("orders are words") };
+        assert_eq!(DrawingOrder::from_words(&words), None);
+    }
 }

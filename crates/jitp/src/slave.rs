@@ -285,3 +285,6 @@ impl Slave {
         Ok(self.gp.send_groups(groups.collect()).await)
     }
 }
+
+#[cfg(test)]
+mod tests;

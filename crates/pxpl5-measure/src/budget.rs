@@ -38,7 +38,12 @@ impl Default for Budget {
 pub(crate) struct BudgetSum {
     pictures: usize,
     stages_ms: [Samples; STAGES],
+    /// Poses of pictures that may still come: a head gives up what is old, and a silent tracker leaves the last one to all of them.
+    poses: Poses,
 }
+
+/// What is held of views, by their numbers.
+pub(crate) type Poses = BTreeMap<ViewNumber, Sampled>;
 
 /// Stages from the head's pose to light.
 pub(crate) const STAGES: usize = 6;
@@ -49,10 +54,14 @@ impl BudgetSum {
             self.stages_ms = std::array::from_fn(|_| Samples::keeping(run.samples));
         }
         let warm_up = WARM_UP_PICTURES.saturating_sub(self.pictures);
-        for stages in of_pictures(run, run.pictures.get(warm_up..).unwrap_or_default()) {
+        self.poses.append(&mut poses(run));
+        for stages in of_pictures(run, &self.poses, run.pictures.get(warm_up..).unwrap_or_default()) {
             self.stages_ms.iter_mut().zip(stages).for_each(|(samples, ms)| samples.push(ms));
         }
         self.pictures += run.pictures.len();
+        let instant = run.record.tick(run.until);
+        let newest_shown = run.pictures.last().map(|times| times.view);
+        self.poses.retain(|number, pose| pose.known >= instant || Some(*number) >= newest_shown);
     }
 
     /// The means.
@@ -65,12 +74,15 @@ impl BudgetSum {
     }
 }
 
+/// Those that a head holds.
+pub(crate) fn poses(run: &Settled<'_>) -> Poses {
+    run.head.map(|head| head.sampled()).unwrap_or_default().into_iter().map(|s| (s.number, s)).collect()
+}
+
 /// Of complete pictures whose pose was measured and is held.
-pub(crate) fn of_pictures(run: &Settled<'_>, pictures: &[PictureTimes]) -> Vec<[f64; STAGES]> {
-    let Some(head) = run.head else { return Vec::new() };
-    let sampled: BTreeMap<ViewNumber, Sampled> = head.sampled().into_iter().map(|s| (s.number, s)).collect();
+pub(crate) fn of_pictures(run: &Settled<'_>, poses: &Poses, pictures: &[PictureTimes]) -> Vec<[f64; STAGES]> {
     let complete = pictures.iter().filter(|times| times.is_shown());
-    complete.filter_map(|times| of_picture(run, times, sampled.get(&times.view)?)).collect()
+    complete.filter_map(|times| of_picture(run, times, poses.get(&times.view)?)).collect()
 }
 
 /// From each instant at which a picture's pose passed from stage to stage to the next one.

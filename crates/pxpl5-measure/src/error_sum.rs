@@ -217,3 +217,75 @@ fn push([pixels, degrees]: &mut [Distribution; 2], error: &PixelError) {
     pixels.push(error.pixels);
     degrees.push(error.degrees);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec2;
+    use pxpl5_machine::MachineConfig;
+    use pxpl5_run::{Experiment, Head, Keep, PipelineSettings, Pixels, Registry, Summing};
+    use pxpl5_scene::builtin;
+    use std::any::Any;
+    use tracking::motion::Synthetic;
+    use tracking::predict::PredictorKind;
+    use tracking::tracker::TrackerConfig;
+
+    /// What is held after each step of a run that goes on.
+    #[derive(Debug, Default)]
+    struct Watched {
+        sum: ErrorSum,
+        held: Vec<usize>,
+    }
+
+    impl Summing for Watched {
+        fn take(&mut self, settled: &Settled<'_>) {
+            self.sum.take(settled);
+            self.held.extend(self.sum.judging.iter().map(|judging| judging.shown.held()));
+        }
+
+        fn said(self: Box<Self>) -> Box<dyn Any + Send + Sync> {
+            Box::new(self.held)
+        }
+    }
+
+    /// Of a run that gives up its records no more is held at its end than when it gave them up for the first time.
+    #[test]
+    fn what_is_held_of_a_run_does_not_grow_with_it() {
+        for (name, scene, fields) in [
+            ("slats", "sphere:10", 1_000),
+            ("rendering-control", "sphere:10", 1_000),
+            ("arp-full-line", "gallery", 2_000),
+        ] {
+            let pipeline = (Registry::of_papers().pipeline(name).expect("listed").build)(&PipelineSettings::default());
+            let config = pipeline.adapt(MachineConfig::small_hmd());
+            let motion = Arc::new(Synthetic::recorded_use(3));
+            let head =
+                Head::new(motion, TrackerConfig::fastrak(), PredictorKind::ConstantVelocity, 7).expect("in range");
+            let experiment = Experiment::with(config, pipeline, Arc::new(builtin(scene).expect("built in"))).head(head);
+            let experiment = experiment.fields(fields).pixels(Pixels::Off).keep(Keep::Statistics);
+            let outcome = experiment.summed_by(Some(|| Box::<Watched>::default())).run().expect("it runs");
+            let held: &Vec<usize> = outcome.said().expect("watched");
+            assert!(held.len() > 1 && held.iter().all(|later| *later <= held[0]), "{name}: {held:?}");
+        }
+    }
+
+    /// Five fields of which three are kept one by one; the middle pixel of each is off by its number, and so many degrees.
+    #[test]
+    fn so_many_fields_are_kept_one_by_one_and_all_of_them_counted() {
+        let mut collected = Collected::keeping(3);
+        for field in 1..=5 {
+            let error = PixelError { offset_px: DVec2::ZERO, pixels: field as f64, degrees: field as f64 / 8.0 };
+            let of_field = [error, PixelError { pixels: 0.0, degrees: 0.0, ..error }];
+            collected.take(PeriodNumber(field), Time(field), &of_field, Some(error));
+        }
+        let said = collected.said();
+        let kept: Vec<u64> = said.by_field.iter().map(|error| error.field.0).collect();
+        assert_eq!(kept, [1, 2, 3]);
+        assert_eq!(
+            (said.judged, said.pixels.n, said.degrees.n, said.centre_px.n, said.centre_deg.n),
+            (10, 10, 10, 5, 5)
+        );
+        assert!((said.centre_px.mean - 3.0).abs() < 1e-12 && (said.centre_deg.mean - 3.0 / 8.0).abs() < 1e-12);
+        assert!((said.degrees.mean - 1.5 / 8.0).abs() < 1e-12, "half of them are 0");
+    }
+}

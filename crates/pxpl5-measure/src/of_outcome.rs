@@ -1,6 +1,6 @@
 //! What is said of the head of a run: as it was summed up while it went on, or else of what is kept now that it is over.
 
-use crate::budget::{Budget, BudgetSum, of_pictures};
+use crate::budget::{Budget, BudgetSum, of_pictures, poses};
 use crate::error_sum::ErrorSum;
 use crate::errors::{PixelErrors, Showing};
 use crate::head_sum::HeadSaid;
@@ -74,7 +74,8 @@ impl Budget {
     /// From the pose to the light of each picture's middle, milliseconds, in order; of pictures that are kept.
     #[must_use]
     pub fn totals_ms(outcome: &Outcome) -> Vec<f64> {
-        let stages = of_pictures(&outcome.settled(), outcome.steady_pictures());
+        let run = outcome.settled();
+        let stages = of_pictures(&run, &poses(&run), outcome.steady_pictures());
         stages.iter().map(|stages| stages.iter().sum()).collect()
     }
 }

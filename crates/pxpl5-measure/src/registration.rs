@@ -133,3 +133,24 @@ impl<'a> Registration<'a> {
 pub(crate) fn middle(x: u32, y: u32) -> DVec2 {
     DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_middle_of_a_pixel_is_half_a_pixel_beyond_its_corner() {
+        assert_eq!(middle(0, 7), DVec2::new(0.5, 7.5));
+    }
+
+    /// Objects stand where they are after the same part of the time as the head of its way.
+    #[test]
+    fn between_two_moments_objects_and_head_are_the_same_part_of_the_way() {
+        let moment = |at: u64| Moment { pose: Pose::at(DVec3::X * at as f64), objects_at: Time(at) };
+        for (part, expected) in [(0.0, 1_000), (0.25, 1_500), (1.0, 3_000)] {
+            let Moment { pose, objects_at } = between(&moment(1_000), &moment(3_000), part);
+            assert_eq!(objects_at, Time(expected), "{part}");
+            assert!((pose.position.x - expected as f64).abs() < 1e-9, "{part}");
+        }
+    }
+}

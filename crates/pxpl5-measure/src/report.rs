@@ -256,6 +256,33 @@ impl Write for HashedText {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pxpl5_gp::Priority;
+    use pxpl5_machine::{Machine, MachineConfig};
+    use pxpl5_renderer::Layout;
+    use pxpl5_wire::{Body, swap_request};
+
+    /// A processor that asks a frame buffer for its buffer 2 of 2, so many times.
+    #[test]
+    fn displays_say_what_they_could_not_use_and_nothing_else() {
+        for asks in [0, 1, 3] {
+            let mut machine = Machine::new(&MachineConfig::small_hmd(), 1, Layout::slats()).expect("a preset");
+            let (processor, display) = (machine.ports().gps[0], machine.ports().display()[0]);
+            let gp = machine.processor(processor, Priority::Foreground);
+            let program = async move {
+                for _ in 0..asks {
+                    gp.send(display, 2, Body::Words(swap_request(2))).await;
+                }
+                gp.until("nothing", || None).await
+            };
+            machine.load(processor, Priority::Foreground, Box::pin(program));
+            machine.switch_on();
+            machine.run_until(Time(1_000_000_000)).expect("it runs");
+            let said: Vec<String> = faults(machine.record()).collect();
+            let begin = format!("the display ntsc could not use {asks} messages; the first: ");
+            let is_said = |said: &String| said.starts_with(&begin) && said.ends_with("expected buffer 0 or 1, found 2");
+            assert!(said.iter().all(is_said) && said.len() == asks.min(1), "{asks}: {said:?}");
+        }
+    }
 
     #[test]
     fn a_text_in_pieces_is_hashed_as_one_record() {

@@ -16,6 +16,7 @@ pub(crate) struct Screen {
 /// All that came for one buffer in one cut, by region, in order of arrival.
 #[derive(Debug)]
 struct Cut {
+    /// Its first target, whose region and picture say nothing here.
     of: CopyTarget,
     regions: Vec<Vec<(Time, PictureNumber)>>,
 }
@@ -51,8 +52,7 @@ impl Screen {
     fn arrive(&mut self, arrival: &Arrival) {
         let target = arrival.target;
         let place = self.cuts.iter().position(|cut| Cut::key(&cut.of) == Cut::key(&target)).unwrap_or_else(|| {
-            let of = CopyTarget { region: RegionId(0), picture: PictureNumber::FIRST, ..target };
-            self.cuts.push(Cut { of, regions: vec![Vec::new(); target.grid.regions() as usize] });
+            self.cuts.push(Cut { of: target, regions: vec![Vec::new(); target.grid.regions() as usize] });
             self.cuts.len() - 1
         });
         if let Some(region) = self.cuts[place].regions.get_mut(usize::from(target.region.0)) {
@@ -87,5 +87,68 @@ impl Screen {
         let buffer = self.swaps[..before].last().map_or(0, |swap| ((swap.1 + 1) % 2) as u8);
         let newest = self.cuts.iter().filter(|cut| cut.of.buffer == buffer).filter_map(|cut| cut.newest(x, y, at));
         newest.max_by_key(|newest| newest.0).map(|newest| newest.1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pxpl5_wire::{FieldParity, NodeId};
+
+    const GRID: RegionGrid = RegionGrid { width: 256, height: 256, region_width: 128, region_height: 128 };
+
+    /// Of buffer 0; its region 3 is the lower right one.
+    fn target(lines: Lines, picture: u64) -> CopyTarget {
+        let (frame_buffer, picture) = (NodeId(1), PictureNumber(picture));
+        CopyTarget { frame_buffer, buffer: 0, lines, grid: GRID, region: RegionId(3), picture }
+    }
+
+    fn screen(targets: impl IntoIterator<Item = (u64, CopyTarget)>) -> Screen {
+        let mut screen = Screen::default();
+        for (at, target) in targets {
+            let last_part_at = Time(at);
+            screen.arrive(&Arrival { surface: SurfaceId(0), target, first_part_at: Time(at - 1), last_part_at });
+        }
+        screen
+    }
+
+    #[test]
+    fn a_pixel_shows_the_newest_picture_of_its_region_that_has_arrived() {
+        let targets = [7, 8, 9].map(|picture| target(Lines::Frame, picture));
+        let screen = screen([10, 20, 30].into_iter().zip(targets));
+        let shown = |x, y, at| screen.shown(x, y, PeriodNumber(0), Time(at));
+        for (at, expected) in [(9, None), (10, Some(targets[0])), (29, Some(targets[1])), (30, Some(targets[2]))] {
+            assert_eq!(shown(128, 255, at), expected, "{at}");
+        }
+        assert_eq!(shown(127, 255, 99), None, "another region");
+    }
+
+    #[test]
+    fn a_line_shows_its_own_field() {
+        let odd = target(Lines::Field(FieldParity::Odd), 7);
+        let screen = screen([(10, odd)]);
+        // Row 128 of a field, of 256: line 257 of the frame.
+        assert_eq!(screen.shown(128, 257, PeriodNumber(0), Time(10)), Some(odd));
+        assert_eq!(screen.shown(128, 256, PeriodNumber(0), Time(10)), None);
+    }
+
+    #[test]
+    fn every_swap_shows_the_other_buffer_beginning_with_the_second() {
+        let [first, second] = [0, 1].map(|buffer| CopyTarget { buffer, ..target(Lines::Frame, buffer.into()) });
+        let mut screen = screen([(10, first), (10, second)]);
+        screen.swaps = vec![(PeriodNumber(3), 0), (PeriodNumber(5), 1), (PeriodNumber(6), 2)];
+        for (field, expected) in [(2, first), (3, second), (4, second), (5, first), (6, second), (9, second)] {
+            assert_eq!(screen.shown(200, 200, PeriodNumber(field), Time(10)), Some(expected), "{field}");
+        }
+    }
+
+    #[test]
+    fn what_was_covered_is_forgotten_and_nothing_else() {
+        let targets = [7, 8, 9, 10].map(|picture| target(Lines::Frame, picture));
+        let mut screen = screen([10, 20, 30, 40].into_iter().zip(targets));
+        for (instant, left) in [(9, 0), (19, 0), (20, 1), (35, 2), (99, 3)] {
+            screen.forget_before(Time(instant));
+            assert_eq!(screen.targets().collect::<Vec<_>>(), targets[left..], "{instant}");
+        }
     }
 }

@@ -84,6 +84,13 @@ impl Shown {
         self.faces.iter_mut().for_each(|faces| faces.forget_before(instant));
     }
 
+    /// Everything that it holds, counted.
+    #[cfg(test)]
+    pub(crate) fn held(&self) -> usize {
+        let of_faces = self.faces.as_ref().map_or(0, TurnedFaces::held);
+        self.screen.targets().count() + self.views.len() + self.complete.len() + self.moments.len() + of_faces
+    }
+
     /// Views that are seen at an instant or later although they are older, or may be: of display memories all that are not yet covered.
     fn still_seen(&self, run: &Settled<'_>, instant: Time) -> BTreeSet<ViewNumber> {
         if self.faces.is_some() {

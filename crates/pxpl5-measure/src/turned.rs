@@ -54,6 +54,12 @@ impl TurnedFaces {
         self.turns.get_mut().known.retain(|(report, _), _| *report >= instant);
     }
 
+    /// Orientations that it holds.
+    #[cfg(test)]
+    pub(crate) fn held(&self) -> usize {
+        self.turns.borrow().known.len()
+    }
+
     /// Turns to the orientations that a run without a cause of error would have had.
     pub(crate) fn leave_out(&mut self, cause: Cause) {
         self.without = Some(cause);

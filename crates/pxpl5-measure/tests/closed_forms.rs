@@ -5,8 +5,8 @@
 //! line through two of its points is.
 
 use pxpl5_machine::MachineConfig;
-use pxpl5_measure::{Measured, PixelErrors, UNJUDGED_FIELDS};
-use pxpl5_run::{Aim, Experiment, Head, Outcome, PipelineSettings, Pixels, Registry, Sampled};
+use pxpl5_measure::{Measured, PixelErrors, Showing, UNJUDGED_FIELDS};
+use pxpl5_run::{Aim, Cause, Experiment, Head, Outcome, PipelineSettings, Pixels, Registry, Sampled};
 use pxpl5_scene::builtin;
 use pxpl5_wire::ViewNumber;
 use std::collections::BTreeMap;
@@ -199,8 +199,12 @@ impl Run {
     }
 
     fn check(&self, expected: [f64; 2], tolerance: f64) {
-        let PixelErrors { pixels, degrees, empty, incomplete, .. } = self.outcome.pixel_errors().expect("a head");
-        assert_eq!((empty, incomplete), (0, 0), "{}", self.pipeline);
+        self.check_errors(&self.outcome.pixel_errors().expect("a head"), expected, tolerance);
+    }
+
+    fn check_errors(&self, errors: &PixelErrors, expected: [f64; 2], tolerance: f64) {
+        let PixelErrors { pixels, degrees, empty, incomplete, .. } = errors;
+        assert_eq!((*empty, *incomplete), (0, 0), "{}", self.pipeline);
         let found = [pixels.mean, degrees.mean];
         let off = [found[0] / expected[0] - 1.0, found[1] / expected[1] - 1.0];
         println!("{:24} {:12} {found:?} for {expected:?}: {off:?}", self.pipeline, self.aim.to_string());
@@ -289,6 +293,13 @@ fn a_sinusoid_is_wrong_by_its_distance_from_a_straight_line_and_by_scan_out() {
             yaw(at) - (yaw(measured_at) + slope * (content.drawn_for - measured_at))
         };
         run.check(run.expected(turned), 1e-3);
+        if pipeline.contains("dual") {
+            continue;
+        }
+        // Without prediction for a cause the newest report is carried on by the motion itself, which between two views is no straight line.
+        let scanned = |content: &Content, at: f64| yaw(at) - yaw(content.drawn_for);
+        let errors = PixelErrors::without(&run.outcome, Showing::Plain, Cause::Prediction);
+        run.check_errors(&errors, run.expected(scanned), 1e-3);
     }
 }
 

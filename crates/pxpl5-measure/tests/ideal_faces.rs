@@ -1,38 +1,64 @@
-//! What remains wrong where faces are drawn in no time.
+//! What remains wrong of what is drawn without error for one instant of its field.
 
+use address_recalculation::Latch;
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::Registration;
-use pxpl5_run::{Aim, Experiment, FacePipeline, FacePolicy, FaceSource, Head, Pipeline, Pixels};
+use pxpl5_run::{Aim, Experiment, FacePipeline, FacePolicy, FaceSource, Head, Jitp, Pipeline, Pixels, Viewpoint};
 use pxpl5_scene::builtin;
 use pxpl5_wire::PeriodNumber;
 use std::sync::Arc;
-use tracking::motion::Slide;
+use tracking::motion::{Slide, Synthetic};
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
 
 /// Focal length of 640 pixels over 60 degrees.
 const FOCAL_PX: f64 = 554.256_258_422_040_8;
 
-/// A head that slides at a speed, predicted without error for the first pixel of each field: a pixel that lights later shows a wall at
-/// z m from where the eye was then, f v t / z pixels off.
+/// A head that slides at a speed, predicted without error for the first pixel of each field: a pixel that lights later shows what stands at
+/// z m from where the eye was then, f v t / z pixels off. So do faces that are drawn in no time, and a picture in which nothing stands.
 #[test]
 fn under_a_slide_a_pixel_is_off_by_the_way_since_the_first_of_its_field() {
     let speed = 1.0;
-    let pipeline = FacePipeline { source: FaceSource::Ideal, ..FacePipeline::new(FacePolicy::Full) };
-    let config = pipeline.adapt(MachineConfig::small_hmd());
-    let head = Head::new(Arc::new(Slide::right_at(speed)), TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1);
     let distance_m = 2.0;
-    let head = head.expect("in range").aiming(Aim::FirstPixel).judged_at(distance_m).expect("in range");
+    let faces = FacePipeline { source: FaceSource::Ideal, ..FacePipeline::new(FacePolicy::Full) };
+    let pipelines: [(Arc<dyn Pipeline>, &str); 2] =
+        [(Arc::new(faces), "sphere:100"), (Arc::new(Jitp::new(Viewpoint::Field, false)), "full-screen:2")];
+    for (pipeline, scene) in pipelines {
+        let motion = Arc::new(Slide::right_at(speed));
+        let head = Head::new(motion, TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1).expect("in range");
+        let head = head.aiming(Aim::FirstPixel).judged_at(distance_m).expect("in range");
+        let (name, config) = (pipeline.name(), pipeline.adapt(MachineConfig::small_hmd()));
+        let experiment = Experiment::with(config, pipeline, Arc::new(builtin(scene).expect("built in"))).head(head);
+        let outcome = experiment.fields(44).pixels(Pixels::Off).run().expect("it runs");
+        let registration = Registration::of(&outcome).expect("there is a head");
+        let field = PeriodNumber(40);
+        let display = outcome.record().display();
+        let lights = |x: u32, y: u32| display.lights(0, x, y, field).expect("scanned").0 as f64 * 1e-12;
+        for (x, y) in [(0, 0), (320, 0), (320, 120), (10, 240), (639, 478)] {
+            let error = registration.at(x, y, field).expect("shown");
+            let seconds = lights(x, y) - lights(0, 0);
+            let expected = FOCAL_PX * speed * seconds / distance_m;
+            assert!((error.offset_px.x - expected).abs() < 0.01, "{name}, {x} {y}: {:?} {expected}", error.offset_px);
+            assert!(error.offset_px.y.abs() < 0.01, "{name}, {x} {y}: {:?}", error.offset_px);
+        }
+    }
+}
+
+/// Orientations are predicted from reports that go forward alone: whoever asks for an earlier pixel gets what he would have got at first.
+#[test]
+fn errors_are_the_same_in_whatever_order_they_are_asked_for() {
+    let pipeline =
+        FacePipeline { source: FaceSource::Ideal, latch: Latch::Line, ..FacePipeline::new(FacePolicy::Full) };
+    let config = pipeline.adapt(MachineConfig::small_hmd());
+    let motion = Arc::new(Synthetic::recorded_use(1));
+    let head = Head::new(motion, TrackerConfig::fastrak(), PredictorKind::ConstantVelocity, 1).expect("in range");
     let experiment = Experiment::new(config, pipeline, builtin("sphere:100").expect("even")).fields(44).head(head);
     let outcome = experiment.pixels(Pixels::Off).run().expect("it runs");
     let registration = Registration::of(&outcome).expect("there is a head");
-    let field = PeriodNumber(40);
-    let lights = |x: u32, y: u32| outcome.record().display().lights(0, x, y, field).expect("scanned").0 as f64 * 1e-12;
-    for (x, y) in [(0, 0), (320, 0), (320, 120), (10, 240), (639, 478)] {
-        let error = registration.at(x, y, field).expect("shown");
-        let seconds = lights(x, y) - lights(0, 0);
-        let expected = FOCAL_PX * speed * seconds / distance_m;
-        assert!((error.offset_px.x - expected).abs() < 0.01, "{x} {y}: {:?} {expected}", error.offset_px);
-        assert!(error.offset_px.y.abs() < 0.01, "{x} {y}: {:?}", error.offset_px);
+    for (x, y, field) in [(0, 0, 40), (320, 240, 40), (320, 241, 31), (10, 2, 42), (10, 2, 20), (10, 2, 42)] {
+        let field = PeriodNumber(field);
+        let alone = Registration::of(&outcome).expect("there is a head").at(x, y, field);
+        assert!(alone.is_some_and(|error| error.pixels > 0.0), "{x} {y} {field:?}");
+        assert_eq!(registration.at(x, y, field), alone, "{x} {y} {field:?}");
     }
 }

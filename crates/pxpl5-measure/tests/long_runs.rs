@@ -36,10 +36,10 @@ fn walk() -> Walk {
     Walk::new(&corners, 0.6).expect("a way").looking_around(5)
 }
 
-/// A tracker that says nothing for a second and a half of the run.
-fn silent_for_a_while() -> TrackerConfig {
-    let dropout = TrackerFault::Dropout { from_ps: 5_000_000_000_000, to_ps: 6_500_000_000_000 };
-    TrackerConfig { faults: vec![dropout], ..TrackerConfig::fastrak() }
+/// A tracker that says nothing from a second of the run to another one.
+fn silent(from_s: f64, to_s: f64) -> TrackerConfig {
+    let [from_ps, to_ps] = [from_s, to_s].map(|s| (s * 1e12) as u64);
+    TrackerConfig { faults: vec![TrackerFault::Dropout { from_ps, to_ps }], ..TrackerConfig::fastrak() }
 }
 
 /// Every family of pipelines, long enough that records are given up several times; trackers, predictors, rasters and aims between them.
@@ -53,7 +53,7 @@ fn experiments() -> Vec<Experiment> {
     vec![
         slats(2_000).head(head(synthetic(), fastrak(), kalman)),
         slats(2_000).head(head(Pan::at(60.0), TrackerConfig::flock_of_birds(), none).before(Raster::Vdrt)),
-        slats(2_000).head(head(synthetic(), silent_for_a_while(), velocity)),
+        slats(2_000).head(head(synthetic(), silent(5.0, 6.5), velocity)),
         control(2_000).head(head(synthetic(), fastrak(), velocity).aiming(Aim::FirstPixel)),
         control(2_000).head(head(walk(), TrackerConfig::optical_ceiling(), kalman).before(Raster::Vdrt)),
         control(1_500).head(head(synthetic(), TrackerConfig::polhemus_3space(), none)).on_demand(),
@@ -85,23 +85,36 @@ fn said(outcome: &Outcome) -> String {
     format!("{:#?}", Report { host_seconds: None, ..outcome.report() })
 }
 
+fn assert_same(experiment: &Experiment) {
+    let head = experiment.tracked_head().expect("tracked");
+    let name = format!("{}, {:?}", experiment.pipeline().name(), head);
+    let everything = run(experiment, Keep::Everything);
+    let statistics = run(experiment, Keep::Statistics);
+    let [expected, found] = [&everything, &statistics].map(said);
+    let other = expected.lines().zip(found.lines()).find(|(expected, found)| expected != found);
+    assert_eq!(other, None, "{name}");
+    assert_eq!(expected.len(), found.len(), "{name}");
+    assert!(statistics.has_forgotten() && !everything.has_forgotten(), "{name}: records were given up");
+    let of_head = everything.report().head.expect("tracked");
+    assert!(of_head.error.judged > 500 && of_head.end_to_end.n > 50, "{name}: there is something to be said");
+    let [all, last] = [&everything, &statistics].map(|outcome| outcome.head().expect("tracked").sampled());
+    assert!(4 * last.len() < 3 * all.len(), "{name}: {} poses of {} are held", last.len(), all.len());
+    assert_eq!(last, all[all.len() - last.len()..], "{name}: the last ones");
+}
+
 #[test]
 fn what_is_kept_changes_nothing_that_is_said_of_a_head() {
-    for experiment in experiments() {
-        let head = experiment.tracked_head().expect("tracked");
-        let name = format!("{}, {:?}", experiment.pipeline().name(), head);
-        let everything = run(&experiment, Keep::Everything);
-        let statistics = run(&experiment, Keep::Statistics);
-        let [expected, found] = [&everything, &statistics].map(said);
-        let other = expected.lines().zip(found.lines()).find(|(expected, found)| expected != found);
-        assert_eq!(other, None, "{name}");
-        assert_eq!(expected.len(), found.len(), "{name}");
-        assert!(statistics.has_forgotten() && !everything.has_forgotten(), "{name}: records were given up");
-        let of_head = everything.report().head.expect("tracked");
-        assert!(of_head.error.judged > 500 && of_head.end_to_end.n > 50, "{name}: there is something to be said");
-        let [all, last] = [&everything, &statistics].map(|outcome| outcome.head().expect("tracked").sampled());
-        assert!(4 * last.len() < 3 * all.len(), "{name}: {} poses of {} are held", last.len(), all.len());
-        assert_eq!(last, all[all.len() - last.len()..], "{name}: the last ones");
+    experiments().iter().for_each(assert_same);
+}
+
+/// The same in a few seconds: a display that is drawn field by field, for eighteen seconds from the last report before its tracker fell silent; one with
+/// two buffers; one with faces.
+#[test]
+fn what_is_kept_changes_nothing_that_is_said_of_a_head_in_shorter_runs() {
+    let [slats, _, _, _, control, .., faces, _, _] = &experiments()[..] else { panic!("fourteen") };
+    let silent = slats.clone().head(head(synthetic(), silent(4.0, 22.0), PredictorKind::ConstantVelocity));
+    for (experiment, fields) in [(&silent, 1_500), (control, 600), (faces, 1_000)] {
+        assert_same(&experiment.clone().fields(fields));
     }
 }
 

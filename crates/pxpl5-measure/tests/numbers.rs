@@ -3,11 +3,13 @@
 use glam::{DQuat, DVec3};
 use image::{Rgb, RgbImage};
 use pxpl5_machine::MachineConfig;
-use pxpl5_measure::{LatencyCurve, Measure, Measured, QUANTITIES, Results, side_by_side};
+use pxpl5_measure::{LatencyCurve, Measure, Measured, QUANTITIES, Results, TooHeavy, side_by_side};
 use pxpl5_run::{
-    Experiment, FacePipeline, FacePolicy, FaceSource, Head, Outcome, Pipeline, PipelineSettings, Pixels, Registry,
+    DuePictures, Estimates, Experiment, ExperimentError, FacePipeline, FacePolicy, FaceSource, Head, Outcome, Pipeline,
+    PipelineSettings, Pixels, Registry, Slats,
 };
 use pxpl5_scene::builtin;
+use pxpl5_wire::PeriodNumber;
 use std::sync::Arc;
 use tracking::motion::{Motion, Pan};
 use tracking::predict::PredictorKind;
@@ -131,6 +133,74 @@ fn a_load_that_is_too_heavy_is_told_with_what_would_do() {
     let number = heavy.triangles_in_time.filter(|some| *some > 0).map(|some| format!("--triangles {some}"));
     assert!(heavy.advice.contains(&number.unwrap_or_else(|| "--pipeline jitp-scanline".to_owned())), "{heavy}");
     assert_eq!(run("jitp-scanline", "full-screen:2", 40).report().too_heavy, None);
+}
+
+/// How many primitives would do is said where the closed form knows, and where these are fewer than there are.
+#[test]
+fn a_number_that_would_do_is_said_where_it_is_less_than_there_is() {
+    fn all(experiment: &Experiment) -> u64 {
+        (experiment.scene().triangles().len() + experiment.scene().spheres().len()) as u64
+    }
+    let by = |triangles_in_time| Estimates { fields_needed: |_| None, triangles_in_time };
+    let scene = Arc::new(builtin("molecules").expect("built in"));
+    assert!(!scene.triangles().is_empty() && !scene.spheres().is_empty(), "of both kinds");
+    let experiment = Experiment::with(MachineConfig::slats(), Arc::new(Slats::split()), scene);
+    let n = all(&experiment);
+    let fewer = format!("(--triangles {})", n - 1);
+    let cases = [
+        (by(|_| Some(0)), Some(0), "not even one"),
+        (by(|experiment| Some(all(experiment) - 1)), Some(n - 1), fewer.as_str()),
+        (by(|experiment| Some(all(experiment))), None, "pxpl5 limit"),
+        (by(|experiment| Some(all(experiment) + 1)), None, "pxpl5 limit"),
+        (by(|_| None), None, "pxpl5 limit"),
+    ];
+    let (first_period, last_period) = (PeriodNumber(4), PeriodNumber(11));
+    let due = DuePictures {
+        first_period,
+        last_period,
+        periods_a_picture: 1,
+        due: 8,
+        shown: 5,
+        late: 1,
+        incomplete: 2,
+        missed: 0,
+    };
+    for (estimates, expected, advice) in cases {
+        let experiment = experiment.clone().estimated_by(Some(estimates));
+        let heavy = TooHeavy::of(&experiment, &due).expect("late ones");
+        assert_eq!((heavy.due, heavy.not_shown, heavy.triangles, heavy.triangles_in_time), (8, 3, n, expected));
+        assert!(heavy.advice.contains(advice), "{heavy}");
+        assert_eq!(TooHeavy::of(&experiment, &DuePictures { shown: 8, late: 0, incomplete: 0, ..due }), None);
+    }
+}
+
+#[test]
+fn the_hash_of_a_report_is_of_what_happened_and_of_what_is_said_of_it() {
+    let outcome = run("slats", "sphere:10", 40);
+    let report = outcome.report();
+    assert!(report.trace_hash.len() == 16 && report.trace_hash.chars().all(|digit| digit.is_ascii_hexdigit()));
+    assert_eq!(report.trace_hash, run("slats", "sphere:10", 40).report().trace_hash);
+    assert_ne!(report.trace_hash, outcome.record().trace_hash().to_string());
+}
+
+/// In six fields not all of four memories have been drawn.
+#[test]
+fn a_memory_that_was_never_shown_has_no_period() {
+    let pipeline =
+        (Registry::of_papers().pipeline("arp-priority").expect("listed").build)(&PipelineSettings::default());
+    let config = pipeline.adapt(MachineConfig::small_hmd());
+    let scene = Arc::new(builtin("gallery").expect("built in"));
+    let experiment = Experiment::with(config, pipeline, scene).fields(6).pixels(Pixels::Off);
+    let outcome = match experiment.run() {
+        Ok(outcome) => outcome,
+        Err(ExperimentError::TooShort { partial, .. }) => *partial,
+        Err(error) => panic!("{error}"),
+    };
+    let memories = outcome.report().arp.expect("faces").memories;
+    let [shown, never] =
+        [false, true].map(|never| memories.iter().filter(move |memory| (memory.updates_hz == 0.0) == never));
+    assert!(shown.clone().count() > 0 && shown.clone().all(|memory| memory.period_frames.is_some()), "{memories:?}");
+    assert!(never.clone().count() > 0 && never.clone().all(|memory| memory.period_frames.is_none()), "{memories:?}");
 }
 
 /// Faces of 512 texels of 24 bits of colour and of depth, one memory, so 24 stages of 25 ns.

@@ -10,8 +10,9 @@ use pxpl5_run::{Aim, Experiment, Head, Outcome, PipelineSettings, Pixels, Raster
 use pxpl5_scene::builtin;
 use pxpl5_wire::PeriodNumber;
 use std::sync::Arc;
-use tracking::motion::Motion;
+use tracking::motion::{Motion, Pan};
 use tracking::predict::PredictorKind;
+use tracking::time::PS_PER_MS;
 use tracking::tracker::TrackerConfig;
 use tracking::{Pose, SettingSink};
 
@@ -178,10 +179,30 @@ fn errors_by_field_are_those_of_all_pixels_at_the_time_of_their_retraces() {
     for error in &errors.by_field {
         let retrace_s = error.field.0 as f64 * 262.5 * LINE_S;
         assert!((error.time_s - retrace_s).abs() < 1e-9, "{error:?}");
+        let row = 240.0 + (error.field.0 % 2) as f64;
+        let [right, up] = [320.5 - 320.0, 240.0 - (row + 0.5)];
+        let [seen_right, seen_up] = after(right, up, turned(error.field.0, 120, 320));
+        assert!((error.centre_px - (seen_right - right).hypot(seen_up - up)).abs() < 1e-6, "{error:?}");
     }
     let mean =
         |of: fn(&pxpl5_measure::FieldError) -> f64| errors.by_field.iter().map(of).sum::<f64>() / fields.len() as f64;
     assert!((mean(|error| error.mean_px) - errors.pixels.mean).abs() < 1e-9);
     assert!((mean(|error| error.centre_px) - errors.centre_px.mean).abs() < 1e-9);
     assert_eq!((errors.all_px.len() as u64, errors.behind, errors.empty), (errors.judged, 0, 0));
+}
+
+/// At 1,450 degrees a second a head turns by 145 degrees and more in the 100 ms that its reports are late, and by less than 240 until the last pixel
+/// of a field that is drawn from them lights: all of it is behind the eye by then, which sees 30 degrees to each side.
+#[test]
+fn what_is_behind_the_eye_when_it_lights_has_no_error_and_is_counted() {
+    let fields = 45;
+    let late = TrackerConfig::ideal().with_latency_ps(100 * PS_PER_MS);
+    let head = Head::new(Arc::new(Pan::at(1_450.0)), late, PredictorKind::None, 1).expect("in range");
+    let pipeline = (Registry::of_papers().pipeline("jitp-field").expect("listed").build)(&PipelineSettings::default());
+    let scene = Arc::new(builtin("full-screen:2").expect("built in"));
+    let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene).head(head);
+    let outcome = experiment.fields(fields).pixels(Pixels::Off).run().expect("two triangles");
+    let errors = outcome.pixel_errors().expect("a head");
+    assert_eq!((errors.judged, errors.behind), (0, 25 * (fields - 1 - UNJUDGED_FIELDS)));
+    assert!(errors.pixels.mean.is_nan() && errors.by_field.is_empty());
 }

@@ -2,14 +2,15 @@
 //! papers have them.
 
 use glam::Vec3;
-use pxpl5_machine::MachineConfig;
+use pxpl5_gp::{Account, Fault, OutOfMemory, Stage};
+use pxpl5_machine::{MachineConfig, RunError};
 use pxpl5_run::{
-    Experiment, FinishedRegions, KeyValue, Outcome, Pipeline, PipelineSettings, Pixels, Registry, RenderingControl,
-    Slats,
+    Experiment, ExperimentError, FinishedRegions, KeyValue, Outcome, Pipeline, PipelineSettings, Pixels, Registry,
+    RenderingControl, Slats,
 };
 use pxpl5_scene::{HeadMotion, HeadPath, Scene, Sway, builtin};
 use pxpl5_sim::Time;
-use pxpl5_wire::SurfaceId;
+use pxpl5_wire::{RegionId, SurfaceId};
 use std::sync::Arc;
 
 /// Spheres or triangles before a head that stands.
@@ -104,6 +105,47 @@ fn rendering_control_shows_every_frame_whole_and_in_order() {
             }
         }
     }
+}
+
+/// When RENDER of each frame ended, over all eyes, beside the instant from which the frame before it is shown: its buffer is free then.
+fn rendered_and_free(outcome: &Outcome) -> Vec<(Time, Time)> {
+    let shown = outcome.pictures().iter().map(|picture| (picture.picture.next(), picture.shown_at));
+    let stages = outcome.stages();
+    let ends = |frame| stages.iter().filter(move |s| s.stage == Stage::Render && s.picture == frame).map(|s| s.end);
+    shown.filter_map(|(frame, free)| Some((ends(frame).max()??, free))).collect()
+}
+
+/// Three renderers hold three regions of a frame until its buffer is free, so that RENDER waits; what is put into their backing stores
+/// lets it go on.
+#[test]
+fn regions_that_are_stored_let_render_end_before_the_buffer_is_free() {
+    let scene = still("sphere:10");
+    for finished in FinishedRegions::ALL {
+        let pipeline = RenderingControl { finished, ..RenderingControl::stereo() };
+        let outcome = run(Arc::new(pipeline), machine("small-hmd", 2, 3), &scene, 24);
+        let frames = rendered_and_free(&outcome);
+        let early = frames.iter().filter(|(rendered, free)| rendered < free).count();
+        assert_eq!(early > 0, finished == FinishedRegions::Store, "{finished:?}: {early} of {}", frames.len());
+    }
+}
+
+/// TR94: 7,700 triangles that cover the screen on 12 slaves, 642 each, in 20 bins of 4 bytes a pointer. As many for the next frame wait until
+/// those are drawn.
+#[test]
+fn bins_of_rendering_control_hold_642_triangles_that_cover_the_screen_and_no_more() {
+    let run = |triangles: u32| {
+        let scene = builtin(&format!("full-screen:{triangles}")).expect("built in");
+        let experiment = Experiment::new(machine("small-hmd", 2, 20), RenderingControl::mono(), scene);
+        experiment.fields(24).pixels(Pixels::Off).run()
+    };
+    let Err(ExperimentError::TooShort { pictures, .. }) = run(642) else { panic!("a frame takes seven fields") };
+    assert!(pictures > 2, "both contexts are filled again");
+    let Err(ExperimentError::Run { error: RunError::Fault { fault: Fault::Memory(fault), .. }, .. }) = run(643) else {
+        panic!("642 * 20 * 4 bytes are all that there are")
+    };
+    let OutOfMemory { account, region, needed_bytes, available_bytes, .. } = fault;
+    assert_eq!((account, region), (Account::Bins(0), Some(RegionId(19))));
+    assert_eq!((needed_bytes, available_bytes), (643 * 20 * 4, 642 * 20 * 4));
 }
 
 #[test]

@@ -299,3 +299,6 @@ impl SlatsProcessor {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

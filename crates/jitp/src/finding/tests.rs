@@ -1,7 +1,8 @@
 //! What code finds in windows, and the messages that it lists, are those of the native firmware, whatever the scene and the windows.
 
 use crate::config::{Beam, BlockOrder, DrawingSchedule, Interpolation, JitpConfig, Viewpoint};
-use crate::drawing::{DrawnList, Ends, Window};
+use crate::drawing::{DrawnList, Ends, Window, interpolated};
+use crate::finding::Finding;
 use crate::pieces::{messages, window};
 use crate::timing::JitpTiming;
 use crate::whole::{WholeList, picture};
@@ -349,5 +350,54 @@ fn what_is_counted_on_a_strip_between_two_views_is_what_is_drawn() {
                 assert_eq!(commands, counts.triangles, "{window:?}, {interpolation:?}");
             }
         }
+    }
+}
+
+/// What a board pays for a strip between two views: its interpolation, and then the search.
+#[test]
+fn by_code_a_strip_between_two_views_takes_as_long_as_both_of_its_parts() {
+    let spans = [false, true].map(|is_one_work| {
+        let config = strips(8);
+        let mut scene = Scene::new(&config, CodeVersion::Compiled, 80, [150, 10]);
+        let ends = scene.between(80, 0.05, Interpolation::Screen);
+        let drawn = DrawnList::between(scene.share.list(), &ends, 0.5, Interpolation::Screen, scene.viewport);
+        let regions = config.strip_regions(12);
+        let windows = scene.windows(&regions);
+        let (counts, met) = drawn.count(&windows);
+        let parts = [scene.part, MemoryPart::of(4, 5)];
+        let interpolating = drawn.interpolating(&scene.share, &windows, picture(scene.viewport, config.layout), parts);
+        let viewport = scene.viewport;
+        let searching = Searching { part: parts[1], viewport, grid: config.grid(), windows: &regions, counts: &counts };
+        let (timing, processor) = (&GpTiming::PAPERS, &mut scene.processor);
+        if is_one_work {
+            let finding = Finding { searching, interpolating, met, interpolate_ns: 0 };
+            return finding.by_code(timing, processor).expect("it returns");
+        }
+        let interpolated = interpolating.expect("between two views").run_code(timing, processor).expect("it returns");
+        interpolated.expect("it has kernels") + searching.by_code(timing, processor).expect("it returns")
+    });
+    assert_eq!(spans[0], spans[1]);
+}
+
+/// Where the view and a structure turn at once ways on the screen are curved: at 20 degrees each, about the line of sight, by 7 pixels at the top and
+/// the bottom. What is left out for being far from a strip at both ends does not meet it between.
+#[test]
+fn nothing_that_meets_a_strip_between_two_views_is_left_out_for_being_far_at_both() {
+    let config = strips(1);
+    let scene = Scene::new(&config, CodeVersion::Compiled, 90, [3_000, 0]);
+    let views = [-10_f32, 10.0].map(|degrees| {
+        let turn = Mat4::from_rotation_z(degrees.to_radians());
+        let mut view = view(&mut Numbers(SplitMix64::new(90)));
+        view.eyes[0].world_to_eye = turn * view.eyes[0].world_to_eye;
+        view.edits = vec![ModelEdit { structure: 0, model: turn }];
+        view
+    });
+    let list = scene.share.list();
+    let ends = Ends::new(list, views.to_vec(), scene.viewport);
+    let between = DrawnList::between(list, &ends, 0.5, Interpolation::View, scene.viewport);
+    let alone = DrawnList::from_view(list, &interpolated(&views[0], &views[1], 0.5), scene.viewport);
+    for strip in 0..config.grid().rows() {
+        let windows = scene.windows(&config.strip_regions(strip));
+        assert_eq!(between.count(&windows), alone.count(&windows), "{strip}");
     }
 }

@@ -1,0 +1,71 @@
+//! What the master orders, and when.
+
+use super::*;
+use crate::config::Beam;
+use crate::rig::{FIELD_US, MASTER, ROW_US, Rig, SLAVE, config, us, view};
+use pxpl5_gp::{CodeVersion, GpBoard};
+
+#[test]
+fn an_order_lasts_as_long_as_the_slaves_last_one_and_its_blocks_stand_for_a_pass() {
+    let mut flight = Flight::new(2, 3);
+    // A pass is three orders; which slave takes which is said, and when.
+    let orders = [(0, 100), (1, 130), (1, 190), (0, 260), (0, 400), (1, 430)];
+    let expected = [(0, 0), (0, 0), (60, 0), (160, 160), (140, 270), (240, 240)];
+    for ((slave, now), (drawing, standing)) in orders.into_iter().zip(expected) {
+        let found = flight.ordered(slave, Time(now));
+        assert_eq!((found.drawing, found.standing), (Span(drawing), Span(standing)), "{slave} at {now}");
+    }
+}
+
+#[test]
+fn nothing_is_before_time_begins() {
+    assert_eq!(before(Time(5), Span(3)), Time(2));
+    assert_eq!(before(Time(3), Span(5)), Time::ZERO);
+}
+
+/// The board of a master that orders strips of 120 rows, racing the beam.
+fn master_of(viewpoint: Viewpoint, margin_ns: u64, code: Option<CodeVersion>, beam: Option<Beam>) -> Rig {
+    let mut config = config(DrawingSchedule::Beam { viewpoint, racing: true, strip_rows: 120 });
+    config.timing.margin_ns = margin_ns;
+    config.beam = beam.unwrap_or(config.beam);
+    let run_code = |board: &mut GpBoard, code| board.run_code(code, i860::Config::cycle(), &Rc::default());
+    Rig::new(
+        MASTER,
+        |board| code.into_iter().for_each(|code| run_code(board, code)),
+        |gp| master(gp, &config, TransformCost::PASS, |wanted| view(wanted.number.0)),
+    )
+}
+
+/// Orders to the slave, and when they were sent.
+fn ordered(rig: &Rig) -> Vec<(Time, DrawingOrder)> {
+    let sent = rig.sent_to(SLAVE).into_iter();
+    sent.map(|(time, received)| (time, DrawingOrder::read(&received, SLAVE).expect("an order"))).collect()
+}
+
+/// Two strips of 120 rows; one slave has the time of one, and a margin; by code its field is ordered another field earlier.
+#[test]
+fn by_code_a_field_is_ordered_a_field_before_its_first_strip_is() {
+    const MARGIN_US: u64 = 400;
+    let mut rig = master_of(Viewpoint::Field, MARGIN_US * 1_000, Some(CodeVersion::Scheduled), None);
+    rig.run_to(7 * FIELD_US);
+    let mut fields = 0;
+    for (time, order) in ordered(&rig) {
+        let DrawingOrder::Field { field, .. } = order else { continue };
+        let expected = us((field.0 - 1) * FIELD_US - 120 * ROW_US - MARGIN_US);
+        assert!(time > expected && time < expected + Span::from_us(50), "{field:?}: {time} for {expected}");
+        fields += 1;
+    }
+    assert!(fields > 3, "{fields}");
+}
+
+/// Where the beam is at all strips at once and there is no margin, each would be ordered at the instant at which its beam is there.
+#[test]
+fn no_strip_is_ordered_when_its_beam_is_there() {
+    let retrace = |field: PeriodNumber| us(field.0 * FIELD_US);
+    for (margin_ns, is_ordered) in [(0, false), (1, true)] {
+        let at_once = Beam::new(move |field, _, _| retrace(field), retrace);
+        let mut rig = master_of(Viewpoint::Strip, margin_ns, None, Some(at_once));
+        rig.run_to(4 * FIELD_US);
+        assert_eq!(!ordered(&rig).is_empty(), is_ordered, "{margin_ns} ns before");
+    }
+}

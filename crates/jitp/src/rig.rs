@@ -1,0 +1,118 @@
+//! A board with programs of this firmware on a bench, for tests.
+
+use crate::config::{Beam, DrawingSchedule, JitpConfig};
+use crate::protocol::DrawingOrder;
+use crate::timing::JitpTiming;
+use glam::{Mat4, Vec3};
+use pphigs::{DisplayList, DisplayStructure, EyeView, FrameView, ModelFrame};
+use pxpl5_display::Aim;
+use pxpl5_geometry::Culling;
+use pxpl5_gp::{Firmware, Gp, GpBoard, GpEvent, GpOutput, GpTiming, Priority, Received};
+use pxpl5_renderer::Layout;
+use pxpl5_sim::{Phase, Span, TestBench, Time};
+use pxpl5_wire::{Message, NodeId, PeriodNumber, ViewNumber};
+use std::sync::Arc;
+
+pub(crate) const MASTER: NodeId = NodeId(1);
+pub(crate) const SLAVE: NodeId = NodeId(2);
+pub(crate) const RENDERER: NodeId = NodeId(3);
+pub(crate) const FIELD_US: u64 = 20_000;
+pub(crate) const ROW_US: u64 = 50;
+/// The time that anything needs to leave a board.
+pub(crate) const CYCLE: Span = Span(25_000);
+
+pub(crate) const fn us(us: u64) -> Time {
+    Time(us * 1_000_000)
+}
+
+/// A master, a slave and a renderer, before a beam that takes 20 ms for a field and 50 us for a row.
+pub(crate) fn config(schedule: DrawingSchedule) -> JitpConfig {
+    let retrace = |field: PeriodNumber| us(field.0 * FIELD_US);
+    JitpConfig {
+        host: NodeId(0),
+        master: MASTER,
+        slaves: vec![SLAVE],
+        renderers: vec![RENDERER],
+        frame_buffer: NodeId(4),
+        schedule,
+        beam: Beam::new(move |field, row, _| retrace(field) + Span::from_us(u64::from(row) * ROW_US), retrace),
+        aim: Aim::default(),
+        layout: Layout::slats(),
+        pixels: false,
+        timing: JitpTiming::PAPERS,
+    }
+}
+
+/// Triangles in the middle of the picture.
+pub(crate) fn list(triangles: usize) -> Arc<DisplayList> {
+    let structure =
+        DisplayStructure { triangles: 0..triangles, spheres: 0..0, frame: ModelFrame::World, culling: Culling::None };
+    Arc::new(DisplayList {
+        positions: vec![Vec3::new(-0.1, -0.1, -2.0), Vec3::new(0.1, -0.1, -2.0), Vec3::new(0.0, 0.1, -2.0)],
+        normals: vec![Vec3::Z; 3],
+        colours: vec![[200; 3]; 3],
+        triangles: vec![[0, 1, 2]; triangles],
+        structures: vec![structure],
+        towards_light: Vec3::Z,
+        ..DisplayList::default()
+    })
+}
+
+pub(crate) fn view(number: u64) -> FrameView {
+    let projection = Mat4::perspective_rh(0.9, 4.0 / 3.0, 0.1, 100.0);
+    let eye = EyeView { world_to_eye: Mat4::IDENTITY, head_to_eye: Mat4::IDENTITY, projection };
+    FrameView { number: ViewNumber(number), eyes: vec![eye], edits: Vec::new() }
+}
+
+/// A board whose messages are accepted a microsecond after they are sent.
+pub(crate) struct Rig {
+    pub(crate) board: GpBoard,
+    bench: TestBench<GpEvent, GpOutput>,
+    accepted: usize,
+    pub(crate) us: u64,
+}
+
+impl Rig {
+    pub(crate) fn new(
+        node: NodeId,
+        prepare: impl FnOnce(&mut GpBoard),
+        programs: impl FnOnce(&Gp) -> Vec<(Priority, Firmware)>,
+    ) -> Self {
+        let mut board = GpBoard::new(node, GpTiming::PAPERS, CYCLE);
+        prepare(&mut board);
+        let gp = board.handle_for(Priority::Foreground);
+        programs(&gp).into_iter().for_each(|(level, program)| board.load(level, program));
+        let mut bench = TestBench::new();
+        bench.feed(Time::ZERO, Phase::Work, GpEvent::Poll);
+        Self { board, bench, accepted: 0, us: 0 }
+    }
+
+    pub(crate) fn deliver(&mut self, order: &DrawingOrder) {
+        let (words, body) = order.message();
+        let message = Message { source: MASTER, destination: SLAVE, words, body };
+        self.bench.feed(us(self.us), Phase::Arrive, GpEvent::Delivered(message));
+    }
+
+    pub(crate) fn run_to(&mut self, until_us: u64) {
+        while self.us < until_us {
+            self.us += 1;
+            let now = us(self.us);
+            if self.us.is_multiple_of(FIELD_US) {
+                self.bench.feed(now, Phase::Arrive, GpEvent::Retrace(PeriodNumber(self.us / FIELD_US)));
+            }
+            let sent = self.bench.outputs[self.accepted..].iter();
+            let tickets: Vec<u64> = sent.map(|(_, GpOutput::Send { ticket, .. })| *ticket).collect();
+            self.accepted += tickets.len();
+            tickets.iter().for_each(|ticket| self.bench.feed(now, Phase::Arrive, GpEvent::Accepted(*ticket)));
+            self.bench.run_until(now, |event, context| self.board.handle(event, context));
+        }
+        assert_eq!(self.board.fault(), None);
+    }
+
+    /// Messages to a board, and when they were sent.
+    pub(crate) fn sent_to(&self, node: NodeId) -> Vec<(Time, Received)> {
+        let sent = self.bench.outputs.iter().map(|(time, GpOutput::Send { message, .. })| (*time, message));
+        let to_node = sent.filter(|(_, message)| message.destination == node);
+        to_node.map(|(time, m)| (time, Received { arrived: time, source: m.source, body: m.body.clone() })).collect()
+    }
+}

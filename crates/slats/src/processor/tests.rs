@@ -1,0 +1,161 @@
+//! A leading processor alone on its board: what it sends, and when, whatever comes back from renderers.
+
+use super::*;
+use pphigs::{DisplayList, DisplayStructure, EyeView, ModelFrame, RegionBinning};
+use pxpl5_geometry::Culling;
+use pxpl5_gp::{GpBoard, GpEvent, GpOutput, GpTiming};
+use pxpl5_renderer::Layout;
+use pxpl5_sim::{Phase, Span, TestBench, Time};
+use pxpl5_wire::{Message, ViewNumber, read_swap_request};
+
+const BOARD: NodeId = NodeId(1);
+const FRAME_BUFFERS: [NodeId; 2] = [NodeId(2), NodeId(3)];
+const FIRST_RENDERER: u16 = 10;
+/// One for each region, and more that have none.
+const RENDERERS: u16 = 24;
+const REGIONS: u64 = 20;
+const CYCLE: Span = Span(25_000);
+/// A field is as long here.
+const FIELD_MS: u64 = 20;
+
+const fn us(us: u64) -> Time {
+    Time(us * 1_000_000)
+}
+
+/// A board on its bench, whose messages are accepted from an instant on.
+struct Rig {
+    board: GpBoard,
+    bench: TestBench<GpEvent, GpOutput>,
+    accepted: usize,
+    us: u64,
+}
+
+impl Rig {
+    /// A view has come, for so many triangles that nobody sees.
+    fn new(copy: CopySchedule, triangles: usize) -> Self {
+        let config = SlatsConfig {
+            host: NodeId(0),
+            processors: vec![BOARD],
+            renderers: (FIRST_RENDERER..FIRST_RENDERER + RENDERERS).map(NodeId).collect(),
+            frame_buffers: FRAME_BUFFERS,
+            copy,
+            binning: RegionBinning::All,
+            layout: Layout::slats(),
+            pixels: false,
+        };
+        let structure = DisplayStructure {
+            triangles: 0..triangles,
+            spheres: 0..0,
+            frame: ModelFrame::World,
+            culling: Culling::None,
+        };
+        let list = DisplayList {
+            positions: vec![glam::Vec3::ZERO; 3],
+            normals: vec![glam::Vec3::Z; 3],
+            colours: vec![[0; 3]; 3],
+            triangles: vec![[0, 1, 2]; triangles],
+            structures: vec![structure],
+            ..DisplayList::default()
+        };
+        let mut board = GpBoard::new(BOARD, GpTiming::SLATS_1994, CYCLE);
+        let gp = board.handle_for(Priority::Foreground);
+        let binding = config.check().expect("a renderer for each region");
+        for (priority, program) in processor(&gp, &config, &binding, Share::new(Arc::new(list), 0, 1), 0) {
+            board.load(priority, Box::pin(program));
+        }
+        let mut rig = Self { board, bench: TestBench::new(), accepted: 0, us: 0 };
+        let one = glam::Mat4::IDENTITY;
+        let eye = EyeView { world_to_eye: one, head_to_eye: one, projection: one };
+        let view = FrameView { number: ViewNumber::FIRST, eyes: vec![eye; 2], edits: Vec::new() };
+        rig.bench.feed(Time::ZERO, Phase::Work, GpEvent::Poll);
+        rig.deliver(Body::Words(view.to_words().into()));
+        rig
+    }
+
+    fn deliver(&mut self, body: Body) {
+        let message = Message { source: NodeId(0), destination: BOARD, words: 4, body };
+        self.bench.feed(us(self.us), Phase::Arrive, GpEvent::Delivered(message));
+    }
+
+    /// Goes on to an instant, with a retrace at each field's begin, and with the acceptance of what was sent from `accepting` on.
+    fn run_to(&mut self, until_us: u64, accepting_us: u64) {
+        while self.us < until_us {
+            self.us += 10;
+            let now = us(self.us);
+            if self.us.is_multiple_of(FIELD_MS * 1_000) {
+                let field = PeriodNumber(self.us / (FIELD_MS * 1_000));
+                self.bench.feed(now, Phase::Arrive, GpEvent::Retrace(field));
+            }
+            if self.us >= accepting_us {
+                let sent = self.bench.outputs[self.accepted..].iter();
+                let tickets: Vec<u64> = sent.map(|(_, GpOutput::Send { ticket, .. })| *ticket).collect();
+                self.accepted += tickets.len();
+                tickets.iter().for_each(|ticket| self.bench.feed(now, Phase::Arrive, GpEvent::Accepted(*ticket)));
+            }
+            self.bench.run_until(now, |event, context| self.board.handle(event, context));
+        }
+        assert_eq!(self.board.fault(), None);
+    }
+}
+
+/// What is asked of frame buffers and renderers about the two buffers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Asked {
+    Show(u8),
+    Write(u8),
+}
+
+fn asked(message: &Message) -> Option<Asked> {
+    match &message.body {
+        Body::Words(words) => read_swap_request(words).map(Asked::Show),
+        Body::Commands(list) => list.copies.first().map(|order| Asked::Write(order.target.buffer)),
+        Body::Pixels(_) => None,
+    }
+}
+
+/// Field by field: the last complete field of its lines is asked for, then it is drawn into the other buffer; that one is asked for if the
+/// copies came before its retrace. A field begins with the retrace after which the one before is done.
+#[test]
+fn of_a_late_field_the_last_complete_one_of_its_lines_is_shown() {
+    use Asked::{Show, Write};
+    let mut rig = Rig::new(CopySchedule::Backup, 3);
+    // Fields are 2 (in time), 3 (in time), 4 (late), 6 (in time), 7 (late by more than a field) and 10 (in time).
+    for copied_ms in [30, 50, 85, 110, 165, 190] {
+        rig.run_to(copied_ms * 1_000, 0);
+        (0..REGIONS).for_each(|_| rig.deliver(Body::Words([COPY_ACKNOWLEDGEMENT, 0, 0, 0].into())));
+    }
+    rig.run_to(200_000 - 10, 0);
+    let mut found: Vec<(u64, Asked)> = Vec::new();
+    for (time, GpOutput::Send { message, .. }) in &rig.bench.outputs {
+        let Some(asked) = asked(message) else { continue };
+        let period = time.0 / us(FIELD_MS * 1_000).0;
+        if found.last() != Some(&(period, asked)) {
+            found.push((period, asked));
+        }
+    }
+    let expected = [
+        [(1, Show(0)), (1, Write(1)), (1, Show(1))].as_slice(),
+        &[(2, Show(0)), (2, Write(1)), (2, Show(1))],
+        &[(3, Show(1)), (3, Write(0))],
+        &[(5, Show(1)), (5, Write(0)), (5, Show(0))],
+        &[(6, Show(1)), (6, Write(0))],
+        &[(9, Show(0)), (9, Write(1)), (9, Show(1))],
+    ];
+    assert_eq!(found, expected.concat());
+}
+
+/// There is one clump buffer: the next clump is made when all receivers have begun with the one before, at 30 us a triangle and eye.
+#[test]
+fn the_next_clump_is_made_while_the_one_before_is_drained() {
+    const SECOND: usize = 7;
+    let mut rig = Rig::new(CopySchedule::Whole, CLUMP + SECOND);
+    let first_retrace = FIELD_MS * 1_000;
+    let accepting = first_retrace + 8_000;
+    rig.run_to(accepting - 10, accepting);
+    let of_first = rig.bench.outputs.len();
+    assert_eq!(of_first as u64, REGIONS, "a message for each region");
+    rig.run_to(accepting + 2_000, accepting);
+    let (time, _) = rig.bench.outputs[of_first];
+    let work = Span::from_ns(2 * SECOND as u64 * 30_000);
+    assert_eq!(time, us(accepting) + work + Span::from_ns(GpTiming::SLATS_1994.message_ns) + CYCLE);
+}
