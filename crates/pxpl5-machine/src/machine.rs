@@ -10,24 +10,25 @@
 //!                   +---- tick and swap status -----------+  (of the first display, to the first GP)
 //! ```
 
+mod displays;
+
 use crate::agenda::{schedule_brought, schedule_own, schedule_requests};
 use crate::board::{Board, Happening};
 use crate::config::{ConfigError, MachineConfig};
 use crate::event::Event;
 use crate::facts::{facts, facts_of, facts_of_line};
 use crate::host_line::HostLine;
-use crate::observation::{Arrival, Observation, Swap};
 use crate::pixels::PixelWorker;
 use crate::ports::Ports;
 use crate::record::Record;
 use crate::run_error::RunError;
 use crate::savings::Saving;
-use pxpl5_display::{DisplayContext, DisplayEvent, DisplayOutput};
+use pxpl5_display::{DisplayContext, DisplayEvent};
 use pxpl5_gp::{BreakpointHit, Firmware, Gp, GpBoard, GpEvent, GpOutput, Priority};
 use pxpl5_renderer::{ArrayPool, Layout, Renderer, RendererEvent, RendererOutput};
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput};
 use pxpl5_sim::{Blocked, Clock, Context, Cycles, EventQueue, Phase, Span, Time};
-use pxpl5_wire::{Body, Message, NodeId, PeriodNumber, SurfaceId};
+use pxpl5_wire::{Body, Message, NodeId, PeriodNumber};
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
@@ -267,25 +268,6 @@ impl Machine {
         self.queue.peek().map(|(time, event)| event.happening(time, &self.record.ports))
     }
 
-    /// Tells displays of all that has arrived before an instant, to which there is no event any more, if it has not been told.
-    fn tell_displays(&mut self, before: Time) {
-        let before = self.failure.as_ref().map_or(before, |failure| failure.time().min(before));
-        (0..self.record.displays.len()).for_each(|display| self.tell_display(display, before));
-    }
-
-    fn tell_display(&mut self, display: usize, before: Time) {
-        if !self.record.displays[display].may_be_told_late() {
-            return;
-        }
-        for port in 0..self.record.ports.displays[display].len() {
-            let node = self.record.ports.displays[display][port];
-            while let Some((arrived, message)) = self.record.ring.take_part(node, before) {
-                self.record.hash.record(arrived, &facts(2, &message));
-                self.display_event(arrived, display, DisplayEvent::Delivered { port, body: message.body });
-            }
-        }
-    }
-
     fn handle(&mut self, now: Time, event: Event) {
         self.work_events += u64::from(!event.is_of_displays());
         match event {
@@ -513,34 +495,6 @@ impl Machine {
         }
     }
 
-    fn display_event(&mut self, now: Time, display: usize, event: DisplayEvent) {
-        let Self { record, contexts: Contexts { display: context, .. }, queue, swaps, .. } = self;
-        let first_surface = record.first_surface(display);
-        record.displays[display].handle(event, context.at(now));
-        schedule_own(queue, context, |event| Event::Display(display, event));
-        for (time, output) in context.drain_outputs() {
-            match output {
-                DisplayOutput::RegionArrived { surface, target, first_part_at, last_part_at } => {
-                    let surface = SurfaceId((first_surface + surface) as u16);
-                    let facts = [5, u64::from(surface.0), u64::from(target.region.0), target.picture.0];
-                    record.hash.record(last_part_at, &facts);
-                    record.observation.arrivals.push(Arrival { surface, target, first_part_at, last_part_at });
-                }
-                DisplayOutput::Swapped { surface, buffer, tick } => {
-                    let port = record.ports.displays[display][surface];
-                    let surface = SurfaceId((first_surface + surface) as u16);
-                    record.hash.record(time, &[6, u64::from(surface.0), u64::from(buffer), tick.0]);
-                    note_swap(&mut record.observation, queue, swaps, (time, surface, port, tick));
-                }
-                DisplayOutput::Updated { surface, port, buffer, tick } => {
-                    let surface = SurfaceId((first_surface + surface) as u16);
-                    record.hash.record(time, &[7, u64::from(port.0), u64::from(buffer), tick.0]);
-                    note_swap(&mut record.observation, queue, swaps, (time, surface, port, tick));
-                }
-            }
-        }
-    }
-
     /// The host and the graphics processors, by port.
     #[must_use]
     pub fn processors(&self) -> &[GpBoard] {
@@ -600,18 +554,4 @@ fn compute_pixels(worker: &mut Option<Box<dyn PixelWorker>>, body: &Body) {
     {
         worker.compute(&pixels.image);
     }
-}
-
-/// Notes that a surface, or a part of it behind a port of its own, shows its other buffer from a tick on, and tells the master.
-fn note_swap(
-    observation: &mut Observation,
-    queue: &mut EventQueue<Event>,
-    swaps: &mut BTreeMap<NodeId, u64>,
-    (time, surface, port, tick): (Time, SurfaceId, NodeId, PeriodNumber),
-) {
-    let so_far = swaps.entry(port).or_default();
-    observation.swaps.push(Swap { surface, port, number: *so_far, tick });
-    *so_far += 1;
-    let status = GpEvent::Status { from: port, value: *so_far };
-    queue.schedule(time, Phase::Arrive, Event::Gp(1, status));
 }

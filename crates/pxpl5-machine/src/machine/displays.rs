@@ -1,0 +1,75 @@
+//! What a machine tells its displays, and what they tell it.
+
+use super::{Contexts, Machine};
+use crate::agenda::schedule_own;
+use crate::event::Event;
+use crate::facts::facts;
+use crate::observation::{Arrival, Observation, Swap};
+use pxpl5_display::{DisplayEvent, DisplayOutput};
+use pxpl5_gp::GpEvent;
+use pxpl5_sim::{EventQueue, Phase, Time};
+use pxpl5_wire::{NodeId, PeriodNumber, SurfaceId};
+use std::collections::BTreeMap;
+
+impl Machine {
+    /// Tells displays of all that has arrived before an instant, to which there is no event any more, if it has not been told.
+    pub(super) fn tell_displays(&mut self, before: Time) {
+        let before = self.failure.as_ref().map_or(before, |failure| failure.time().min(before));
+        (0..self.record.displays.len()).for_each(|display| self.tell_display(display, before));
+    }
+
+    pub(super) fn tell_display(&mut self, display: usize, before: Time) {
+        if !self.record.displays[display].may_be_told_late() {
+            return;
+        }
+        for port in 0..self.record.ports.displays[display].len() {
+            let node = self.record.ports.displays[display][port];
+            while let Some((arrived, message)) = self.record.ring.take_part(node, before) {
+                self.record.hash.record(arrived, &facts(2, &message));
+                self.display_event(arrived, display, DisplayEvent::Delivered { port, body: message.body });
+            }
+        }
+    }
+
+    pub(super) fn display_event(&mut self, now: Time, display: usize, event: DisplayEvent) {
+        let Self { record, contexts: Contexts { display: context, .. }, queue, swaps, .. } = self;
+        let first_surface = record.first_surface(display);
+        record.displays[display].handle(event, context.at(now));
+        schedule_own(queue, context, |event| Event::Display(display, event));
+        for (time, output) in context.drain_outputs() {
+            match output {
+                DisplayOutput::RegionArrived { surface, target, first_part_at, last_part_at } => {
+                    let surface = SurfaceId((first_surface + surface) as u16);
+                    let facts = [5, u64::from(surface.0), u64::from(target.region.0), target.picture.0];
+                    record.hash.record(last_part_at, &facts);
+                    record.observation.arrivals.push(Arrival { surface, target, first_part_at, last_part_at });
+                }
+                DisplayOutput::Swapped { surface, buffer, tick } => {
+                    let port = record.ports.displays[display][surface];
+                    let surface = SurfaceId((first_surface + surface) as u16);
+                    record.hash.record(time, &[6, u64::from(surface.0), u64::from(buffer), tick.0]);
+                    note_swap(&mut record.observation, queue, swaps, (time, surface, port, tick));
+                }
+                DisplayOutput::Updated { surface, port, buffer, tick } => {
+                    let surface = SurfaceId((first_surface + surface) as u16);
+                    record.hash.record(time, &[7, u64::from(port.0), u64::from(buffer), tick.0]);
+                    note_swap(&mut record.observation, queue, swaps, (time, surface, port, tick));
+                }
+            }
+        }
+    }
+}
+
+/// Notes that a surface, or a part of it behind a port of its own, shows its other buffer from a tick on, and tells the master.
+fn note_swap(
+    observation: &mut Observation,
+    queue: &mut EventQueue<Event>,
+    swaps: &mut BTreeMap<NodeId, u64>,
+    (time, surface, port, tick): (Time, SurfaceId, NodeId, PeriodNumber),
+) {
+    let so_far = swaps.entry(port).or_default();
+    observation.swaps.push(Swap { surface, port, number: *so_far, tick });
+    *so_far += 1;
+    let status = GpEvent::Status { from: port, value: *so_far };
+    queue.schedule(time, Phase::Arrive, Event::Gp(1, status));
+}
