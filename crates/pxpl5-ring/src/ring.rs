@@ -1,5 +1,7 @@
 //! Ports and arbiter.
 
+mod trains;
+
 use crate::channels::{MessageInFlight, OnChannel, RingChannels};
 use crate::{Refusals, Request, RingError, RingEvent, RingOutput, RingStats, RingTiming, WaitReason, WaitingMessage};
 use parameters::ParameterTable;
@@ -118,59 +120,6 @@ impl Ring {
     /// grant. No time changes; receivers with a FIFO answer for whole messages as before.
     pub const fn move_every_word(&mut self) {
         self.word_by_word = true;
-    }
-
-    /// Has an elastic receiver told late of messages without a ticket that keep its port for the next one: whoever looks asks for them
-    /// ([`Ring::take_part`]). Those of one transfer, a *train*, then follow each other without an event for each. Receivers that are not
-    /// elastic stay as they are.
-    pub fn tell_late(&mut self, destination: NodeId) {
-        if let Some(port) = self.destinations.get_mut(usize::from(destination.0)) {
-            port.patient = port.elastic;
-        }
-    }
-
-    /// Tells every receiver of every message when it arrives, as if [`Ring::tell_late`] had not been called; only before anything was sent.
-    pub fn tell_in_time(&mut self) {
-        self.destinations.iter_mut().for_each(|port| port.patient = false);
-    }
-
-    /// Takes the next message of which a receiver is [told late](Ring::tell_late), if it has arrived before an instant; with its arrival.
-    /// There is no event of the ring before that instant any more.
-    pub fn take_part(&mut self, destination: NodeId, before: Time) -> Option<(Time, Message)> {
-        self.catch_up(before);
-        let parts = &mut self.destinations.get_mut(usize::from(destination.0))?.parts;
-        let has_arrived = parts.front().is_some_and(|(arrival, _)| *arrival < before);
-        if has_arrived { parts.pop_front() } else { None }
-    }
-
-    /// Brings trains up to an instant, and not including it, before which there is no event any more: channels are left and taken, and
-    /// parts are on their way, as of then.
-    pub fn catch_up(&mut self, before: Time) {
-        while self.train_goes_on_at < before {
-            let end = self.train_goes_on_at;
-            self.settle(end);
-            self.go_on(end);
-        }
-    }
-
-    /// The next messages of trains of which one has ended take channels. No other head can go at that instant: none waits for a
-    /// channel, and none for a receiver that was left, or there would be an event.
-    fn go_on(&mut self, now: Time) {
-        self.unblocked = false;
-        let mut place = 0;
-        while place < self.heads.len() {
-            let source = self.heads[place].source;
-            if !self.can_go(place) {
-                place += 1;
-                continue;
-            }
-            self.take_head(place);
-            if let Some((flight, message)) = self.take_first(source, now) {
-                let to_tell = self.carry_to_end(flight, message);
-                debug_assert!(to_tell.is_none(), "nobody is told of what a train brings");
-            }
-            self.add_head_behind(source, now);
-        }
     }
 
     /// Handles one event at `context.now()`; what follows from it is scheduled or put out through `context`.
@@ -485,46 +434,6 @@ impl Ring {
         let channel = self.channels.occupy(flight, end);
         destination.channel = Some(channel);
         channel
-    }
-
-    /// Puts a message to an elastic receiver on a channel, and gives it back with its arrival if somebody is told of that in time.
-    fn carry_to_end(&mut self, flight: MessageInFlight, message: Message) -> Option<(Time, Message)> {
-        let end = flight.granted + self.timing.occupancy(flight.words);
-        let goes_on = flight.hold && self.is_in_train(&flight, end);
-        if goes_on {
-            self.train_goes_on_at = self.train_goes_on_at.min(end);
-        }
-        let to_tell = self.keep_part(&flight, message, end + flight.latency);
-        self.occupy(MessageInFlight { goes_on, ..flight }, Some(end));
-        to_tell
-    }
-
-    /// Keeps a message for a receiver that is told of it late; gives back any other.
-    fn keep_part(&mut self, flight: &MessageInFlight, message: Message, at: Time) -> Option<(Time, Message)> {
-        let port = &mut self.destinations[usize::from(flight.destination.0)];
-        if !port.patient || !flight.is_part() {
-            return Some((at, message));
-        }
-        port.parts.push_back((at, message));
-        None
-    }
-
-    /// Whether a message that keeps its port, and ends then, is followed there by one of which nobody is told in time; and until when such
-    /// follow, if they are not held up.
-    fn is_in_train(&mut self, flight: &MessageInFlight, end: Time) -> bool {
-        let source = &mut self.sources[usize::from(flight.source.0)];
-        let waiting = source.queue.iter().map(|queued| &queued.request);
-        let mut train = waiting.take_while(|next| next.message.destination == flight.destination && next.is_part());
-        if !self.destinations[usize::from(flight.destination.0)].patient || train.next().is_none() {
-            return false;
-        }
-        // What was reckoned at the first message holds, but where a want of channels has held the train up.
-        if source.train_until <= end {
-            let waiting = source.queue.iter().map(|queued| &queued.request);
-            let train = waiting.take_while(|next| next.message.destination == flight.destination && next.is_part());
-            source.train_until = end + train.map(|next| self.timing.occupancy(next.message.words)).sum();
-        }
-        true
     }
 
     /// A slot of overhead or of a word is over: after the first one a receiver with a FIFO is told, after the last one
