@@ -7,6 +7,7 @@ use pxpl5::{
     Viewpoint, scene, scene::Scene,
 };
 use pxpl5_framebuffer::SeenField;
+use pxpl5_hires::HiResConfig;
 use std::collections::BTreeSet;
 use support::ntsc;
 
@@ -116,6 +117,20 @@ fn regions_that_are_copied_arrive_as_message_after_message() {
         let counters = |machine: &Machine| machine.record().display().counters();
         assert_eq!(counters(&trains), counters(&apart));
     }
+}
+
+/// The other frame buffer that may be told late: 80 regions a picture.
+#[test]
+fn regions_reach_the_high_resolution_display_in_the_same_way() {
+    let machine = MachineConfig { displays: vec![Box::new(HiResConfig::PAPERS)], ..MachineConfig::small_hmd() };
+    let trains = Experiment::new(machine, RenderingControl::mono(), mig(100)).pixels(Pixels::Lazy);
+    let [trains, apart] = [trains.clone(), trains.without(Saving::Trains)].map(|e| after(&e, 40));
+    assert_eq!(trains.record().trace_hash(), apart.record().trace_hash());
+    let arrivals = |machine: &Machine| machine.record().observation().arrivals.clone();
+    assert_eq!(arrivals(&trains), arrivals(&apart));
+    assert!(apart.events() - trains.events() > 10 * arrivals(&apart).len() as u64);
+    let [seen, expected] = [&trains, &apart].map(|machine| machine.record().display().shown(0).expect("a surface"));
+    assert!(seen == expected && colours(&seen) > 2);
 }
 
 #[test]
