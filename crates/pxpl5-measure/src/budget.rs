@@ -38,7 +38,7 @@ impl Default for Budget {
 pub(crate) struct BudgetSum {
     pictures: usize,
     stages_ms: [Samples; STAGES],
-    /// Poses of pictures that may still come: a head gives up what is old, and a silent tracker leaves the last one to all of them.
+    /// Poses from the last picture's on: a head gives up what is old, and a silent tracker leaves that one to all that come.
     poses: Poses,
 }
 
@@ -59,9 +59,9 @@ impl BudgetSum {
             self.stages_ms.iter_mut().zip(stages).for_each(|(samples, ms)| samples.push(ms));
         }
         self.pictures += run.pictures.len();
-        let instant = run.record.tick(run.until);
-        let newest_shown = run.pictures.last().map(|times| times.view);
-        self.poses.retain(|number, pose| pose.known >= instant || Some(*number) >= newest_shown);
+        if let Some(newest) = run.pictures.last() {
+            self.poses = self.poses.split_off(&newest.view);
+        }
     }
 
     /// The means.
