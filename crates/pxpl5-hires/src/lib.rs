@@ -2,9 +2,8 @@
 //!
 //! A board takes regions into the buffer that is not shown and swaps at the next retrace after a request. It is also the
 //! example of how a display is added: this file and a line in the registry are all of it. **Not modelled:** blanking (the
-//! scan fills its whole period), pixels that arrive while their line is scanned.
-//!
-//! Sources: F89 (size), TR94 (words); the rate and the scan without blanking are assumed.
+//! scan fills its whole period), pixels that arrive while their line is scanned. Parts of a region are counted, so it may be told of
+//! them late. Sources: F89 (size), TR94 (words); the rate and the scan without blanking are assumed.
 
 use image::RgbImage;
 use parameters::ParameterTable;
@@ -75,8 +74,7 @@ impl Display for HiRes {
             }
             DisplayEvent::Delivered { port, body } => match self.boards[port].receive(body, context.now()) {
                 BufferReceipt::Region(pixels, first_part_at) => {
-                    let target = pixels.target;
-                    let last_part_at = context.now();
+                    let (target, last_part_at) = (pixels.target, context.now());
                     let region = DisplayOutput::RegionArrived { surface: port, target, first_part_at, last_part_at };
                     context.output(at, region);
                 }
@@ -86,7 +84,6 @@ impl Display for HiRes {
         }
     }
 
-    /// Parts of a region are counted, and its first has its own time.
     fn may_be_told_late(&self) -> bool {
         true
     }
