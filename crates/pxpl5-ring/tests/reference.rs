@@ -4,8 +4,8 @@ mod support;
 
 use proptest::prelude::*;
 use pxpl5_ring::reference::{CarriedMessage, Elastic, PlannedMessage, SteppedRing};
-use pxpl5_ring::{Ring, RingError, RingTiming};
-use pxpl5_sim::{Span, Time};
+use pxpl5_ring::{Request, Ring, RingError, RingEvent, RingTiming};
+use pxpl5_sim::{Context, Span, Time};
 use pxpl5_wire::NodeId;
 use std::collections::BTreeMap;
 use support::{ELASTIC, Receiver, Stepped, Times, run_fast, run_prepared, run_trains};
@@ -235,5 +235,26 @@ fn a_train_is_two_grants_whatever_its_length() {
         let requests = u64::from(n) + 1;
         // At 0, where the other board asks, at the end of the last message but one, and at the end of the last.
         assert_eq!(events, requests + 4);
+    }
+}
+
+/// What has arrived at an instant is told of behind it; whoever is told in time is told of each by an event.
+#[test]
+fn parts_are_told_of_behind_their_arrival_and_only_to_whom_may_be_told_late() {
+    let arrival = Time::ZERO + Span::from_ns((16 + 10) * 50) + RingTiming::PAPERS.latency(NodeId(1), NodeId(9), 20);
+    for is_late in [true, false] {
+        let mut ring = Ring::new(RingTiming::PAPERS, 20, |_| true).expect("valid");
+        ring.tell_late(NodeId(9));
+        if !is_late {
+            ring.tell_in_time();
+        }
+        let mut context = Context::default();
+        let first = Request { ticket: None, hold: true, ..support::request(0, 1, 9, 10) };
+        ring.handle(RingEvent::Request(first), context.at(Time::ZERO));
+        ring.handle(RingEvent::Arbitrate, &mut context);
+        assert_eq!(context.drain_outputs().len(), usize::from(!is_late));
+        assert!(ring.take_part(NodeId(9), arrival).is_none());
+        let part = ring.take_part(NodeId(9), Time(arrival.0 + 1)).map(|(at, _)| at);
+        assert_eq!(part, is_late.then_some(arrival));
     }
 }
