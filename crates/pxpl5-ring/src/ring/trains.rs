@@ -93,17 +93,17 @@ impl Ring {
     /// Whether a message that keeps its port, and ends then, is followed there by one of which nobody is told in time; and until when such
     /// follow, if they are not held up.
     fn is_in_train(&mut self, flight: &MessageInFlight, end: Time) -> bool {
-        let source = &mut self.sources[usize::from(flight.source.0)];
-        let waiting = source.queue.iter().map(|queued| &queued.request);
-        let mut train = waiting.take_while(|next| next.message.destination == flight.destination && next.is_part());
-        if !self.destinations[usize::from(flight.destination.0)].patient || train.next().is_none() {
+        if !self.destinations[usize::from(flight.destination.0)].patient {
             return false;
         }
+        let source = &mut self.sources[usize::from(flight.source.0)];
+        let waiting = source.queue.iter().map(|queued| &queued.request);
+        let parts = waiting.take_while(|next| next.message.destination == flight.destination && next.is_part());
+        let mut spans = parts.map(|next| self.timing.occupancy(next.message.words));
+        let Some(first) = spans.next() else { return false };
         // What was reckoned at the first message holds, but where a want of channels has held the train up.
         if source.train_until <= end {
-            let waiting = source.queue.iter().map(|queued| &queued.request);
-            let train = waiting.take_while(|next| next.message.destination == flight.destination && next.is_part());
-            source.train_until = end + train.map(|next| self.timing.occupancy(next.message.words)).sum();
+            source.train_until = end + first + spans.sum();
         }
         true
     }
