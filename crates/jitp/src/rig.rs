@@ -7,9 +7,9 @@ use glam::{Mat4, Vec3};
 use pphigs::{DisplayList, DisplayStructure, EyeView, FrameView, ModelFrame};
 use pxpl5_display::Aim;
 use pxpl5_geometry::Culling;
-use pxpl5_gp::{Firmware, Gp, GpBoard, GpEvent, GpOutput, GpTiming, Priority, Received};
+use pxpl5_gp::{BoardBench, Firmware, Gp, GpBoard, GpEvent, GpTiming, Priority, Received};
 use pxpl5_renderer::Layout;
-use pxpl5_sim::{Phase, Span, TestBench, Time};
+use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Message, NodeId, PeriodNumber, ViewNumber};
 use std::sync::Arc;
 
@@ -66,9 +66,7 @@ pub(crate) fn view(number: u64) -> FrameView {
 
 /// A board whose messages are accepted a microsecond after they are sent.
 pub(crate) struct Rig {
-    pub(crate) board: GpBoard,
-    bench: TestBench<GpEvent, GpOutput>,
-    accepted: usize,
+    pub(crate) bench: BoardBench,
     pub(crate) us: u64,
 }
 
@@ -82,15 +80,13 @@ impl Rig {
         prepare(&mut board);
         let gp = board.handle_for(Priority::Foreground);
         programs(&gp).into_iter().for_each(|(level, program)| board.load(level, program));
-        let mut bench = TestBench::new();
-        bench.feed(Time::ZERO, Phase::Work, GpEvent::Poll);
-        Self { board, bench, accepted: 0, us: 0 }
+        Self { bench: BoardBench::new(board), us: 0 }
     }
 
     pub(crate) fn deliver(&mut self, order: &DrawingOrder) {
         let (words, body) = order.message();
         let message = Message { source: MASTER, destination: SLAVE, words, body };
-        self.bench.feed(us(self.us), Phase::Arrive, GpEvent::Delivered(message));
+        self.bench.feed(us(self.us), GpEvent::Delivered(message));
     }
 
     pub(crate) fn run_to(&mut self, until_us: u64) {
@@ -98,21 +94,17 @@ impl Rig {
             self.us += 1;
             let now = us(self.us);
             if self.us.is_multiple_of(FIELD_US) {
-                self.bench.feed(now, Phase::Arrive, GpEvent::Retrace(PeriodNumber(self.us / FIELD_US)));
+                self.bench.feed(now, GpEvent::Retrace(PeriodNumber(self.us / FIELD_US)));
             }
-            let sent = self.bench.outputs[self.accepted..].iter();
-            let tickets: Vec<u64> = sent.map(|(_, GpOutput::Send { ticket, .. })| *ticket).collect();
-            self.accepted += tickets.len();
-            tickets.iter().for_each(|ticket| self.bench.feed(now, Phase::Arrive, GpEvent::Accepted(*ticket)));
-            self.bench.run_until(now, |event, context| self.board.handle(event, context));
+            self.bench.accept_all(now);
+            self.bench.run_until(now);
         }
-        assert_eq!(self.board.fault(), None);
+        assert_eq!(self.bench.board.fault(), None);
     }
 
     /// Messages to a board, and when they were sent.
     pub(crate) fn sent_to(&self, node: NodeId) -> Vec<(Time, Received)> {
-        let sent = self.bench.outputs.iter().map(|(time, GpOutput::Send { message, .. })| (*time, message));
-        let to_node = sent.filter(|(_, message)| message.destination == node);
+        let to_node = self.bench.sent().filter(|(_, message)| message.destination == node);
         to_node.map(|(time, m)| (time, Received { arrived: time, source: m.source, body: m.body.clone() })).collect()
     }
 }

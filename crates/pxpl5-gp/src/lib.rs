@@ -32,6 +32,7 @@
 //!
 //! Sources: TR94 (memory, clock, background rendering); the timing table states each number's own.
 
+mod bench;
 mod board;
 mod cpu;
 mod firmware;
@@ -45,6 +46,7 @@ pub mod timing;
 mod window;
 mod work;
 
+pub use bench::BoardBench;
 pub use board::{GpBoard, GpEvent, GpOutput, PLACE_BITS};
 pub use cpu::Priority;
 pub use firmware::{Fault, Firmware, Gp, Received, Ticket};

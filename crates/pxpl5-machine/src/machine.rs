@@ -352,8 +352,8 @@ impl Machine {
     }
 
     fn ring_event(&mut self, now: Time, event: RingEvent) {
-        let Self { record, contexts: Contexts { ring: context, .. }, queue, .. } = self;
-        let Record { ring, observation, .. } = record;
+        let Self { record: Record { ring, observation, .. }, contexts: Contexts { ring: context, .. }, queue, .. } =
+            self;
         let mut traffic = observation.traffic.as_deref_mut();
         if let (Some(traffic), RingEvent::Accept { destination, last_word_at }) = (&mut traffic, &event) {
             traffic.accept(*destination, *last_word_at);
@@ -374,8 +374,8 @@ impl Machine {
             return self.queue.schedule(at, Phase::Arrive, Event::Ring(event));
         }
         debug_assert!(at > now, "nothing leaves a board at once");
-        let Self { record, contexts: Contexts { ring: context, .. }, queue, .. } = self;
-        let Record { ring, observation, .. } = record;
+        let Self { record: Record { ring, observation, .. }, contexts: Contexts { ring: context, .. }, queue, .. } =
+            self;
         if let Some(traffic) = observation.traffic.as_deref_mut() {
             traffic.accept(destination, last_word_at);
         }

@@ -31,6 +31,8 @@ pub(crate) struct MessageInFlight {
     pub(crate) words: u32,
     pub(crate) ticket: Option<u64>,
     pub(crate) hold: bool,
+    /// [`Request::is_part`](crate::Request::is_part).
+    pub(crate) is_part: bool,
     /// Whether a message of its transfer follows it of which nobody is told in time.
     pub(crate) goes_on: bool,
     pub(crate) granted: Time,
@@ -152,11 +154,6 @@ impl RingChannels {
 }
 
 impl MessageInFlight {
-    /// Whether nobody waits for its end but the next message of its transfer.
-    pub(crate) const fn is_part(&self) -> bool {
-        self.hold && self.ticket.is_none()
-    }
-
     const fn on_channel(&self, channel: usize, ends_at: Option<Time>) -> OnChannel {
         OnChannel {
             channel,

@@ -402,6 +402,7 @@ impl Ring {
             words,
             ticket: request.ticket,
             hold: request.hold,
+            is_part: request.is_part(),
             granted: now,
             latency: self.timing.latency(source, destination, self.n_nodes()),
             goes_on: false,

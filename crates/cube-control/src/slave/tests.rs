@@ -5,9 +5,9 @@ use crate::config::Faces;
 use glam::{Mat4, Vec3};
 use pphigs::{BIN_ENTRY_BYTES, DisplayStructure, EyeView, FrameView, ModelFrame, Picture, RegionBinning, Shading};
 use pxpl5_geometry::{Culling, Viewport};
-use pxpl5_gp::{CodeVersion, GpBoard, GpEvent, GpOutput, GpTiming, OutOfMemory, Processor, Received, Work};
+use pxpl5_gp::{BoardBench, CodeVersion, GpBoard, GpEvent, GpTiming, OutOfMemory, Processor, Received, Work};
 use pxpl5_renderer::{CommandKind, Layout};
-use pxpl5_sim::{Phase, Span, TestBench, Time};
+use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{CopyContent, Lines, Message, RegionGrid, ViewNumber};
 
 const MASTER: NodeId = NodeId(1);
@@ -73,9 +73,7 @@ pub(crate) fn update(number: u64) -> FaceUpdate {
 
 /// The slave's board on its bench, whose messages are accepted when they are sent.
 struct Rig {
-    board: GpBoard,
-    bench: TestBench<GpEvent, GpOutput>,
-    accepted: usize,
+    bench: BoardBench,
     us: u64,
 }
 
@@ -86,9 +84,7 @@ impl Rig {
         let gp = board.handle_for(Priority::Foreground);
         let share = Share::new(ahead(TRIANGLES as usize), 0, 1);
         slave(&gp, &config(), share, 0).into_iter().for_each(|(level, program)| board.load(level, Box::pin(program)));
-        let mut bench = TestBench::new();
-        bench.feed(Time::ZERO, Phase::Work, GpEvent::Poll);
-        Self { board, bench, accepted: 0, us: 0 }
+        Self { bench: BoardBench::new(board), us: 0 }
     }
 
     /// The host's and the master's messages of an update.
@@ -108,7 +104,7 @@ impl Rig {
         self.run_for(1_000);
         let (words, body) = order.message();
         let message = Message { source: MASTER, destination: BOARD, words, body };
-        self.bench.feed(Time(self.us * 1_000_000), Phase::Arrive, GpEvent::Delivered(message));
+        self.bench.feed(Time(self.us * 1_000_000), GpEvent::Delivered(message));
         self.run_for(1_000);
     }
 
@@ -116,18 +112,15 @@ impl Rig {
         for _ in 0..us {
             self.us += 1;
             let now = Time(self.us * 1_000_000);
-            let sent = self.bench.outputs[self.accepted..].iter();
-            let tickets: Vec<u64> = sent.map(|(_, GpOutput::Send { ticket, .. })| *ticket).collect();
-            self.accepted += tickets.len();
-            tickets.iter().for_each(|ticket| self.bench.feed(now, Phase::Arrive, GpEvent::Accepted(*ticket)));
-            self.bench.run_until(now, |event, context| self.board.handle(event, context));
+            self.bench.accept_all(now);
+            self.bench.run_until(now);
         }
     }
 
     /// Updates that the master knows to be transformed, and the entries of all their bins.
     fn transformed(&self) -> Vec<(u64, u32)> {
-        let to_master = self.bench.outputs.iter().filter_map(|(time, GpOutput::Send { message, .. })| {
-            let received = Received { arrived: *time, source: BOARD, body: message.body.clone() };
+        let to_master = self.bench.sent().filter_map(|(time, message)| {
+            let received = Received { arrived: time, source: BOARD, body: message.body.clone() };
             (message.destination == MASTER).then(|| UpdateOrder::read(&received, MASTER))
         });
         let transformed = to_master.filter_map(|order| match order {
@@ -145,7 +138,7 @@ fn an_update_takes_its_commands_and_a_pointer_for_each_entry_of_a_bin() {
     assert_eq!(rig.transformed(), [(0, TRIANGLES as u32)]);
     let commands = TRIANGLES * 4 * u64::from(CommandKind::Triangle.words());
     let expected = PROGRAM_BYTES + TRIANGLES * Share::TRIANGLE_BYTES + commands + BIN_BYTES;
-    assert_eq!(rig.board.memory_peak_bytes(), expected);
+    assert_eq!(rig.bench.board.memory_peak_bytes(), expected);
 }
 
 /// There is room for the bins of one update, whichever of the two contexts is its own.
@@ -159,7 +152,7 @@ fn an_update_waits_until_the_bins_of_the_one_before_are_free() {
         rig.send_token(number - 1);
         assert_eq!(rig.transformed().last(), Some(&(number, TRIANGLES as u32)));
     }
-    assert_eq!(rig.board.fault(), None);
+    assert_eq!(rig.bench.board.fault(), None);
 }
 
 #[test]
@@ -173,7 +166,7 @@ fn bins_that_are_too_small_for_one_update_are_a_fault() {
         needed_bytes: BIN_BYTES,
         available_bytes: BIN_BYTES - 1,
     };
-    assert_eq!(rig.board.fault(), Some(&Fault::Memory(fault)));
+    assert_eq!(rig.bench.board.fault(), Some(&Fault::Memory(fault)));
 }
 
 /// Received and sent on: paid for at once, or one after the other.
@@ -182,13 +175,13 @@ fn a_token_that_finds_an_empty_bin_goes_on_at_the_same_instant_however_it_is_pai
     let [at_once, one_by_one] = [false, true].map(|one_by_one| {
         let mut rig = Rig::new(BIN_BYTES);
         if one_by_one {
-            rig.board.pay_one_by_one();
+            rig.bench.board.pay_one_by_one();
         }
         rig.send(0);
-        let before = rig.bench.outputs.len();
+        let before = rig.bench.sent().count();
         // Neither the first slave nor the last has anything to add for a face that shows nothing.
         rig.deliver(&UpdateOrder::Token(Token { slaves_left: 2, of: 6, ..TOKEN }));
-        rig.bench.outputs[before..].iter().map(|(time, _)| *time).collect::<Vec<Time>>()
+        rig.bench.sent().skip(before).map(|(time, _)| time).collect::<Vec<Time>>()
     });
     assert_eq!(at_once, one_by_one);
     assert_eq!(at_once.len(), 1, "the token alone");

@@ -18,6 +18,7 @@ impl Machine {
         (0..self.record.displays.len()).for_each(|display| self.tell_display(display, before));
     }
 
+    /// The same of one display; to be called before anything else happens to it.
     pub(super) fn tell_display(&mut self, display: usize, before: Time) {
         if !self.record.displays[display].may_be_told_late() {
             return;

@@ -35,7 +35,7 @@ impl Ring {
 
     /// Brings trains up to an instant, and not including it, before which there is no event any more: channels are left and taken, and
     /// parts are on their way, as of then.
-    pub fn catch_up(&mut self, before: Time) {
+    pub(super) fn catch_up(&mut self, before: Time) {
         while self.train_goes_on_at < before {
             let end = self.train_goes_on_at;
             self.settle(end);
@@ -83,7 +83,7 @@ impl Ring {
         at: Time,
     ) -> Option<(Time, Message)> {
         let port = &mut self.destinations[usize::from(flight.destination.0)];
-        if !port.patient || !flight.is_part() {
+        if !port.patient || !flight.is_part {
             return Some((at, message));
         }
         port.parts.push_back((at, message));

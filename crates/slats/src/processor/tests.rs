@@ -3,9 +3,9 @@
 use super::*;
 use pphigs::{DisplayList, DisplayStructure, EyeView, ModelFrame, RegionBinning};
 use pxpl5_geometry::Culling;
-use pxpl5_gp::{GpBoard, GpEvent, GpOutput, GpTiming};
+use pxpl5_gp::{BoardBench, GpBoard, GpEvent, GpTiming};
 use pxpl5_renderer::Layout;
-use pxpl5_sim::{Phase, Span, TestBench, Time};
+use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Message, ViewNumber, read_swap_request};
 
 const BOARD: NodeId = NodeId(1);
@@ -24,9 +24,7 @@ const fn us(us: u64) -> Time {
 
 /// A board on its bench, whose messages are accepted from an instant on.
 struct Rig {
-    board: GpBoard,
-    bench: TestBench<GpEvent, GpOutput>,
-    accepted: usize,
+    bench: BoardBench,
     us: u64,
 }
 
@@ -63,18 +61,17 @@ impl Rig {
         for (priority, program) in processor(&gp, &config, &binding, Share::new(Arc::new(list), 0, 1), 0) {
             board.load(priority, Box::pin(program));
         }
-        let mut rig = Self { board, bench: TestBench::new(), accepted: 0, us: 0 };
+        let mut rig = Self { bench: BoardBench::new(board), us: 0 };
         let one = glam::Mat4::IDENTITY;
         let eye = EyeView { world_to_eye: one, head_to_eye: one, projection: one };
         let view = FrameView { number: ViewNumber::FIRST, eyes: vec![eye; 2], edits: Vec::new() };
-        rig.bench.feed(Time::ZERO, Phase::Work, GpEvent::Poll);
         rig.deliver(Body::Words(view.to_words().into()));
         rig
     }
 
     fn deliver(&mut self, body: Body) {
         let message = Message { source: NodeId(0), destination: BOARD, words: 4, body };
-        self.bench.feed(us(self.us), Phase::Arrive, GpEvent::Delivered(message));
+        self.bench.feed(us(self.us), GpEvent::Delivered(message));
     }
 
     /// Goes on to an instant, with a retrace at each field's begin, and with the acceptance of what was sent from `accepting` on.
@@ -84,17 +81,14 @@ impl Rig {
             let now = us(self.us);
             if self.us.is_multiple_of(FIELD_MS * 1_000) {
                 let field = PeriodNumber(self.us / (FIELD_MS * 1_000));
-                self.bench.feed(now, Phase::Arrive, GpEvent::Retrace(field));
+                self.bench.feed(now, GpEvent::Retrace(field));
             }
             if self.us >= accepting_us {
-                let sent = self.bench.outputs[self.accepted..].iter();
-                let tickets: Vec<u64> = sent.map(|(_, GpOutput::Send { ticket, .. })| *ticket).collect();
-                self.accepted += tickets.len();
-                tickets.iter().for_each(|ticket| self.bench.feed(now, Phase::Arrive, GpEvent::Accepted(*ticket)));
+                self.bench.accept_all(now);
             }
-            self.bench.run_until(now, |event, context| self.board.handle(event, context));
+            self.bench.run_until(now);
         }
-        assert_eq!(self.board.fault(), None);
+        assert_eq!(self.bench.board.fault(), None);
     }
 }
 
@@ -126,7 +120,7 @@ fn of_a_late_field_the_last_complete_one_of_its_lines_is_shown() {
     }
     rig.run_to(200_000 - 10, 0);
     let mut found: Vec<(u64, Asked)> = Vec::new();
-    for (time, GpOutput::Send { message, .. }) in &rig.bench.outputs {
+    for (time, message) in rig.bench.sent() {
         let Some(asked) = asked(message) else { continue };
         let period = time.0 / us(FIELD_MS * 1_000).0;
         if found.last() != Some(&(period, asked)) {
@@ -152,10 +146,10 @@ fn the_next_clump_is_made_while_the_one_before_is_drained() {
     let first_retrace = FIELD_MS * 1_000;
     let accepting = first_retrace + 8_000;
     rig.run_to(accepting - 10, accepting);
-    let of_first = rig.bench.outputs.len();
+    let of_first = rig.bench.sent().count();
     assert_eq!(of_first as u64, REGIONS, "a message for each region");
     rig.run_to(accepting + 2_000, accepting);
-    let (time, _) = rig.bench.outputs[of_first];
+    let time = rig.bench.sent().nth(of_first).map(|(time, _)| time);
     let work = Span::from_ns(2 * SECOND as u64 * 30_000);
-    assert_eq!(time, us(accepting) + work + Span::from_ns(GpTiming::SLATS_1994.message_ns) + CYCLE);
+    assert_eq!(time, Some(us(accepting) + work + Span::from_ns(GpTiming::SLATS_1994.message_ns) + CYCLE));
 }
