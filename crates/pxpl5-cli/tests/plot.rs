@@ -80,6 +80,7 @@ fn what_was_not_judged_is_no_zero() {
 }
 
 /// 84 mm are 992 dots of 1/300 inch, and 238.11 points of 1/72.
+#[cfg(feature = "print")]
 #[test]
 fn figures_have_their_width_in_every_format() {
     let folder = Folder::new("plot-formats");
@@ -98,6 +99,17 @@ fn figures_have_their_width_in_every_format() {
     let rest = text.split_once("/MediaBox [0 0 ").expect("a page").1;
     let width: f64 = rest.split(' ').next().and_then(|width| width.parse().ok()).expect("a number");
     assert!((width - 84.0 / 25.4 * 72.0).abs() < 0.1, "{width}");
+}
+
+#[cfg(not(feature = "print"))]
+#[test]
+fn pdf_without_its_feature_is_refused_with_the_command_that_builds_it() {
+    let folder = Folder::new("plot-no-print");
+    sweep(&folder, |_, n, seed| json!(n * seed));
+    let run = folder.run(&["plot", ".", "--x", "n", "--y", "latency", "--by", "copy", "--out", "fig.pdf"]);
+    assert_eq!(run.status.code(), Some(2));
+    assert!(err(&run).contains("cargo build --release -p pxpl5-cli --features print"), "{}", err(&run));
+    assert_eq!(folder.names(), ["rows.jsonl"]);
 }
 
 #[test]

@@ -1,34 +1,41 @@
-//! The formats of figures: SVG as it is drawn, PDF and PNG made of it, with a typeface that is in the command.
+//! The formats of figures: SVG as it is drawn; PDF and PNG are made from the SVG by the feature `print`.
+
+#[cfg(feature = "print")]
+mod print;
 
 use crate::error::CliError;
 use std::path::Path;
-use svg2pdf::usvg::{Options, Transform, Tree};
-use svg2pdf::{ConversionOptions, PageOptions};
 
-/// What a file is.
+/// The format of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
     Svg,
+    #[cfg(feature = "print")]
     Png,
+    #[cfg(feature = "print")]
     Pdf,
 }
 
-/// Dots an inch of a PNG; of an SVG's own unit, the pixel of style sheets.
-const PNG_DOTS: f32 = 300.0;
-const SVG_DOTS: f32 = 96.0;
-
 impl Format {
-    /// By the end of a file's name.
+    /// Returns the format that the ending of a file's name stands for.
     ///
     /// # Errors
     ///
-    /// For any other end.
+    /// For an unknown ending, and for PNG and PDF in a command without the feature `print`.
     pub(super) fn of(path: &Path) -> Result<Self, CliError> {
-        let end = path.extension().map(|end| end.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-        match end.as_str() {
+        let ending = path.extension().map(|end| end.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+        match ending.as_str() {
             "svg" => Ok(Self::Svg),
+            #[cfg(feature = "print")]
             "png" => Ok(Self::Png),
+            #[cfg(feature = "print")]
             "pdf" => Ok(Self::Pdf),
+            #[cfg(not(feature = "print"))]
+            "png" | "pdf" => Err(CliError::usage(format!(
+                "--out {}: this command was built to write figures as .svg only. PDF and PNG need the feature `print`: \
+                 cargo build --release -p pxpl5-cli --features print",
+                path.display()
+            ))),
             _ => Err(CliError::usage(format!(
                 "--out: expected a name that ends in .svg, .png or .pdf, found {}",
                 path.display()
@@ -37,35 +44,17 @@ impl Format {
     }
 }
 
-/// The bytes of a figure.
+/// Returns the bytes of a figure.
 ///
 /// # Errors
 ///
-/// When the drawing cannot be converted.
+/// If the drawing cannot be converted.
 pub(super) fn bytes(svg: &str, format: Format) -> Result<Vec<u8>, CliError> {
     match format {
         Format::Svg => Ok(svg.as_bytes().to_vec()),
-        Format::Pdf => {
-            let page = PageOptions { dpi: SVG_DOTS };
-            svg2pdf::to_pdf(&tree(svg)?, ConversionOptions::default(), page).map_err(CliError::failure)
-        }
-        Format::Png => png(&tree(svg)?),
+        #[cfg(feature = "print")]
+        Format::Pdf => print::pdf(svg),
+        #[cfg(feature = "print")]
+        Format::Png => print::png(svg),
     }
-}
-
-fn tree(svg: &str) -> Result<Tree, CliError> {
-    let mut options = Options { font_family: "DejaVu Sans".to_owned(), ..Options::default() };
-    let fonts = options.fontdb_mut();
-    fonts.load_font_data(dejavu::sans::regular().to_vec());
-    fonts.set_sans_serif_family("DejaVu Sans");
-    Tree::from_str(svg, &options).map_err(CliError::failure)
-}
-
-fn png(tree: &Tree) -> Result<Vec<u8>, CliError> {
-    let scale = PNG_DOTS / SVG_DOTS;
-    let [width, height] = [tree.size().width(), tree.size().height()].map(|length| (length * scale).round() as u32);
-    let blank = resvg::tiny_skia::Pixmap::new(width, height);
-    let mut picture = blank.ok_or_else(|| CliError::failure(format!("no picture of {width} x {height} pixels")))?;
-    resvg::render(tree, Transform::from_scale(scale, scale), &mut picture.as_mut());
-    picture.encode_png().map_err(CliError::failure)
 }

@@ -1,0 +1,36 @@
+//! PDF and PNG of a figure, with a typeface that comes with the command.
+
+use crate::error::CliError;
+use svg2pdf::usvg::{Options, Transform, Tree};
+use svg2pdf::{ConversionOptions, PageOptions};
+
+/// Dots of a PNG per inch.
+const PNG_DOTS: f32 = 300.0;
+
+/// Pixels of a style sheet per inch, the unit of an SVG.
+const SVG_DOTS: f32 = 96.0;
+
+/// Returns the figure as a page of its own size.
+pub(super) fn pdf(svg: &str) -> Result<Vec<u8>, CliError> {
+    let page = PageOptions { dpi: SVG_DOTS };
+    svg2pdf::to_pdf(&tree(svg)?, ConversionOptions::default(), page).map_err(CliError::failure)
+}
+
+/// Returns the figure at 300 dots per inch.
+pub(super) fn png(svg: &str) -> Result<Vec<u8>, CliError> {
+    let tree = tree(svg)?;
+    let scale = PNG_DOTS / SVG_DOTS;
+    let [width, height] = [tree.size().width(), tree.size().height()].map(|length| (length * scale).round() as u32);
+    let blank = resvg::tiny_skia::Pixmap::new(width, height);
+    let mut picture = blank.ok_or_else(|| CliError::failure(format!("no picture of {width} x {height} pixels")))?;
+    resvg::render(&tree, Transform::from_scale(scale, scale), &mut picture.as_mut());
+    picture.encode_png().map_err(CliError::failure)
+}
+
+fn tree(svg: &str) -> Result<Tree, CliError> {
+    let mut options = Options { font_family: "DejaVu Sans".to_owned(), ..Options::default() };
+    let fonts = options.fontdb_mut();
+    fonts.load_font_data(dejavu::sans::regular().to_vec());
+    fonts.set_sans_serif_family("DejaVu Sans");
+    Tree::from_str(svg, &options).map_err(CliError::failure)
+}
