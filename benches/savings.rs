@@ -34,10 +34,6 @@ const fn fields(saving: Saving) -> u64 {
 fn savings(criterion: &mut Criterion) {
     for (name, experiment) in experiments() {
         for saving in Saving::ALL {
-            // Slats has neither tokens nor interrupts that are worth it.
-            if name == "slats-140" && saving == Saving::JointWork {
-                continue;
-            }
             let pixels = if saving == Saving::EmptyRegions { Pixels::All } else { Pixels::Off };
             let level = if saving == Saving::RepeatedCode { Level::Cycle } else { Level::Transaction };
             let with = experiment.clone().pixels(pixels).level(level).host(Workstation::with_threads(1));

@@ -7,7 +7,6 @@ use pxpl5::{
     Viewpoint, scene, scene::Scene,
 };
 use pxpl5_framebuffer::SeenField;
-use pxpl5_hires::HiResConfig;
 use std::collections::BTreeSet;
 use support::ntsc;
 
@@ -76,64 +75,6 @@ fn transfers_in_closed_form_end_when_their_words_do() {
 }
 
 #[test]
-fn delayed_work_ends_when_it_would_have_been_announced() {
-    for experiment in experiments() {
-        assert_same(&experiment.pixels(Pixels::Lazy), Saving::DelayedWork, 10);
-    }
-}
-
-#[test]
-fn tokens_that_find_an_empty_bin_go_on_when_two_payments_would_have_let_them() {
-    for experiment in experiments() {
-        assert_same(&experiment.pixels(Pixels::Lazy), Saving::JointWork, 10);
-    }
-    let few = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), mig(12));
-    assert_same(&few.pixels(Pixels::Lazy), Saving::JointWork, 20);
-}
-
-#[test]
-fn events_that_nothing_comes_between_are_as_good_as_one() {
-    for experiment in experiments() {
-        let experiment = experiment.pixels(Pixels::Lazy);
-        assert_same(&experiment, Saving::JointEvents, 10);
-        let [joint, apart] =
-            [experiment.clone(), experiment.without(Saving::JointEvents)].map(|e| after(&e, 10).events());
-        assert!(joint < apart, "{joint} events, {apart} by themselves");
-    }
-}
-
-/// The messages of a region, sixteen at most, are two grants and one arrival, instead of one of each for every message. A strip of eight
-/// lines is one message.
-#[test]
-fn regions_that_are_copied_arrive_as_message_after_message() {
-    for (experiment, least) in experiments().into_iter().zip([10, 10, 0]) {
-        let experiment = experiment.pixels(Pixels::Lazy);
-        assert_same(&experiment, Saving::Trains, 10);
-        let [trains, apart] = [experiment.clone(), experiment.without(Saving::Trains)].map(|e| after(&e, 10));
-        let regions = apart.record().observation().arrivals.len() as u64;
-        let saved = apart.events() - trains.events();
-        assert!(saved >= least * regions, "{saved} of {} events, {regions} regions", apart.events());
-        assert_eq!(trains.record().ring().stats(), apart.record().ring().stats());
-        let counters = |machine: &Machine| machine.record().display().counters();
-        assert_eq!(counters(&trains), counters(&apart));
-    }
-}
-
-/// The other frame buffer that may be told late: 80 regions a picture.
-#[test]
-fn regions_reach_the_high_resolution_display_in_the_same_way() {
-    let machine = MachineConfig { displays: vec![Box::new(HiResConfig::PAPERS)], ..MachineConfig::small_hmd() };
-    let trains = Experiment::new(machine, RenderingControl::mono(), mig(100)).pixels(Pixels::Lazy);
-    let [trains, apart] = [trains.clone(), trains.without(Saving::Trains)].map(|e| after(&e, 40));
-    assert_eq!(trains.record().trace_hash(), apart.record().trace_hash());
-    let arrivals = |machine: &Machine| machine.record().observation().arrivals.clone();
-    assert_eq!(arrivals(&trains), arrivals(&apart));
-    assert!(apart.events() - trains.events() > 10 * arrivals(&apart).len() as u64);
-    let [seen, expected] = [&trains, &apart].map(|machine| machine.record().display().shown(0).expect("a surface"));
-    assert!(seen == expected && colours(&seen) > 2);
-}
-
-#[test]
 fn regions_without_primitives_look_as_if_they_had_been_drawn() {
     for experiment in experiments() {
         assert_same(&experiment.pixels(Pixels::All), Saving::EmptyRegions, 10);
@@ -180,8 +121,5 @@ fn savings_are_known_by_their_names() {
         assert_eq!(saving.name().parse(), Ok(saving));
     }
     let error = "idleness".parse::<Saving>().expect_err("no saving");
-    assert_eq!(
-        error,
-        "expected idle-boards, transfers, empty-regions, repeated-code, delayed-work, joint-work, joint-events, trains, found \"idleness\""
-    );
+    assert_eq!(error, "expected idle-boards, transfers, empty-regions, repeated-code, found \"idleness\"");
 }

@@ -3,7 +3,7 @@
 use pxpl5::machine::Board;
 use pxpl5::run::{Pause, Stepper};
 use pxpl5::{
-    Experiment, ExperimentError, ExperimentFile, MachineConfig, Measured, Outcome, PeriodNumber, Saving, Slats, Span,
+    Experiment, ExperimentError, ExperimentFile, MachineConfig, Measured, Outcome, PeriodNumber, Slats, Span,
     SurfaceId, Time, registry, scene,
 };
 use pxpl5_renderer::PixelArray;
@@ -86,11 +86,6 @@ fn in_pieces(experiment: &Experiment, seed: u64) -> Outcome {
     outcome(stepper.finish())
 }
 
-/// With each event by itself, as a stepper takes them.
-fn apart(experiment: &Experiment) -> Experiment {
-    experiment.clone().without(Saving::JointEvents)
-}
-
 fn assert_same(whole: &Outcome, pieces: &Outcome, name: &str) {
     assert_eq!(whole.record().trace_hash(), pieces.record().trace_hash(), "{name}");
     assert_eq!(whole.pictures(), pieces.pictures(), "{name}");
@@ -113,7 +108,7 @@ fn every_pipeline_on_every_display_runs_in_pieces_as_in_one_go() {
         let display = format!("display={}", display.name);
         let settings = [pipeline.as_str(), display.as_str(), "scene=full-screen:2", "fields=7"];
         let Some(experiment) = experiment(&settings) else { continue };
-        let whole = outcome(apart(&experiment).run());
+        let whole = outcome(experiment.run());
         for plain in [experiment.clone().record_traffic(false), experiment.clone()].map(|plain| outcome(plain.run())) {
             assert_eq!(plain.record().trace_hash(), whole.record().trace_hash(), "{settings:?}");
             assert_eq!(plain.pictures(), whole.pictures(), "{settings:?}");
@@ -130,7 +125,7 @@ fn every_pipeline_on_every_display_runs_in_pieces_as_in_one_go() {
 fn a_tracked_head_with_prediction_is_followed_in_pieces_as_in_one_go() {
     let settings = ["pipeline=slats", "scene=full-screen:2", "fields=7", "head.motion=synthetic:3"];
     let experiment = experiment(&settings).expect("it can be built");
-    assert_same(&outcome(apart(&experiment).run()), &in_pieces(&experiment, 9), "head");
+    assert_same(&outcome(experiment.run()), &in_pieces(&experiment, 9), "head");
 }
 
 fn slats() -> Experiment {

@@ -210,7 +210,6 @@ fn agree(peer: &str, theirs: f64, own: f64) -> Fallible<()> {
 /// The Mig: on the large machine, under Slats, and with code on the i860s.
 fn aircraft(rounds: usize) -> Fallible<Vec<Row>> {
     let large = stereo(machine(50, 20), mig(417)?);
-    let apart = large.clone().without(Saving::JointEvents).without(Saving::Trains);
     let slats_off = slats(140)?;
     let slats_all = slats_off.clone().pixels(Pixels::All);
     let preset = MachineConfig::preset("slats-optimised")?;
@@ -221,7 +220,7 @@ fn aircraft(rounds: usize) -> Fallible<Vec<Row>> {
         rounds,
         vec![
             Way::new("large", || pairs(&large, 360)),
-            Way::new("events", || events(&apart, 60)),
+            Way::new("events", || events(&large, 60)),
             Way::new("slats", || fields(&slats_off, 480)),
             Way::new("slats, all", || fields(&slats_all, 240)),
             Way::new("slats, code", || fields(&slats_code, 48)),

@@ -31,8 +31,7 @@ pub(crate) struct RunArgs {
     /// Worker threads for --pixels all; default: one a core; 0: the thread that simulates computes the pixels.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(0..=1024))]
     threads: Option<u64>,
-    /// Do without a saving, to see what it is worth: idle-boards, transfers, empty-regions, repeated-code, delayed-work,
-    /// joint-work, joint-events or trains; may be repeated.
+    /// Do without a saving, to see what it is worth: idle-boards, transfers, empty-regions or repeated-code; may be repeated.
     #[arg(long, value_name = "SAVING")]
     without: Vec<Saving>,
     /// Write report.json, results.csv, pictures.csv, experiment.toml, timeline.svg and the last pictures into this folder.

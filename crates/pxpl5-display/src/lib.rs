@@ -110,14 +110,6 @@ pub trait Display: Any + Debug + Send + Sync {
     /// Handles one event.
     fn handle(&mut self, event: DisplayEvent, context: &mut DisplayContext);
 
-    /// Whether it may be told of a message after it has arrived (`context.now()` is when it did), where more messages of the same
-    /// transfer to that port follow: before its next tick or timer, before the transfer's last message, and before anybody looks. Of
-    /// messages to different ports it is then told in any order, and it schedules nothing because of one. The messages of a region
-    /// are no events then.
-    fn may_be_told_late(&self) -> bool {
-        false
-    }
-
     /// When pixel (x, y) of a surface lights in a period; `None` when it does not.
     fn lights(&self, surface: usize, x: u32, y: u32, period: PeriodNumber) -> Option<Time>;
 

@@ -103,11 +103,6 @@ impl Display for NtscDisplay {
         }
     }
 
-    /// A message is a time beside its part of a region, and what is scanned is looked up by times.
-    fn may_be_told_late(&self) -> bool {
-        true
-    }
-
     fn lights(&self, _surface: usize, x: u32, y: u32, period: PeriodNumber) -> Option<Time> {
         self.video.when(x, y, period)
     }

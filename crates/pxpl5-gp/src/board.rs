@@ -65,10 +65,8 @@ struct Task {
 pub struct GpBoard {
     shared: Rc<RefCell<Shared>>,
     tasks: Vec<Task>,
-    /// Instants of the ends of work that are scheduled, the next one last: one, or one more for each interruption.
+    /// Instants at which an end of work is scheduled: the next end, and earlier announcements that an interrupt has delayed.
     announced: Vec<Time>,
-    /// Whether every end of work is announced anew when an interrupt has moved it.
-    announces_every_end: bool,
     poll_pending: bool,
     cycle: Span,
     fault: Option<Fault>,
@@ -104,19 +102,10 @@ impl GpBoard {
             issued: 0,
             progress: 0,
             waits: [Wait::NONE; 2],
-            pays_one_by_one: false,
             stopped_by: None,
         };
         let shared = Rc::new(RefCell::new(shared));
-        Self {
-            shared,
-            tasks: Vec::new(),
-            announced: Vec::new(),
-            announces_every_end: false,
-            poll_pending: false,
-            cycle,
-            fault: None,
-        }
+        Self { shared, tasks: Vec::new(), announced: Vec::new(), poll_pending: false, cycle, fault: None }
     }
 
     /// Has the time of [`Work`](crate::Work) come from this code on such a core from now on, whatever the timing table says; what is
@@ -133,16 +122,6 @@ impl GpBoard {
         if let Some(processor) = &mut self.shared.borrow_mut().processor {
             processor.count_every_clock();
         }
-    }
-
-    /// Has every end of work announced anew when an interrupt has moved it, from now on.
-    pub const fn announce_every_end(&mut self) {
-        self.announces_every_end = true;
-    }
-
-    /// Has programs pay for messages one after the other from now on, where they could pay for several at once.
-    pub fn pay_one_by_one(&mut self) {
-        self.shared.borrow_mut().pays_one_by_one = true;
     }
 
     /// A handle to the board for a program of a priority.
@@ -202,20 +181,18 @@ impl GpBoard {
         self.announce(end, context);
     }
 
-    /// An end of work was announced for now: it is one, or it is announced again.
+    /// Lets the programs go on if work ends now. An interrupt may have delayed it since its end was announced.
     fn end_of_work(&mut self, context: &mut Context<GpEvent, GpOutput>) {
         let now = context.now();
         self.announced.retain(|at| *at > now);
-        let end = self.shared.borrow().cpu.next_end();
-        if end == Some(now) { self.work(context) } else { self.announce(end, context) }
+        if self.shared.borrow().cpu.next_end() == Some(now) {
+            self.work(context);
+        }
     }
 
-    /// Has an event at the end of work, or one before it at which it is asked for again: interrupts delay the work below them
-    /// time and again, and each delay would else leave an event behind.
+    /// Schedules an event at the end of work, once.
     fn announce(&mut self, end: Option<Time>, context: &mut Context<GpEvent, GpOutput>) {
-        let Some(end) = end else { return };
-        let is_known = |at: &Time| if self.announces_every_end { *at == end } else { *at <= end };
-        if !self.announced.iter().any(is_known) {
+        if let Some(end) = end.filter(|end| !self.announced.contains(end)) {
             self.announced.push(end);
             context.schedule(end, Phase::Work, GpEvent::WorkEnds);
         }

@@ -96,8 +96,6 @@ pub(crate) struct Shared {
     /// Counts completed waits, so that the board polls until nothing moves.
     pub(crate) progress: u64,
     pub(crate) waits: [Wait; 2],
-    /// Whether programs pay for messages one after the other, though nothing happens between.
-    pub(crate) pays_one_by_one: bool,
     /// What stopped the board: software of its own that no program could do anything about.
     pub(crate) stopped_by: Option<Fault>,
 }

@@ -3,8 +3,7 @@
 //! That price is `message_ns` of the timing table, or the time of the code that handles the message on the board's processor
 //! ([`Processor::receive_message`], [`Processor::send_chain`]); programs do not know which.
 
-use crate::cpu::Priority;
-use crate::firmware::{Batch, Cause, ChainLink, Fault, Gp, Received, Ticket};
+use crate::firmware::{Batch, ChainLink, Fault, Gp, Received, Ticket};
 use crate::processor::Processor;
 use crate::work::Work;
 use pxpl5_sim::Span;
@@ -39,8 +38,7 @@ impl Gp {
     }
 
     /// Answers a message: pays for receiving it, does work, sends some messages one after the other, each when the clump buffer is free, and
-    /// one more in the background. What follows on each other without a wait is spent in one, where that is the same
-    /// ([`Gp::pays_at_once`]).
+    /// one more in the background.
     ///
     /// # Errors
     ///
@@ -49,34 +47,12 @@ impl Gp {
         &self,
         received: &Received,
         work: Option<&impl Work>,
-        mut messages: impl Iterator<Item = (NodeId, u32, Body)>,
+        messages: impl Iterator<Item = (NodeId, u32, Body)>,
         last: (NodeId, u32, Body),
     ) -> Result<(), Fault> {
-        if self.pays_at_once() {
-            let timing = self.timing();
-            let message = Span::from_ns(timing.message_ns);
-            let begin = message + work.map_or(Span::ZERO, |work| work.by_table(&timing));
-            match messages.next() {
-                None => {
-                    self.spend(begin + message).await;
-                    self.start(self.unheld([last]));
-                    return Ok(());
-                }
-                Some(first) if self.has_free_clump_buffer() => {
-                    self.spend(begin + message).await;
-                    self.start(self.unheld([first]));
-                }
-                Some(first) => {
-                    self.spend(begin).await;
-                    self.clump_buffer_free().await;
-                    self.send_batch(vec![first]).await;
-                }
-            }
-        } else {
-            self.pay_for(received).await;
-            if let Some(work) = work {
-                self.work(work).await?;
-            }
+        self.pay_for(received).await;
+        if let Some(work) = work {
+            self.work(work).await?;
         }
         for message in messages {
             self.clump_buffer_free().await;
@@ -84,24 +60,6 @@ impl Gp {
         }
         self.send_batch(vec![last]).await;
         Ok(())
-    }
-
-    /// Whether this program may spend the times of several things at once: each is that of the table, and the other program of its board
-    /// neither runs between nor sends anything. Code runs thing by thing, because another program's may have to run in between. A
-    /// program of the foreground that has just spent its time may send at this very instant.
-    #[must_use]
-    pub fn pays_at_once(&self) -> bool {
-        let shared = self.shared.borrow();
-        let may_send_now = shared.waits[Priority::Foreground as usize].ended_by == Cause::Work
-            && shared.cpu.is_done(Priority::Foreground);
-        let by_table = !shared.pays_one_by_one && shared.processor.is_none() && shared.timing.message_ns > 0;
-        self.priority == Priority::Interrupt && by_table && !may_send_now
-    }
-
-    /// Whether [`Gp::clump_buffer_free`] would not wait.
-    fn has_free_clump_buffer(&self) -> bool {
-        let shared = self.shared.borrow();
-        shared.accepted >= shared.issued
     }
 
     /// Sends one message in the background: pays the software cost, then queues it behind earlier ones.
@@ -189,6 +147,7 @@ impl Gp {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cpu::Priority;
     use crate::{CodeVersion, GpBoard, GpEvent, GpOutput, GpTiming};
     use pxpl5_sim::{Phase, TestBench, Time};
 
@@ -260,15 +219,5 @@ mod tests {
         let fault = board.fault().expect("it stopped").to_string();
         assert_eq!(fault, "node 9: unexpected message of 1025 words from node 2");
         assert!(board.blocked("GP 9").is_none() && board.look(Time(4_000_000_000)).programs.is_empty());
-    }
-
-    /// Code runs message by message; of the table's times several make one.
-    #[test]
-    fn several_are_paid_for_at_once_by_the_table_alone() {
-        let pays_at_once = |ns, code| board(ns, code).handle_for(Priority::Interrupt).pays_at_once();
-        assert_eq!(
-            [pays_at_once(1_000, false), pays_at_once(1_000, true), pays_at_once(0, false)],
-            [true, false, false]
-        );
     }
 }

@@ -1,7 +1,6 @@
 //! What programs see of their board, and what the board tells others: each promise of [`Gp`] and [`GpBoard`] alone. Times are sums of spans
 //! that the test sets; numbers of events follow from which waits each of them can end.
 
-use proptest::prelude::*;
 use pxpl5_gp::{
     Account, CodeVersion, Fault, Gp, GpBoard, GpEvent, GpOutput, GpTiming, Mark, OutOfMemory, PLACE_BITS, Priority,
     Processor, ProcessorFault, ProgramLook, Stage, StageEdge, WaitingMail, Work,
@@ -288,7 +287,7 @@ fn a_message_can_be_taken_for_nothing() {
     let notes = Notes::default();
     let told = Rc::clone(&notes);
     let mut rig = Rig::new().with(Priority::Interrupt, |gp| async move {
-        assert!(gp.pays_at_once() && gp.take_message().is_none());
+        assert!(gp.take_message().is_none());
         gp.until("a field", || (gp.field() == PeriodNumber(1)).then_some(())).await;
         let sources = [gp.take_message(), gp.take_message(), gp.take_message()];
         let sources = sources.map(|received| received.map_or(0, |received| u64::from(received.source.0)));
@@ -302,9 +301,6 @@ fn a_message_can_be_taken_for_nothing() {
     rig.events();
     let paid = ns(300 + MESSAGE_NS);
     assert_eq!(*notes.borrow(), [(ns(300), 3), (ns(300), 8), (ns(300), 0), (paid, 1)]);
-    rig.board.pay_one_by_one();
-    assert!(!rig.board.handle_for(Priority::Interrupt).pays_at_once());
-    assert!(!Rig::new().board.handle_for(Priority::Foreground).pays_at_once(), "interrupts come between");
 }
 
 /// The foreground works 3 us from the start; a message at 1 us takes the interrupt's program 0.5 us.
@@ -431,14 +427,9 @@ impl Work for Handing {
 /// An order for the interrupt's program: when it comes, how long its work takes if it has any, and how many messages answer it besides the last.
 type Order = (u64, Option<u64>, usize);
 
-/// What a board sends and when, its busy time and the events that took. Its foreground works so long again and again, and sends a message
+/// Returns the messages of a board with their times, and its busy time. Its foreground works so long again and again, and sends a message
 /// after each; the n-th message is accepted `delays[n]` after it has left, in hundreds of ns, and again from the first.
-fn answers(
-    orders: &[Order],
-    foreground: &[u64],
-    delays: &[u64],
-    one_by_one: bool,
-) -> (Vec<(Time, u16, u64)>, Span, u64) {
+fn answers(orders: &[Order], foreground: &[u64], delays: &[u64]) -> (Vec<(Time, u16, u64)>, Span) {
     let all = Rc::new(RefCell::new(orders.to_vec()));
     let mut rig = Rig::new().with(Priority::Interrupt, |gp| async move {
         loop {
@@ -458,9 +449,6 @@ fn answers(
         gp.until("nothing", || None::<()>).await;
         Ok(())
     });
-    if one_by_one {
-        rig.board.pay_one_by_one();
-    }
     rig = orders.iter().fold(rig, |rig, (at, ..)| rig.fed(100 * at, message(7)));
     let mut told = 0;
     while let Some(next) = rig.bench.queue().next_time() {
@@ -471,32 +459,16 @@ fn answers(
             told += 1;
         }
     }
-    let events = rig.bench.queue().events_taken();
     let sent = rig.bench.outputs.iter();
     let sent = sent.map(|(time, GpOutput::Send { message, ticket, .. })| (*time, message.destination.0, *ticket));
-    (sent.collect(), rig.board.busy(), events)
-}
-
-proptest! {
-    /// Whatever comes between: messages during the answer, a foreground that sends at the same instant, receivers that take their time.
-    #[test]
-    fn an_answer_that_is_paid_for_in_one_leaves_when_one_by_one_would_have(
-        orders in proptest::collection::vec((0u64..120, proptest::option::of(0u64..20), 0usize..4), 1..12),
-        foreground in proptest::collection::vec(0u64..40, 0..6),
-        delays in proptest::collection::vec(1u64..60, 1..8)
-    ) {
-        let [one, each] = [false, true].map(|one_by_one| answers(&orders, &foreground, &delays, one_by_one));
-        prop_assert_eq!(one.0, each.0);
-        prop_assert_eq!(one.1, each.1);
-        prop_assert!(one.2 <= each.2);
-    }
+    (sent.collect(), rig.board.busy())
 }
 
 /// Receiving and work of 0.3 us, then each message; the second begins when the first is accepted, a cycle and 0.1 us after its software.
 #[test]
 fn an_answer_takes_a_message_for_what_is_received_and_for_each_that_is_sent() {
     for (count, expected_ns) in [(0, vec![3_300]), (1, vec![3_300, 4_300]), (2, vec![3_300, 4_425, 5_425])] {
-        let (sent, busy, _) = answers(&[(10, Some(3), count)], &[], &[1], false);
+        let (sent, busy) = answers(&[(10, Some(3), count)], &[], &[1]);
         let times: Vec<Time> = sent.iter().map(|(time, ..)| *time).collect();
         assert_eq!(times, expected_ns.into_iter().map(|at| ns(at) + CYCLE).collect::<Vec<_>>());
         assert_eq!(busy, Span::from_ns(300 + (count as u64 + 2) * MESSAGE_NS));

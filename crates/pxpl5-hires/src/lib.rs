@@ -84,10 +84,6 @@ impl Display for HiRes {
         }
     }
 
-    fn may_be_told_late(&self) -> bool {
-        true
-    }
-
     fn lights(&self, _: usize, x: u32, y: u32, period: PeriodNumber) -> Option<Time> {
         let pixel = u64::from(y) * self.config.width + u64::from(x);
         let visible = u64::from(x) < self.config.width && u64::from(y) < self.config.height;

@@ -5,9 +5,9 @@ use crate::ports::Ports;
 use pxpl5_display::DisplayEvent;
 use pxpl5_gp::GpEvent;
 use pxpl5_renderer::RendererEvent;
-use pxpl5_ring::{Request, RingEvent, RingOutput};
+use pxpl5_ring::{RingEvent, RingOutput};
 use pxpl5_sim::Time;
-use pxpl5_wire::{Message, PeriodNumber};
+use pxpl5_wire::PeriodNumber;
 
 /// An event of any board.
 #[derive(Debug)]
@@ -15,10 +15,6 @@ pub(crate) enum Event {
     Ring(RingEvent),
     /// What the ring brings to a board.
     FromRing(RingOutput),
-    /// The last word of a message is with its receiver, and its sender, who has given it a ticket, is told.
-    DeliveredAndSent(Message, u64),
-    /// A board hands several messages to its port.
-    Requests(Vec<Request>),
     Gp(usize, GpEvent),
     Renderer(usize, RendererEvent),
     /// What a line, by its number, brings to the first display past the ring.
@@ -42,8 +38,6 @@ impl Event {
         let (board, what) = match self {
             Self::Ring(event) => (Board::Ring, ring_what(event)),
             Self::FromRing(output) => brought(output, ports),
-            Self::DeliveredAndSent(message, _) => (ports.board(message.destination), "message delivered"),
-            Self::Requests(_) => (Board::Ring, "a board asks for channels"),
             Self::Gp(board, event) => (Board::of_processor(*board), gp_what(event)),
             Self::Renderer(board, event) => (Board::Renderer(*board), renderer_what(event)),
             Self::HostLine(_) => (Board::Display(0), "message of a line past the ring"),

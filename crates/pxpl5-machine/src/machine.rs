@@ -12,7 +12,7 @@
 
 mod displays;
 
-use crate::agenda::{schedule_brought, schedule_own, schedule_requests};
+use crate::agenda::{schedule_outputs, schedule_own};
 use crate::board::{Board, Happening};
 use crate::config::{ConfigError, MachineConfig};
 use crate::event::Event;
@@ -47,8 +47,6 @@ pub struct Machine {
     pixels: Option<Box<dyn PixelWorker>>,
     /// Whether every edge of the boards' clock is an event.
     every_edge: bool,
-    /// Whether what nothing can come between is one event.
-    joint_events: bool,
     failure: Option<RunError>,
     /// Events since the last tick of the first display that were no tick, and the ticks up to it without any.
     work_events: u64,
@@ -85,7 +83,7 @@ impl Machine {
         let ports = Ports::plug(config, pictures);
         let renderers = ports.renderers.clone();
         let elastic = move |node: NodeId| !renderers.contains(&node);
-        let mut ring =
+        let ring =
             Ring::new(config.ring, ports.count(), elastic).map_err(|error| ConfigError::Board(error.to_string()))?;
         let host = GpBoard::new(ports.host, config.host.board(), cycle());
         let gps = ports.gps.iter().map(|node| GpBoard::new(*node, config.gp, cycle()));
@@ -93,8 +91,6 @@ impl Machine {
         let renderer = |node: &NodeId| Renderer::new(*node, config.renderer, config.ring.word(), cycle(), pool.clone());
         let displays = config.displays.iter().zip(&ports.displays).map(|(display, nodes)| display.build(nodes));
         let displays = displays.collect::<Result<Vec<_>, _>>()?;
-        let patient = displays.iter().filter(|display| display.may_be_told_late());
-        patient.flat_map(|display| display.nodes()).for_each(|port| ring.tell_late(*port));
         Ok(Self {
             processors: [host].into_iter().chain(gps).collect(),
             swaps: BTreeMap::new(),
@@ -113,7 +109,6 @@ impl Machine {
             host_lines: Vec::new(),
             pixels: None,
             every_edge: false,
-            joint_events: true,
             failure: None,
             work_events: 0,
             idle_ticks: 0,
@@ -147,17 +142,12 @@ impl Machine {
             Saving::Transfers => self.record.ring.move_every_word(),
             Saving::EmptyRegions => self.record.renderers.iter_mut().for_each(Renderer::draw_every_region),
             Saving::RepeatedCode => self.processors.iter_mut().for_each(GpBoard::count_every_clock),
-            Saving::DelayedWork => self.processors.iter_mut().for_each(GpBoard::announce_every_end),
-            Saving::JointWork => self.processors.iter_mut().for_each(GpBoard::pay_one_by_one),
-            Saving::JointEvents => self.joint_events = false,
-            Saving::Trains => self.record.ring.tell_in_time(),
         }
     }
 
     /// Records messages, busy channels and FIFOs, each when it happens. To be called before the machine has run.
     pub fn record_traffic(&mut self) {
         self.record.observation.traffic = Some(Box::default());
-        self.record.ring.tell_in_time();
         self.record.ring.watch();
         self.record.renderers.iter_mut().for_each(Renderer::watch_fifo);
     }
@@ -237,7 +227,6 @@ impl Machine {
     /// [`RunError`]; everything observed before it is kept.
     pub fn run_until(&mut self, end: Time) -> Result<(), RunError> {
         while self.takes_event_before(end).is_some() {}
-        self.tell_displays(end);
         self.failure.clone().map_or(Ok(()), Err)
     }
 
@@ -248,7 +237,6 @@ impl Machine {
     /// [`RunError`], of this event or of one before: a machine that has failed goes on no more.
     pub fn step_before(&mut self, end: Time) -> Result<Option<Time>, RunError> {
         let taken = self.takes_event_before(end);
-        self.tell_displays(taken.unwrap_or(end));
         self.failure.clone().map_or(Ok(taken), Err)
     }
 
@@ -273,21 +261,10 @@ impl Machine {
         match event {
             Event::Ring(event) => self.ring_event(now, event),
             Event::FromRing(output) => self.bring(now, output),
-            Event::DeliveredAndSent(message, ticket) => {
-                let source = message.source;
-                self.bring(now, RingOutput::Delivered(message));
-                self.bring(now, RingOutput::Sent { source, ticket });
-            }
-            Event::Requests(requests) => {
-                requests.into_iter().for_each(|request| self.ring_event(now, RingEvent::Request(request)));
-            }
             Event::Gp(board, event) => self.gp_event(now, board, event),
             Event::Renderer(board, event) => self.renderer_event(now, board, event),
             Event::HostLine(line) => self.host_says(now, line),
-            Event::Display(display, event) => {
-                self.tell_display(display, now);
-                self.display_event(now, display, event);
-            }
+            Event::Display(display, event) => self.display_event(now, display, event),
             Event::Tick(display, period) => self.tick(now, display, period),
             Event::Edge => self.edge(now),
         }
@@ -302,7 +279,6 @@ impl Machine {
 
     /// A display's clock ticks; that of the first one is the sync generator of the first graphics processor.
     fn tick(&mut self, now: Time, display: usize, period: PeriodNumber) {
-        self.tell_display(display, now);
         self.display_event(now, display, DisplayEvent::Tick(period));
         let next = period.next();
         self.queue.schedule(self.record.displays[display].tick(next), Phase::Arrive, Event::Tick(display, next));
@@ -363,25 +339,7 @@ impl Machine {
             traffic.channels(now, ring.busy_channels());
         }
         schedule_own(queue, context, Event::Ring);
-        schedule_brought(queue, context, self.joint_events);
-    }
-
-    /// The answer of a renderer leaves it after a cycle. What it says of the end of a message holds from then on, before which nothing
-    /// can happen to that message: so the ring may know it at once.
-    fn accept(&mut self, now: Time, at: Time, destination: NodeId, last_word_at: Time) {
-        let event = RingEvent::Accept { destination, last_word_at };
-        if !self.joint_events {
-            return self.queue.schedule(at, Phase::Arrive, Event::Ring(event));
-        }
-        debug_assert!(at > now, "nothing leaves a board at once");
-        let Self { record: Record { ring, observation, .. }, contexts: Contexts { ring: context, .. }, queue, .. } =
-            self;
-        if let Some(traffic) = observation.traffic.as_deref_mut() {
-            traffic.accept(destination, last_word_at);
-        }
-        ring.handle(event, context.at(at));
-        schedule_own(queue, context, Event::Ring);
-        schedule_brought(queue, context, true);
+        schedule_outputs(queue, context);
     }
 
     /// What the ring has brought to a board enters the trace now.
@@ -421,7 +379,6 @@ impl Machine {
     fn deliver(&mut self, now: Time, message: Message) {
         match self.record.ports.of_display(message.destination) {
             Some((display, port)) => {
-                self.tell_display(display, now);
                 self.display_event(now, display, DisplayEvent::Delivered { port, body: message.body });
             }
             None => self.gp_event(now, usize::from(message.destination.0), GpEvent::Delivered(message)),
@@ -435,7 +392,6 @@ impl Machine {
         for (port, body) in messages {
             self.record.hash.record(now, &facts_of_line(port, &body));
             compute_pixels(&mut self.pixels, &body);
-            self.tell_display(0, now);
             self.display_event(now, 0, DisplayEvent::Delivered { port, body });
         }
     }
@@ -451,12 +407,10 @@ impl Machine {
         let processor = &mut processors[board];
         processor.handle(event, context.at(now));
         schedule_own(queue, context, |event| Event::Gp(board, event));
-        if !context.is_silent() {
-            let outputs = (0..).zip(context.drain_outputs());
-            let sends = outputs.map(|(order, (time, GpOutput::Send { message, ticket, hold }))| {
-                (time, Request { message, ticket: Some(ticket), hold, order })
-            });
-            schedule_requests(queue, sends, self.joint_events);
+        for (order, (time, output)) in (0..).zip(context.drain_outputs()) {
+            let GpOutput::Send { message, ticket, hold } = output;
+            let request = Request { message, ticket: Some(ticket), hold, order };
+            queue.schedule(time, Phase::Arrive, Event::Ring(RingEvent::Request(request)));
         }
         if let Some(fault) = processor.fault().cloned() {
             self.failure = Some(RunError::Fault { board: Board::of_processor(board).to_string(), time: now, fault });
@@ -477,21 +431,15 @@ impl Machine {
         }
         schedule_own(queue, context, |event| Event::Renderer(board, event));
         let destination = record.ports.renderers[board];
-        let mut answer = None;
-        let sends = (0..).zip(context.drain_outputs()).filter_map(|(order, (time, output))| match output {
-            RendererOutput::Accept { last_word_at } => {
-                let before = answer.replace((time, last_word_at));
-                debug_assert!(before.is_none(), "one message at a time is on its way into a FIFO");
-                None
-            }
-            RendererOutput::Send { message, ticket, hold } => {
-                compute_pixels(pixels, &message.body);
-                Some((time, Request { message, ticket: ticket.then_some(0), hold, order }))
-            }
-        });
-        schedule_requests(queue, sends, self.joint_events);
-        if let Some((at, last_word_at)) = answer {
-            self.accept(now, at, destination, last_word_at);
+        for (order, (time, output)) in (0..).zip(context.drain_outputs()) {
+            let event = match output {
+                RendererOutput::Accept { last_word_at } => RingEvent::Accept { destination, last_word_at },
+                RendererOutput::Send { message, ticket, hold } => {
+                    compute_pixels(pixels, &message.body);
+                    RingEvent::Request(Request { message, ticket: ticket.then_some(0), hold, order })
+                }
+            };
+            queue.schedule(time, Phase::Arrive, Event::Ring(event));
         }
     }
 

@@ -21,33 +21,11 @@ pub enum Saving {
     /// Code that repeats with all it needs in the caches takes the clocks that were counted before (cycle level). Without it
     /// the i860s count every clock.
     RepeatedCode,
-    /// Work that interrupts delay is looked at when it would have ended without them. Without it each delay announces the end
-    /// anew, and leaves an event behind.
-    DelayedWork,
-    /// What a slave does for a token without a wait between is one piece of work: receiving it, handing its bin over, and the software
-    /// of the first message that leaves. Without it the processor is asked after each.
-    JointWork,
-    /// What nothing can come between is one event: the messages that a board hands to the ring at once, a delivery and the news of it
-    /// to its sender, an announcement and the renderer's answer. Without it each is an event of its own, as in a run that is
-    /// stepped through.
-    JointEvents,
-    /// The messages of a region that is copied follow each other by what the ring knows of them, and a display that may be told late
-    /// is told of all but the last when it is asked for something. Without it the grant of each is an event, and so is its arrival.
-    Trains,
 }
 
 impl Saving {
     /// Every saving that an experiment can give up.
-    pub const ALL: [Self; 8] = [
-        Self::IdleBoards,
-        Self::Transfers,
-        Self::EmptyRegions,
-        Self::RepeatedCode,
-        Self::DelayedWork,
-        Self::JointWork,
-        Self::JointEvents,
-        Self::Trains,
-    ];
+    pub const ALL: [Self; 4] = [Self::IdleBoards, Self::Transfers, Self::EmptyRegions, Self::RepeatedCode];
 
     /// The name by which the command knows it.
     #[must_use]
@@ -57,10 +35,6 @@ impl Saving {
             Self::Transfers => "transfers",
             Self::EmptyRegions => "empty-regions",
             Self::RepeatedCode => "repeated-code",
-            Self::DelayedWork => "delayed-work",
-            Self::JointWork => "joint-work",
-            Self::JointEvents => "joint-events",
-            Self::Trains => "trains",
         }
     }
 }

@@ -31,10 +31,6 @@ pub(crate) struct MessageInFlight {
     pub(crate) words: u32,
     pub(crate) ticket: Option<u64>,
     pub(crate) hold: bool,
-    /// [`Request::is_part`](crate::Request::is_part).
-    pub(crate) is_part: bool,
-    /// Whether a message of its transfer follows it of which nobody is told in time.
-    pub(crate) goes_on: bool,
     pub(crate) granted: Time,
     pub(crate) latency: Span,
     /// Word slots that have not ended, and the message until the receiver is told of it; only where every word is moved.

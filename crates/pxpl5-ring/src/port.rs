@@ -44,13 +44,6 @@ pub struct Request {
     pub order: u32,
 }
 
-impl Request {
-    /// Whether nobody waits for its end but the next message of its transfer.
-    pub(crate) const fn is_part(&self) -> bool {
-        self.hold && self.ticket.is_none()
-    }
-}
-
 /// What the ring puts out.
 #[derive(Clone, Debug)]
 pub enum RingOutput {

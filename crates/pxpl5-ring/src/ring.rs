@@ -1,15 +1,11 @@
 //! Ports and arbiter.
 
-mod trains;
-
 use crate::channels::{MessageInFlight, OnChannel, RingChannels};
 use crate::{Refusals, Request, RingError, RingEvent, RingOutput, RingStats, RingTiming, WaitReason, WaitingMessage};
 use parameters::ParameterTable;
 use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, Message, NodeId};
 use std::collections::VecDeque;
-
-const NEVER: Time = Time(u64::MAX);
 
 type RingContext = Context<RingEvent, RingOutput>;
 
@@ -37,8 +33,6 @@ pub struct Ring {
     watched: bool,
     /// Whether every word is an event.
     word_by_word: bool,
-    /// When the next message of a train ends that another follows, of which there may be no event.
-    train_goes_on_at: Time,
     stats: RingStats,
     refusals: Refusals,
 }
@@ -48,8 +42,6 @@ struct SourcePort {
     queue: VecDeque<QueuedRequest>,
     /// Messages on channels, at most `source_channels`.
     in_flight: u64,
-    /// When the train that it sends will be over, or has been.
-    train_until: Time,
 }
 
 #[derive(Clone, Debug)]
@@ -61,10 +53,6 @@ struct QueuedRequest {
 #[derive(Clone, Debug)]
 struct DestinationPort {
     elastic: bool,
-    /// Whether it is told late of messages that keep it for the next one.
-    patient: bool,
-    /// Such messages of which it has not been told, with their arrivals, in order.
-    parts: VecDeque<(Time, Message)>,
     channel: Option<usize>,
     reserved_for: Option<NodeId>,
     /// Heads that wait for it.
@@ -105,7 +93,6 @@ impl Ring {
             arbitrations: Vec::new(),
             watched: false,
             word_by_word: false,
-            train_goes_on_at: NEVER,
             stats: RingStats { channel_busy: vec![Span::ZERO; n_channels], ..RingStats::default() },
             refusals: Refusals::default(),
         })
@@ -124,10 +111,6 @@ impl Ring {
 
     /// Handles one event at `context.now()`; what follows from it is scheduled or put out through `context`.
     pub fn handle(&mut self, event: RingEvent, context: &mut RingContext) {
-        // An answer may be told of before its instant, and nothing that it decides is different before a train's next message.
-        if !matches!(event, RingEvent::Accept { .. }) {
-            self.catch_up(context.now());
-        }
         match event {
             RingEvent::Request(request) => self.request(request, context),
             RingEvent::Accept { destination, last_word_at } => self.accept(destination, last_word_at, context),
@@ -266,21 +249,10 @@ impl Ring {
         }
     }
 
-    /// The first end of a message to a receiver that a head waits for. Of a train it is the end of the last message that keeps the port:
-    /// until then its own messages alone can be granted there, each at the end of the one before, because nobody lacks a channel; should
-    /// somebody come to lack one, that is at an event, which asks for every end.
+    /// Returns the first end of a message to a receiver that a head waits for.
     fn first_end_waited_for(&self) -> Option<Time> {
-        let mut first: Option<Time> = None;
-        for (end, flight) in self.channels.ends() {
-            if first.is_some_and(|first| first <= end) {
-                break;
-            }
-            if self.destinations[usize::from(flight.destination.0)].heads > 0 {
-                let until = if flight.goes_on { self.sources[usize::from(flight.source.0)].train_until } else { end };
-                first = Some(first.map_or(until, |first| first.min(until)));
-            }
-        }
-        first
+        let waited_for = |flight: &MessageInFlight| self.destinations[usize::from(flight.destination.0)].heads > 0;
+        self.channels.ends().find(|(_, flight)| waited_for(flight)).map(|(end, _)| end)
     }
 
     /// Whether a head waits for a channel, whoever leaves one.
@@ -318,10 +290,6 @@ impl Ring {
     /// its sums are up to date afterwards.
     pub fn settle(&mut self, now: Time) {
         let lacked_channel = self.lacks_channel();
-        if self.train_goes_on_at <= now {
-            let mut later = self.channels.ends().filter(|(end, flight)| flight.goes_on && *end > now);
-            self.train_goes_on_at = later.next().map_or(NEVER, |(end, _)| end);
-        }
         while let Some((channel, ended, flight)) = self.channels.take_ended(now) {
             let destination = &mut self.destinations[usize::from(flight.destination.0)];
             destination.release(&flight);
@@ -369,24 +337,14 @@ impl Ring {
     }
 
     fn grant(&mut self, source: NodeId, now: Time, context: &mut RingContext) {
-        let Some((flight, message)) = self.take_first(source, now) else { return };
-        self.carry(flight, message, context);
-        self.add_head_behind(source, now);
-    }
-
-    /// The first message of a source leaves its queue for a channel.
-    fn take_first(&mut self, source: NodeId, now: Time) -> Option<(MessageInFlight, Message)> {
         let port = &mut self.sources[usize::from(source.0)];
-        let QueuedRequest { at, request } = port.queue.pop_front()?;
+        let Some(QueuedRequest { at, request }) = port.queue.pop_front() else { return };
         port.in_flight += 1;
         let waited = now.since(at);
         self.stats.waiting += waited;
         self.stats.longest_wait = self.stats.longest_wait.max(waited);
-        Some((self.flight(&request, now), request.message))
-    }
-
-    /// A source's next message is a head, if it may send on one more channel.
-    fn add_head_behind(&mut self, source: NodeId, now: Time) {
+        self.carry(self.flight(&request, now), request.message, context);
+        // The source's next message is a head, if the port may drive one more channel.
         if self.sources[usize::from(source.0)].in_flight < self.timing.source_channels {
             self.add_head(now, source);
         } else {
@@ -402,10 +360,8 @@ impl Ring {
             words,
             ticket: request.ticket,
             hold: request.hold,
-            is_part: request.is_part(),
             granted: now,
             latency: self.timing.latency(source, destination, self.n_nodes()),
-            goes_on: false,
             slots_left: self.timing.overhead_words + u64::from(words),
             message: None,
         }
@@ -422,10 +378,9 @@ impl Ring {
             self.announce(&flight, message, context);
             self.occupy(flight, None);
         } else {
-            let MessageInFlight { source, ticket, .. } = flight;
-            if let Some((at, message)) = self.carry_to_end(flight, message) {
-                deliver(message, at, (source, ticket), context);
-            }
+            let end = flight.granted + self.timing.occupancy(flight.words);
+            deliver(message, end + flight.latency, (flight.source, flight.ticket), context);
+            self.occupy(flight, Some(end));
         }
     }
 
@@ -449,9 +404,7 @@ impl Ring {
         match message {
             Some(message) if elastic => {
                 let now = context.now();
-                if let Some((at, message)) = self.keep_part(&flight, *message, now + flight.latency) {
-                    deliver(message, at, (flight.source, flight.ticket), context);
-                }
+                deliver(*message, now + flight.latency, (flight.source, flight.ticket), context);
                 self.channels.put_back(channel, flight);
                 self.channels.end_at(channel, now);
                 self.arbitrate_at_next_end(context);
@@ -555,7 +508,7 @@ impl SourcePort {
 
 impl DestinationPort {
     const fn new(elastic: bool) -> Self {
-        Self { elastic, patient: false, parts: VecDeque::new(), channel: None, reserved_for: None, heads: 0 }
+        Self { elastic, channel: None, reserved_for: None, heads: 0 }
     }
 
     fn takes_from(&self, source: NodeId) -> bool {

@@ -4,11 +4,10 @@ mod support;
 
 use proptest::prelude::*;
 use pxpl5_ring::reference::{CarriedMessage, Elastic, PlannedMessage, SteppedRing};
-use pxpl5_ring::{Request, Ring, RingError, RingEvent, RingTiming};
-use pxpl5_sim::{Context, Span, Time};
+use pxpl5_ring::{Ring, RingError, RingTiming};
+use pxpl5_sim::{Span, Time};
 use pxpl5_wire::NodeId;
-use std::collections::BTreeMap;
-use support::{ELASTIC, Receiver, Stepped, Times, run_fast, run_prepared, run_trains};
+use support::{Receiver, Stepped, Times, run_fast, run_prepared};
 
 #[derive(Clone, Debug)]
 struct RingCase {
@@ -125,26 +124,6 @@ proptest! {
         }
     }
 
-    /// Whoever is told late is told the same, and by the time at which somebody looks. Each transfer is handed over as a whole, so no train
-    /// is left standing.
-    #[test]
-    fn a_train_goes_as_its_messages_would_one_by_one(case in cases(), seed in any::<u64>()) {
-        let carried = step(&case);
-        let mut missing = Vec::new();
-        let look = |now: Time, times: &Times| {
-            let all = carried.iter().enumerate().filter(|(_, message)| message.last_word_at < now);
-            missing.extend(all.filter(|(number, _)| !times.accepted.contains_key(&(*number as u64))).map(|m| (now, m.0)));
-        };
-        let (ring, times, _) = run_trains(case.timing, &case.receivers, &case.traffic, Some(seed), look);
-        prop_assert_eq!(missing, []);
-        let all: BTreeMap<u64, Time> = (0..).zip(&carried).map(|(number, message)| (number, message.last_word_at)).collect();
-        prop_assert_eq!(&times.accepted, &all);
-        let told = (0..).zip(&carried).filter(|(number, _)| !case.traffic[*number].hold);
-        let told: BTreeMap<u64, Time> = told.map(|(number, message)| (number as u64, told_at(&case, number, message))).collect();
-        prop_assert_eq!(&times.sent, &told);
-        compare_sums(&case, &carried, &ring)?;
-    }
-
     #[test]
     fn the_order_of_simultaneous_events_changes_no_time(case in cases(), seeds in any::<[u64; 4]>()) {
         let (_, times) = run_fast(case.timing, &case.receivers, &case.traffic, None);
@@ -215,46 +194,4 @@ fn both_agree_when_twenty_messages_want_eight_channels_at_once() {
     let last = times.accepted.values().max().expect("some");
     assert_eq!(*last, Time::ZERO + tick * 3 + Span::from_us(8 * 52));
     assert_eq!(ring.stats().channel_busy[7], Span::from_us(7 * 52));
-}
-
-/// The fifteen messages of a region, and what another board sends to the same port meanwhile: a request, the grants of the first and of the
-/// last message, and of what waits behind it.
-#[test]
-fn a_train_is_two_grants_whatever_its_length() {
-    let region = |at_ns, source, n: u32| {
-        (0..n).map(move |part| PlannedMessage { hold: part + 1 < n, ..planned(at_ns, source, 9, 1_024) })
-    };
-    for n in [3, 15] {
-        let traffic: Vec<_> = region(0, 1, n).chain([planned(1_000, 2, 9, 10)]).collect();
-        let (ring, times, events) = run_trains(RingTiming::PAPERS, &ELASTIC[..20], &traffic, None, |_, _| {});
-        let slots = Span::from_ns((16 + 1_024) * 50);
-        let latency = RingTiming::PAPERS.latency(NodeId(1), NodeId(9), 20);
-        let arrivals: Vec<Time> = (1..=u64::from(n)).map(|k| Time::ZERO + slots * k + latency).collect();
-        assert_eq!(times.accepted.values().take(n as usize).copied().collect::<Vec<_>>(), arrivals);
-        assert_eq!(ring.stats().messages, u64::from(n) + 1);
-        let requests = u64::from(n) + 1;
-        // At 0, where the other board asks, at the end of the last message but one, and at the end of the last.
-        assert_eq!(events, requests + 4);
-    }
-}
-
-/// What has arrived at an instant is told of behind it; whoever is told in time is told of each by an event.
-#[test]
-fn parts_are_told_of_behind_their_arrival_and_only_to_whom_may_be_told_late() {
-    let arrival = Time::ZERO + Span::from_ns((16 + 10) * 50) + RingTiming::PAPERS.latency(NodeId(1), NodeId(9), 20);
-    for is_late in [true, false] {
-        let mut ring = Ring::new(RingTiming::PAPERS, 20, |_| true).expect("valid");
-        ring.tell_late(NodeId(9));
-        if !is_late {
-            ring.tell_in_time();
-        }
-        let mut context = Context::default();
-        let first = Request { ticket: None, hold: true, ..support::request(0, 1, 9, 10) };
-        ring.handle(RingEvent::Request(first), context.at(Time::ZERO));
-        ring.handle(RingEvent::Arbitrate, &mut context);
-        assert_eq!(context.drain_outputs().len(), usize::from(!is_late));
-        assert!(ring.take_part(NodeId(9), arrival).is_none());
-        let part = ring.take_part(NodeId(9), Time(arrival.0 + 1)).map(|(at, _)| at);
-        assert_eq!(part, is_late.then_some(arrival));
-    }
 }

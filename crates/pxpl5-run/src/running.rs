@@ -5,7 +5,7 @@ use crate::experiment::Experiment;
 use crate::outcome::Outcome;
 use crate::preparation::Preparation;
 use crate::stepper::Stepper;
-use pxpl5_machine::{Machine, Saving};
+use pxpl5_machine::Machine;
 use pxpl5_wire::PeriodNumber;
 
 impl Experiment {
@@ -63,11 +63,7 @@ impl Experiment {
     ///
     /// As [`Experiment::build`].
     pub fn stepper(&self) -> Result<Stepper, ExperimentError> {
-        let mut stepper = Stepper::begin(self, self.prepare()?)?;
-        // Whoever steps wants to see each event.
-        stepper.machine_mut().give_up(Saving::JointEvents);
-        stepper.machine_mut().give_up(Saving::Trains);
-        Ok(stepper)
+        Stepper::begin(self, self.prepare()?)
     }
 
     pub(crate) fn perform(

@@ -169,24 +169,6 @@ fn bins_that_are_too_small_for_one_update_are_a_fault() {
     assert_eq!(rig.bench.board.fault(), Some(&Fault::Memory(fault)));
 }
 
-/// Received and sent on: paid for at once, or one after the other.
-#[test]
-fn a_token_that_finds_an_empty_bin_goes_on_at_the_same_instant_however_it_is_paid_for() {
-    let [at_once, one_by_one] = [false, true].map(|one_by_one| {
-        let mut rig = Rig::new(BIN_BYTES);
-        if one_by_one {
-            rig.bench.board.pay_one_by_one();
-        }
-        rig.send(0);
-        let before = rig.bench.sent().count();
-        // Neither the first slave nor the last has anything to add for a face that shows nothing.
-        rig.deliver(&UpdateOrder::Token(Token { slaves_left: 2, of: 6, ..TOKEN }));
-        rig.bench.sent().skip(before).map(|(time, _)| time).collect::<Vec<Time>>()
-    });
-    assert_eq!(at_once, one_by_one);
-    assert_eq!(at_once.len(), 1, "the token alone");
-}
-
 /// All of the memory of a board that runs code.
 fn memory(processor: &Processor) -> Vec<u32> {
     processor.read(0, processor.memory_bytes() as usize / 4).expect("all of it")

@@ -3,7 +3,6 @@
 use super::{Contexts, Machine};
 use crate::agenda::schedule_own;
 use crate::event::Event;
-use crate::facts::facts;
 use crate::observation::{Arrival, Observation, Swap};
 use pxpl5_display::{DisplayEvent, DisplayOutput};
 use pxpl5_gp::GpEvent;
@@ -12,26 +11,6 @@ use pxpl5_wire::{NodeId, PeriodNumber, SurfaceId};
 use std::collections::BTreeMap;
 
 impl Machine {
-    /// Tells displays of all that has arrived before an instant, to which there is no event any more, if it has not been told.
-    pub(super) fn tell_displays(&mut self, before: Time) {
-        let before = self.failure.as_ref().map_or(before, |failure| failure.time().min(before));
-        (0..self.record.displays.len()).for_each(|display| self.tell_display(display, before));
-    }
-
-    /// The same of one display; to be called before anything else happens to it.
-    pub(super) fn tell_display(&mut self, display: usize, before: Time) {
-        if !self.record.displays[display].may_be_told_late() {
-            return;
-        }
-        for port in 0..self.record.ports.displays[display].len() {
-            let node = self.record.ports.displays[display][port];
-            while let Some((arrived, message)) = self.record.ring.take_part(node, before) {
-                self.record.hash.record(arrived, &facts(2, &message));
-                self.display_event(arrived, display, DisplayEvent::Delivered { port, body: message.body });
-            }
-        }
-    }
-
     pub(super) fn display_event(&mut self, now: Time, display: usize, event: DisplayEvent) {
         let Self { record, contexts: Contexts { display: context, .. }, queue, swaps, .. } = self;
         let first_surface = record.first_surface(display);

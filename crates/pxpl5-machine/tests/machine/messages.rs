@@ -5,7 +5,7 @@ use crate::rig::{
     FIRST_GP, MESSAGE, RENDERERS, SCREEN, SECOND_GP, Say, ScreenConfig, build, config, copy_command, happenings, load,
     load_sender, machine, say, target, us, words,
 };
-use pxpl5_machine::{Board, Machine, Saving};
+use pxpl5_machine::{Board, Machine};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Body, CopyWay, NodeId, RegionPixels};
 
@@ -35,14 +35,14 @@ fn a_message_goes_from_a_processor_over_the_ring_to_another() {
         (asked, Board::Ring, "a board asks for a channel"),
         (asked, Board::Ring, "arbitration"),
         (arrived, Board::Gp(1), "message delivered"),
+        (arrived, Board::Gp(0), "message accepted by its receiver"),
     ];
     assert_eq!(seen(&mut machine, us(50)), expected);
 }
 
 #[test]
-fn step_by_step_the_sender_is_told_by_itself() {
+fn the_sender_is_told_at_the_instant_of_arrival() {
     let mut machine = machine();
-    machine.give_up(Saving::JointEvents);
     load_sender(&mut machine, SECOND_GP, vec![(NodeId(0), 1, words(&[7]))]);
     machine.switch_on();
     let all = seen(&mut machine, us(50));
@@ -55,24 +55,17 @@ fn step_by_step_the_sender_is_told_by_itself() {
 
 /// A chain that goes to several receivers at once.
 #[test]
-fn messages_that_a_board_hands_over_at_once_are_one_event_unless_one_steps() {
-    for (steps, expected) in [(false, vec!["a board asks for channels"]), (true, vec!["a board asks for a channel"; 2])]
-    {
-        let mut machine = machine();
-        if steps {
-            machine.give_up(Saving::JointEvents);
-        }
-        load(&mut machine, FIRST_GP, |gp| async move {
-            gp.send_batch(vec![(SECOND_GP, 1, words(&[1])), (NodeId(0), 1, words(&[2]))]).await;
-            gp.until("nothing", || None).await
-        });
-        machine.switch_on();
-        let all = seen(&mut machine, us(50));
-        let asked: Vec<&str> = all.iter().map(|(_, _, what)| *what).filter(|what| what.contains("asks")).collect();
-        assert_eq!(asked, expected);
-        let delivered = all.iter().filter(|(_, _, what)| *what == "message delivered");
-        assert_eq!(delivered.map(|(_, board, _)| *board).collect::<Vec<_>>(), [Board::Gp(1), Board::Host]);
-    }
+fn each_message_of_a_chain_asks_for_a_channel_of_its_own() {
+    let mut machine = machine();
+    load(&mut machine, FIRST_GP, |gp| async move {
+        gp.send_batch(vec![(SECOND_GP, 1, words(&[1])), (NodeId(0), 1, words(&[2]))]).await;
+        gp.until("nothing", || None).await
+    });
+    machine.switch_on();
+    let all = seen(&mut machine, us(50));
+    assert_eq!(all.iter().filter(|(_, _, what)| *what == "a board asks for a channel").count(), 2);
+    let delivered = all.iter().filter(|(_, _, what)| *what == "message delivered");
+    assert_eq!(delivered.map(|(_, board, _)| *board).collect::<Vec<_>>(), [Board::Gp(1), Board::Host]);
 }
 
 /// Two messages of one board's port that leave it one after the other.
@@ -98,7 +91,6 @@ fn whats(machine: &mut Machine, of: Board) -> Vec<&'static str> {
 fn a_renderer_copies_the_region_that_it_is_told_to() {
     for (way, stored) in [(CopyWay::FromPixelMemory, false), (CopyWay::ThroughBacking, true)] {
         let mut machine = machine();
-        machine.give_up(Saving::JointEvents);
         let (length, list) = copy_command(way, target(SCREEN, 0));
         load_sender(&mut machine, FIRST_GP, vec![(RENDERERS[1], length, list)]);
         machine.switch_on();
@@ -114,43 +106,31 @@ fn a_renderer_copies_the_region_that_it_is_told_to() {
     }
 }
 
-/// Between the announcement and its end nothing but the ring's own event lies, which the answer is too.
 #[test]
-fn a_renderers_answer_is_an_event_of_the_ring_only_step_by_step() {
-    for steps in [false, true] {
-        let mut machine = machine();
-        if steps {
-            machine.give_up(Saving::JointEvents);
-        }
-        let (length, list) = copy_command(CopyWay::FromPixelMemory, target(SCREEN, 0));
-        load_sender(&mut machine, FIRST_GP, vec![(RENDERERS[0], length, list)]);
-        machine.switch_on();
-        let all = happenings(&mut machine, us(1_000));
-        let answers: Vec<_> = all.iter().filter(|(_, _, what)| what.starts_with("a renderer says")).collect();
-        assert_eq!(answers.len(), usize::from(steps));
-        assert!(answers.iter().all(|(_, board, _)| *board == Board::Ring));
-        assert_eq!(machine.record().renderers()[0].stats().regions_copied, 1);
-        assert_eq!(machine.record().ring().refusals().count, 0);
-    }
+fn a_renderers_answer_is_an_event_of_the_ring() {
+    let mut machine = machine();
+    let (length, list) = copy_command(CopyWay::FromPixelMemory, target(SCREEN, 0));
+    load_sender(&mut machine, FIRST_GP, vec![(RENDERERS[0], length, list)]);
+    machine.switch_on();
+    let all = happenings(&mut machine, us(1_000));
+    let answers: Vec<_> = all.iter().filter(|(_, _, what)| what.starts_with("a renderer says")).collect();
+    assert_eq!(answers.iter().map(|(_, board, _)| *board).collect::<Vec<_>>(), [Board::Ring]);
+    assert_eq!(machine.record().renderers()[0].stats().regions_copied, 1);
+    assert_eq!(machine.record().ring().refusals().count, 0);
 }
 
 /// The sender of commands is told when the renderer has the last word: a hop a port behind the grant, and no stall.
 #[test]
 fn who_sends_to_a_renderer_goes_on_when_its_fifo_has_the_message() {
-    for steps in [false, true] {
-        let mut machine = machine();
-        if steps {
-            machine.give_up(Saving::JointEvents);
-        }
-        let (length, list) = copy_command(CopyWay::FromPixelMemory, target(SCREEN, 0));
-        load_sender(&mut machine, FIRST_GP, vec![(RENDERERS[0], length, list)]);
-        machine.switch_on();
-        let all = happenings(&mut machine, us(500));
-        let accepted = all.iter().find(|(_, _, what)| *what == "message accepted by its receiver");
-        let hops = u64::from(RENDERERS[0].0 - FIRST_GP.0);
-        let at = Time::ZERO + MESSAGE + CYCLE + WORD * (16 + u64::from(length)) + Span::from_ns(50) * hops;
-        assert_eq!(accepted.map(|(time, board, _)| (*time, *board)), Some((at, Board::Gp(0))));
-    }
+    let mut machine = machine();
+    let (length, list) = copy_command(CopyWay::FromPixelMemory, target(SCREEN, 0));
+    load_sender(&mut machine, FIRST_GP, vec![(RENDERERS[0], length, list)]);
+    machine.switch_on();
+    let all = happenings(&mut machine, us(500));
+    let accepted = all.iter().find(|(_, _, what)| *what == "message accepted by its receiver");
+    let hops = u64::from(RENDERERS[0].0 - FIRST_GP.0);
+    let at = Time::ZERO + MESSAGE + CYCLE + WORD * (16 + u64::from(length)) + Span::from_ns(50) * hops;
+    assert_eq!(accepted.map(|(time, board, _)| (*time, *board)), Some((at, Board::Gp(0))));
 }
 
 #[test]

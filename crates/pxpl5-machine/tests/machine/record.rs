@@ -7,7 +7,7 @@ use crate::rig::{
 use pxpl5_display::Display;
 use pxpl5_framebuffer::NtscDisplay;
 use pxpl5_gp::{Stage, StageEdge};
-use pxpl5_machine::{Machine, Record, Saving, Shown, StageSpan, Transfer};
+use pxpl5_machine::{Machine, Record, Shown, StageSpan, Transfer};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{CopyWay, NodeId, PeriodNumber, PictureNumber, SurfaceId};
 
@@ -134,9 +134,8 @@ fn what_is_before_an_instant_can_be_given_up() {
     assert_eq!(observation.forgotten.before, us(350));
 }
 
-fn with_traffic(gives_up: Option<Saving>) -> Record {
+fn with_traffic() -> Record {
     let mut machine = machine();
-    gives_up.into_iter().for_each(|saving| machine.give_up(saving));
     machine.record_traffic();
     let (length, list) = copy_command(CopyWay::FromPixelMemory, target(SCREEN, 1));
     load_sender(&mut machine, FIRST_GP, vec![(SECOND_GP, 4, words(&[0; 4])), (RENDERERS[1], length, list)]);
@@ -148,30 +147,28 @@ fn with_traffic(gives_up: Option<Saving>) -> Record {
 /// The first word of a message arrives 16 words and its hops after the grant, and the last one `words` later.
 #[test]
 fn traffic_tells_when_each_message_was_taken_and_how_many_channels_were_busy() {
-    for gives_up in [None, Some(Saving::JointEvents)] {
-        let record = with_traffic(gives_up);
-        let traffic = record.observation().traffic.as_deref().expect("it was asked for");
-        let word = Span::from_ns(50);
-        let granted = Time::ZERO + MESSAGE + Span::from_ns(25);
-        let begin = granted + word * 16 + word;
-        let end = begin + word * 4;
-        let first = Transfer { source: FIRST_GP, destination: SECOND_GP, words: 4, begin, end };
-        assert_eq!(traffic.transfers[0], first);
-        let granted = granted.max(Time::ZERO + MESSAGE * 2 + Span::from_ns(25)).max(end + Span::from_ns(25));
-        let begin = granted + word * 16 + word * 3;
-        let end = begin + word * 9;
-        let second = Transfer { source: FIRST_GP, destination: RENDERERS[1], words: 9, begin, end };
-        assert_eq!(traffic.transfers[1], second);
-        // Then a region of 128 x 128 pixels in messages of 1,024.
-        assert_eq!(traffic.transfers.len(), 2 + 16);
-        let to_screen = |transfer: &Transfer| (transfer.source, transfer.destination) == (RENDERERS[1], SCREEN);
-        assert!(traffic.transfers[2..].iter().all(to_screen));
-        // The command had come in whole, and the copy begins: it leaves the FIFO at once.
-        assert!(traffic.fifo_changes.iter().all(|(renderer, ..)| *renderer == 1));
-        assert_eq!(traffic.fifo_changes.iter().map(|(_, _, words)| words).sum::<i64>(), 0, "nothing is left");
-        assert!(traffic.fifo_changes.iter().any(|(_, time, words)| (*time, *words) == (end, 9)));
-        let busy: Vec<u32> = traffic.busy_channels.iter().map(|(_, busy)| *busy).collect();
-        assert!(busy.iter().all(|busy| *busy <= 1) && busy.contains(&1), "one message at a time: {busy:?}");
-    }
+    let record = with_traffic();
+    let traffic = record.observation().traffic.as_deref().expect("it was asked for");
+    let word = Span::from_ns(50);
+    let granted = Time::ZERO + MESSAGE + Span::from_ns(25);
+    let begin = granted + word * 16 + word;
+    let end = begin + word * 4;
+    let first = Transfer { source: FIRST_GP, destination: SECOND_GP, words: 4, begin, end };
+    assert_eq!(traffic.transfers[0], first);
+    let granted = granted.max(Time::ZERO + MESSAGE * 2 + Span::from_ns(25)).max(end + Span::from_ns(25));
+    let begin = granted + word * 16 + word * 3;
+    let end = begin + word * 9;
+    let second = Transfer { source: FIRST_GP, destination: RENDERERS[1], words: 9, begin, end };
+    assert_eq!(traffic.transfers[1], second);
+    // Then a region of 128 x 128 pixels in messages of 1,024.
+    assert_eq!(traffic.transfers.len(), 2 + 16);
+    let to_screen = |transfer: &Transfer| (transfer.source, transfer.destination) == (RENDERERS[1], SCREEN);
+    assert!(traffic.transfers[2..].iter().all(to_screen));
+    // The command had come in whole, and the copy begins: it leaves the FIFO at once.
+    assert!(traffic.fifo_changes.iter().all(|(renderer, ..)| *renderer == 1));
+    assert_eq!(traffic.fifo_changes.iter().map(|(_, _, words)| words).sum::<i64>(), 0, "nothing is left");
+    assert!(traffic.fifo_changes.iter().any(|(_, time, words)| (*time, *words) == (end, 9)));
+    let busy: Vec<u32> = traffic.busy_channels.iter().map(|(_, busy)| *busy).collect();
+    assert!(busy.iter().all(|busy| *busy <= 1) && busy.contains(&1), "one message at a time: {busy:?}");
     assert!(machine().into_record().observation().traffic.is_none(), "nobody asked");
 }

@@ -1,9 +1,8 @@
 //! What a machine does that gives up a saving, and how savings are named. That none changes a result the workspace's `tests/savings.rs` shows.
 
-use crate::rig::{FIRST_GP, SECOND_GP, happenings, load, load_sender, machine, us, words};
-use pxpl5_gp::Priority;
+use crate::rig::{FIRST_GP, SECOND_GP, happenings, load_sender, machine, us, words};
 use pxpl5_machine::{Board, Saving};
-use pxpl5_sim::{Span, Time};
+use pxpl5_sim::Time;
 
 #[test]
 fn a_saving_is_known_by_the_name_that_it_prints() {
@@ -36,43 +35,4 @@ fn without_the_computed_end_every_word_is_an_event() {
     machine.switch_on();
     let all = happenings(&mut machine, us(50));
     assert_eq!(all.iter().filter(|(_, _, what)| *what == "a word has passed").count(), 16 + 4, "overhead and words");
-}
-
-#[test]
-fn processors_give_up_what_is_theirs() {
-    for given_up in [None, Some(Saving::JointWork)] {
-        let mut machine = machine();
-        given_up.into_iter().for_each(|saving| machine.give_up(saving));
-        let at_once = machine.processor(FIRST_GP, Priority::Interrupt).pays_at_once();
-        assert_eq!(at_once, given_up.is_none());
-    }
-}
-
-/// Work of 10 us that a message delays by 1 us.
-#[test]
-fn without_delayed_work_each_delay_announces_the_end_anew() {
-    let ends = |saving: Option<Saving>| {
-        let mut machine = machine();
-        saving.into_iter().for_each(|saving| machine.give_up(saving));
-        load(&mut machine, FIRST_GP, |gp| async move {
-            gp.spend(Span::from_us(10)).await;
-            gp.until("nothing", || None).await
-        });
-        let interrupts = machine.processor(FIRST_GP, Priority::Interrupt);
-        let program = async move {
-            loop {
-                interrupts.receive().await;
-            }
-        };
-        machine.load(FIRST_GP, Priority::Interrupt, Box::pin(program));
-        load_sender(&mut machine, SECOND_GP, vec![(FIRST_GP, 1, words(&[1])); 3]);
-        machine.switch_on();
-        let all = happenings(&mut machine, us(50));
-        let ends = all.iter().filter(|(_, board, what)| (*board, *what) == (Board::Gp(0), "work may end"));
-        (ends.count(), machine.processors()[1].busy())
-    };
-    let (kept, busy) = ends(None);
-    let (announced, busy_then) = ends(Some(Saving::DelayedWork));
-    assert_eq!((busy, busy_then), (Span::from_us(13), Span::from_us(13)));
-    assert!(kept < announced, "{kept} and {announced} events");
 }

@@ -85,45 +85,10 @@ pub(crate) fn run_prepared(
         .zip(traffic)
         .map(|(i, t)| (t.at, Request { hold: t.hold, ..request(i, t.source.0, t.destination.0, t.words) }));
     requests.for_each(|(at, request)| queue.schedule(at, Phase::Arrive, RingEvent::Request(request)));
-    run_queue(ring, queue, receivers, |_, _| {})
+    run_queue(ring, queue, receivers)
 }
 
-/// The same where every elastic receiver is told late, and the sender of a message that keeps its receiver's port is told nothing; with the
-/// number of events. `look` sees what has arrived before an instant, after each event.
-pub(crate) fn run_trains(
-    timing: RingTiming,
-    receivers: &[Receiver],
-    traffic: &[PlannedMessage],
-    shuffle: Option<u64>,
-    look: impl FnMut(Time, &Times),
-) -> (Ring, Times, u64) {
-    let mut ring =
-        Ring::new(timing, receivers.len() as u16, |node| receivers[usize::from(node.0)].is_elastic()).expect("valid");
-    (0..receivers.len() as u16).for_each(|node| ring.tell_late(NodeId(node)));
-    let mut queue = EventQueue::new();
-    if let Some(seed) = shuffle {
-        queue.shuffle_ties(seed);
-    }
-    for (i, t) in (0..).zip(traffic) {
-        let ticket = (!t.hold).then_some(i);
-        let request = Request { hold: t.hold, ticket, ..request(i, t.source.0, t.destination.0, t.words) };
-        queue.schedule(t.at, Phase::Arrive, RingEvent::Request(request));
-    }
-    let mut events = 0;
-    let mut look = look;
-    let (ring, times) = run_queue(ring, queue, receivers, |now, times| {
-        events += 1;
-        look(now, times);
-    });
-    (ring, times, events)
-}
-
-fn run_queue(
-    mut ring: Ring,
-    mut queue: EventQueue<RingEvent>,
-    receivers: &[Receiver],
-    mut look: impl FnMut(Time, &Times),
-) -> (Ring, Times) {
+fn run_queue(mut ring: Ring, mut queue: EventQueue<RingEvent>, receivers: &[Receiver]) -> (Ring, Times) {
     let mut fifos = vec![VecDeque::new(); receivers.len()];
     let mut context = Context::default();
     let mut times = Times::default();
@@ -150,21 +115,9 @@ fn run_queue(
                 }
             }
         }
-        take_parts(&mut ring, now, &mut times);
-        look(now, &times);
     }
-    take_parts(&mut ring, Time(u64::MAX), &mut times);
     ring.settle(Time(u64::MAX));
     (ring, times)
-}
-
-/// What receivers that are told late are told of before an instant.
-fn take_parts(ring: &mut Ring, before: Time, times: &mut Times) {
-    for node in (0..ring.n_nodes()).map(NodeId) {
-        while let Some((arrived, message)) = ring.take_part(node, before) {
-            times.accepted.insert(number(&message), arrived);
-        }
-    }
 }
 
 struct WordSlots {
