@@ -1,7 +1,7 @@
 //! The board: it polls its programs whenever something has happened to them.
 
 use crate::cpu::{Cpu, Priority};
-use crate::firmware::{ChainLink, Fault, Firmware, Gp, Shared, Wait};
+use crate::firmware::{Cause, ChainLink, Fault, Firmware, Gp, Shared, Wait};
 use crate::look::GpLook;
 use crate::memory::Memory;
 use crate::probe::Mark;
@@ -284,13 +284,23 @@ impl GpBoard {
         self.shared.borrow_mut().processor.as_mut().map(|processor| processor.take_hits()).unwrap_or_default()
     }
 
-    /// What the board waits for.
+    /// Returns the name of the wait that keeps the board from going on: the foreground's, if it waits, else the interrupt's.
     #[must_use]
     pub fn blocked(&self, name: &str) -> Option<Blocked> {
-        let waits = self.shared.borrow().waits;
-        let whats = self.tasks.iter().rev().map(|task| waits[task.priority as usize].what);
-        let waits_for = whats.into_iter().find(|what| !what.is_empty())?.to_owned();
+        let waits_for = self.wait()?.what.to_owned();
         Some(Blocked { board: name.to_owned(), waits_for })
+    }
+
+    /// Returns true if the board waits for something that no retrace brings.
+    #[must_use]
+    pub fn waits_for_a_board(&self) -> bool {
+        self.wait().is_some_and(|wait| wait.ended_by != Cause::Retrace)
+    }
+
+    fn wait(&self) -> Option<Wait> {
+        let waits = self.shared.borrow().waits;
+        let waits = self.tasks.iter().rev().map(|task| waits[task.priority as usize]);
+        waits.into_iter().find(|wait| !wait.what.is_empty())
     }
 }
 

@@ -116,8 +116,17 @@ pub(crate) enum Cause {
     Acceptance,
     /// A message, a retrace, a status line, or the board's other program.
     Arrival,
+    /// A retrace, which always comes.
+    Retrace,
     /// Nothing: there is no program.
     Nothing,
+}
+
+impl Cause {
+    /// Returns true if `other` can end a wait that this cause ends.
+    fn includes(self, other: Self) -> bool {
+        self == other || (self == Self::Arrival && other == Self::Retrace)
+    }
 }
 
 impl Wait {
@@ -132,7 +141,7 @@ impl Shared {
     /// Whether a program's wait, or the DMA's, could be over after something has happened.
     pub(crate) fn is_woken_by(&self, cause: Cause) -> bool {
         let next_chain = cause == Cause::Acceptance && self.in_flight.is_empty() && !self.batches.is_empty();
-        next_chain || self.waits.iter().any(|wait| wait.ended_by == cause)
+        next_chain || self.waits.iter().any(|wait| wait.ended_by.includes(cause))
     }
 
     /// Whether a program waits for the end of work that goes on.
@@ -150,7 +159,7 @@ impl Shared {
 
     pub(crate) const fn begin_field(&mut self, field: PeriodNumber) -> Cause {
         self.field = field;
-        Cause::Arrival
+        Cause::Retrace
     }
 
     pub(crate) fn note_accepted(&mut self, batch: u64, place: u64) -> Cause {
@@ -267,10 +276,15 @@ impl Gp {
         self.wait(wait, || self.shared.borrow().cpu.is_done(self.priority).then_some(())).await;
     }
 
-    /// Waits for the next retrace and gives the field that it begins.
+    /// Waits for the next retrace and returns the field that it begins.
     pub async fn retrace(&self) -> PeriodNumber {
-        let present = self.field();
-        self.until("a retrace", || Some(self.field()).filter(|field| *field > present)).await
+        self.field_from(self.field().next()).await
+    }
+
+    /// Waits until the present field is `first` or a later one, and returns it.
+    pub async fn field_from(&self, first: PeriodNumber) -> PeriodNumber {
+        let wait = Wait { what: "a retrace", ended_by: Cause::Retrace };
+        self.wait(wait, || Some(self.field()).filter(|field| *field >= first)).await
     }
 
     /// Waits until the clump buffer is free: everything sent before has been accepted.

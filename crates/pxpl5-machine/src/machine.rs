@@ -296,10 +296,16 @@ impl Machine {
         if self.idle_ticks < DEADLOCK_TICKS {
             return;
         }
-        let blocked = self.blocked();
-        if blocked.iter().any(|b| b.waits_for != "a retrace") {
-            self.failure = Some(RunError::Deadlock { time: now, blocked });
+        if self.waits_for_a_board() {
+            self.failure = Some(RunError::Deadlock { time: now, blocked: self.blocked() });
         }
+    }
+
+    /// Returns true if a program, a renderer or a message waits for something that no retrace brings.
+    fn waits_for_a_board(&self) -> bool {
+        self.processors.iter().any(GpBoard::waits_for_a_board)
+            || self.record.renderers.iter().any(|renderer| renderer.blocked("").is_some())
+            || !self.record.ring.waiting().is_empty()
     }
 
     /// Ticks of the first display, up to the last one, between which nothing happened but ticks.

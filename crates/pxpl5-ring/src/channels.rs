@@ -130,6 +130,11 @@ impl RingChannels {
         self.flights[channel].as_ref()
     }
 
+    /// The messages that occupy channels, by channel.
+    pub(crate) fn flights(&self) -> impl Iterator<Item = &MessageInFlight> {
+        self.flights.iter().flatten()
+    }
+
     /// The message on a channel if nobody has said when it ends.
     pub(crate) fn unanswered(&self, channel: usize) -> Option<&MessageInFlight> {
         self.flight(channel).filter(|_| self.ends_at[channel] == UNKNOWN)

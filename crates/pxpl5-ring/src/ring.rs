@@ -124,7 +124,25 @@ impl Ring {
         self.arbitrations.retain(|at| *at > now);
         self.settle(now);
         self.grant_all(now, context);
+        debug_assert!(self.counts_are_right(), "a count differs from what it counts: {self:?}");
         self.arbitrate_at_next_end(context);
+    }
+
+    /// Recomputes every count that the ring keeps beside what it counts.
+    fn counts_are_right(&self) -> bool {
+        let to_fifo = |node: NodeId| !self.is_elastic(node);
+        let heads_for = |node: usize| self.heads.iter().filter(|head| usize::from(head.destination.0) == node).count();
+        let source_limit = self.timing.source_channels;
+        let at_limit = |port: &&SourcePort| port.in_flight >= source_limit;
+        let in_flight: u64 = self.sources.iter().map(|port| port.in_flight).sum();
+        let heads_to_fifos = self.heads.iter().filter(|head| to_fifo(head.destination)).count();
+        let to_fifos = self.channels.flights().filter(|flight| to_fifo(flight.destination)).count();
+        self.heads.is_sorted()
+            && self.heads_to_fifos as usize == heads_to_fifos
+            && self.to_fifos as usize == to_fifos
+            && self.at_limit == self.sources.iter().filter(at_limit).count()
+            && in_flight == u64::from(self.channels.busy())
+            && self.destinations.iter().enumerate().all(|(node, port)| port.heads as usize == heads_for(node))
     }
 
     /// The numbers that the ring was built with.

@@ -129,7 +129,7 @@ impl SlatsProcessor {
         self.gp.until("the first view from the host", || self.state.borrow().newest.as_ref().map(|_| ())).await;
         let mut begin_at = self.gp.field().next();
         loop {
-            let now = self.gp.until("a retrace", || Some(self.gp.field()).filter(|now| *now >= begin_at)).await;
+            let now = self.gp.field_from(begin_at).await;
             let field = now.next();
             let view = self.gp.until("a view", || self.state.borrow().newest.clone()).await;
             if !self.is_alone() {
@@ -154,7 +154,7 @@ impl SlatsProcessor {
             };
             begin_at = if self.gp.field() < field { field } else { self.gp.field().next() };
             if let Some(bottom) = bottom {
-                self.gp.until("a retrace", || (self.gp.field() >= field).then_some(())).await;
+                self.gp.field_from(field).await;
                 self.gp.start(bottom);
             }
         }
