@@ -208,7 +208,8 @@ impl StereoModel {
             // The master hears all slaves one after the other.
             let known_ns = begin_ns + self.message_ns + self.transit_ns() + self.slaves * self.message_ns;
             history.transformed.push(known_ns);
-            let available_ns = if frame == 0 { 0.0 } else { history.swapped_ns };
+            // COPY needs the frame buffer, and COPY of the eye before.
+            let available_ns = history.swapped_ns.max(back(&history.copied, picture, 1));
             let start_ns = known_ns.max(back(&history.rendered, picture, 1));
             let (rendered_ns, copy) = self.render(&mut history.rendering, load, eye, start_ns, available_ns);
             history.rendered.push(rendered_ns);

@@ -164,6 +164,7 @@ fn a_number_that_would_do_is_said_where_it_is_less_than_there_is() {
         late: 1,
         incomplete: 2,
         missed: 0,
+        pictures: 5,
     };
     for (estimates, expected, advice) in cases {
         let experiment = experiment.clone().estimated_by(Some(estimates));

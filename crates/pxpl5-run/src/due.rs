@@ -64,6 +64,9 @@ pub struct DuePictures {
     pub incomplete: u64,
     /// Those that were never begun, or left out.
     pub missed: u64,
+    /// Pictures that were whole and in time, due or not, in the periods of the window. More than `shown` where pictures come more
+    /// often than they are due.
+    pub pictures: u64,
 }
 
 /// What became of the pictures of each period: a byte for a period, so that 10^7 fields take 10 MB.
@@ -138,6 +141,8 @@ impl DuePictures {
         judged.for_each(|period| counts[end_of(period).map_or(3, |end| end as usize)] += 1);
         let [shown, late, incomplete, missed] = counts;
         let due: u64 = counts.iter().sum();
+        let window = first_period..first_period + due * every;
+        let pictures = window.filter(|period| ends.best(*period..=*period) == Some(PictureEnd::Shown)).count() as u64;
         Some(Self {
             first_period: PeriodNumber(first_period),
             last_period: PeriodNumber(first_period + due * every - 1),
@@ -147,6 +152,7 @@ impl DuePictures {
             late,
             incomplete,
             missed,
+            pictures,
         })
     }
 
@@ -169,10 +175,10 @@ impl DuePictures {
         self.late + self.incomplete > 0 || 2 * self.shown < self.due
     }
 
-    /// Pictures shown a second, where a period of the display takes so many milliseconds; `None` where none was.
+    /// Pictures shown a second in the window, where a period of the display takes so many milliseconds; `None` where none was.
     #[must_use]
     pub fn updates_hz(&self, period_ms: f64) -> Option<f64> {
         let window_ms = (self.due * self.periods_a_picture) as f64 * period_ms;
-        (self.shown > 0).then_some(self.shown as f64 * 1e3 / window_ms)
+        (self.pictures > 0).then_some(self.pictures as f64 * 1e3 / window_ms)
     }
 }

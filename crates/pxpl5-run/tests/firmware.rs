@@ -2,15 +2,21 @@
 //! papers have them.
 
 use glam::Vec3;
+use pphigs::{Picture, RegionBinning, Shading, Share};
+use pxpl5_geometry::Viewport;
 use pxpl5_gp::{Account, Fault, OutOfMemory, Stage};
-use pxpl5_machine::{MachineConfig, RunError};
+use pxpl5_machine::{MachineConfig, PRESETS, Preset, RunError};
+use pxpl5_renderer::Layout;
 use pxpl5_run::{
     Experiment, ExperimentError, FinishedRegions, KeyValue, Outcome, Pipeline, PipelineSettings, Pixels, Registry,
-    RenderingControl, Slats,
+    RenderingControl, Slats, display_list, views,
 };
-use pxpl5_scene::{HeadMotion, HeadPath, Scene, Sway, builtin};
+use pxpl5_scene::{HeadMotion, HeadPath, Hmd, HmdConfig, Scene, Sway, builtin};
 use pxpl5_sim::Time;
-use pxpl5_wire::{RegionId, SurfaceId};
+use pxpl5_wire::{
+    FieldParity, Lines, MAX_MESSAGE_WORDS, NodeId, PictureNumber, RegionGrid, RegionId, SurfaceId, ViewNumber,
+};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Spheres or triangles before a head that stands.
@@ -103,6 +109,90 @@ fn rendering_control_shows_every_frame_whole_and_in_order() {
                 assert_eq!(pair[1].picture, pair[0].picture.next(), "{what}");
                 assert!(pair[1].shown_at > pair[0].shown_at, "{what}");
             }
+        }
+    }
+}
+
+/// The first word and the last word of each COPY of a stereo run that is over, in the order of the drawings: left eye, right eye, left eye.
+fn copies(outcome: &Outcome) -> Vec<(Time, Time)> {
+    let record = outcome.record();
+    let message = record.ring().timing().occupancy(MAX_MESSAGE_WORDS);
+    let mut copies: BTreeMap<(PictureNumber, SurfaceId), Vec<(Time, Time)>> = BTreeMap::new();
+    for arrival in &record.observation().arrivals {
+        let regions = copies.entry((arrival.target.picture, arrival.surface)).or_default();
+        regions.push((arrival.begins_at(message), arrival.last_part_at));
+    }
+    let regions_of_eye = record.display().surfaces()[0].grid().regions() as usize;
+    let whole = copies.into_values().filter(|regions| regions.len() == regions_of_eye);
+    let span = |regions: Vec<(Time, Time)>| {
+        let begin = regions.iter().map(|(begin, _)| *begin).min()?;
+        Some((begin, regions.iter().map(|(_, end)| *end).max()?))
+    };
+    whole.filter_map(span).collect()
+}
+
+/// TR94: Rendering Control works on one eye after the other, so that at any time one frame buffer is copied to, although each has a ring
+/// port of its own.
+#[test]
+fn copy_of_an_eye_begins_after_copy_of_the_eye_before_has_ended() {
+    let light = builtin("full-screen:2").map(Arc::new).expect("built in");
+    let heavy = still("sphere:10");
+    for finished in FinishedRegions::ALL {
+        let pipeline = RenderingControl { finished, ..RenderingControl::stereo() };
+        for (n_gps, n_renderers) in [(2, 3), (13, 5), (13, 20), (13, 30)] {
+            for (name, scene) in [("light", &light), ("heavy", &heavy)] {
+                let what = format!("{finished:?}, {name} with {n_gps} and {n_renderers}");
+                let outcome = run(Arc::new(pipeline), machine("small-hmd", n_gps, n_renderers), scene, 30);
+                let copies = copies(&outcome);
+                assert!(copies.len() >= 8, "{what}: {} copies", copies.len());
+                for pair in copies.windows(2) {
+                    assert!(pair[1].0 > pair[0].1, "{what}: {} before {}", pair[1].0, pair[0].1);
+                }
+                // Two copies of 15.6 ms cannot end in one field of 16.7 ms.
+                for pair in outcome.pictures().windows(2) {
+                    let fields = (pair[1].shown_at.0 - pair[0].shown_at.0) as f64 * 1e-9 / outcome.field_ms();
+                    assert!(fields > 1.5, "{what}: {fields} fields from swap to swap");
+                }
+            }
+        }
+    }
+}
+
+/// Triangles of `full-screen:12` in one eye's picture: those on the screen, and those that were clipped.
+fn on_screen_and_clipped(hmd: HmdConfig, grid: RegionGrid, lines: Lines) -> [(u64, u64); 2] {
+    let scene = builtin("full-screen:12").map(Arc::new).expect("built in");
+    let share = Share::new(Arc::new(display_list(&scene).expect("it has triangles")), 0, 1);
+    let viewport = Viewport::new(grid, lines).expect("a picture");
+    let (shading, layout) = (Shading::Phong, Layout::rendering_control_phong());
+    let picture = Picture { viewport, shading, binning: RegionBinning::Touched, layout, pixels: false };
+    let (views, _) = views(&scene, 1, Hmd::new(hmd).expect("in range"), 2);
+    let view = views(ViewNumber(0), Time::ZERO);
+    [0, 1].map(|eye| {
+        let pass = share.transform(&view, eye, picture);
+        (pass.stats().screen_triangles, pass.stats().clipped)
+    })
+}
+
+/// The papers' test scene has its triangles on the screen, none of which costs a clipper anything.
+#[test]
+fn full_screen_triangles_are_clipped_before_no_display_and_no_separation_of_eyes() {
+    let ntsc = RegionGrid::FRAME;
+    let cut = |width, height| RegionGrid { width, height, ..ntsc };
+    let of_preset = |preset: &Preset| {
+        let machine = MachineConfig::preset(preset.name).expect("a preset");
+        let display = machine.displays.first().expect("a display");
+        let nodes: Vec<NodeId> = (0..display.ports(1) as u16).map(NodeId).collect();
+        display.build(&nodes).expect("a display").surfaces()[0].grid()
+    };
+    let frames = PRESETS.iter().map(of_preset).chain([cut(1280, 1024), cut(1500, 1000), cut(240, 320)]);
+    let frames = frames.map(|grid| (grid, Lines::Frame));
+    let fields = [FieldParity::Even, FieldParity::Odd].map(|parity| (RegionGrid::FIELD, Lines::Field(parity)));
+    for (grid, lines) in frames.chain(fields) {
+        for eye_separation_m in [0.0, 0.054, 0.064, 0.074] {
+            let (width_px, height_px) = (grid.width, Viewport::new(grid, lines).expect("a picture").frame_lines());
+            let hmd = HmdConfig { eye_separation_m, width_px, height_px, ..HmdConfig::unc() };
+            let found = on_screen_and_clipped(hmd, grid, lines);
+            assert_eq!(found, [(12, 0); 2], "{width_px} x {height_px}, eyes {eye_separation_m} m apart");
         }
     }
 }

@@ -18,7 +18,7 @@ enum RendererUse {
     Holding(EyeDrawing, RegionId),
 }
 
-/// A copy that the frame buffer is available for.
+/// A copy that the rules allow.
 #[derive(Clone, Copy, Debug)]
 struct Copying {
     renderer: usize,
@@ -207,7 +207,7 @@ impl RegionMaster {
 
     /// What becomes of a region when its last commands are executed.
     fn end_of(&self, renderer: usize, drawing: EyeDrawing) -> RegionEnd {
-        if self.completed.frame_buffer_available(drawing) {
+        if self.completed.may_copy(drawing) {
             RegionEnd::Copied
         } else if self.stored[renderer].len() < self.config.regions_stored {
             RegionEnd::Stored
@@ -224,12 +224,11 @@ impl RegionMaster {
                 (None, RendererUse::Holding(drawing, region)) => (drawing, region, CopyWay::ThroughBacking),
                 _ => return None,
             };
-            let is_available = self.completed.frame_buffer_available(drawing);
-            is_available.then_some(Copying { renderer, drawing, region, way })
+            self.completed.may_copy(drawing).then_some(Copying { renderer, drawing, region, way })
         })
     }
 
-    /// Sends the copy command of a region whose frame buffer was not available in time for the last slave.
+    /// Sends the copy command of a region whose COPY was not allowed yet when its token was sent.
     async fn copy(&mut self, Copying { renderer, drawing, region, way }: Copying) {
         match way {
             CopyWay::FromBacking => drop(self.stored[renderer].pop_front()),

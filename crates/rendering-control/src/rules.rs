@@ -92,6 +92,13 @@ impl Completed {
         self.swapped >= drawing.frame(self.eyes).0
     }
 
+    /// COPY of an eye needs its frame buffer and COPY of the eye before: each frame buffer has a ring port of its own, but
+    /// TR94 works on one eye after the other and copies to one frame buffer at a time.
+    #[must_use]
+    pub const fn may_copy(&self, drawing: EyeDrawing) -> bool {
+        self.frame_buffer_available(drawing) && self.copied >= drawing.0
+    }
+
     /// A frame may be swapped in when all its eyes are complete.
     #[must_use]
     pub const fn may_swap(&self, frame: PictureNumber) -> bool {
@@ -133,5 +140,22 @@ mod tests {
         let state = Completed { swapped: 3, ..Completed::none(2) };
         assert!(state.frame_buffer_available(EyeDrawing(6)) && state.frame_buffer_available(EyeDrawing(7)));
         assert!(!state.frame_buffer_available(EyeDrawing(8)));
+    }
+    #[test]
+    fn copy_of_the_right_eye_waits_for_copy_of_the_left() {
+        // Frame 3 is drawings 6 and 7. Frame 2 has been swapped in, so both frame buffers are free.
+        let state = Completed { swapped: 3, copied: 6, ..Completed::none(2) };
+        assert!(state.may_copy(EyeDrawing(6)));
+        assert!(state.frame_buffer_available(EyeDrawing(7)) && !state.may_copy(EyeDrawing(7)));
+        let left_copied = Completed { copied: 7, ..state };
+        assert!(left_copied.may_copy(EyeDrawing(7)));
+        assert!(!left_copied.may_copy(EyeDrawing(8)), "frame 4 has no buffer before frame 3 has been swapped in");
+    }
+
+    #[test]
+    fn a_mono_copy_waits_for_nothing_but_its_frame_buffer() {
+        // A frame before that has been swapped in has been copied.
+        let state = Completed { swapped: 3, copied: 3, ..Completed::none(1) };
+        assert!(state.may_copy(EyeDrawing(3)) && !state.may_copy(EyeDrawing(4)));
     }
 }

@@ -10,11 +10,15 @@ use crate::scene::{Frame, Scene};
 const NEAR_M: f64 = 1.0;
 const FAR_M: f64 = 2.0;
 
-/// Tangent of the half angle covered up, down, left and right of each eye: fields of view up to 126 degrees.
-const COVERED: f64 = 2.0;
+/// Tangent of the half angle covered up, down, left and right of each eye: a field of view of 90 degrees. Displays for the head
+/// have 60 degrees here, the faces of a cube 90.
+const COVERED: f64 = 1.0;
 
-/// Room for the eyes beside the centre of the head, metres: the most that a display's separation may be.
-const EYES_M: f64 = 0.5;
+/// Room for the eyes beside the centre of the head, metres: half of the greatest separation of eyes, 74 mm.
+const EYES_M: f64 = 0.037;
+
+/// Distance of the farthest side of the least triangle around a square, for half of a side of 1: 1 + sqrt(2).
+const REACH: f64 = 1.0 + std::f64::consts::SQRT_2;
 
 pub(super) fn scene(count: u32) -> Scene {
     let mut mesh = Mesh::default();
@@ -27,10 +31,19 @@ pub(super) fn scene(count: u32) -> Scene {
     one_structure::scene(&name, &name, Frame::Head, mesh.vertices(), mesh.triangles)
 }
 
-/// A right angle at the lower left whose long side runs through the upper right corner of the covered square.
+/// The triangle around the covered square whose corners are least far out: 1 + sqrt(2) times half of the square's side, to the left and
+/// right and up and down.
+///
+/// The corners lie at (-r, -r), (r, -s) and (-s, r), where r = (1 + sqrt(2)) h, s = (sqrt(2) - 1) h and h is half of the side. Two
+/// sides run through the lower right and the upper left corner of the square, the third one through the upper right corner.
+///
+/// Nothing of it is clipped: at 60 degrees the corners are at most 4.4 times half of the picture's width from the picture's centre, and the
+/// guard band ends 4,095 pixels less half of the width from there. So pictures of up to 1,500 pixels across have room.
 fn push(mesh: &mut Mesh, depth: f64, colour: [u8; 3]) {
     let half = COVERED * depth + EYES_M;
-    let corners = [(-half, -half), (3.0 * half, -half), (-half, 3.0 * half)];
+    let far = REACH * half;
+    let near = far - 2.0 * half;
+    let corners = [(-far, -far), (far, -near), (-near, far)];
     let corners = corners.map(|(x, y)| mesh.push(DVec3::new(x, y, -depth), DVec3::Z, colour));
     mesh.fan(&corners);
 }
