@@ -6,7 +6,9 @@
 use crate::begin::{Beginning, beginning};
 use crate::cost::TransformCost;
 use crate::counts::PrimitiveCounts;
-use crate::layout::{BIN_TABLE, CODE, DISPLAY_LIST, PARAMETERS, SPHERE_CODE, SPHERE_PARAMETERS, STACK, bins};
+use crate::layout::{
+    BIN_TABLE, CODE, DISPLAY_LIST, PARAMETERS, RIGHT_PARAMETERS, SPHERE_CODE, SPHERE_PARAMETERS, STACK, bins,
+};
 use crate::list::Share;
 use crate::pass::Pass;
 use crate::picture::{RegionBinning, Shading};
@@ -43,7 +45,8 @@ pub(crate) const fn budget(primitives: u32) -> u64 {
     BUDGET + BUDGET_OF_PRIMITIVE * primitives as u64
 }
 
-/// The TRANSFORM of a share for one eye, or for both one after the other.
+/// The TRANSFORM of a share for one eye, or for both: in one pass where there is code for that
+/// ([`Kernel::can_serve_both_eyes`]), else one after the other.
 #[derive(Clone, Copy, Debug)]
 pub struct Transforming<'a> {
     /// What each eye's TRANSFORM gives.
@@ -91,6 +94,11 @@ impl Work for Transforming<'_> {
             }
             _ => Span::ZERO,
         };
+        if let [left, right] = self.passes
+            && let Some(outputs) = left.run_code_for_both(right, processor, self.context)?
+        {
+            return Ok(outputs.iter().fold(span, |all, output| all + output.span));
+        }
         for (context, pass) in (self.context..).zip(self.passes) {
             span += match pass.run_code(processor, context % 2)? {
                 Some(output) => output.span,
@@ -221,6 +229,84 @@ impl Pass {
         self.run_kernels(processor, kernel, &needs, Destination { context, view: 0, begin }, None).map(Some)
     }
 
+    /// Runs the kernels for this eye, the left one, and for the right one, with one pass over the triangles; `None` where there is no such
+    /// code. The left eye's output has the time of all triangles.
+    ///
+    /// # Errors
+    ///
+    /// As [`Pass::run_code`].
+    pub fn run_code_for_both(
+        &self,
+        right: &Self,
+        processor: &mut Processor,
+        context: u8,
+    ) -> Result<Option<[KernelOutput; 2]>, ProcessorFault> {
+        let kernel = self.kernel(processor.version()).filter(Kernel::can_serve_both_eyes);
+        let (Some(kernel), Some(other)) = (kernel, right.kernel(processor.version())) else { return Ok(None) };
+        if kernel != other {
+            return Ok(None);
+        }
+        let mut place = |eye: &Self, context: u8| {
+            let needs = eye.needs(kernel, eye.transformed());
+            let begin = processor.place_output(context % 2, eye.share().end_of_list(), needs.bytes())?;
+            Ok((needs.places(begin), Destination { context: context % 2, view: 0, begin }))
+        };
+        let [(left_places, to_left), (right_places, to_right)] = [place(self, context)?, place(right, context + 1)?];
+        let first = [&left_places, &right_places].map(|places| Next { command: places.commands, table: BIN_TABLE });
+        let (span, next) = self.run_triangles_for_both(right, processor, kernel, first)?;
+        processor.write(BIN_TABLE, &left_places.bins)?;
+        let of_left = self.run_rest(processor, kernel, &left_places, to_left, (span, next[0]), None)?;
+        processor.write(BIN_TABLE, &right_places.bins)?;
+        let of_right = right.run_rest(processor, kernel, &right_places, to_right, (Span::ZERO, next[1]), None)?;
+        Ok(Some([of_left, of_right]))
+    }
+
+    /// Time of the triangles of both eyes, and where the commands of each end. A structure that one eye alone can draw goes through the
+    /// kernel of one eye.
+    fn run_triangles_for_both(
+        &self,
+        right: &Self,
+        processor: &mut Processor,
+        kernel: Kernel,
+        mut next: [Next; 2],
+    ) -> Result<(Span, [Next; 2]), ProcessorFault> {
+        let heads = self.heads();
+        let mut span = Span::ZERO;
+        let (of_left, of_right) = (self.placed(), right.placed());
+        for places in of_left.iter().zip(of_right.iter()).map(|(left, right)| [left, right]) {
+            let held = self.share().held_places(&places[0].structure.triangles);
+            if held.is_empty() {
+                continue;
+            }
+            let transforms = places.map(|place| place.transform.as_ref());
+            let both_eyes = transforms.iter().all(Option::is_some);
+            let kernel = Kernel { culls: places[0].structure.culling != Culling::None, both_eyes, ..kernel };
+            let program = program(kernel, false);
+            let clipper = program.symbol("clipper").unwrap_or_default();
+            let blocks = [PARAMETERS, RIGHT_PARAMETERS];
+            for ((place, transform), block) in places.iter().zip(transforms).zip(blocks) {
+                let Some(transform) = transform else { continue };
+                processor.write(block, &kernel.parameters(transform, &place.light, &heads, clipper))?;
+            }
+            let first = DISPLAY_LIST + held.start as u32 * TRIANGLE_BYTES;
+            let count = held.len() as u32;
+            if both_eyes {
+                let call =
+                    Call { first, count, next: Next { table: next[1].command, ..next[0] }, parameters: blocks[0] };
+                let registers = [call.registers().as_slice(), &[(21, blocks[1])]].concat();
+                span += processor.call(&program, "start", &registers, 2 * budget(count))?;
+                (next[0].command, next[1].command) = (processor.register(18), processor.register(19));
+                continue;
+            }
+            for eye in (0..2).filter(|eye| transforms[*eye].is_some()) {
+                let call = Call { first, count, next: next[eye], parameters: blocks[eye] };
+                span += call.run(processor, &program, "start", None)?;
+                next[eye] = next[eye].left(processor, false);
+            }
+        }
+        Ok((span, next))
+    }
+
     /// The same for those primitives that are marked, or for all, to a place that is taken.
     pub(crate) fn run_kernels(
         &self,
@@ -233,7 +319,20 @@ impl Pass {
         let places = needs.places(to.begin);
         processor.write(BIN_TABLE, &places.bins)?;
         let first = Next { command: places.commands, table: BIN_TABLE };
-        let (of_triangles, spheres) = self.run_triangles(processor, kernel, first, marks)?;
+        let triangles = self.run_triangles(processor, kernel, first, marks)?;
+        self.run_rest(processor, kernel, &places, to, triangles, marks)
+    }
+
+    /// What follows the triangles of a view, of whose bins the table is written: its spheres, and where its bins end.
+    fn run_rest(
+        &self,
+        processor: &mut Processor,
+        kernel: Kernel,
+        places: &Places,
+        to: Destination,
+        (of_triangles, spheres): (Span, Next),
+        marks: Option<Marks>,
+    ) -> Result<KernelOutput, ProcessorFault> {
         let (of_spheres, end) = self.run_spheres(processor, sphere_kernel(kernel), spheres, marks)?;
         let [spheres, end] = [spheres.command, end.command];
         let tails = processor.read(BIN_TABLE, places.bins.len())?;
@@ -279,7 +378,7 @@ impl Pass {
         marks: Option<Marks>,
     ) -> Result<(Span, Next), ProcessorFault> {
         let blank = match kernel.surface {
-            KernelSurface::Gouraud => Command::Sphere(SphereCommand::default()),
+            KernelSurface::Gouraud | KernelSurface::Precomputed => Command::Sphere(SphereCommand::default()),
             KernelSurface::Phong => Command::PhongSphere(PhongSphereCommand::default()),
         };
         let blank = self.encoded(&blank);
@@ -323,7 +422,7 @@ impl Pass {
     /// What is alike in all triangle commands, read off one of zeros.
     pub(crate) fn heads(&self) -> Heads {
         let blank = match self.picture().shading {
-            Shading::Gouraud => Command::Triangle(TriangleCommand::default()),
+            Shading::Gouraud | Shading::Precomputed => Command::Triangle(TriangleCommand::default()),
             Shading::Phong => Command::PhongTriangle(PhongTriangleCommand::default()),
         };
         let words = self.encoded(&blank);

@@ -170,14 +170,14 @@ impl RegionPart {
 impl Pass {
     pub(crate) const fn triangle_kind(&self) -> CommandKind {
         match self.picture().shading {
-            Shading::Gouraud => CommandKind::Triangle,
+            Shading::Gouraud | Shading::Precomputed => CommandKind::Triangle,
             Shading::Phong => CommandKind::PhongTriangle,
         }
     }
 
     pub(crate) const fn sphere_kind(&self) -> CommandKind {
         match self.picture().shading {
-            Shading::Gouraud => CommandKind::Sphere,
+            Shading::Gouraud | Shading::Precomputed => CommandKind::Sphere,
             Shading::Phong => CommandKind::PhongSphere,
         }
     }
@@ -290,12 +290,13 @@ impl RegionWords {
         let list = self.pass.share().list();
         let picture = self.pass.picture();
         let mut stats = SetupStats::default();
+        let light = place.light_of_corners(picture.shading);
         let vertices = place.vertices(list, transform);
         let mut batches = SetupBatches {
             entries,
             list,
             first: vertices.first,
-            vertices: vertices.colours(list, transform, &place.light),
+            vertices: vertices.colours(list, transform, picture.shading, light),
             lanes: TriangleLanes::default(),
         };
         while let Some(some) = batches.next() {
@@ -309,7 +310,7 @@ impl RegionWords {
                 }
                 SetupBatch::Clipped(entry) => {
                     let triangle = list.triangle(entry.triangle as usize);
-                    let piece = pick(entry, |sink| transform.gouraud(&triangle, &place.light, &mut stats, sink));
+                    let piece = pick(entry, |sink| transform.gouraud(&triangle, light, &mut stats, sink));
                     let piece = piece.map(|piece| piece.gouraud(&picture.viewport, &mut stats));
                     encoder.encode(&piece.map_or(NOWHERE, gouraud_triangle), out.words());
                 }
@@ -376,7 +377,9 @@ impl RegionWords {
             for number in here {
                 let Some(sphere) = transform.sphere(&list.spheres[*number as usize], &mut stats) else { continue };
                 let command = match picture.shading {
-                    Shading::Gouraud => gouraud_sphere(&sphere.gouraud(&picture.viewport, &place.light, &mut stats)),
+                    Shading::Gouraud | Shading::Precomputed => {
+                        gouraud_sphere(&sphere.gouraud(&picture.viewport, &place.light, &mut stats))
+                    }
                     Shading::Phong => phong_sphere(&sphere.phong(&picture.viewport, &mut stats)),
                 };
                 append(&command, &picture.layout, out);

@@ -14,7 +14,7 @@ impl Encoder {
     /// `None` where the layout cannot hold what they need, which is refused when the machine is configured.
     pub(crate) fn for_picture(picture: &Picture) -> Option<Self> {
         match picture.shading {
-            Shading::Gouraud => Some(Self::Gouraud(TriangleEncoder::new(&picture.layout))),
+            Shading::Gouraud | Shading::Precomputed => Some(Self::Gouraud(TriangleEncoder::new(&picture.layout))),
             Shading::Phong => PhongTriangleEncoder::new(&picture.layout).ok().map(Self::Phong),
         }
     }

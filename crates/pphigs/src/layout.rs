@@ -22,6 +22,8 @@ pub(crate) const BIN_TABLE: u32 = 0x1_0200;
 pub(crate) const SPHERE_PARAMETERS: u32 = 0x1_0400;
 /// A kernel's stack frame; the clipper's lies below, and that of what calls kernels for runs of primitives.
 pub(crate) const STACK: u32 = 0x1_1400;
+/// The right eye's parameter block, of kernels that serve both eyes: behind a kernel's stack frame.
+pub(crate) const RIGHT_PARAMETERS: u32 = 0x1_2500;
 /// The display list lies behind the first megabyte, which is the program's.
 pub(crate) const DISPLAY_LIST: u32 = 1 << 20;
 /// Where a message of the host lies: matrices, edits.
@@ -87,6 +89,7 @@ pub(crate) fn bins(context: u8, view: u8) -> u32 {
 
 const _: () = {
     let regions = pxpl5_geometry::RegionMask::CAPACITY;
+    assert!(RIGHT_PARAMETERS + 4 * pxpl5_geometry::kernel::PARAMETER_WORDS as u32 <= BINS);
     assert!(BIN_TABLE + 4 * regions <= SPHERE_PARAMETERS, "a bin's end for each region");
     assert!(4 * (1 + 2 * regions) <= BIN_BOUNDS_BYTES && BINS + 2 * BIN_BOUNDS_BYTES <= TOKEN_PARAMETERS);
     assert!(MORE_BINS + 2 * (MOST_VIEWS - 1) * BIN_BOUNDS_BYTES <= LISTS);

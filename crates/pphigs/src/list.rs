@@ -67,6 +67,24 @@ impl DisplayList {
         self
     }
 
+    /// The same list with colours as its light makes them, for [`Shading::Precomputed`](crate::Shading::Precomputed): ambient, and diffuse on
+    /// the side of the normal. Every structure counts as standing where it does before any edit. Spheres keep their colours.
+    #[must_use]
+    pub fn with_precomputed_colours(mut self) -> Self {
+        let towards_light = self.towards_light.to_array().map(f64::from);
+        for (colour, normal) in self.colours.iter_mut().zip(&self.normals) {
+            // A normal without a direction counts as towards the light.
+            let [x, y, z] = normal.to_array().map(f64::from);
+            let length = (x * x + y * y + z * z).sqrt();
+            let along = x * towards_light[0] + y * towards_light[1] + z * towards_light[2];
+            let cosine = if length > 0.0 { along / length } else { 1.0 };
+            let lit = f64::from(self.ambient) + f64::from(self.diffuse) * cosine.max(0.0);
+            *colour = colour.map(|part| (f64::from(part) * lit.clamp(0.0, 1.0)).round() as u8);
+        }
+        self.recent = RecentViews::default();
+        self
+    }
+
     /// A triangle with everything at its corners.
     ///
     /// # Panics

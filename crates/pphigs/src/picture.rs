@@ -9,6 +9,9 @@ use pxpl5_renderer::Layout;
 pub enum Shading {
     /// At the corners, by the GP; interpolated by the renderers.
     Gouraud,
+    /// Before the run: the display list's colours are taken as they are and interpolated by the renderers. Spheres, which have no corners,
+    /// are lit as under [`Shading::Gouraud`].
+    Precomputed,
     /// At the pixels, by the renderers, once at the end of the frame.
     Phong,
 }
@@ -43,6 +46,7 @@ impl Picture {
     pub(crate) fn kernel(&self, schedule: Schedule) -> Option<Kernel> {
         let surface = match self.shading {
             Shading::Gouraud => KernelSurface::Gouraud,
+            Shading::Precomputed => KernelSurface::Precomputed,
             Shading::Phong => KernelSurface::Phong,
         };
         Kernel::for_picture(schedule, surface, &self.viewport, self.binning == RegionBinning::Touched)

@@ -32,6 +32,8 @@ pub(crate) struct Vertices {
     pub(crate) on_screen: Vec<ScreenVertex>,
     pub(crate) normals: OnceLock<Vec<SurfaceVertex>>,
     pub(crate) colours: OnceLock<Vec<SurfaceVertex>>,
+    /// The colours as the display list has them.
+    pub(crate) precomputed: OnceLock<Vec<SurfaceVertex>>,
 }
 
 /// Views of a display list that graphics processors asked for lately. All of them ask for the same ones, and get the

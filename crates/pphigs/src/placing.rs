@@ -1,6 +1,7 @@
 //! The display list as one eye sees it: structures in place, vertices transformed once for all who share them.
 
 use crate::list::DisplayList;
+use crate::picture::Shading;
 use crate::placed::{PlacedStructure, Vertices, ViewKey};
 use crate::structure::{DisplayStructure, ModelFrame};
 use crate::view::{EyeView, FrameView, product};
@@ -90,12 +91,24 @@ fn turned(matrix: &Mat4, v: Vec3) -> [f32; 3] {
 }
 
 impl PlacedStructure {
+    /// The light in which the colours of corners are computed: none where they are precomputed.
+    #[must_use]
+    pub fn light_of_corners(&self, shading: Shading) -> &Light {
+        if shading == Shading::Precomputed { &Light::NONE } else { &self.light }
+    }
+
     /// Its vertices on the screen, transformed when first asked for.
     pub(crate) fn vertices(&self, list: &DisplayList, transform: &Transform) -> &Vertices {
         self.vertices.get_or_init(|| {
             let positions = list.positions.get(self.named.clone()).unwrap_or_default();
             let on_screen = transform.screen_vertices(positions);
-            Vertices { first: self.named.start, on_screen, normals: OnceLock::new(), colours: OnceLock::new() }
+            Vertices {
+                first: self.named.start,
+                on_screen,
+                normals: OnceLock::new(),
+                colours: OnceLock::new(),
+                precomputed: OnceLock::new(),
+            }
         })
     }
 
@@ -121,9 +134,16 @@ impl Vertices {
         self.normals.get_or_init(find)
     }
 
-    /// All vertices with their lit colours.
-    pub(crate) fn colours(&self, list: &DisplayList, transform: &Transform, light: &Light) -> &[SurfaceVertex] {
-        self.colours.get_or_init(|| {
+    /// All vertices with their colours under a light, which is none where they are precomputed.
+    pub(crate) fn colours(
+        &self,
+        list: &DisplayList,
+        transform: &Transform,
+        shading: Shading,
+        light: &Light,
+    ) -> &[SurfaceVertex] {
+        let colours = if shading == Shading::Precomputed { &self.precomputed } else { &self.colours };
+        colours.get_or_init(|| {
             let all = self.named();
             let [positions, normals] = [&list.positions, &list.normals].map(|all_of_them| &all_of_them[all.clone()]);
             transform.vertex_colours(light, &self.on_screen, positions, normals, &list.colours[all])

@@ -294,3 +294,60 @@ fn a_context_larger_than_the_memory_is_refused_and_does_not_reach_the_code() {
         assert!(error.to_string().ends_with("64 are available"), "{error}");
     }
 }
+
+/// Both structures, of which one is edited, clump after clump: the words of either eye are the native ones, in the display list's order. One
+/// compiled pass for both takes less time than one after the other. (The scheduled one does not, because its code does not stay in the cache.)
+#[test]
+fn one_pass_for_both_eyes_gives_the_native_words_of_each() {
+    let share = Share::new(list(90), 0, 1);
+    let picture = picture(Viewport::field(FieldParity::Odd), Shading::Precomputed, RegionBinning::All);
+    for version in [CodeVersion::Compiled, CodeVersion::Scheduled] {
+        let mut processor = board(version, &share);
+        for clump in share.clumps(30) {
+            let [left, right] = [0, 1].map(|eye| clump.transform(&view(), eye, picture));
+            let made = left.run_code_for_both(&right, &mut processor, 0).expect("it returns").expect("there is code");
+            for (pass, made) in [&left, &right].into_iter().zip(&made) {
+                assert_eq!(pass.stats().screen_triangles, 30, "all are on the screen");
+                let words = (made.commands.end - made.commands.start) as usize / 4;
+                let found = processor.read(made.commands.start, words).expect("in memory");
+                assert!(found == native(pass, RegionId(0)), "{version:?}");
+            }
+            let passes = [left, right];
+            let together = Transforming { passes: &passes, context: 0, begins: false };
+            let together = together.by_code(&GpTiming::PAPERS, &mut processor).expect("it returns");
+            let alone =
+                [0, 1].map(|eye| passes[eye].run_code(&mut processor, 0).expect("it returns").expect("code").span);
+            let saves = together < alone[0] + alone[1];
+            assert!(saves || version == CodeVersion::Scheduled, "{together:?}, {alone:?}");
+        }
+    }
+}
+
+/// A structure that the left eye cannot draw has commands of the right eye alone.
+#[test]
+fn a_structure_that_one_eye_cannot_draw_is_drawn_for_the_other() {
+    let mut view = view();
+    view.eyes[0].head_to_eye.w_axis.x = f32::NAN;
+    let share = Share::new(list(30), 0, 1);
+    let picture = picture(Viewport::field(FieldParity::Even), Shading::Precomputed, RegionBinning::All);
+    for version in [CodeVersion::Compiled, CodeVersion::Scheduled] {
+        let mut processor = board(version, &share);
+        let [left, right] = [0, 1].map(|eye| share.transform(&view, eye, picture));
+        let made = left.run_code_for_both(&right, &mut processor, 0).expect("it returns").expect("there is code");
+        let commands = made.each_ref().map(|made| (made.commands.end - made.commands.start) / 120);
+        assert_eq!(commands, [10, 30], "{version:?}");
+        let found = processor.read(made[1].commands.start, 30 * 30).expect("in memory");
+        assert!(found == native(&right, RegionId(0)), "{version:?}");
+    }
+}
+
+/// A triangle lit by ambient light alone where its normal turns away, fully where it faces the light, and partly in between.
+#[test]
+fn precomputed_colours_are_ambient_and_diffuse_light_on_the_side_of_the_normal() {
+    let mut list = DisplayList { towards_light: Vec3::Z, ambient: 0.25, diffuse: 0.5, ..DisplayList::default() };
+    list.normals = vec![Vec3::Z * 3.0, -Vec3::Z, Vec3::new(0.0, 3f32.sqrt(), 1.0)];
+    list.positions = vec![Vec3::ZERO; 3];
+    list.colours = vec![[200, 100, 0]; 3];
+    let colours = list.with_precomputed_colours().colours;
+    assert_eq!(colours, [[150, 75, 0], [50, 25, 0], [100, 50, 0]]);
+}

@@ -73,26 +73,28 @@ fn assert_same_words_of_strips(schedule: Schedule, surface: KernelSurface, viewp
     assert_same_output(&bench.output(), &expected, kernel);
 }
 
+const SURFACES: [KernelSurface; 3] = [KernelSurface::Gouraud, KernelSurface::Precomputed, KernelSurface::Phong];
+
 const PICTURES: [Viewport; 3] =
     [Viewport::FRAME, Viewport::field(FieldParity::Even), Viewport::field(FieldParity::Odd)];
 
 #[test]
 fn the_straight_kernel_gives_the_native_words_and_bins() {
-    for surface in [KernelSurface::Gouraud, KernelSurface::Phong] {
+    for surface in SURFACES {
         PICTURES.into_iter().for_each(|picture| assert_same_words(Schedule::Straight, surface, picture));
     }
 }
 
 #[test]
 fn the_compiled_kernel_gives_the_native_words_and_bins() {
-    for surface in [KernelSurface::Gouraud, KernelSurface::Phong] {
+    for surface in SURFACES {
         PICTURES.into_iter().for_each(|picture| assert_same_words(Schedule::Compiled, surface, picture));
     }
 }
 
 #[test]
 fn the_dual_kernel_gives_the_native_words_and_bins() {
-    for surface in [KernelSurface::Gouraud, KernelSurface::Phong] {
+    for surface in SURFACES {
         PICTURES.into_iter().for_each(|picture| assert_same_words(Schedule::Dual, surface, picture));
     }
 }
@@ -100,7 +102,7 @@ fn the_dual_kernel_gives_the_native_words_and_bins() {
 #[test]
 fn the_kernels_of_strips_give_the_native_words_and_bins() {
     for schedule in [Schedule::Straight, Schedule::Compiled, Schedule::Dual] {
-        for surface in [KernelSurface::Gouraud, KernelSurface::Phong] {
+        for surface in SURFACES {
             PICTURES.into_iter().for_each(|picture| assert_same_words_of_strips(schedule, surface, picture));
         }
     }
@@ -111,7 +113,7 @@ fn the_kernels_of_strips_give_the_native_words_and_bins() {
 fn kernels_that_cull_give_the_native_words_and_bins() {
     let input = mixture();
     for schedule in [Schedule::Straight, Schedule::Compiled, Schedule::Dual] {
-        for surface in [KernelSurface::Gouraud, KernelSurface::Phong] {
+        for surface in SURFACES {
             for viewport in PICTURES {
                 let all = Kernel::for_picture(schedule, surface, &viewport, true).expect("frames and fields");
                 let kernel = Kernel { culls: true, ..all };
@@ -176,7 +178,7 @@ fn the_clipper_gives_the_native_words_and_bins_of_triangles_all_around_the_eye()
     for (seed, schedule) in (20..).zip([Schedule::Straight, Schedule::Compiled, Schedule::Dual]) {
         for mirrored in [false, true] {
             let (view, input) = around_the_eye(seed, mirrored, Viewport::FRAME);
-            for surface in [KernelSurface::Gouraud, KernelSurface::Phong] {
+            for surface in SURFACES {
                 for (viewport, culls) in PICTURES.into_iter().flat_map(|picture| [(picture, false), (picture, true)]) {
                     let kernel = Kernel::for_picture(schedule, surface, &viewport, true).expect("frames and fields");
                     let kernel = Kernel { culls, ..kernel };
@@ -193,6 +195,67 @@ fn the_clipper_gives_the_native_words_and_bins_of_triangles_all_around_the_eye()
     assert!(flattened > 0, "steep planes are among them");
 }
 
+/// Two eyes that look in slightly different directions, some way apart.
+fn two_eyes(left: &ViewTransform) -> [ViewTransform; 2] {
+    let aside = Mat4::from_translation(Vec3::new(-0.4, 0.01, 0.0)) * Mat4::from_rotation_y(0.04);
+    [*left, ViewTransform { model_view: aside * left.model_view, projection: left.projection }]
+}
+
+fn assert_same_words_for_both_eyes(kernel: Kernel, left: &ViewTransform, viewport: Viewport, input: &[Triangle]) {
+    let kernel = Kernel { both_eyes: true, ..kernel };
+    let views = two_eyes(left);
+    let mut bench = Bench::for_both_eyes(kernel, &views, viewport, Config::functional(), input);
+    bench.run();
+    let made = bench.commands_of_both();
+    for (eye, (found, view)) in made.iter().zip(&views).enumerate() {
+        let expected = native(kernel, view, viewport, input).0.commands;
+        for (n, (found, expected)) in found.iter().zip(&expected).enumerate() {
+            assert_eq!(found, expected, "command {n} of eye {eye}, {kernel:?}");
+        }
+        assert_eq!(found.len(), expected.len(), "eye {eye}, {kernel:?}");
+    }
+}
+
+/// The kernels of one pass for both eyes, which have one bin for all regions of an eye. What the native code drops because it touches no
+/// region has a command there, so that only triangles that touch one are given.
+#[test]
+fn the_kernels_of_both_eyes_give_the_native_words_of_each() {
+    for viewport in &PICTURES[1..] {
+        for schedule in [Schedule::Compiled, Schedule::Dual] {
+            let kernel = Kernel::for_picture(schedule, KernelSurface::Precomputed, viewport, false)
+                .expect("fields have kernels");
+            assert!(kernel.can_serve_both_eyes());
+            for seed in [20, 21] {
+                let (view, around) = around_the_eye(seed, seed == 21, *viewport);
+                let input = [mixture(), at_the_planes()].concat();
+                for (view, input) in [(kernel::view(), input), (view, around)] {
+                    for culls in [false, true] {
+                        let kernel = Kernel { culls, ..kernel };
+                        let seen = seen_by_both(kernel, &view, *viewport, &input);
+                        assert!(seen.len() > 300, "{} of {}", seen.len(), input.len());
+                        for count in [1, 25, 26, 27, 52, 53, seen.len()] {
+                            assert_same_words_for_both_eyes(kernel, &view, *viewport, &seen[..count.min(seen.len())]);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The triangles of which no piece lies beside the picture, for either eye.
+fn seen_by_both(kernel: Kernel, left: &ViewTransform, viewport: Viewport, input: &[Triangle]) -> Vec<Triangle> {
+    let views = two_eyes(left);
+    let is_seen = |triangle: &&Triangle| {
+        views.iter().all(|view| {
+            let (_, stats) = native(kernel, view, viewport, std::slice::from_ref(*triangle));
+            // As above, steep planes are the clipper's affair alone.
+            stats.untouched == 0 && (stats.flattened_planes == 0 || stats.clipped > 0)
+        })
+    };
+    input.iter().filter(is_seen).copied().collect()
+}
+
 /// Frames that are no NTSC frame: faces of a cube from one region to 121, as many regions as there may be, and two whose last regions are
 /// cut off.
 fn other_frames() -> impl Iterator<Item = Viewport> {
@@ -207,7 +270,7 @@ fn other_frames() -> impl Iterator<Item = Viewport> {
 fn the_kernels_of_other_frames_give_the_native_words_and_bins() {
     for viewport in other_frames() {
         for schedule in [Schedule::Straight, Schedule::Compiled, Schedule::Dual] {
-            for surface in [KernelSurface::Gouraud, KernelSurface::Phong] {
+            for surface in SURFACES {
                 let kernel = Kernel::for_picture(schedule, surface, &viewport, true).expect("regions of 128 x 128");
                 assert_eq!(kernel.picture, KernelPicture::Grid);
                 assert_same_words(schedule, surface, viewport);
@@ -229,7 +292,7 @@ fn the_clipper_gives_the_native_words_and_bins_of_other_frames() {
     let schedules = [Schedule::Straight, Schedule::Compiled, Schedule::Dual];
     for (n, (viewport, seed)) in other_frames().zip(40..).enumerate() {
         let (view, input) = around_the_eye(seed, n % 2 == 1, viewport);
-        for surface in [KernelSurface::Gouraud, KernelSurface::Phong] {
+        for surface in SURFACES {
             let kernel = Kernel::for_picture(schedules[n % 3], surface, &viewport, true).expect("it has one");
             for kernel in [kernel, Kernel { culls: true, ..kernel }] {
                 let (expected, stats) = native(kernel, &view, viewport, &input);

@@ -34,6 +34,9 @@ C_FITS   = 40       // of a corner in setup_scalar.s: whether it can be drawn
         .macro  secondcorner to
         ld.l    NEXT(r2), \to
         .endm
+        .macro  surfaceof k
+        adds    C_SURFACE+8*\k, r0, r10
+        .endm
 
 // to `flat` if a slope in f22 or f24 is greater than 2^36
         .macro  steep
@@ -109,15 +112,7 @@ vertex: projected
         fst.l   f21, V_CLIP+4(r6)
         fst.l   f22, V_CLIP+8(r6)
         fst.l   f23, V_CLIP+12(r6)
-        fld.l   NORMAL(r5), f24             // how far the normal turns away
-        fld.l   NORMAL+4(r5), f25
-        fmul.ss f16, f24, f16
-        fld.l   NORMAL+8(r5), f26
-        fmul.ss f17, f25, f17
-        fadd.ss f16, f17, f16
-        fmul.ss f18, f26, f18
-        fadd.ss f16, f18, f16
-        fst.l   f16, V_AWAY(r6)
+        turnsaway
         guarded
         adds    1, r24, r24
 beyond: adds    -1, r4, r4

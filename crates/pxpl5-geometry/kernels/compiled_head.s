@@ -7,9 +7,6 @@
 // ---- stack frame, further up as in setup_scalar.s
 SAVE   = 0        // return address
 
-        .macro  firstcorner to
-        adds    CORNERS, r2, \to
-        .endm
         .macro  secondcorner to
         adds    C_BYTES, r7, \to
         .endm

@@ -21,11 +21,13 @@ RECORDS = 512
         .align  32
 start:  st.l    r1, SAVE(r2)
         counted
+        lefteye
 batch:  mov     BATCH_TRIANGLES, r31
         subs    r17, r31, r0
         bnc     begun                       // a batch at least
         mov     r17, r31
-begun:  turns
+begun:  batchnoted
+        turns
         mov     r16, r29
         adds    RECORDS, r2, r6
         .align  8

@@ -16,7 +16,8 @@ passed: d.fnop
             nop
         fnop
             nop
-finished: btne  r0, r17, batch
+finished: nexteye
+        btne    r0, r17, batch
         ld.l    SAVE(r2), r1
         nop
         bri     r1

@@ -1,5 +1,6 @@
 // From three corners at CORNERS to the words of a command at r18 and its bins: functions, locals in registers, scalar floating point
-// with loads in its shadow. What includes it gives the macros `firstcorner`, `secondcorner` (the third lies behind it), `finish` and `steep`.
+// with loads in its shadow. What includes it gives the macros `firstcorner`, `secondcorner` (the third lies behind it), `surfaceof`
+// (component k of a corner's surface, counted from the corner, to r10), `finish` and `steep`.
 
 // ---- stack frame
 BOX    = 8        // low x, high x, low y, high y
@@ -256,13 +257,13 @@ oriented\@: fst.l f16, DX1(r2)
         adds    C_DEPTH, r0, r10
         call    plane
         adds    56, r18, r11
-        adds    C_SURFACE, r0, r10
+        surfaceof 0
         call    plane
         adds    76, r18, r11
-        adds    C_SURFACE+8, r0, r10
+        surfaceof 1
         call    plane
         adds    92, r18, r11
-        adds    C_SURFACE+16, r0, r10
+        surfaceof 2
         call    plane
         adds    108, r18, r11
         // heads

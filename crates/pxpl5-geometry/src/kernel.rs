@@ -21,6 +21,13 @@
 
 mod between;
 
+/// What the clipper interpolates of surfaces that depend on normals.
+macro_rules! clip_with_normals {
+    ($surface:literal) => {
+        concat!(include_str!("../kernels/clip_away.s"), "\n", include_str!(concat!("../kernels/clip_", $surface, ".s")))
+    };
+}
+
 pub use between::{ENDS_VIEW_WORDS, ENDS_WORDS};
 
 use crate::newton::ROUND_DOUBLE;
@@ -48,6 +55,8 @@ pub enum Schedule {
 pub enum KernelSurface {
     /// Colours, lit at the corners.
     Gouraud,
+    /// Colours as the display list has them.
+    Precomputed,
     /// Normals in eye coordinates.
     Phong,
 }
@@ -90,6 +99,9 @@ pub struct Kernel {
     /// Whether it keeps the box of each command behind the table of bins' address, where there are no bins: low x, high x, low y, high y in
     /// 1/16 px of the frame.
     pub keeps_boxes: bool,
+    /// Whether one pass over the triangles makes the commands of both eyes (kernels/slats_rules.md): registers 19 and 21 are then
+    /// where the right eye's commands go, and its parameter block. Only where [`Kernel::can_serve_both_eyes`].
+    pub both_eyes: bool,
 }
 
 /// Instruction heads of a triangle's command, in the order of the kernel's parameter block: enable, edge, depth
@@ -121,7 +133,17 @@ impl Kernel {
     pub fn for_picture(schedule: Schedule, surface: KernelSurface, viewport: &Viewport, binned: bool) -> Option<Self> {
         let picture = KernelPicture::of(viewport).filter(|picture| binned || *picture != KernelPicture::Grid)?;
         let list = KernelList::Triangles;
-        Some(Self { schedule, surface, list, picture, binned, culls: false, keeps_boxes: false })
+        Some(Self { schedule, surface, list, picture, binned, culls: false, keeps_boxes: false, both_eyes: false })
+    }
+
+    /// Returns true if there is code that makes the commands of both eyes in one pass over the triangles.
+    #[must_use]
+    pub fn can_serve_both_eyes(&self) -> bool {
+        self.surface == KernelSurface::Precomputed
+            && self.schedule != Schedule::Straight
+            && self.list == KernelList::Triangles
+            && !self.binned
+            && !self.keeps_boxes
     }
 
     /// The source in i860 assembly, with linear stretches where the schedule is [`Schedule::Dual`]; its entry is the label
@@ -142,10 +164,11 @@ impl Kernel {
         };
         let triangle = match self.schedule {
             Schedule::Straight => [self.straight(), vec![bins]].concat(),
-            Schedule::Compiled => [self.compiled(include_str!("../kernels/compiled.s")), vec![bins]].concat(),
+            Schedule::Compiled => [self.compiled(self.compiled_loop()), vec![bins]].concat(),
             // What is seldom needed comes last, so that bins do not share sets of the cache with the end of the second loop.
             Schedule::Dual => {
-                [self.dual(), vec![bins_of_frames, include_str!("../kernels/scheduled_doubt.s")]].concat()
+                let last = [bins_of_frames, include_str!("../kernels/scheduled_doubt.s")];
+                [self.dual(), last.to_vec(), self.right_eye()].concat()
             }
         };
         [common.as_slice(), &triangle].concat().join("\n")
@@ -156,12 +179,11 @@ impl Kernel {
     #[must_use]
     pub fn clipper_source(&self) -> String {
         let (finish, extras) = match self.surface {
-            KernelSurface::Gouraud => {
-                (include_str!("../kernels/finish_gouraud.s"), include_str!("../kernels/clip_gouraud.s"))
+            KernelSurface::Gouraud => (include_str!("../kernels/finish_gouraud.s"), clip_with_normals!("gouraud")),
+            KernelSurface::Precomputed => {
+                (include_str!("../kernels/finish_gouraud.s"), include_str!("../kernels/clip_precomputed.s"))
             }
-            KernelSurface::Phong => {
-                (include_str!("../kernels/finish_phong.s"), include_str!("../kernels/clip_phong.s"))
-            }
+            KernelSurface::Phong => (include_str!("../kernels/finish_phong.s"), clip_with_normals!("phong")),
         };
         [
             include_str!("../kernels/parameters.s"),
@@ -196,6 +218,7 @@ impl Kernel {
     fn straight(&self) -> Vec<&'static str> {
         let surface = match self.surface {
             KernelSurface::Gouraud => include_str!("../kernels/gouraud.s"),
+            KernelSurface::Precomputed => include_str!("../kernels/precomputed.s"),
             KernelSurface::Phong => include_str!("../kernels/phong.s"),
         };
         vec![
@@ -207,10 +230,24 @@ impl Kernel {
         ]
     }
 
-    fn compiled(&self, main: &'static str) -> Vec<&'static str> {
+    /// The compiled main loop over triangles: what it says of a corner's place in memory, the loop, and a corner.
+    const fn compiled_loop(&self) -> [&'static str; 3] {
+        let one = include_str!("../kernels/compiled_one.s");
+        let main = include_str!("../kernels/compiled.s");
+        match self.surface {
+            KernelSurface::Precomputed if self.both_eyes => ["", include_str!("../kernels/compiled_both.s"), ""],
+            KernelSurface::Precomputed => [one, main, include_str!("../kernels/compiled_place.s")],
+            KernelSurface::Gouraud | KernelSurface::Phong => [one, main, include_str!("../kernels/compiled_corner.s")],
+        }
+    }
+
+    fn compiled(&self, main: [&'static str; 3]) -> Vec<&'static str> {
         let (finish, surface) = match self.surface {
             KernelSurface::Gouraud => {
                 (include_str!("../kernels/finish_gouraud.s"), include_str!("../kernels/compiled_gouraud.s"))
+            }
+            KernelSurface::Precomputed => {
+                (include_str!("../kernels/finish_gouraud.s"), include_str!("../kernels/compiled_precomputed.s"))
             }
             KernelSurface::Phong => {
                 (include_str!("../kernels/finish_phong.s"), include_str!("../kernels/compiled_phong.s"))
@@ -224,8 +261,9 @@ impl Kernel {
             include_str!("../kernels/turned_phong.s"),
             surface,
             include_str!("../kernels/compiled_head.s"),
-            main,
-            include_str!("../kernels/compiled_corner.s"),
+            main[0],
+            main[1],
+            main[2],
             include_str!("../kernels/functions_scalar.s"),
         ]
     }
@@ -273,13 +311,23 @@ impl Kernel {
             true => (include_str!("../kernels/doubt_of_vertices.s"), include_str!("../kernels/doubted_vertices.s")),
         };
         let [command_bytes, before, surface, after, side, words] = self.dual_surface(strips);
+        let away = match self.surface {
+            KernelSurface::Precomputed => "",
+            KernelSurface::Gouraud | KernelSurface::Phong => include_str!("../kernels/away.s"),
+        };
         vec![
             command_bytes,
+            match self.both_eyes {
+                false => include_str!("../kernels/scheduled_one.s"),
+                true => include_str!("../kernels/scheduled_both.s"),
+            },
             include_str!("../kernels/scheduled_head.s"),
             "corners:",
             include_str!("../kernels/vertices_head.s"),
             vertices,
             include_str!("../kernels/vertices.s"),
+            away,
+            include_str!("../kernels/vertices_placed.s"),
             before,
             surface,
             after,
@@ -308,6 +356,22 @@ impl Kernel {
         ]
     }
 
+    /// The second way of a batch through the first loop, of kernels for both eyes.
+    fn right_eye(&self) -> Vec<&'static str> {
+        if !self.both_eyes {
+            return Vec::new();
+        }
+        vec![
+            include_str!("../kernels/right_eye.s"),
+            self.schedules().0,
+            include_str!("../kernels/vertices.s"),
+            include_str!("../kernels/vertices_placed.s"),
+            include_str!("../kernels/vertices_end.s"),
+            include_str!("../kernels/doubt_of_triangle.s"),
+            include_str!("../kernels/right_again.s"),
+        ]
+    }
+
     /// What depends on the surface in the scheduled code: how long a command is; before the corners' surface, that, and after it;
     /// the side of a triangle; words of the command.
     fn dual_surface(&self, strips: bool) -> [&'static str; 6] {
@@ -318,6 +382,14 @@ impl Kernel {
                 include_str!("../kernels/vertices_gouraud.s"),
                 include_str!("../kernels/side_of_none.s"),
                 include_str!("../kernels/side_found.s"),
+                include_str!("../kernels/command_gouraud.s"),
+            ],
+            (KernelSurface::Precomputed, _) => [
+                "COMMAND_BYTES = 120",
+                "",
+                include_str!("../kernels/vertices_precomputed.s"),
+                "",
+                "side    = or r0, r20",
                 include_str!("../kernels/command_gouraud.s"),
             ],
             (KernelSurface::Gouraud, true) => [
@@ -350,8 +422,9 @@ impl Kernel {
     /// Window, eagerness, reserve, slope and shake of the shortest schedules that were found, of both loops.
     const fn schedules(&self) -> (&'static str, &'static str) {
         use KernelList::{Strips, Triangles};
-        use KernelSurface::{Gouraud, Phong};
+        use KernelSurface::{Gouraud, Phong, Precomputed};
         let vertices = match (self.list, self.surface) {
+            (_, Precomputed) => ".linear 100 30 1 5 0",
             (Triangles, Gouraud) => ".linear 300 20 2 3 0",
             (Strips, Gouraud) => ".linear 300 30 2 3 0",
             (Triangles, Phong) => ".linear 100 30 1 5 0",
@@ -360,9 +433,9 @@ impl Kernel {
         let setup = match (self.list, self.surface, matches!(self.picture, KernelPicture::Field)) {
             (_, Phong, true) if !self.binned && !self.culls => ".linear 300 20 2 8 0",
             _ if !self.binned || self.culls => ".linear 64 15 2 8 0",
-            (_, Gouraud, false) => ".linear 150 20 2 8 0",
-            (Triangles, Gouraud, true) => ".linear 64 15 2 8 0",
-            (Strips, Gouraud, true) => ".linear 64 20 1 8 0",
+            (_, Gouraud | Precomputed, false) => ".linear 150 20 2 8 0",
+            (Triangles, Gouraud | Precomputed, true) => ".linear 64 15 2 8 0",
+            (Strips, Gouraud | Precomputed, true) => ".linear 64 20 1 8 0",
             (Triangles, Phong, false) => ".linear 150 20 1 8 0",
             (Strips, Phong, false) | (Triangles, Phong, true) => ".linear 300 30 1 8 0",
             (Strips, Phong, true) => ".linear 150 20 2 8 0",
@@ -374,7 +447,7 @@ impl Kernel {
     #[must_use]
     pub const fn command_bytes(&self) -> u32 {
         match self.surface {
-            KernelSurface::Gouraud => 120,
+            KernelSurface::Gouraud | KernelSurface::Precomputed => 120,
             KernelSurface::Phong => 128,
         }
     }
@@ -428,7 +501,7 @@ impl Kernel {
     /// Unit of the surface's words in the planes, and half a unit less the bias in it, as they are and turned over.
     fn sides(&self) -> [(f64, f64); 2] {
         let (units, half) = match self.surface {
-            KernelSurface::Gouraud => ([16.0, 16.0], screen::colour_value(0)),
+            KernelSurface::Gouraud | KernelSurface::Precomputed => ([16.0, 16.0], screen::colour_value(0)),
             KernelSurface::Phong => ([64.0, -64.0], screen::NORMAL_HALF),
         };
         units.map(|unit| (unit, f64::from(half) - unit * f64::from(ROUND_SINGLE)))
@@ -438,7 +511,7 @@ impl Kernel {
         let two_52 = (1u64 << 52) as f64;
         let two_31 = f64::from(1u32 << 31);
         let surface = match self.surface {
-            KernelSurface::Gouraud => two_52,
+            KernelSurface::Gouraud | KernelSurface::Precomputed => two_52,
             KernelSurface::Phong => two_52 + two_31,
         };
         [

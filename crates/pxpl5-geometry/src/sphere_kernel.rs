@@ -53,7 +53,7 @@ impl SphereKernel {
     #[must_use]
     pub fn source(&self) -> String {
         let surface = match self.surface {
-            KernelSurface::Gouraud => include_str!("../kernels/sphere_gouraud.s"),
+            KernelSurface::Gouraud | KernelSurface::Precomputed => include_str!("../kernels/sphere_gouraud.s"),
             KernelSurface::Phong => include_str!("../kernels/sphere_phong.s"),
         };
         let bins = match self.keeps_boxes {
@@ -79,7 +79,7 @@ impl SphereKernel {
     #[must_use]
     pub const fn command_words(&self) -> usize {
         match self.surface {
-            KernelSurface::Gouraud => 53,
+            KernelSurface::Gouraud | KernelSurface::Precomputed => 53,
             KernelSurface::Phong => 38,
         }
     }
@@ -117,7 +117,7 @@ impl SphereKernel {
         let half = lens::half_frame(width, lines);
         let first = lens::first_pixel(width, lines);
         let unit = f64::from(match self.surface {
-            KernelSurface::Gouraud => 1_u32 << format::COLOUR_FRACTION_BITS,
+            KernelSurface::Gouraud | KernelSurface::Precomputed => 1_u32 << format::COLOUR_FRACTION_BITS,
             KernelSurface::Phong => 1_u32 << format::NORMAL_FRACTION_BITS,
         });
         let near = f64::from(DEPTH_NEAR);

@@ -67,8 +67,9 @@ impl Raster<'_> {
         let triangle = self.list.triangle(number);
         // What is cut, dropped or made flat is so on the machine.
         let mut stats = SetupStats::default();
+        let light = place.light_of_corners(self.picture.shading);
         match self.picture.shading {
-            Shading::Gouraud => transform.gouraud(&triangle, &place.light, &mut stats, |seen| {
+            Shading::Gouraud | Shading::Precomputed => transform.gouraud(&triangle, light, &mut stats, |seen| {
                 let planes = seen.gouraud(viewport, &mut SetupStats::default());
                 self.inside(&seen.outline, &planes.edges, |x, y| {
                     let paint = || Paint::Lit(planes.rgb.map(|plane| component(&plane, x, y)));
@@ -92,7 +93,7 @@ impl Raster<'_> {
         let mut stats = SetupStats::default();
         let Some(seen) = transform.sphere(&self.list.spheres[sphere], &mut stats) else { return };
         match self.picture.shading {
-            Shading::Gouraud => {
+            Shading::Gouraud | Shading::Precomputed => {
                 let planes = seen.gouraud(viewport, &place.light, &mut stats);
                 self.around(seen.regions, |x, y| {
                     if let Some(point) = SpherePoint::at(&planes.setup, x, y, self.widths) {

@@ -2,7 +2,7 @@
 
 use crate::assembled::Assembled;
 use crate::cut::moves;
-use crate::display_list::{display_list, hmd_before, poses, views};
+use crate::display_list::{display_list_for, hmd_before, poses, views};
 use crate::error::ExperimentError;
 use crate::experiment::{Experiment, FIELDS_RANGE, Pixels};
 use crate::face_notes::FaceNotes;
@@ -65,7 +65,7 @@ impl Experiment {
         let period = config.host.view_period_ns * 1_000;
         let cut = self.pipeline.cut(&self.scene, config)?;
         let scene = cut.as_ref().map_or(&self.scene, |cut| &cut.scene);
-        let list = Arc::new(display_list(scene).map_err(ExperimentError::Scene)?);
+        let list = Arc::new(display_list_for(scene, self.pipeline.shading()).map_err(ExperimentError::Scene)?);
         let (views, wanted) = views(scene, self.seed, hmd, eyes);
         let reports: ReportTimes = Arc::new(move |after: Time| Some(Time((after.0 / period + 1) * period)));
         let starts: FrameStarts = Arc::new(Some);

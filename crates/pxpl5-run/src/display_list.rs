@@ -1,7 +1,9 @@
 //! From a scene to what graphics processors hold and hosts send.
 
 use crate::views::{Poses, Views, ViewsWanted};
-use pphigs::{DisplayList, DisplayStructure, EyeView, FrameView, MAX_EDITS, ModelEdit, ModelFrame, RecentViews};
+use pphigs::{
+    DisplayList, DisplayStructure, EyeView, FrameView, MAX_EDITS, ModelEdit, ModelFrame, RecentViews, Shading,
+};
 use pxpl5_display::Surface;
 use pxpl5_geometry::{Culling, WorldSphere};
 use pxpl5_scene::{HeadMotion, Hmd, HmdConfig, Pose, Scene};
@@ -46,6 +48,12 @@ pub fn display_list(scene: &Scene) -> Result<DisplayList, String> {
         recent: RecentViews::default(),
     };
     Ok(list.with_vertices_in_order())
+}
+
+/// The same for a pipeline that computes colours in such a way.
+pub(crate) fn display_list_for(scene: &Scene, shading: Shading) -> Result<DisplayList, String> {
+    let list = display_list(scene)?;
+    Ok(if shading == Shading::Precomputed { list.with_precomputed_colours() } else { list })
 }
 
 /// The view of a scene at a time from a pose, through the papers' head-mounted display.

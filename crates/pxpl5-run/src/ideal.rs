@@ -1,6 +1,6 @@
 //! What an ideal renderer would show in an outcome's place.
 
-use crate::display_list::{display_list, hmd_before, view, views};
+use crate::display_list::{display_list_for, hmd_before, view, views};
 use crate::experiment::Experiment;
 use crate::head_views::HeadViews;
 use crate::outcome::Outcome;
@@ -38,7 +38,7 @@ pub(crate) fn ideal_picture(
     let eyes = pipeline.eyes();
     let surfaces = record.display().surfaces();
     let size = surfaces.get(surface).filter(|_| surface < eyes)?;
-    let list = display_list(scene).ok()?;
+    let list = display_list_for(scene, pipeline.shading()).ok()?;
     let hmd = hmd_before(surfaces.first());
     let view = match head {
         Some(head) => view(scene, &hmd, eyes, ViewNumber::FIRST, time, &head.truth(time).in_single_precision()),

@@ -79,7 +79,7 @@ pub use outcome::Outcome;
 pub use pipeline::{PictureTimes, Pipeline, Setup, Source};
 pub use pipelines::{
     Code, FacePipeline, FacePolicy, FaceSource, FinishedRegions, Frameless, Interpolation, Jitp, RenderingControl,
-    Slats, Viewpoint, region_at,
+    Slats, SlatsLighting, Viewpoint, region_at,
 };
 pub use pxpl5_display::{Aim, LightSpan};
 pub use raster::Raster;

@@ -23,6 +23,8 @@ pub struct SlatsConfig {
     pub copy: CopySchedule,
     /// Who gets the commands of a clump.
     pub binning: RegionBinning,
+    /// Whether vertex colours are precomputed ([`Shading::Precomputed`]) or lit on the GPs ([`Shading::Gouraud`]).
+    pub shading: Shading,
     /// How the bits of pixel memory are divided among contexts.
     pub layout: Layout,
     /// Whether somebody may want pixels: without it no command words are made, and all times stay the same.
@@ -45,7 +47,7 @@ impl SlatsConfig {
     pub(crate) fn picture(&self, parity: FieldParity) -> Picture {
         Picture {
             viewport: Viewport::field(parity),
-            shading: Shading::Gouraud,
+            shading: self.shading,
             binning: self.binning,
             layout: self.layout,
             pixels: self.pixels,

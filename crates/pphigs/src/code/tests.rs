@@ -5,7 +5,7 @@ use crate::layout::{BEGIN_CODE, MESSAGE, ORDER_CODE, ORDER_HEAD, SORT_CODE, TOKE
 use crate::{begin, handing, interpolating, ordering, surrounding, windows};
 use pxpl5_geometry::kernel::{KernelList, KernelPicture};
 
-const SURFACES: [KernelSurface; 2] = [KernelSurface::Gouraud, KernelSurface::Phong];
+const SURFACES: [KernelSurface; 3] = [KernelSurface::Gouraud, KernelSurface::Precomputed, KernelSurface::Phong];
 const BOTH: [bool; 2] = [false, true];
 /// Whether there are bins, and whether boxes are kept.
 const BINS: [(bool, bool); 3] = [(true, false), (false, false), (false, true)];
@@ -27,6 +27,7 @@ fn kernels() -> impl Iterator<Item = Kernel> {
             binned,
             culls,
             keeps_boxes,
+            both_eyes: false,
         };
         pictures.clone().into_iter().map(kernel)
     })
@@ -39,6 +40,10 @@ fn end(program: &Program) -> u32 {
 /// A breakpoint in one of them is met in no other.
 #[test]
 fn no_two_programs_of_a_board_lie_in_the_same_place() {
+    for kernel in kernels().filter(Kernel::can_serve_both_eyes) {
+        let program = program(Kernel { both_eyes: true, ..kernel }, true);
+        assert!(end(&program) <= SORT_CODE, "{kernel:?} for both eyes ends at {:#x}", end(&program));
+    }
     for kernel in kernels() {
         for program in [program(kernel, true), interpolating::program(kernel)] {
             assert!(program.base == CODE && end(&program) <= SORT_CODE, "{kernel:?} ends at {:#x}", end(&program));

@@ -22,6 +22,9 @@ const STACK: u32 = 0x1_1400;
 const TRIANGLES: u32 = 0x2_0000;
 const COMMANDS: u32 = 0x20_0000;
 const BINS: u32 = 0x60_0000;
+/// The right eye's parameter block and commands.
+const RIGHT_PARAMETERS: u32 = 0x1_2500;
+const RIGHT_COMMANDS: u32 = 0x40_0000;
 
 /// Room for each bin: of an NTSC frame's 20 what the figures were measured with.
 const fn bin_bytes(regions: u32) -> u32 {
@@ -35,7 +38,16 @@ const RETURN: u32 = 0x0800;
 pub(crate) const fn frame(schedule: Schedule) -> Kernel {
     let list = KernelList::Triangles;
     let picture = KernelPicture::Frame;
-    Kernel { schedule, surface: KernelSurface::Gouraud, list, picture, binned: true, culls: false, keeps_boxes: false }
+    Kernel {
+        schedule,
+        surface: KernelSurface::Gouraud,
+        list,
+        picture,
+        binned: true,
+        culls: false,
+        keeps_boxes: false,
+        both_eyes: false,
+    }
 }
 
 /// The kernel and its clipper, assembled.
@@ -155,18 +167,20 @@ pub(crate) fn native(
     triangles: &[Triangle],
 ) -> (Output, SetupStats) {
     let transform = Transform::new(view, viewport, culling(kernel)).expect("finite");
-    let light = light();
+    let light = if kernel.surface == KernelSurface::Precomputed { Light::NONE } else { light() };
     let mut stats = SetupStats::default();
     let mut flattened = SetupStats::default();
     let mut output = Output { commands: Vec::new(), regions: Vec::new() };
     for triangle in triangles {
         let mut found = Vec::new();
         match kernel.surface {
-            KernelSurface::Gouraud => transform.gouraud(triangle, &light, &mut stats, |screen| {
-                let t = screen.gouraud(&viewport, &mut flattened);
-                let command = pxpl5_renderer::TriangleCommand { edges: t.edges, depth: t.z, colour: t.rgb };
-                found.push((Command::Triangle(command), screen.outline));
-            }),
+            KernelSurface::Gouraud | KernelSurface::Precomputed => {
+                transform.gouraud(triangle, &light, &mut stats, |screen| {
+                    let t = screen.gouraud(&viewport, &mut flattened);
+                    let command = pxpl5_renderer::TriangleCommand { edges: t.edges, depth: t.z, colour: t.rgb };
+                    found.push((Command::Triangle(command), screen.outline));
+                })
+            }
             KernelSurface::Phong => transform.phong(triangle, &mut stats, |screen| {
                 let t = screen.phong(&viewport, &mut flattened);
                 let colour = t.colour.iter().fold(0, |word, byte| word << 8 | u32::from(*byte));
@@ -196,7 +210,9 @@ fn words(command: &Command) -> Vec<u32> {
 /// The instruction heads of a triangle command, taken from a command of zeros.
 fn heads(surface: KernelSurface) -> Heads {
     let blank = match surface {
-        KernelSurface::Gouraud => words(&Command::Triangle(pxpl5_renderer::TriangleCommand::default())),
+        KernelSurface::Gouraud | KernelSurface::Precomputed => {
+            words(&Command::Triangle(pxpl5_renderer::TriangleCommand::default()))
+        }
         KernelSurface::Phong => words(&Command::PhongTriangle(pxpl5_renderer::PhongTriangleCommand::default())),
     };
     [0, 1, 13, 17, 18, 22, 26, 30].map(|at| blank.get(at).copied().unwrap_or_default())
@@ -215,6 +231,7 @@ pub(crate) struct Bench {
     step: u32,
     command_bytes: u32,
     regions: u32,
+    both_eyes: bool,
 }
 
 impl Bench {
@@ -228,6 +245,34 @@ impl Bench {
     pub(crate) fn in_view(kernel: Kernel, view: &ViewTransform, viewport: Viewport, triangles: &[Triangle]) -> Bench {
         let data: Vec<u32> = triangles.iter().flat_map(display_list_words).collect();
         Bench::over(kernel, view, viewport, Config::functional(), &data, triangles.len())
+    }
+
+    /// The same for both eyes in one pass.
+    pub(crate) fn for_both_eyes(
+        kernel: Kernel,
+        views: &[ViewTransform; 2],
+        viewport: Viewport,
+        config: Config,
+        triangles: &[Triangle],
+    ) -> Bench {
+        let data: Vec<u32> = triangles.iter().flat_map(display_list_words).collect();
+        let mut bench = Bench::over(kernel, &views[0], viewport, config, &data, triangles.len());
+        let right = Transform::new(&views[1], viewport, culling(kernel)).expect("finite");
+        let clipper = bench.program.symbol("clipper").expect("clipper");
+        let parameters = kernel.parameters(&right, &light(), &heads(kernel.surface), clipper);
+        bench.ram.load_words(RIGHT_PARAMETERS, &parameters).expect("fits");
+        bench
+    }
+
+    /// The commands of either eye; only after one run.
+    pub(crate) fn commands_of_both(&self) -> [Vec<Vec<u32>>; 2] {
+        let ends = [self.cpu.state.r[18], self.cpu.state.r[19]];
+        [(COMMANDS, ends[0]), (RIGHT_COMMANDS, ends[1])].map(|(begin, end)| self.words_of_commands(begin, end))
+    }
+
+    fn words_of_commands(&self, begin: u32, end: u32) -> Vec<Vec<u32>> {
+        let words = self.ram.words(begin, (end - begin) as usize / 4).expect("inside");
+        words.chunks(self.command_bytes as usize / 4).map(<[u32]>::to_vec).collect()
     }
 
     /// The same for the kernel of strips.
@@ -258,7 +303,16 @@ impl Bench {
         ram.load_words(BIN_TABLE, &bins).expect("fits");
         let step = (4 * data.len() / count) as u32;
         let command_bytes = kernel.command_bytes();
-        Bench { cpu: Cpu::new(config), program, ram, count: count as u32, step, command_bytes, regions }
+        Bench {
+            cpu: Cpu::new(config),
+            program,
+            ram,
+            count: count as u32,
+            step,
+            command_bytes,
+            regions,
+            both_eyes: kernel.both_eyes,
+        }
     }
 
     fn call(&mut self, first: u32, count: u32, commands: u32) {
@@ -267,6 +321,9 @@ impl Bench {
         (state.r[1], state.r[2]) = (RETURN, STACK);
         (state.r[16], state.r[17], state.r[18]) = (first, count, commands);
         (state.r[19], state.r[20]) = (BIN_TABLE, PARAMETERS);
+        if self.both_eyes {
+            (state.r[19], state.r[21]) = (RIGHT_COMMANDS, RIGHT_PARAMETERS);
+        }
         let outcome = self.cpu.run(&mut self.ram, Some(RETURN), 100_000 * u64::from(count) + 1000);
         assert_eq!(outcome, RunEnd::Stopped, "pc {:#x}", self.cpu.state.pc);
     }
@@ -294,8 +351,7 @@ impl Bench {
     /// Reads the output back; only after one run.
     pub(crate) fn output(&self) -> Output {
         let end = self.cpu.state.r[18];
-        let words = self.ram.words(COMMANDS, (end - COMMANDS) as usize / 4).expect("inside");
-        let commands: Vec<Vec<u32>> = words.chunks(self.command_bytes as usize / 4).map(<[u32]>::to_vec).collect();
+        let commands = self.words_of_commands(COMMANDS, end);
         let mut by_command: BTreeMap<u32, Vec<u16>> = BTreeMap::new();
         let tails = self.ram.words(BIN_TABLE, self.regions as usize).expect("inside");
         for (n, tail) in (0..).zip(tails) {

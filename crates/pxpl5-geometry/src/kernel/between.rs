@@ -17,7 +17,9 @@ impl Kernel {
         let record = include_str!("../../kernels/ends_record.s");
         let list = include_str!("../../kernels/list_triangles.s");
         let common = [include_str!("../../kernels/parameters.s"), list, self.picture.source(), self.cull(), record];
-        let triangle = self.compiled(include_str!("../../kernels/between.s"));
+        let one = include_str!("../../kernels/compiled_one.s");
+        let corner = include_str!("../../kernels/compiled_corner.s");
+        let triangle = self.compiled([one, include_str!("../../kernels/between.s"), corner]);
         [common.as_slice(), &triangle, &[include_str!("../../kernels/box_kept.s")]].concat().join("\n")
     }
 

@@ -16,7 +16,7 @@ pub use faces::{FacePipeline, FacePolicy, FaceSource};
 pub use frameless::Frameless;
 pub use jitp::{Interpolation, Jitp, Viewpoint, region_at};
 pub use rendering_control::{FinishedRegions, RenderingControl};
-pub use slats::{Code, Slats};
+pub use slats::{Code, Slats, SlatsLighting};
 
 use crate::due::PictureEnd;
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};

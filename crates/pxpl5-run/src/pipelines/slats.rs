@@ -5,7 +5,7 @@ use crate::due::PictureEnd;
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::pipeline::{PictureTimes, Pipeline, Setup, light_span};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
-use pphigs::{RegionBinning, Share};
+use pphigs::{RegionBinning, Shading, Share};
 use pxpl5_display::LightSpan;
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::{CodeVersion, GpTiming, Priority};
@@ -46,6 +46,24 @@ impl Code {
     }
 }
 
+/// Where the colours of vertices come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SlatsLighting {
+    /// They were computed before the run (TR94: by radiosity); the GP evaluates no light.
+    Precomputed,
+    /// The GP lights each vertex for each eye.
+    OnGp,
+}
+
+impl SlatsLighting {
+    const fn shading(self) -> Shading {
+        match self {
+            Self::Precomputed => Shading::Precomputed,
+            Self::OnGp => Shading::Gouraud,
+        }
+    }
+}
+
 /// One new image every field (TR94, I3D95).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slats {
@@ -53,6 +71,8 @@ pub struct Slats {
     pub copy: CopySchedule,
     /// Who gets the commands of a clump.
     pub binning: RegionBinning,
+    /// Where the colours of vertices come from.
+    pub lighting: SlatsLighting,
     /// The code, where it is not that of the machine's preset.
     pub code: Option<Code>,
 }
@@ -61,19 +81,24 @@ impl Slats {
     /// The prototype with the COPY optimisation (TR94).
     #[must_use]
     pub const fn split() -> Self {
-        Self { copy: CopySchedule::Split, binning: RegionBinning::All, code: None }
+        Self {
+            copy: CopySchedule::Split,
+            binning: RegionBinning::All,
+            lighting: SlatsLighting::Precomputed,
+            code: None,
+        }
     }
 
     /// The prototype without the COPY optimisation (TR94).
     #[must_use]
     pub const fn whole() -> Self {
-        Self { copy: CopySchedule::Whole, binning: RegionBinning::All, code: None }
+        Self { copy: CopySchedule::Whole, ..Self::split() }
     }
 
     /// Whole copies into the other buffer, so that the last complete field stands in for one that is late.
     #[must_use]
     pub const fn backup() -> Self {
-        Self { copy: CopySchedule::Backup, binning: RegionBinning::All, code: None }
+        Self { copy: CopySchedule::Backup, ..Self::split() }
     }
 
     fn config(&self, machine: &Machine, pixels: bool) -> SlatsConfig {
@@ -85,6 +110,7 @@ impl Slats {
             frame_buffers: [ports.display()[0], ports.display()[1]],
             copy: self.copy,
             binning: self.binning,
+            shading: self.shading(),
             layout: self.layout(),
             pixels,
         }
@@ -102,7 +128,11 @@ impl Pipeline for Slats {
     }
 
     fn settings(&self) -> Vec<(&'static str, KeyValue)> {
-        let mut all = vec![("copy", name(&COPIES, &self.copy)), ("binning", name(&BINNINGS, &self.binning))];
+        let mut all = vec![
+            ("copy", name(&COPIES, &self.copy)),
+            ("binning", name(&BINNINGS, &self.binning)),
+            ("lighting", name(&LIGHTINGS, &self.lighting)),
+        ];
         all.extend(self.code.map(|code| ("code", name(&CODES, &code))));
         all
     }
@@ -113,6 +143,10 @@ impl Pipeline for Slats {
 
     fn layout(&self) -> Layout {
         Layout::slats()
+    }
+
+    fn shading(&self) -> Shading {
+        self.lighting.shading()
     }
 
     /// The code decides the times per primitive, nothing else.
@@ -224,6 +258,8 @@ fn deadline(video: &Video, target: &CopyTarget, before_retrace: bool) -> Time {
 const COPIES: [(&str, CopySchedule); 3] =
     [("whole", CopySchedule::Whole), ("split", CopySchedule::Split), ("backup", CopySchedule::Backup)];
 const BINNINGS: [(&str, RegionBinning); 2] = [("all", RegionBinning::All), ("touched", RegionBinning::Touched)];
+const LIGHTINGS: [(&str, SlatsLighting); 2] =
+    [("precomputed", SlatsLighting::Precomputed), ("gp", SlatsLighting::OnGp)];
 const CODES: [(&str, Code); 3] = [("1994", Code::Of1994), ("1995", Code::Of1995), ("optimised", Code::Optimised)];
 
 /// The name of a choice.
@@ -257,6 +293,12 @@ pub(super) const ENTRY: PipelineEntry = PipelineEntry {
             sets: &[],
         },
         Key {
+            name: "lighting",
+            about: "where vertex colours come from: precomputed (no light on the GP), or gp (lit there for each eye)",
+            values: KeyValues::Names(&[LIGHTINGS[0].0, LIGHTINGS[1].0]),
+            sets: &[],
+        },
+        Key {
             name: "code",
             about: "code of 1994, 1995 or optimised: times per primitive, where not those of the machine",
             values: KeyValues::Names(&[CODES[0].0, CODES[1].0, CODES[2].0]),
@@ -275,6 +317,7 @@ fn build(settings: &PipelineSettings) -> Arc<dyn Pipeline> {
     Arc::new(Slats {
         copy: chosen(&COPIES, settings.name("copy")).unwrap_or(split.copy),
         binning: chosen(&BINNINGS, settings.name("binning")).unwrap_or(split.binning),
+        lighting: chosen(&LIGHTINGS, settings.name("lighting")).unwrap_or(split.lighting),
         code: chosen(&CODES, settings.name("code")),
     })
 }

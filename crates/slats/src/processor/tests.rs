@@ -1,7 +1,7 @@
 //! A leading processor alone on its board: what it sends, and when, whatever comes back from renderers.
 
 use super::*;
-use pphigs::{DisplayList, DisplayStructure, EyeView, ModelFrame, RegionBinning};
+use pphigs::{DisplayList, DisplayStructure, EyeView, ModelFrame, RegionBinning, Shading};
 use pxpl5_geometry::Culling;
 use pxpl5_gp::{BoardBench, GpBoard, GpEvent, GpTiming};
 use pxpl5_renderer::Layout;
@@ -38,6 +38,7 @@ impl Rig {
             frame_buffers: FRAME_BUFFERS,
             copy,
             binning: RegionBinning::All,
+            shading: Shading::Precomputed,
             layout: Layout::slats(),
             pixels: false,
         };
