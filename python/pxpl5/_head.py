@@ -18,7 +18,8 @@ class Head:
     #: How it moves: a name (``still``, ``pan:DEG_PER_S``, ``slide:M_PER_S``, ``sine:DEG:HZ``, ``pendulum``, ``synthetic:SEED``,
     #: ``walk:M_PER_S``), the path of a recording, a :class:`Motion`, or a callable: time in seconds to x, y, z, w, i, j, k.
     motion: str | Motion | Callable[[float], tuple[float, ...]]
-    #: ``optical``, ``fastrak``, ``flock``, ``flock-patched``, ``3space`` or ``ideal``.
+    #: ``optical``, ``fastrak``, ``fastrak-polled``, ``flock``, ``flock-patched``, ``3space``,
+    #: ``3space-patched`` or ``ideal``.
     tracker: str = "optical"
     #: ``none``, ``velocity``, ``acceleration`` or ``kalman``.
     predict: str = "kalman"

@@ -135,4 +135,8 @@ impl Work for CubePass {
         let made = Surrounding { passes, context: self.context }.run_code(timing, processor)?;
         Ok(made.map_or_else(|| self.by_table(timing), |made| made.span))
     }
+
+    fn vertex_transforms(&self) -> u64 {
+        self.transformed.vertices()
+    }
 }

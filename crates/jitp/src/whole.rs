@@ -40,6 +40,10 @@ impl Work for WholeList<'_> {
         };
         Ok(kept.unwrap_or_else(|| self.by_table(timing)))
     }
+
+    fn vertex_transforms(&self) -> u64 {
+        self.share.counts().vertices() * self.views.len() as u64
+    }
 }
 
 /// The picture whose kernels these are: that of a pipeline that sends everything everywhere, since what is sent where is found later.

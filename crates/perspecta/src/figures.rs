@@ -1,12 +1,30 @@
-//! The SpatialGL paper's figures as rows: what it prints or what follows from it, and what this model has.
+//! The SpatialGL paper's figures. A row ([`Figure`]) compares a number with one that code computes or counts. Numbers that are
+//! inputs of the model, or follow from inputs by arithmetic alone, are [`Definition`]s: they have no verdict.
 
 use crate::timing::PerspectaConfig;
 use parameters::Standing;
 use serde::Serialize;
 use spatialgl::{
-    BinLayout, DENSE_PIXELS, HalfWedge, PIXELS_PER_WORD, SliceClip, SliceVolume, SpatialDisplay, SweptDisplay, Tiling,
-    VolumeStats,
+    BinLayout, HalfWedge, PIXELS_PER_WORD, SliceClip, SpatialDisplay, SweptDisplay, Tiling, VolumeStats, pack_dense,
+    packed_word,
 };
+
+/// A number of the paper that the model takes as an input, or that follows from its inputs by arithmetic alone.
+///
+/// No run can give another value, so it is not compared with anything.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Definition {
+    /// Its number in the specification: P is printed in the paper, D derived from it.
+    pub id: &'static str,
+    /// What it states, in words.
+    pub statement: &'static str,
+    /// The number that this model has, in `unit`.
+    pub value: f64,
+    /// Unit of the value.
+    pub unit: &'static str,
+    /// Whether the value is printed or derived.
+    pub standing: Standing,
+}
 
 /// One figure of the paper beside what the model has.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -70,15 +88,78 @@ pub const CPU_DOUBLES_MONTHS: f64 = 18.0;
 const P: Standing = Standing::Published;
 const D: Standing = Standing::Derived;
 
-/// All figures that follow from the display and the pipeline without drawing anything.
+/// Inputs of the model that the paper prints, and what follows from them by arithmetic.
+#[must_use]
+pub fn definitions() -> Vec<Definition> {
+    let config = PerspectaConfig::PAPERS;
+    let mut all = inputs(&config);
+    all.extend(arithmetic(&config));
+    all.extend(doubling());
+    all
+}
+
+/// A definition; what the paper prints has an id that begins with P.
+fn defined(id: &'static str, statement: &'static str, value: f64, unit: &'static str) -> Definition {
+    Definition { id, statement, value, unit, standing: if id.starts_with('P') { P } else { D } }
+}
+
+/// Bits of a pixel on the GPU: 4 channels of 8 (published, P6).
+const GPU_PIXEL_BITS: f64 = 32.0;
+
+/// Bits of a pixel on the projector: 3 channels of 1 (published, P7).
+const PROJECTOR_PIXEL_BITS: f64 = 3.0;
+
+fn inputs(config: &PerspectaConfig) -> Vec<Definition> {
+    let bin_planes = BinLayout::double_wedges(0.0).planes.len();
+    vec![
+        defined("P1", "slices strobed in a revolution", config.slices as f64, "slices"),
+        defined("P6", "bits of a pixel on the GPU", GPU_PIXEL_BITS, "bits"),
+        defined("P13", "bin planes", bin_planes as f64, "planes"),
+        defined("P14", "stages of binning: vertices, primitives", 2.0, "stages"),
+        defined("P16", "side of a tile", f64::from(Tiling::PAPER.tile.unwrap_or(0)), "pixels"),
+        defined("P18", "slices between stencil clears", f64::from(Tiling::PAPER.batch), "slices"),
+    ]
+}
+
+fn arithmetic(config: &PerspectaConfig) -> Vec<Definition> {
+    let slice = (config.width * config.height) as f64;
+    let pixels = config.slices as f64 * slice;
+    let packed = pixels / f64::from(PIXELS_PER_WORD) * 4.0;
+    let tile = f64::from(Tiling::PAPER.tile.unwrap_or(0));
+    let waste = 100.0 * (1.0 - PROJECTOR_PIXEL_BITS / GPU_PIXEL_BITS);
+    let stores = 2.0 * pixels * PROJECTOR_PIXEL_BITS / 8.0;
+    vec![
+        defined("P8", "waste of 32-bit pixels (printed: over 90 %)", waste, "%"),
+        defined("P11", "image data of a frame (printed: 100s of MB)", pixels * 4.0 / 1e6, "MB"),
+        defined("D5", "voxels of 198 planes", pixels / 2.0, "voxels"),
+        defined("D7", "a volume in 32-bit pixels", pixels * 4.0, "B"),
+        defined("D7", "a slice in 32-bit pixels", slice * 4.0, "B"),
+        defined("D7", "a volume packed", packed, "B"),
+        defined("D7", "a volume packed, 10 % of its tiles", packed * 0.1 / 1e6, "MB"),
+        defined("D7", "a tile packed", tile * tile / f64::from(PIXELS_PER_WORD) * 4.0, "B"),
+        defined("D7", "two frame stores of 3-bit pixels", stores / 1e6, "MB"),
+    ]
+}
+
+/// P20, and D12: equal times of CPU and GPU today, and the CPU's share in 18 months.
+fn doubling() -> Vec<Definition> {
+    let share = |months: f64| 100.0 / (1.0 + libm::exp2(-CPU_DOUBLES_MONTHS / months));
+    let [least, most] = GPU_DOUBLES_MONTHS;
+    vec![
+        defined("P20", "months in which a GPU doubles, at least", least, "months"),
+        defined("P20", "months in which a GPU doubles, at most", most, "months"),
+        defined("P20", "months in which a CPU doubles", CPU_DOUBLES_MONTHS, "months"),
+        defined("D12", "share of the CPU in 18 months, GPU doubling in 9", share(most), "%"),
+        defined("D12", "share of the CPU in 18 months, GPU doubling in 6", share(least), "%"),
+    ]
+}
+
+/// Figures that the model computes without drawing anything: its trigonometry, its bins and the thickness of its slabs.
 #[must_use]
 pub fn formulas() -> Vec<Figure> {
     let config = PerspectaConfig::PAPERS;
     let wedge = HalfWedge::new(config.slices as u32, config.width as f64 / 2.0);
-    let mut figures = printed(&config);
-    figures.extend(passes());
-    figures.extend(geometry(&config, wedge));
-    figures.extend(amounts(&config));
+    let mut figures = geometry(&config, wedge);
     figures.extend(means(&config, wedge));
     figures
 }
@@ -95,155 +176,41 @@ pub fn measured(stats: &VolumeStats) -> Vec<Figure> {
     vec![occupancy, binned]
 }
 
-fn printed(config: &PerspectaConfig) -> Vec<Figure> {
-    let word_bits = 32.0;
-    let pixel_bits = 3.0;
-    let waste = 100.0 * (1.0 - pixel_bits / word_bits);
-    let bytes = (config.slices * config.width * config.height * 4) as f64 / 1e6;
-    let tiling = Tiling::PAPER;
+/// Words that the packing functions make of white pixels: ten a word (P10), and the waste of both packings (D6).
+#[must_use]
+pub fn packing() -> Vec<Figure> {
+    let white = |pixels: usize| pack_dense(&vec![0b111; pixels]);
+    let fits = (1..=32).take_while(|pixels| white(*pixels).len() == 1).count();
+    let waste = |word: u32| 100.0 * (1.0 - f64::from(word.count_ones()) / 32.0);
+    let dense = white(fits).first().map_or(f64::NAN, |word| waste(*word));
     vec![
-        row("P1", "slices strobed in a revolution", "slices", P, (396.0, 0.0), config.slices as f64),
-        Figure { interval: [90.0, 100.0], ..row("P8", "waste of 32-bit pixels: over", "%", P, (90.0, 0.0), waste) },
-        row("P9", "pixels in a packed word", "pixels", P, (8.0, 0.0), f64::from(PIXELS_PER_WORD)),
-        row("P10", "3-bit pixels that a word could hold", "pixels", P, (10.0, 0.0), DENSE_PIXELS as f64),
-        Figure {
-            interval: [100.0, 1000.0],
-            ..row("P11", "image data a frame: 100s of MB", "MB", P, (550.0, 0.0), bytes)
-        },
-        row("P13", "bin planes", "planes", P, (4.0, 0.0), BinLayout::double_wedges(0.0).planes.len() as f64),
-        row("P16", "side of a tile", "pixels", P, (32.0, 0.0), f64::from(tiling.tile.unwrap_or(0))),
-        row("P18", "slices between stencil clears", "slices", P, (4.0, 0.0), f64::from(tiling.batch)),
+        row("P10", "3-bit pixels that a densely packed word holds", "pixels", P, (10.0, 0.0), fits as f64),
+        row("D6", "waste of a packed word", "%", D, (25.0, 0.0), waste(packed_word(0xFF, 0xFF, 0xFF))),
+        row("D6", "waste of a densely packed word", "%", D, (6.25, 0.0), dense),
     ]
-}
-
-/// P5: how often the scene is drawn for a slice.
-fn passes() -> Vec<Figure> {
-    let published = [
-        (SliceClip::UserPlanes, 2.0, "passes with user clip planes"),
-        (SliceClip::ShaderPlanes, 1.0, "passes with shader clip planes"),
-        (SliceClip::Tapered(0.5), 2.0, "passes with a taper"),
-        (SliceClip::Parallel(0.5), 1.0, "passes with parallel planes by evaluation bias"),
-        (SliceClip::Hyperbolic(0.25), 1.0, "passes with a hyperbola"),
-    ];
-    let rows = published.into_iter().filter_map(|(clip, passes, statement)| {
-        Some(row("P5", statement, "passes", P, (passes, 0.0), f64::from(volume_of(clip)?.passes())))
-    });
-    rows.collect()
-}
-
-fn volume_of(clip: SliceClip) -> Option<SliceVolume> {
-    let display = display(clip)?;
-    Some(display.views().first()?.volume)
-}
-
-fn display(clip: SliceClip) -> Option<SweptDisplay> {
-    PerspectaConfig::PAPERS.swept(clip, spatialgl::Projection::Orthographic).ok()
 }
 
 fn geometry(config: &PerspectaConfig, wedge: HalfWedge) -> Vec<Figure> {
-    let pitch = 360.0 / config.slices as f64;
-    let served = display(SliceClip::ShaderPlanes).map_or(0, |display| {
+    let exact = config.swept(SliceClip::ShaderPlanes, spatialgl::Projection::Orthographic).ok();
+    let served = |display: SweptDisplay| {
         let distinct = &display.views()[..config.slices as usize / 2];
         distinct.iter().filter(|view| view.bins & 1 == 1).count()
-    });
-    let rim = SliceClip::ShaderPlanes.half_thickness(wedge, wedge.radius);
-    let spacing = wedge.radius * pitch.to_radians();
+    };
+    let served = exact.map_or(0, served);
     vec![
-        row("D1", "slice pitch", "deg", D, (0.909_091, 5e-7), pitch),
-        row("D1", "sine of half of it", "1", D, (0.007_933_231_6, 5e-11), wedge.sin),
+        row("D1", "sine of half the slice pitch", "1", D, (0.007_933_231_6, 5e-11), wedge.sin),
         row("D1", "cosine of half of it", "1", D, (0.999_968_531_4, 5e-11), wedge.cos),
         row("D1", "tangent of half of it", "1", D, (0.007_933_481_2, 5e-11), wedge.tan),
-        row("D2", "distinct planes", "planes", D, (198.0, 0.0), config.slices as f64 / 2.0),
-        row("D2", "volumes a second at 600 rpm", "Hz", D, (20.0, 0.0), at_600_rpm(config).volume_hz()),
-        row("D3", "half thickness at the rim", "px", D, (3.046_456_8, 5e-8), rim),
-        row("D4", "radius where the slab is one pixel thick", "px", D, (63.02, 5e-3), 0.5 / wedge.tan),
-        row(
-            "D5",
-            "voxels of 198 planes",
-            "voxels",
-            D,
-            (116_785_152.0, 0.0),
-            (config.slices / 2 * config.width * config.height) as f64,
-        ),
-        row("D5", "spacing of voxels around the axis at the rim", "px", D, (6.09, 5e-3), spacing),
         row("D9", "planes that a double wedge serves", "planes", D, (50.0, 0.0), served as f64),
-    ]
-}
-
-fn at_600_rpm(config: &PerspectaConfig) -> PerspectaConfig {
-    PerspectaConfig { spin_rpm: 600, ..*config }
-}
-
-fn amounts(config: &PerspectaConfig) -> Vec<Figure> {
-    let pixels = (config.slices * config.width * config.height) as f64;
-    let word_pixels = f64::from(PIXELS_PER_WORD);
-    let packed = pixels / word_pixels * 4.0;
-    let grid = Tiling::PAPER.grid([config.width as u32, config.height as u32]);
-    let tiles = f64::from(grid.tiles());
-    let slices = config.slices as f64;
-    let batch = f64::from(Tiling::PAPER.batch);
-    vec![
-        row("D6", "waste of a packed word", "%", D, (25.0, 0.0), 100.0 * (1.0 - 3.0 * word_pixels / 32.0)),
-        row("D6", "waste of ten pixels a word", "%", D, (6.25, 0.0), 100.0 * (1.0 - 3.0 * DENSE_PIXELS as f64 / 32.0)),
-        row("D7", "a volume in 32-bit pixels", "B", D, (934_281_216.0, 0.0), pixels * 4.0),
-        row("D7", "a volume packed", "B", D, (116_785_152.0, 0.0), packed),
-        row("D7", "a slice in 32-bit pixels", "B", D, (2_359_296.0, 0.0), pixels * 4.0 / slices),
-        row("D7", "a volume packed, 10 % of its tiles", "MB", D, (11.68, 5e-3), packed * 0.1 / 1e6),
-        row("D7", "a slice packed", "B", D, (294_912.0, 0.0), packed / slices),
-        row("D7", "a tile packed", "B", D, (512.0, 0.0), grid.words(0) as f64 * 4.0),
-        row("D7", "two frame stores of 3-bit pixels", "MB", D, (175.2, 0.05), 2.0 * pixels * 3.0 / 8.0 / 1e6),
-        row("D8", "tiles of a slice", "tiles", D, (576.0, 0.0), tiles),
-        row("D8", "queries of a volume, slice by slice", "queries", D, (228_096.0, 0.0), tiles * slices),
-        row("D8", "queries of a volume, in batches", "queries", D, (57_024.0, 0.0), tiles * slices / batch),
-        row("D8", "stencil clears of a volume, slice by slice", "clears", D, (396.0, 0.0), slices),
-        row("D8", "stencil clears, in batches", "clears", D, (99.0, 0.0), slices / batch),
     ]
 }
 
 fn means(config: &PerspectaConfig, wedge: HalfWedge) -> Vec<Figure> {
     let planes = config.slices as f64 / 2.0;
-    // Equal times today, and what is left of them in 18 months.
-    let share = |months: f64| {
-        let cpu = 0.5f64;
-        let gpu = libm::exp2(-CPU_DOUBLES_MONTHS / months);
-        100.0 * cpu / (cpu + gpu)
-    };
+    let [prism, hyperbola] = [SliceClip::Prism, SliceClip::Hyperbolic(0.25)].map(|clip| mean(clip, wedge, planes));
     vec![
-        row("P20", "months in which a GPU doubles, at least", "months", P, (6.0, 0.0), GPU_DOUBLES_MONTHS[0]),
-        row("P20", "months in which a GPU doubles, at most", "months", P, (9.0, 0.0), GPU_DOUBLES_MONTHS[1]),
-        row("P20", "months in which a CPU doubles", "months", P, (18.0, 0.0), CPU_DOUBLES_MONTHS),
-        row(
-            "D10",
-            "planes that show a point, mean over the disc, prism",
-            "planes",
-            D,
-            (2.0, 5e-4),
-            mean(SliceClip::Prism, wedge, planes),
-        ),
-        row(
-            "D11",
-            "the same of the hyperbola",
-            "planes",
-            D,
-            (1.081, 5e-4),
-            mean(SliceClip::Hyperbolic(0.25), wedge, planes),
-        ),
-        row(
-            "D12",
-            "share of the CPU in 18 months, GPU doubling in 9",
-            "%",
-            D,
-            (67.0, 0.5),
-            share(GPU_DOUBLES_MONTHS[1]),
-        ),
-        row(
-            "D12",
-            "share of the CPU in 18 months, GPU doubling in 6",
-            "%",
-            D,
-            (80.0, 0.5),
-            share(GPU_DOUBLES_MONTHS[0]),
-        ),
+        row("D10", "planes that show a point, mean over the disc, prism", "planes", D, (2.0, 5e-4), prism),
+        row("D11", "the same of the hyperbola", "planes", D, (1.081, 5e-4), hyperbola),
     ]
 }
 
@@ -260,4 +227,32 @@ fn mean(clip: SliceClip, wedge: HalfWedge, planes: f64) -> f64 {
         })
         .sum();
     planes * area / (std::f64::consts::PI * radius * radius)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers that the paper prints, and D-numbers by hand: 396 x 768 x 768 pixels.
+    #[test]
+    fn definitions_are_the_papers_numbers() {
+        let all = definitions();
+        let values = |id: &str| all.iter().filter(|one| one.id == id).map(|one| one.value).collect::<Vec<_>>();
+        for (id, expected) in [("P1", 396.0), ("P6", 32.0), ("P8", 90.625), ("P13", 4.0), ("P16", 32.0), ("P18", 4.0)] {
+            assert_eq!(values(id), [expected], "{id}");
+        }
+        assert_eq!(values("P20"), [6.0, 9.0, 18.0]);
+        assert_eq!(values("D5"), [116_785_152.0]);
+        let [ref bytes @ .., stores] = values("D7")[..] else { panic!("D7 has numbers") };
+        assert_eq!(bytes, [934_281_216.0, 2_359_296.0, 116_785_152.0, 11.678_515_2, 512.0]);
+        assert!((stores - 175.177_728).abs() < 1e-9);
+        assert!(values("D12").iter().zip([200.0 / 3.0, 80.0]).all(|(value, expected)| (value - expected).abs() < 1e-9));
+    }
+
+    #[test]
+    fn what_code_computes_and_packs_is_what_was_derived() {
+        for figure in formulas().into_iter().chain(packing()) {
+            assert!(figure.is_met(), "{figure:?}");
+        }
+    }
 }

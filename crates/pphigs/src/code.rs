@@ -107,6 +107,10 @@ impl Work for Transforming<'_> {
         }
         Ok(span)
     }
+
+    fn vertex_transforms(&self) -> u64 {
+        self.passes.iter().map(|pass| pass.transformed().vertices()).sum()
+    }
 }
 
 impl Transforming<'_> {

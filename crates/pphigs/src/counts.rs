@@ -15,4 +15,10 @@ impl PrimitiveCounts {
     pub const fn total(self) -> u32 {
         self.triangles + self.spheres
     }
+
+    /// Three corners of each triangle, and the centre of each sphere.
+    #[must_use]
+    pub const fn vertices(self) -> u64 {
+        3 * self.triangles as u64 + self.spheres as u64
+    }
 }

@@ -65,6 +65,7 @@ fn json_text(figures: &Figures) -> String {
         "figures": figures.rows,
         "figures_with_times_of_code": figures.of_code,
         "families": figures.families,
+        "groups": figures.groups,
         "intervals": figures.intervals,
     });
     format!("{object:#}\n")
@@ -72,6 +73,10 @@ fn json_text(figures: &Figures) -> String {
 
 fn text(figures: &Figures) -> String {
     let mut text = own(&figures.rows);
+    let _ = writeln!(text, "\nmean absolute error of the free checks: {:.1} %", mean_error_percent(&figures.rows));
+    for group in &figures.groups {
+        let _ = write!(text, "\n{}\n{}", group.title, own(&group.rows));
+    }
     figures.families.iter().for_each(|family| text.push_str(&of_family(family)));
     text
 }
@@ -122,6 +127,5 @@ fn own(rows: &[FigureRow]) -> String {
             row.id, row.published, row.simulated, row.unit, row.error_percent, row.standing, row.statement
         );
     }
-    let _ = writeln!(text, "\nmean absolute error of the free checks: {:.1} %", mean_error_percent(rows));
     text
 }

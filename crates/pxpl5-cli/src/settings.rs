@@ -49,7 +49,7 @@ pub(crate) struct SettingArgs {
     /// Metres from the eye at which pixel errors are judged; default where the scene's content lies.
     #[arg(long, value_name = "METRES")]
     judge_at: Option<f64>,
-    /// Its tracker: optical, fastrak, flock, flock-patched, 3space or ideal; default optical.
+    /// Its tracker: optical, fastrak, fastrak-polled, flock, flock-patched, 3space, 3space-patched or ideal; default optical.
     #[arg(long)]
     tracker: Option<String>,
     /// Prediction: none, velocity, acceleration or kalman; default kalman.

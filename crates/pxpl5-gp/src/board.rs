@@ -89,6 +89,7 @@ impl GpBoard {
             cpu: Cpu::default(),
             memory: Memory::new(node, timing.memory_bytes, timing.bin_bytes),
             processor: None,
+            vertex_transforms: 0,
             inbox: VecDeque::new(),
             batches: VecDeque::new(),
             in_flight: Vec::new(),
@@ -252,6 +253,12 @@ impl GpBoard {
     #[must_use]
     pub fn busy(&self) -> Span {
         self.shared.borrow().cpu.busy()
+    }
+
+    /// Vertices that its programs have transformed since the start: see [`Work::vertex_transforms`](crate::Work::vertex_transforms).
+    #[must_use]
+    pub fn vertex_transforms(&self) -> u64 {
+        self.shared.borrow().vertex_transforms
     }
 
     /// Most bytes of memory ever in use.

@@ -78,6 +78,8 @@ pub(crate) struct Shared {
     pub(crate) memory: Memory,
     /// Where the time of work comes from code.
     pub(crate) processor: Option<Box<Processor>>,
+    /// Vertices transformed since the start.
+    pub(crate) vertex_transforms: u64,
     pub(crate) inbox: VecDeque<Received>,
     pub(crate) batches: VecDeque<Batch>,
     /// Receivers of the messages of the batch being sent that have not been accepted, by place in the batch.

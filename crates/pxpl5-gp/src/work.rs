@@ -16,6 +16,11 @@ pub trait Work {
     ///
     /// [`ProcessorFault`] when the code does not come to its end.
     fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault>;
+
+    /// Vertices that it transforms: each corner of a triangle and each centre of a sphere, once for each view. Most work transforms none.
+    fn vertex_transforms(&self) -> u64 {
+        0
+    }
 }
 
 impl Gp {
@@ -27,6 +32,7 @@ impl Gp {
     pub async fn work(&self, work: &impl Work) -> Result<(), Fault> {
         let span = {
             let shared = &mut *self.shared.borrow_mut();
+            shared.vertex_transforms += work.vertex_transforms();
             match &mut shared.processor {
                 Some(processor) => work.by_code(&shared.timing, processor)?,
                 None => work.by_table(&shared.timing),

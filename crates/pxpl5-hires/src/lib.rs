@@ -23,7 +23,9 @@ parameters::parameter_table! {
         height: 1024, "lines", Published, 1024..=1024 in 1..=1408, "F89";
         /// Scans of the whole frame a second.
         refresh_hz: 72, "Hz", Assumed, 60..=76 in 1..=1000, "monitors of that size in those years";
-        /// Time of one word at the port.
+        /// Ports of a board on the ring; regions take them in turn.
+        ports: 1, "ports", Assumed, 1..=8 in 1..=8, "no source says how many. 1 as each NTSC frame buffer (TR94): then the 80 regions of a picture take 66.6 ms, five scans, and no more than 14.4 pictures a second go through. 8 is as many as the ring has channels";
+        /// Time of one word at a port.
         word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94: 20 Mwords/s per channel";
     }
 }
@@ -35,6 +37,7 @@ struct HiRes {
     frame: Clock,
     nodes: Vec<NodeId>,
     surfaces: Vec<Surface>,
+    /// One for each surface; port n belongs to board n modulo their number.
     boards: Vec<DoubleBuffer>,
     scans: u64,
 }
@@ -72,14 +75,17 @@ impl Display for HiRes {
                     }
                 }
             }
-            DisplayEvent::Delivered { port, body } => match self.boards[port].receive(body, context.now()) {
-                BufferReceipt::Region(pixels, first_part_at) => {
-                    let (target, last_part_at) = (pixels.target, context.now());
-                    let region = DisplayOutput::RegionArrived { surface: port, target, first_part_at, last_part_at };
-                    context.output(at, region);
+            DisplayEvent::Delivered { port, body } => {
+                let surface = port % self.boards.len();
+                match self.boards[surface].receive(body, context.now()) {
+                    BufferReceipt::Region(pixels, first_part_at) => {
+                        let (target, last_part_at) = (pixels.target, context.now());
+                        let region = DisplayOutput::RegionArrived { surface, target, first_part_at, last_part_at };
+                        context.output(at, region);
+                    }
+                    BufferReceipt::Part | BufferReceipt::Fault => {}
                 }
-                BufferReceipt::Part | BufferReceipt::Fault => {}
-            },
+            }
             DisplayEvent::Timer(_) => {}
         }
     }
@@ -132,11 +138,21 @@ impl DisplayConfig for HiResConfig {
         vec![("hires", self)]
     }
 
+    fn ports(&self, pictures: usize) -> usize {
+        pictures * self.ports as usize
+    }
+
+    /// The first ports of all boards come first, then the second ones.
     fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError> {
         DisplayConfig::check(self)?;
+        let boards = nodes.len() / self.ports as usize;
+        if boards == 0 || !nodes.len().is_multiple_of(self.ports as usize) {
+            let (ports, found) = (self.ports, nodes.len());
+            return Err(DisplayError(format!("hires.ports: expected a multiple of {ports} nodes, found {found}")));
+        }
         let frame = Clock::from_hz(self.refresh_hz).ok_or_else(|| DisplayError("hires.refresh_hz".to_owned()))?;
-        let surfaces = Surface::of_frame_buffers(nodes.len(), self.width as u32, self.height as u32);
-        let boards = vec![DoubleBuffer::new(self.width as u32, self.height as u32); nodes.len()];
+        let surfaces = Surface::of_frame_buffers(boards, self.width as u32, self.height as u32);
+        let boards = vec![DoubleBuffer::new(self.width as u32, self.height as u32); boards];
         Ok(Box::new(HiRes { config: *self, frame, nodes: nodes.to_vec(), surfaces, boards, scans: 0 }))
     }
 

@@ -159,3 +159,15 @@ fn what_a_port_cannot_use_is_counted() {
     rig.run();
     assert_eq!(rig.display.faults(), (2, Some("expected buffer 0 or 1, found 2".to_owned())));
 }
+
+/// Regions that come to either port of a board are its own, and ports that do not divide among boards are refused.
+#[test]
+fn a_board_with_two_ports_takes_regions_at_both() {
+    let config = HiResConfig { ports: 2, ..HiResConfig::PAPERS };
+    assert_eq!((config.ports(1), config.ports(2)), (2, 4));
+    let nodes = [5, 6, 7, 8].map(NodeId);
+    let display = config.build(&nodes).expect("two boards of two ports");
+    assert_eq!((display.surfaces().len(), display.nodes().len()), (2, 4));
+    let error = config.build(&nodes[..3]).expect_err("three ports").to_string();
+    assert_eq!(error, "hires.ports: expected a multiple of 2 nodes, found 3");
+}

@@ -187,7 +187,7 @@ pub(crate) fn recording_of(contents: impl Read, name: &str, replay: &Replay) -> 
 }
 
 /// Every tracker that [`tracker`] knows, as help and errors say it.
-pub const TRACKERS: &str = "optical, fastrak, flock, flock-patched, 3space or ideal";
+pub const TRACKERS: &str = "optical, fastrak, fastrak-polled, flock, flock-patched, 3space, 3space-patched or ideal";
 
 /// A tracker of [`TRACKERS`].
 ///
@@ -207,9 +207,11 @@ pub fn tracker_by(tables: &Tables, name: &str) -> Result<(TrackerConfig, &'stati
     Ok(match name {
         "optical" => (TrackerConfig::optical_ceiling_by(tables), "optical"),
         "fastrak" => (TrackerConfig::fastrak_by(tables), "fastrak"),
+        "fastrak-polled" => (TrackerConfig::fastrak_by(tables).with_polling_by(tables), "fastrak"),
         "flock" => (TrackerConfig::flock_of_birds_by(tables), "flock"),
         "flock-patched" => (TrackerConfig::flock_of_birds_on_patched_host_by(tables), "flock"),
         "3space" => (TrackerConfig::polhemus_3space_by(tables), "space"),
+        "3space-patched" => (TrackerConfig::polhemus_3space_by(tables).without_polling(), "space"),
         "ideal" => (TrackerConfig::ideal_by(tables), "ideal"),
         _ => return Err(MotionError::Unknown { what: "tracker", found: name.to_owned(), expected: TRACKERS }),
     })

@@ -10,7 +10,8 @@
 //! within the range that gives the figure exactly. So the interval of a fitted figure says how much it would be off
 //! if nothing were fitted anew.
 //!
-//! Of the figure that the pendulum rig measures, which needs events, the photodiode's place and the readings are moved, and nothing else.
+//! Figures that need events are moved by fewer: the depth of the FIFO and the channels of a sender, of which no source says anything;
+//! that of the pendulum rig by the photodiode's place and the readings too.
 
 use crate::figures::{Bench, FIGURES, FigureRow, PHOTODIODE_LINE, Reading, WITHOUT_CLOSED_FORM};
 use parameters::Standing;
@@ -148,7 +149,31 @@ pub fn intervals(bench: &Bench) -> Vec<Interval> {
         intervals.push(interval);
     }
     intervals.extend(of_rig(&bench));
+    intervals.extend(WITH_A_TRACKER.iter().filter_map(|id| with_events(&bench, id)));
     intervals
+}
+
+/// Figures of a tracker and a pipeline together: their runs have events at every level.
+const WITH_A_TRACKER: [&str; 2] = ["19", "19b"];
+
+/// Parameters of the machine without a source, which figures that need events are moved by too.
+const OF_EVENTS: [&str; 2] = ["renderer.fifo_words", "ring.source_channels"];
+
+/// The interval of a figure that needs events: [`OF_EVENTS`] at both ends of their ranges, one at a time.
+fn with_events(bench: &Bench, id: &'static str) -> Option<Interval> {
+    let variations: Vec<_> = variations().into_iter().filter(|v| OF_EVENTS.contains(&v.path.as_str())).collect();
+    let nominal = bench.measure(id).ok()?.value;
+    let ends = ends_with_events(bench, id, &variations, nominal);
+    Some(interval(id, nominal, &ends, vec![nominal], &variations))
+}
+
+/// A figure at both ends of each range, one at a time; an end that leaves it without a value counts as not moved.
+fn ends_with_events(bench: &Bench, id: &str, variations: &[Variation], nominal: f64) -> Vec<f64> {
+    let ends: Vec<_> = variations.iter().flat_map(|v| [(v, v.range.0), (v, v.range.1)]).collect();
+    crate::parallel::map(&ends, |(v, value)| {
+        let changes = bench.changes.iter().cloned().chain([(v.path.clone(), *value)]).collect();
+        Bench { changes, ..bench.clone() }.measure(id).map_or(nominal, |measured| measured.value)
+    })
 }
 
 /// The figure that is measured from outside.
@@ -157,13 +182,10 @@ const OF_RIG: &str = "17";
 /// What the photodiode's place on the screen and other readings do to the figure that it sees, with events.
 fn of_rig(bench: &Bench) -> Option<Interval> {
     let value = |bench: Bench| Some(bench.measure(OF_RIG).ok()?.value);
-    let variations = [photodiode_line()?];
+    let of_machine = variations().into_iter().filter(|v| OF_EVENTS.contains(&v.path.as_str()));
+    let variations: Vec<_> = [photodiode_line()?].into_iter().chain(of_machine).collect();
     let nominal = value(bench.clone())?;
-    let [Variation { range: (low, high), .. }] = variations;
-    let ends = crate::parallel::map(&[low, high], |line| {
-        let changes = bench.changes.iter().cloned().chain([(PHOTODIODE_LINE.to_owned(), *line)]).collect();
-        value(Bench { changes, ..bench.clone() }).unwrap_or(nominal)
-    });
+    let ends = ends_with_events(bench, OF_RIG, &variations, nominal);
     let mut interval = interval(OF_RIG, nominal, &ends, vec![nominal], &variations);
     let neighbours = bench.reading.neighbours();
     let read = crate::parallel::map(&neighbours, |reading| value(bench.with(*reading)));
@@ -311,7 +333,8 @@ mod tests {
     #[test]
     fn the_figure_of_the_rig_moves_with_the_photodiode_as_the_beam_does() {
         let interval = of_rig(&Bench::new(Level::Analytic)).expect("it is measured");
-        let [low, high] = interval.one_at_a_time;
+        let line = interval.effects.iter().find(|effect| effect.path == PHOTODIODE_LINE).expect("it moves");
+        let [low, high] = line.ends;
         assert!((high - low - 239.0 * 0.063_556).abs() < 0.01, "{low} to {high}");
         assert!(low < interval.nominal && interval.nominal < high);
         let mut rows = [FigureRow::new(

@@ -6,7 +6,8 @@ use pxpl5_machine::{MachineConfig, Parameter};
 use pxpl5_measure::Measured;
 use pxpl5_run::{Pixels, Registry};
 
-const TRACKERS: [&str; 6] = ["optical", "fastrak", "flock", "flock-patched", "3space", "ideal"];
+const TRACKERS: [&str; 8] =
+    ["optical", "fastrak", "fastrak-polled", "flock", "flock-patched", "3space", "3space-patched", "ideal"];
 
 const SMALL: [&str; 4] = ["pipeline=slats", "machine.preset=slats", "scene=full-screen:2", "fields=24"];
 
@@ -127,6 +128,26 @@ fn a_tracker_that_is_later_makes_head_to_light_longer_by_as_much() {
     assert!((longer - 30.0).abs() < 1.0, "{longer} ms for 30 ms");
 }
 
+/// Mean time from head to the arrival of a report, ms.
+fn tracking_ms(settings: &[&str]) -> f64 {
+    let head = ["head.motion=pan:40", "head.predict=none", "fields=240"];
+    let plan = plan(&[&head[..], settings].concat());
+    let outcome = plan.experiment(plan.load_scene().expect("built in")).run().expect("it is small");
+    outcome.report().head.expect("a head").end_to_end.tracking_ms
+}
+
+/// Reports wait half of a poll in the mean; the newest of those that one poll finds waits for less.
+#[test]
+fn the_kernels_poll_delays_the_fastrak_too() {
+    let patched = tracking_ms(&["head.tracker=fastrak"]);
+    let [usual, longer] = ["20", "100"].map(|poll| {
+        let poll = format!("tracking.host.poll={poll}");
+        tracking_ms(&["head.tracker=fastrak-polled", &poll])
+    });
+    assert!(usual > patched && usual < patched + 20.0, "{patched} ms patched, {usual} ms polled every 20 ms");
+    assert!(longer != usual, "{longer} ms polled every 100 ms");
+}
+
 #[test]
 fn a_number_of_a_tracker_that_nobody_could_have_is_refused_with_what_was_expected() {
     for (settings, says) in [
@@ -139,6 +160,14 @@ fn a_number_of_a_tracker_that_nobody_could_have_is_refused_with_what_was_expecte
         (
             &["head.motion=still", "tracking.fastrak.rate=60"],
             "tracking.fastrak.rate does not apply to head.tracker = optical",
+        ),
+        (
+            &["head.motion=still", "head.tracker=fastrak", "tracking.host.poll=20"],
+            "tracking.host.poll does not apply to head.tracker = fastrak, whose host is patched and does not poll; fastrak-polled",
+        ),
+        (
+            &["head.motion=still", "head.tracker=flock", "tracking.host.byte_bits=11"],
+            "tracking.host.byte_bits does not apply to head.tracker = flock, whose latency includes the cable",
         ),
         (&["tracking.optical.rate=60"], "head.motion is missing"),
         (&["i860.dram.first_hit=1000001"], "i860.dram.first_hit must be 0 to 1000000, found 1000001"),

@@ -103,6 +103,7 @@ impl Machine {
                 observation: crate::Observation::default(),
                 hash: pxpl5_sim::TraceHash::default(),
                 events: 0,
+                vertex_transforms: 0,
             },
             queue: EventQueue::new(),
             contexts: Contexts::default(),
@@ -169,6 +170,7 @@ impl Machine {
     pub fn into_record(mut self) -> Record {
         self.finish_pixels();
         self.record.events = self.queue.events_taken();
+        self.record.vertex_transforms = self.processors.iter().map(|board| board.vertex_transforms()).sum();
         self.record
     }
 

@@ -22,6 +22,7 @@ pub struct Record {
     pub(crate) observation: Observation,
     pub(crate) hash: TraceHash,
     pub(crate) events: u64,
+    pub(crate) vertex_transforms: u64,
 }
 
 impl Record {
@@ -145,5 +146,11 @@ impl Record {
     #[must_use]
     pub const fn events(&self) -> u64 {
         self.events
+    }
+
+    /// Vertices that graphics processors transformed in the whole run: each corner of a triangle and each centre of a sphere, once for each view.
+    #[must_use]
+    pub const fn vertex_transforms(&self) -> u64 {
+        self.vertex_transforms
     }
 }

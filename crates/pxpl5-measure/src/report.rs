@@ -96,6 +96,8 @@ pub struct Report {
     pub trace_hash: String,
     /// Events of the simulation that were handled.
     pub events: u64,
+    /// Vertices that graphics processors transformed: each corner of a triangle and each centre of a sphere, once for each view.
+    pub vertex_transforms: u64,
     /// Time that the run took on this host; nothing on a host without a clock.
     pub host_seconds: Option<f64>,
 }
@@ -216,6 +218,7 @@ impl Report {
             arp: FacesReport::of(outcome),
             trace_hash: String::new(),
             events: record.events(),
+            vertex_transforms: record.vertex_transforms(),
             host_seconds: outcome.host_seconds(),
         };
         report.hash_statistics(record.trace_hash());

@@ -30,7 +30,7 @@ parameters::parameter_table! {
         /// What a finished region needs of it until it is copied.
         kept_bits: 32, "bits", Derived, 32..=256 in 1..=MAX, "its 24 bits of colour, moved in blocks of 32 (F89); 256 if all 208 bits of a pixel were kept";
         /// Depth of the input FIFO.
-        fifo_words: 448, "words", Assumed, 400..=512 in 128..=1_048_576, "no source. It was fitted to the 56.5 ms of a trivial scene (TR94) while renderers kept one region, and does not move that any more";
+        fifo_words: 448, "words", Assumed, 256..=2048 in 128..=1_048_576, "no source gives it. Range: FIFO chips of 9 bits as sold from 1988 to 1990, four of them for a port of 32 bits, had 256, 512, 1,024 or 2,048 words (recollected). The value was once fitted to the 56.5 ms of a trivial scene (TR94) while renderers kept one region; it does not move that any more and is kept, since no source gives a better one";
     }
 }
 

@@ -15,7 +15,7 @@ parameters::parameter_table! {
         /// Channels, each carrying one message at a time.
         channels: 8, "channels", Published, 8..=8 in 1..=64, "TR94";
         /// Channels that one board can send on at a time, to different receivers.
-        source_channels: 2, "channels", Derived, 1..=2 in 1..=64, "a GP's memory bus: 64 bits every second clock of 40 MHz are 160 MB/s, two channels of 80 MB/s; less while the processor itself needs the bus. Other boards have at most a copy and its acknowledgement under way";
+        source_channels: 2, "channels", Assumed, 1..=2 in 1..=64, "no source gives it. At most 2: a GP's memory bus has 64 bits every second clock of 40 MHz, 160 MB/s, which are two channels of 80 MB/s. At least 1: the processor itself needs the bus too. Other boards have at most a copy and its acknowledgement under way";
         /// Channels that messages to receivers with a FIFO may take together; the others stay for receivers that never stall.
         fifo_channels: 6, "channels", Assumed, 5..=7 in 1..=64, "the machine ran with 20 renderers: if full FIFOs could hold all 8 channels, the renderers' pixels would wait for them for ever; one channel for each of two frame buffers";
     }

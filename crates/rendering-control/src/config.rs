@@ -16,8 +16,10 @@ pub struct RenderingControlConfig {
     pub slaves: Vec<NodeId>,
     /// Nodes of the renderers, at least one.
     pub renderers: Vec<NodeId>,
-    /// Node of the one frame buffer of a mono picture, or of the left and the right eye's.
+    /// Node of the one frame buffer of a mono picture, or of the left and the right eye's: the first port of each.
     pub frame_buffers: Vec<NodeId>,
+    /// All ports of the frame buffers: the first one of each, then the second ones. Regions take those of their eye in turn.
+    pub frame_buffer_ports: Vec<NodeId>,
     /// What is drawn of each eye.
     pub picture: Picture,
     /// Finished regions that a renderer keeps in its backing store while their frame buffer is not available, and goes on with the
@@ -63,13 +65,26 @@ impl RenderingControlConfig {
     pub(crate) fn target(&self, drawing: EyeDrawing, region: RegionId) -> CopyTarget {
         let frame = self.frame_of(drawing);
         CopyTarget {
-            frame_buffer: self.frame_buffers[self.eye_of(drawing).index()],
+            frame_buffer: self.port(self.eye_of(drawing), region),
             buffer: Self::buffer_of(frame),
             lines: Lines::Frame,
             grid: self.grid(),
             region,
             picture: frame,
         }
+    }
+
+    /// The port of an eye's frame buffer that takes a region.
+    fn port(&self, eye: SurfaceId, region: RegionId) -> NodeId {
+        let eyes = self.frame_buffers.len();
+        let of_an_eye = (self.frame_buffer_ports.len() / eyes).max(1);
+        self.frame_buffer_ports[usize::from(region.0) % of_an_eye * eyes + eye.index()]
+    }
+
+    /// The eye whose frame buffer has a port; `None` for any other node.
+    pub(crate) fn eye_at(&self, port: NodeId) -> Option<usize> {
+        let place = self.frame_buffer_ports.iter().position(|node| *node == port)?;
+        Some(place % self.frame_buffers.len())
     }
 
     /// The primitives that slave `index` holds.

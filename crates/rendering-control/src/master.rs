@@ -302,7 +302,7 @@ impl RegionMaster {
     }
 
     fn note_copied(&mut self, frame_buffer: NodeId) {
-        if let Some(eye) = self.config.frame_buffers.iter().position(|node| *node == frame_buffer) {
+        if let Some(eye) = self.config.eye_at(frame_buffer) {
             self.copied_regions[eye] += 1;
         }
         while self.is_copied(EyeDrawing(self.completed.copied)) {

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use tracking::Pose;
+use tracking::config::Tables;
 use tracking::motion::{Motion, Pan, Still, Synthetic};
 use tracking::time::{PS_PER_MS, PS_PER_S};
 use tracking::tracker::{HostLine, SerialLine, TrackerConfig, TrackerFault, TrackerModel, TrackerReport};
@@ -44,6 +45,53 @@ fn a_fastrak_report_arrives_a_transfer_after_5_5_ms_and_was_true_3_75_ms_before_
         let output_ps = report.solution * PS_PER_S / 120 + 5_500_000_000;
         assert_eq!(report.measured_ps, output_ps - 3_750_000_000);
         assert_eq!(report.arrives_ps, output_ps + 47 * 10 * PS_PER_S / 115_200);
+    }
+}
+
+/// Apparent latency of a Fastrak with a filter of this gain, ms: how far behind a slow, steady turn the pose of a report is when
+/// its first character is sent.
+fn apparent_latency_ms(gain: f64) -> f64 {
+    let mut tables = Tables::PAPERS;
+    tables.fastrak.filter_gain = gain;
+    let config = noiseless(TrackerConfig::fastrak_by(&tables));
+    let deg_per_s = 2.0;
+    let last = reports(config, &Pan::at(deg_per_s), 0, 1_000).pop().unwrap();
+    let output_ps = last.solution * PS_PER_S / 120 + 5_500_000_000;
+    let now = Pan::at(deg_per_s).pose(output_ps);
+    last.pose.angle_deg(&now) / deg_per_s * 1e3
+}
+
+/// The manual prints 4.2 and 162 ms; its closed form is 3.75 ms + dt (1 - a) / a with dt of 1/120 s.
+#[test]
+fn the_fastraks_filter_has_the_latencies_of_the_manual() {
+    for (gain, printed_ms, half_digit_ms) in [(0.95, 4.2, 0.05), (0.05, 162.0, 0.5)] {
+        let found = apparent_latency_ms(gain);
+        let formula = 3.75 + 1e3 / 120.0 * (1.0 - gain) / gain;
+        assert!((found - printed_ms).abs() <= half_digit_ms, "gain {gain}: {found} ms, printed {printed_ms}");
+        assert!((found - formula).abs() < 1e-3, "gain {gain}: {found} ms, formula {formula}");
+    }
+    assert!((apparent_latency_ms(1.0) - 3.75).abs() < 1e-6, "without a filter");
+}
+
+/// Every serial tracker is there with both kernels, and `host.poll` moves the polled one alone.
+#[test]
+fn a_polled_variant_is_later_by_the_wait_for_the_kernel_and_by_nothing_else() {
+    let mut slow = Tables::PAPERS;
+    slow.host.poll = 60.0;
+    for by in [TrackerConfig::fastrak_by, TrackerConfig::flock_of_birds_by, TrackerConfig::polhemus_3space_by] {
+        let patched = by(&Tables::PAPERS).without_polling();
+        let greatest_wait_ms = |tables: &Tables| {
+            let polled = reports(by(tables).with_polling_by(tables), &HEAD, 3, 600);
+            let at_once = reports(patched.clone(), &HEAD, 3, 600);
+            let waits = polled.iter().zip(&at_once).map(|(late, early)| {
+                assert_eq!((late.solution, late.measured_ps), (early.solution, early.measured_ps));
+                (late.arrives_ps - early.arrives_ps) as f64 / PS_PER_MS as f64
+            });
+            waits.fold(0.0, f64::max)
+        };
+        let [usual, longer] = [&Tables::PAPERS, &slow].map(greatest_wait_ms);
+        assert!(usual > 27.0 && usual < 30.0, "{}: {usual} ms of 30", patched.name);
+        assert!(longer > 54.0 && longer < 60.0, "{}: {longer} ms of 60", patched.name);
     }
 }
 

@@ -92,7 +92,8 @@ fn text(figures: &Figures) -> String {
         let _ = writeln!(text, "  {mark:<9} {}: {}", shown.statement, shown.evidence);
     }
     let missed = figures.figures.iter().filter(|row| !row.is_met).count();
-    let _ = writeln!(text, "\n{} rows, {missed} missed", figures.figures.len());
+    let defined = figures.definitions.len();
+    let _ = writeln!(text, "\n{} rows, {missed} missed; {defined} definitions are not compared", figures.figures.len());
     text
 }
 

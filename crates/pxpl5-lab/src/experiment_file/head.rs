@@ -60,10 +60,10 @@ impl HeadChoice {
         let (of_tracker, own_table) = by_name.map_err(|error| refused(file, "head.tracker", &error))?;
         let of_predictor = predictor(&predict).map_err(|error| refused(file, "head.predict", &error))?;
         let of_predictor = PredictorConfig::for_tracker_by(&tables, of_predictor, &of_tracker);
+        let numbers = tracking_numbers::parameters_with(&tables, own_table, &of_tracker);
         let head = Head::predicted_by(moving, of_tracker, of_predictor, seed);
         let head = head.map_err(|error| refused(file, "head.tracker", &error))?.before(raster).aiming(aim);
         let head = judged(file, if is_tuned(file)? { head.tuned() } else { head })?;
-        let numbers = tracking_numbers::parameters_with(&tables, own_table);
         let supposed = numbers.iter().filter(|number| !number.is_in_range()).cloned().collect();
         let head = head.supposing(supposed);
         Ok(Some(Self { motion: motion_name, replay, tracker: tracker_name, predict, numbers, head: Arc::new(head) }))

@@ -39,7 +39,7 @@ const COMMON: &[(&str, &str)] = &[
     ),
     ("head.end", "what comes after a recording: error (a longer run is refused), hold or loop"),
     ("head.axes", "axes of a recording: opengl, optical, euroc or robot; default what is usual for its kind of file"),
-    ("head.tracker", "optical, fastrak, flock, flock-patched, 3space or ideal"),
+    ("head.tracker", crate::head_names::TRACKERS),
     ("head.predict", "none, velocity, acceleration or kalman"),
     (
         "head.aim",

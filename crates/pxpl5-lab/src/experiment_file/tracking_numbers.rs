@@ -5,6 +5,7 @@ use crate::compare::tracker_by;
 use parameters::ParameterTable;
 use pxpl5_machine::{ConfigError, Parameter};
 use tracking::config::{FACTS, Tables};
+use tracking::tracker::{HostLine, TrackerConfig};
 
 /// The first part of every path.
 const PREFIX: &str = "tracking.";
@@ -25,14 +26,28 @@ fn parameters_of(name: &str, table: &dyn ParameterTable, read_only: bool) -> Vec
     Parameter::of_table(&format!("{PREFIX}{name}"), table, read_only).collect()
 }
 
-/// The numbers of an experiment whose tracker's own table has this name.
-pub(super) fn parameters_with(tables: &Tables, own: &str) -> Vec<Parameter> {
+/// The numbers of an experiment that its tracker, whose own table has this name, can feel.
+pub(super) fn parameters_with(tables: &Tables, own: &str, tracker: &TrackerConfig) -> Vec<Parameter> {
     let applying = tables.all().into_iter().filter(|(name, _)| applies(name, own));
-    applying.flat_map(|(name, table)| parameters_of(name, table, false)).collect()
+    let numbers = applying.flat_map(|(name, table)| parameters_of(name, table, false));
+    numbers.filter(|number| without_effect(&number.path, tracker).is_none()).collect()
 }
 
 fn applies(table: &str, own: &str) -> bool {
     table == own || COMMON.contains(&table)
+}
+
+/// The reason why a number of the host's port changes nothing for a tracker; `None` where it does.
+fn without_effect(path: &str, tracker: &TrackerConfig) -> Option<&'static str> {
+    match path {
+        "tracking.host.poll" if !matches!(tracker.host, HostLine::Polled { .. }) => {
+            Some("whose host is patched and does not poll; fastrak-polled, flock and 3space are polled")
+        }
+        "tracking.host.byte_bits" if tracker.serial.is_none() => {
+            Some("whose latency includes the cable; fastrak and fastrak-polled have a cable of their own")
+        }
+        _ => None,
+    }
 }
 
 /// Whether a path is one of these numbers.
@@ -44,12 +59,17 @@ pub(super) fn is_tracking_parameter(path: &str) -> bool {
 pub(super) fn read(file: &ExperimentFile, tracker: &str) -> Result<Tables, FileError> {
     let mut tables = Tables::PAPERS;
     // An unknown tracker is refused by who builds it.
-    let own = tracker_by(&tables, tracker).map_or("", |(_, own)| own);
+    let known = tracker_by(&tables, tracker).ok();
+    let own = known.as_ref().map_or("", |(_, own)| *own);
     for (path, setting) in &file.settings {
         let Some((table, name)) = path.strip_prefix(PREFIX).and_then(|path| path.split_once('.')) else { continue };
         refuse_facts(path, setting)?;
         if !applies(table, own) && !own.is_empty() {
             let reason = format!("{path} does not apply to head.tracker = {tracker}; leave it out");
+            return Err(FileError::Head { place: setting.place.clone(), reason });
+        }
+        if let Some(why) = known.as_ref().and_then(|(tracker, _)| without_effect(path, tracker)) {
+            let reason = format!("{path} does not apply to head.tracker = {tracker}, {why}");
             return Err(FileError::Head { place: setting.place.clone(), reason });
         }
         let value = file.parameter_value(path, setting)?;

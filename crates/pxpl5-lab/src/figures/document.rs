@@ -15,6 +15,7 @@ pub fn markdown(figures: &Figures) -> String {
     rows.iter().for_each(|row| line(&mut text, row));
     misses(&mut text, rows);
     of_code(&mut text, rows, &figures.of_code);
+    figures.groups.iter().for_each(|group| text.push_str(&group.markdown()));
     figures.families.iter().for_each(|family| text.push_str(&family.markdown()));
     of_readings(&mut text, &figures.readings);
     sensitivity(&mut text, &figures.intervals);
@@ -180,9 +181,9 @@ fn head(text: &mut String, rows: &[FigureRow]) {
          computed at the analytic level and stands as computed; *analytic* is that level with the presets' numbers, so that\n\
          its distance from *simulated* is the level's own error. A figure is *out of reach* when it lies outside of the\n\
          interval even if this is widened by that distance on both sides: an error of the model's rules, not of a number.\n\
-         A figure that is *not varied* is a property of the scenes, which no parameter moves, or has a head before the machine,\n\
-         of which there is no closed form. The interval of figure 17 is measured with events; the photodiode's place on the screen and the\n\
-         readings are all that moves in it.\n\n\
+         A figure that is *not varied* is a property of the scenes or of a motion, which no parameter moves. The intervals of figures 17,\n\
+         19 and 19b are measured with events: the depth of a renderer's FIFO and the channels of a sender move in them, in that of 17 the\n\
+         photodiode's place on the screen and the readings too.\n\n\
          {} figures, {free} of them free checks with a mean absolute error of {:.1} %; {missed} are missed.\n\n\
          | # | figure | published | simulated | error | analytic | interval | standing |\n\
          |---|---|---|---|---|---|---|---|\n",

@@ -14,15 +14,20 @@
 mod applications;
 mod document;
 mod family;
+mod group;
 mod heads;
+mod jitp;
 mod measure;
 mod measured;
+mod rates;
 mod reading;
 mod row;
 mod table;
+mod trackers;
 
 pub use document::markdown;
 pub use family::FigureFamily;
+pub use group::FigureGroup;
 pub use measure::{Bench, PHOTODIODE_LINE};
 pub use measured::{Detail, FigureValue};
 pub use reading::{FieldCount, ROOM, Reading, Samples};
@@ -57,6 +62,8 @@ pub struct Figures {
     pub intervals: Vec<Interval>,
     /// Figures of papers about other systems than Pixel-Planes 5.
     pub families: Vec<FigureFamily>,
+    /// Further figures of Pixel-Planes 5 by topic: peak rates, just-in-time pixels, trackers.
+    pub groups: Vec<FigureGroup>,
     /// What all readings make of the figures of Rendering Control, at the analytic level.
     pub readings: Readings,
 }
@@ -75,13 +82,13 @@ pub fn run_all(bench: &Bench) -> Result<Figures, FigureError> {
 }
 
 /// The same; `finished` hears how many of all steps are done: one for each figure, and one each for the
-/// intervals, the readings and the families.
+/// intervals, the readings, the families and the groups.
 ///
 /// # Errors
 ///
 /// As [`run_all`].
 pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result<Figures, FigureError> {
-    let steps = FIGURES.len() as u64 + 4;
+    let steps = FIGURES.len() as u64 + 5;
     let done = AtomicU64::new(0);
     let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
     let with_step = |figure: &Figure| {
@@ -111,12 +118,17 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
         step();
         families
     };
-    let of_machine = || parallel::both(rows, of_code);
+    let groups = || {
+        let groups = FigureGroup::all(bench);
+        step();
+        groups
+    };
+    let of_machine = || parallel::both(|| parallel::both(rows, groups), of_code);
     let of_models = || parallel::both(|| parallel::both(readings, intervals), families);
-    let ((rows, of_code), ((readings, intervals), families)) = parallel::both(of_machine, of_models);
-    let (mut rows, of_code, readings, families) = (rows?, of_code?, readings?, vec![families?]);
+    let (((rows, groups), of_code), ((readings, intervals), families)) = parallel::both(of_machine, of_models);
+    let (mut rows, groups, of_code, readings, families) = (rows?, groups?, of_code?, readings?, vec![families?]);
     fill(&mut rows, &intervals);
-    Ok(Figures { rows, of_code, intervals, families, readings })
+    Ok(Figures { rows, of_code, intervals, families, groups, readings })
 }
 
 /// A figure with what the bench gives for it.

@@ -95,7 +95,8 @@ impl RenderingControl {
             master: *master,
             slaves: slaves.to_vec(),
             renderers: ports.renderers.clone(),
-            frame_buffers: ports.display().to_vec(),
+            frame_buffers: ports.display().iter().copied().take(self.eyes()).collect(),
+            frame_buffer_ports: ports.display().to_vec(),
             picture,
             regions_stored: self.finished.stored(machine.record().config().renderer.backing_regions()) as usize,
         })
@@ -171,7 +172,9 @@ impl Pipeline for RenderingControl {
 
     /// What COPY of all eyes takes, since one of them is copied at a time: of a stereo pair 31.2 ms, two fields (TR94).
     fn periods_a_picture(&self, record: &Record) -> Option<u64> {
-        let copies: Span = record.display().surfaces().iter().map(|surface| copy_span(record, surface)).sum();
+        let surfaces = record.display().surfaces();
+        let ports = (record.ports().display().len() / surfaces.len().max(1)).max(1);
+        let copies: Span = surfaces.iter().map(|surface| copy_span(record, surface, ports as u16)).sum();
         Some(record.display().period_at(Time(copies.0.saturating_sub(1))).next().0)
     }
 
@@ -194,11 +197,17 @@ impl Pipeline for RenderingControl {
     }
 }
 
-/// Time of a surface's pixels at its port: every region in messages of at most [`MAX_MESSAGE_WORDS`].
-fn copy_span(record: &Record, surface: &Surface) -> Span {
+/// Time of a surface's pixels at its busiest port: every region in messages of at most [`MAX_MESSAGE_WORDS`], region after region at the
+/// next port.
+fn copy_span(record: &Record, surface: &Surface, ports: u16) -> Span {
+    (0..ports).map(|port| port_span(record, surface, port, ports)).max().unwrap_or(Span::ZERO)
+}
+
+/// Time of every `ports`-th region of a surface, from region `first` on.
+fn port_span(record: &Record, surface: &Surface, first: u16, ports: u16) -> Span {
     let timing = record.ring().timing();
     let grid = surface.grid();
-    let regions = (0..grid.regions() as u16).map(RegionId);
+    let regions = (first..grid.regions() as u16).step_by(usize::from(ports)).map(RegionId);
     regions
         .map(|region| {
             let [_, _, width, height] = grid.rectangle(region);

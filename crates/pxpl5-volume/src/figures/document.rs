@@ -1,6 +1,6 @@
 //! The figures as a document.
 
-use super::row::{FigureRow, Figures, MeasuredScene};
+use super::row::{DefinitionRow, FigureRow, Figures, MeasuredScene};
 use super::shown::Shown;
 use crate::settings::VolumeSettings;
 use parameters::Entry;
@@ -13,6 +13,7 @@ pub fn markdown(figures: &Figures) -> String {
     head(&mut text, figures);
     figures.figures.iter().for_each(|row| line(&mut text, row));
     missed(&mut text, &figures.figures);
+    definitions(&mut text, &figures.definitions);
     shown(&mut text, &figures.shown);
     scenes(&mut text, &figures.scenes);
     pictures(&mut text);
@@ -30,7 +31,8 @@ fn head(text: &mut String, figures: &Figures) {
          Perspecta 1.9/2.0*, Actuality Systems, ASI-0110, 2005. *Published*: printed there. *Derived*: follows by a formula from\n\
          what is printed. *Measured* rows were counted in the volume of a scene: hyperbolic clip, along the normal.\n\
          The paper prints no times, rates or speed-ups; those of `pxpl5 volume run` are a stated model with a preset of 2005.\n\n\
-         {met} of {} rows are met.\n\n\
+         A row stands in this table only if the code could have produced another value. Inputs of the model, and what follows from\n\
+         them by arithmetic, are listed under Definitions without a verdict. {met} of {} rows are met.\n\n\
          | # | statement | source | standing | expected | model | error | |\n|---|---|---|---|---|---|---|---|\n",
         figures.figures.len()
     );
@@ -98,6 +100,23 @@ fn cause(id: &str) -> &'static str {
             "The law is one of small triangles; those of the Mig are large, lie on several bin planes at once and go into several bins."
         }
         _ => "The cause is not known.",
+    }
+}
+
+fn definitions(text: &mut String, all: &[DefinitionRow]) {
+    let _ = write!(
+        text,
+        "\n## Definitions\n\n\
+         Inputs that the paper prints, and numbers that follow from inputs by arithmetic. No run could change them.\n\n\
+         | # | number | source | standing | value |\n|---|---|---|---|---|\n"
+    );
+    for DefinitionRow { definition, source } in all {
+        let value = number(definition.value);
+        let _ = writeln!(
+            text,
+            "| {} | {} | {source} | {} | {value} {} |",
+            definition.id, definition.statement, definition.standing, definition.unit
+        );
     }
 }
 

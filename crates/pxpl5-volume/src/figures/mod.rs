@@ -1,5 +1,6 @@
 //! The SpatialGL paper's figures beside the model's: rows with standings, what it says without numbers, its drawings anew.
 
+mod counted;
 mod document;
 mod drawings;
 mod plain;
@@ -9,12 +10,12 @@ mod shown;
 
 pub use document::markdown;
 pub use drawings::{Drawing, drawings};
-pub use row::{FigureRow, Figures, MeasuredScene};
+pub use row::{DefinitionRow, FigureRow, Figures, MeasuredScene};
 pub use shown::Shown;
 
 use crate::error::VolumeError;
 use crate::experiment::Volume;
-use perspecta::figures::{formulas, measured};
+use perspecta::figures::{definitions, formulas, measured, packing};
 use plain::plain;
 use pxpl5_scene::Scene;
 use row::order;
@@ -28,8 +29,11 @@ use std::sync::Arc;
 /// [`VolumeError`] if a scene cannot be drawn.
 pub fn all(scenes: &[Arc<Scene>], workers: &dyn Workers, finished: impl Fn(u64, u64)) -> Result<Figures, VolumeError> {
     let steps = scenes.len() as u64 + 2;
-    let mut rows: Vec<FigureRow> = formulas().into_iter().map(|figure| FigureRow::of(figure, None)).collect();
-    rows.extend(printed::figures(workers)?.into_iter().map(|figure| FigureRow::of(figure, None)));
+    let mut without_scene = formulas();
+    without_scene.extend(packing());
+    without_scene.extend(printed::figures(workers)?);
+    without_scene.extend(counted::figures(workers)?);
+    let mut rows: Vec<FigureRow> = without_scene.into_iter().map(|figure| FigureRow::of(figure, None)).collect();
     finished(1, steps);
     let mut of_scenes = Vec::new();
     for (i, scene) in scenes.iter().enumerate() {
@@ -42,5 +46,7 @@ pub fn all(scenes: &[Arc<Scene>], workers: &dyn Workers, finished: impl Fn(u64, 
     rows.sort_by_key(|row| order(row.figure.id));
     let shown = shown::all(scenes, workers)?;
     finished(steps, steps);
-    Ok(Figures { schema: "pxpl5-volume-figures/1", figures: rows, shown, scenes: of_scenes })
+    let mut definitions: Vec<DefinitionRow> = definitions().into_iter().map(DefinitionRow::of).collect();
+    definitions.sort_by_key(|row| order(row.definition.id));
+    Ok(Figures { schema: "pxpl5-volume-figures/2", figures: rows, definitions, shown, scenes: of_scenes })
 }

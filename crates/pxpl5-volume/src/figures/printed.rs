@@ -6,15 +6,15 @@ use perspecta::PerspectaConfig;
 use perspecta::figures::Figure;
 use spatialgl::{
     BinLayout, CommandBuffer, Context, HalfWedge, HostRenderer, Jitter, Projection, SliceClip, SliceView, SliceVolume,
-    SpatialDisplay, Strobes, SweptDisplay, TieRule, Tiling, TimeModel, Topology, Vertex, VertexBuffer, VolumeConfig,
-    VolumeFrame, VolumeStats, WedgePlanes, WedgeTest, Workers, packed_word, pixel_of_word, render_volume,
+    SpatialDisplay, Strobes, SweptDisplay, TieRule, Tiling, Topology, Vertex, VertexBuffer, VolumeConfig, VolumeFrame,
+    WedgePlanes, WedgeTest, Workers, packed_word, pixel_of_word, render_volume,
 };
 
 const P: Standing = Standing::Published;
 const D: Standing = Standing::Derived;
 
 /// A triangle that stands upright beside the axis, pixels: the first of the specification's.
-const TRIANGLE: [[f64; 3]; 3] = [[-200.3, -150.2, 40.1], [200.4, -150.2, 40.1], [0.6, 200.7, 40.1]];
+pub(super) const TRIANGLE: [[f64; 3]; 3] = [[-200.3, -150.2, 40.1], [200.4, -150.2, 40.1], [0.6, 200.7, 40.1]];
 
 /// The slice of the triangle that is looked at: 209 pixels of it are in the exact volume (derived: the intersection's area).
 const SLICE: usize = 13;
@@ -25,15 +25,14 @@ pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError>
     let frame = draw(&exact, workers)?;
     let mut rows = boundaries(&exact);
     rows.extend(signs());
-    rows.extend(pixels(&frame));
-    rows.extend(binning());
+    rows.push(pixels());
     rows.extend(stencil(&frame));
     rows.extend(jitter()?);
     rows.extend(means()?);
     Ok(rows)
 }
 
-fn row(
+pub(super) fn row(
     id: &'static str,
     statement: &'static str,
     unit: &'static str,
@@ -46,11 +45,11 @@ fn row(
     Figure { id, statement, unit, published, interval, computed, standing }
 }
 
-fn display(clip: SliceClip, projection: Projection) -> Result<SweptDisplay, VolumeError> {
+pub(super) fn display(clip: SliceClip, projection: Projection) -> Result<SweptDisplay, VolumeError> {
     Ok(PerspectaConfig::PAPERS.swept(clip, projection)?)
 }
 
-fn recording() -> Result<CommandBuffer, VolumeError> {
+pub(super) fn recording() -> Result<CommandBuffer, VolumeError> {
     let vertices = TRIANGLE.map(|corner| Vertex::new(corner.into(), [255; 3]));
     let buffer = VertexBuffer::new(vertices.to_vec())?;
     let mut context = Context::default();
@@ -131,34 +130,11 @@ fn agrees(p: [f64; 3], orientation: f64) -> bool {
     volume.contains(p, 0.0, 0.0) == printed
 }
 
-/// P6, P7: bits of what is counted unpacked, and bits of a word of eight pixels that the projector can tell apart.
-fn pixels(frame: &VolumeFrame) -> Vec<Figure> {
-    let [width, height] = frame.planes.size().map(u64::from);
-    let pixels = frame.stats.slices_rendered * width * height;
-    let gpu = (8 * frame.stats.bytes_unpacked) as f64 / pixels as f64;
+/// P7: bits of a word of eight white pixels that the projector can tell apart.
+fn pixels() -> Figure {
     let white = packed_word(0xFF, 0xFF, 0xFF);
     let projector = (0..8).map(|pixel| pixel_of_word(white, pixel).count_ones()).sum::<u32>();
-    vec![
-        row("P6", "bits of a pixel on the GPU", "bits", 32.0, 0.0, gpu),
-        row("P7", "bits of a pixel on the projector", "bits", 3.0, 0.0, f64::from(projector) / 8.0),
-    ]
-}
-
-/// P14: the stages that cost time once a volume, whatever the slices are, and the planes of each region.
-fn binning() -> Vec<Figure> {
-    let none = VolumeStats::default();
-    let costs = |stats: VolumeStats| TimeModel::GEFORCE_6800.packed(&stats, [8, 8], 8).cpu_ms > 0.0;
-    let stages = [VolumeStats { vertices: 1, ..none.clone() }, VolumeStats { primitives: 1, ..none }];
-    let stages = stages.into_iter().filter(|stats| costs(stats.clone())).count();
-    let layout = BinLayout::double_wedges(0.0);
-    let bounds: Vec<u32> = layout.regions.iter().map(|region| region.bounds.count_ones()).collect();
-    let most = bounds.iter().max().copied().unwrap_or(0);
-    let least = bounds.iter().min().copied().unwrap_or(0);
-    vec![
-        row("P14", "stages of binning: vertices, primitives", "stages", 2.0, 0.0, stages as f64),
-        row("P14", "planes that bound a bin region, fewest", "planes", 2.0, 0.0, f64::from(least)),
-        row("P14", "planes that bound a bin region, most", "planes", 2.0, 0.0, f64::from(most)),
-    ]
+    row("P7", "bits of a pixel on the projector", "bits", 3.0, 0.0, f64::from(projector) / 8.0)
 }
 
 /// P15: marks of a slice on which something is drawn, and of one on which nothing is.

@@ -2,7 +2,7 @@
 
 use super::shown::Shown;
 use crate::experiment::Volume;
-use perspecta::figures::Figure;
+use perspecta::figures::{Definition, Figure};
 use serde::Serialize;
 
 /// A figure, and on which scene it was measured.
@@ -21,13 +21,31 @@ pub struct FigureRow {
     pub is_met: bool,
 }
 
+/// A number that no run could change, and where the paper prints it.
+#[derive(Clone, Debug, Serialize)]
+pub struct DefinitionRow {
+    /// The number.
+    #[serde(flatten)]
+    pub definition: Definition,
+    /// Where the paper prints it; "derived" for what follows from what it prints.
+    pub source: &'static str,
+}
+
+impl DefinitionRow {
+    pub(super) fn of(definition: Definition) -> Self {
+        Self { source: source(definition.id), definition }
+    }
+}
+
 /// Everything that the paper says, beside what the model has.
 #[derive(Clone, Debug, Serialize)]
 pub struct Figures {
     /// Name and version of this record's layout.
     pub schema: &'static str,
-    /// A row for each figure, P1 to P20 and then D1 to D12.
+    /// A row for each figure that code computes or counts: printed ones by number, then derived ones.
     pub figures: Vec<FigureRow>,
+    /// Inputs of the model and what follows from them by arithmetic alone; they have no verdict.
+    pub definitions: Vec<DefinitionRow>,
     /// What the paper states without numbers.
     pub shown: Vec<Shown>,
     /// The scenes on which measured rows were measured.

@@ -60,6 +60,7 @@ impl TrackerConfig {
             position_latency_ps: latency_ps,
             orientation_latency_ps: latency_ps,
             serial: Some(SerialLine::fastrak_by(tables)),
+            filter_gain: tables.fastrak.filter_gain,
             ..Self::ideal_by(tables)
                 .named("Polhemus Fastrak", tables.fastrak.rate)
                 .with_noise(tables.fastrak.position_noise, tables.fastrak.orientation_noise)
@@ -186,6 +187,11 @@ impl TrackerConfig {
     /// The same tracker on a host whose kernel takes every character as it comes.
     pub fn without_polling(self) -> Self {
         Self { host: HostLine::InterruptPerCharacter, crashes_patched_host_after_ps: None, ..self }
+    }
+
+    /// The same tracker on an unpatched host, whose kernel looks at the serial line every `host.poll` of these tables.
+    pub fn with_polling_by(self, tables: &Tables) -> Self {
+        Self { host: HostLine::unix_by(tables), ..self }
     }
 
     fn named(self, name: &str, rate_hz: u64) -> Self {

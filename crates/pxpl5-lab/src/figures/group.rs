@@ -1,0 +1,149 @@
+//! Published figures by topic beside those of the table: peak rates, just-in-time pixels, trackers. Each is measured in runs, with
+//! events at every level of the bench; none counts for the mean error of the table.
+
+use super::measured::{FigureValue, Result};
+use super::{Basis, Bench, Figure, FigureError, FigureRow, jitp, rates, trackers};
+use crate::intervals::variations;
+use crate::parallel;
+use serde::Serialize;
+use std::fmt::Write as _;
+
+/// Figures of one topic.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FigureGroup {
+    /// The topic.
+    pub title: &'static str,
+    /// The conditions that all of its rows share, and what is open about them.
+    pub about: &'static str,
+    /// In the order of the group's table.
+    pub rows: Vec<FigureRow>,
+}
+
+/// A figure and its experiment.
+pub(super) struct Measurement {
+    pub(super) figure: Figure,
+    pub(super) measure: fn(&Bench) -> Result<FigureValue>,
+    /// Paths of the parameters that are moved to both ends of their ranges, one at a time.
+    pub(super) moved_by: &'static [&'static str],
+}
+
+/// A topic with its experiments.
+struct Topic {
+    title: &'static str,
+    about: &'static str,
+    measurements: Vec<Measurement>,
+}
+
+/// A figure in which nothing was fitted.
+pub(super) const fn free(
+    (id, paper, section): (&'static str, &'static str, &'static str),
+    statement: &'static str,
+    (value, unit, spread): (f64, &'static str, Option<f64>),
+    experiment: &'static str,
+    cause: &'static str,
+) -> Figure {
+    Figure { id, paper, section, statement, value, unit, spread, experiment, basis: Basis::Free, cause }
+}
+
+fn topics() -> [Topic; 3] {
+    [
+        Topic { title: rates::TITLE, about: rates::ABOUT, measurements: rates::measurements() },
+        Topic { title: jitp::TITLE, about: jitp::ABOUT, measurements: jitp::measurements() },
+        Topic { title: trackers::TITLE, about: trackers::ABOUT, measurements: trackers::measurements() },
+    ]
+}
+
+impl FigureGroup {
+    /// Measures all groups.
+    ///
+    /// # Errors
+    ///
+    /// The first [`FigureError`].
+    pub fn all(bench: &Bench) -> std::result::Result<Vec<Self>, FigureError> {
+        topics().into_iter().map(|topic| Self::of(&topic, bench)).collect()
+    }
+
+    fn of(topic: &Topic, bench: &Bench) -> std::result::Result<Self, FigureError> {
+        let rows = parallel::map(&topic.measurements, |measurement| measurement.row(bench));
+        let rows = rows.into_iter().collect::<std::result::Result<Vec<_>, _>>()?;
+        Ok(Self { title: topic.title, about: topic.about, rows })
+    }
+
+    /// Its part of ACCURACY.md.
+    #[must_use]
+    pub fn markdown(&self) -> String {
+        let missed: Vec<&FigureRow> = self.rows.iter().filter(|row| row.misses()).collect();
+        let mut text = format!(
+            "\n## {}\n\n{}\n\n{} of {} rows are missed.\n\n\
+             | # | figure | published | simulated | error | interval | |\n|---|---|---|---|---|---|---|\n",
+            self.title,
+            self.about,
+            missed.len(),
+            self.rows.len(),
+        );
+        self.rows.iter().for_each(|row| text.push_str(&line(row)));
+        if !missed.is_empty() {
+            text.push('\n');
+        }
+        for row in missed {
+            let _ = writeln!(text, "- **{}**: {}", row.id, row.cause);
+        }
+        text.push('\n');
+        for row in &self.rows {
+            let also: Vec<_> =
+                row.details.iter().map(|d| format!("{} {} {}", d.name, digits(d.value), d.unit)).collect();
+            let also = if also.is_empty() { String::new() } else { format!(" Also: {}.", also.join(", ")) };
+            let _ = writeln!(text, "- **{}**: {}.{also}", row.id, row.experiment);
+        }
+        text
+    }
+}
+
+fn line(row: &FigureRow) -> String {
+    let interval = row
+        .interval
+        .map_or_else(|| "not varied".to_owned(), |[low, high]| format!("{} to {}", digits(low), digits(high)));
+    let spread = row.spread.map_or_else(String::new, |spread| format!(" +- {}", digits(spread)));
+    let mark = if row.misses() { "**miss**" } else { "met" };
+    format!(
+        "| {} | {} ({}) | {}{spread} {} | {} {} | {:+.1} % | {interval} | {mark} |\n",
+        row.id,
+        row.statement,
+        row.source,
+        digits(row.published),
+        row.unit,
+        digits(row.simulated),
+        row.unit,
+        row.error_percent
+    )
+}
+
+/// Four significant digits, without trailing zeros.
+fn digits(value: f64) -> String {
+    let after = if value == 0.0 { 0 } else { (3 - value.abs().log10().floor() as i32).max(0) as usize };
+    let text = format!("{value:.after$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+impl Measurement {
+    fn row(&self, bench: &Bench) -> std::result::Result<FigureRow, FigureError> {
+        let id = self.figure.id;
+        let measured = (self.measure)(bench);
+        let measured = measured.map_err(|error| FigureError { id: id.to_owned(), reason: error.to_string() })?;
+        let interval = self.interval(bench, measured.value);
+        Ok(FigureRow { interval, ..FigureRow::new(&self.figure, measured) })
+    }
+
+    /// Least and greatest value over both ends of each range, around the one with the presets' numbers. An end that leaves the
+    /// experiment without a value counts as not moved.
+    fn interval(&self, bench: &Bench, nominal: f64) -> Option<[f64; 2]> {
+        let moved = variations().into_iter().filter(|variation| self.moved_by.contains(&variation.path.as_str()));
+        let ends: Vec<_> = moved.flat_map(|v| [(v.path.clone(), v.range.0), (v.path, v.range.1)]).collect();
+        let values = parallel::map(&ends, |end| {
+            let changes = bench.changes.iter().cloned().chain([end.clone()]).collect();
+            (self.measure)(&Bench { changes, ..bench.clone() }).map_or(nominal, |measured| measured.value)
+        });
+        let bounds = values.into_iter().fold([nominal; 2], |[low, high], value: f64| [low.min(value), high.max(value)]);
+        (!ends.is_empty()).then_some(bounds)
+    }
+}

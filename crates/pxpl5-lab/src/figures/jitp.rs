@@ -1,0 +1,189 @@
+//! Just-in-time pixels (Mine and Bishop): errors of a turning head, the time of a line, transforms, and the plates.
+
+use super::Bench;
+use super::group::{Measurement, free};
+use super::measured::{FigureValue, Result, detail};
+use crate::compare::{edge_pictures, edge_scene};
+use image::RgbImage;
+use pxpl5_display::Aim;
+use pxpl5_machine::MachineConfig;
+use pxpl5_measure::Registration;
+use pxpl5_run::{Experiment, ExperimentError, Head, Jitp, Outcome, Pixels, Viewpoint};
+use pxpl5_wire::PeriodNumber;
+use std::sync::Arc;
+use tracking::motion::Pan;
+use tracking::predict::PredictorKind;
+use tracking::tracker::TrackerConfig;
+
+pub(super) const TITLE: &str = "Just-in-time pixels";
+
+pub(super) const ABOUT: &str = "A head that turns by 200 degrees a second before a view of 60 degrees (JITP), with a tracker without error or \
+delay, so that only the instants of drawing and of light differ. Angles are measured on the screen between what a pixel shows and \
+what it should show when it lights. Pixels are the paper's, 600 over 60 degrees. Each angle is scaled from the pixels that are lit to the \
+whole field or line, retrace included, as the paper counts.";
+
+/// A fast turn of the head, degrees a second (JITP).
+const PAN: f64 = 200.0;
+
+/// Pixels a degree of the paper's view.
+const PX_PER_DEG: f64 = 10.0;
+
+/// A field well past the start, and even.
+const FIELD: PeriodNumber = PeriodNumber(40);
+
+/// Column and lines of the picture of 640 x 480 that are looked at.
+const COLUMN: u32 = 320;
+const MIDDLE_LINE: u32 = 240;
+const LAST_LINE: u32 = 478;
+
+pub(super) fn measurements() -> Vec<Measurement> {
+    let row = |id, statement, value, experiment, cause, measure| Measurement {
+        figure: free((id, "JITP", "raster"), statement, value, experiment, cause),
+        measure,
+        moved_by: &[],
+    };
+    let field = "jitp-field-racing on small-hmd, aimed at the first pixel: the last line of a field";
+    let line = "jitp-scanline-racing with strips of a line: both ends of the middle line";
+    let rounded = "the paper rounds the line to 65 us; NTSC has 63.56.";
+    vec![
+        row("J1", "error of one transform a field", (3.3, "deg", None), field, "", error_of_field),
+        row("J1b", "the same", (33.0, "px", None), field, "", |bench| in_pixels(error_of_field(bench)?)),
+        row("J2", "error of one transform a line", (0.013, "deg", None), line, "", error_of_line),
+        row("J2b", "the same", (0.13, "px", None), line, "", |bench| in_pixels(error_of_line(bench)?)),
+        row(
+            "J3",
+            "a line takes about",
+            (65.0, "us", Some(1.5)),
+            "time between the first pixels of two lines of a field",
+            rounded,
+            time_of_line,
+        ),
+        row(
+            "J4",
+            "share of the slant of a vertical edge that just-in-time pixels remove: seen straight",
+            (100.0, "%", None),
+            "the plates: an edge drawn by jitp-field and by jitp-scanline, as an eye sees it that turns with the head; slants of the straight \
+             lines through all rows",
+            "",
+            slant_removed,
+        ),
+        row(
+            "J5",
+            "vertices transformed line by line, over those of one transform a field: about",
+            (256.0, "times", None),
+            "jitp-scanline-racing and jitp-field-racing with one slave whose software costs no time, so that no line is late: \
+             vertices transformed in 20 fields",
+            "a field has 240 visible lines; the paper's is a round number, and nothing is drawn for the lines of the retrace.",
+            transforms,
+        ),
+    ]
+}
+
+fn head() -> Result<Head> {
+    let head = Head::new(Arc::new(Pan::at(PAN)), TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1);
+    head.map_err(|error| ExperimentError::Scene(error.to_string()))
+}
+
+fn run(machine: MachineConfig, viewpoint: Viewpoint, aim: Aim, fields: u64) -> Result<Outcome> {
+    let jitp = Jitp { strip_rows: 1, ..Jitp::new(viewpoint, true) };
+    let experiment = Experiment::new(machine, jitp, edge_scene(0.0)).head(head()?.aiming(aim));
+    experiment.fields(fields).pixels(Pixels::Off).run()
+}
+
+/// Error at a pixel, degrees.
+fn degrees(outcome: &Outcome, x: u32, y: u32) -> Result<f64> {
+    let shown = Registration::of(outcome).and_then(|registration| registration.at(x, y, FIELD));
+    let nothing = || ExperimentError::Scene(format!("pixel ({x}, {y}) of field {} shows nothing", FIELD.0));
+    Ok(shown.ok_or_else(nothing)?.degrees)
+}
+
+/// Seconds between the beam's passes over two pixels of a field.
+fn beam_s(outcome: &Outcome, from: (u32, u32), to: (u32, u32)) -> f64 {
+    let display = outcome.record().display();
+    let at_s = |(x, y)| display.lights(0, x, y, FIELD).map_or(f64::NAN, |at| at.0 as f64 / 1e12);
+    at_s(to) - at_s(from)
+}
+
+fn in_pixels(angle: FigureValue) -> Result<FigureValue> {
+    Ok((angle.value * PX_PER_DEG).into())
+}
+
+/// J1: the turn from the first pixel of a field to its last line, scaled to the time from one retrace to the next.
+fn error_of_field(bench: &Bench) -> Result<FigureValue> {
+    let outcome = run(bench.machine("small-hmd")?, Viewpoint::Field, Aim::FirstPixel, FIELD.0 + 2)?;
+    let surface = &outcome.record().display().surfaces()[0];
+    let [width, height] = [surface.width, surface.height].map(f64::from);
+    let focal_px = width / 2.0 / 30_f64.to_radians().tan();
+    // The pixel is below the level: a turn about the vertical moves it by the chord of a smaller circle.
+    let level = focal_px / f64::hypot(focal_px, f64::from(LAST_LINE) + 0.5 - height / 2.0);
+    let chord = (degrees(&outcome, COLUMN, LAST_LINE)? / 2.0).to_radians().sin();
+    let turn_deg = 2.0 * (chord / level).asin().to_degrees();
+    let scan_s = beam_s(&outcome, (0, 0), (COLUMN, LAST_LINE));
+    let details = vec![detail("at the last line", turn_deg, "deg")];
+    Ok(FigureValue { value: turn_deg / scan_s * outcome.field_ms() / 1e3, details })
+}
+
+/// J2: the turn from the left end of a line to its right end, scaled to the whole line.
+fn error_of_line(bench: &Bench) -> Result<FigureValue> {
+    let outcome = run(bench.machine("small-hmd")?, Viewpoint::Strip, Aim::Middle, FIELD.0 + 2)?;
+    let last = outcome.record().display().surfaces()[0].width - 1;
+    // The line is drawn for its middle, so that the errors of both ends add up.
+    let ends_deg = degrees(&outcome, 0, MIDDLE_LINE)? + degrees(&outcome, last, MIDDLE_LINE)?;
+    let active_s = beam_s(&outcome, (0, MIDDLE_LINE), (last, MIDDLE_LINE));
+    let line_s = beam_s(&outcome, (0, MIDDLE_LINE), (0, MIDDLE_LINE + 2));
+    Ok((ends_deg / active_s * line_s).into())
+}
+
+/// J3: lines of a field are every other line of the frame.
+fn time_of_line(bench: &Bench) -> Result<FigureValue> {
+    let outcome = run(bench.machine("small-hmd")?, Viewpoint::Field, Aim::FirstPixel, FIELD.0 + 2)?;
+    Ok((beam_s(&outcome, (0, 0), (0, 2)) * 1e6).into())
+}
+
+/// J4 of a conventional picture and one of just-in-time pixels.
+fn slant_removed(bench: &Bench) -> Result<FigureValue> {
+    let plates = edge_pictures(&bench.machine("small-hmd")?, PAN)?;
+    let [conventional, just_in_time] = [&plates.conventional_seen, &plates.just_in_time_seen].map(slant);
+    let details =
+        vec![detail("conventional", conventional, "px a field"), detail("just-in-time", just_in_time, "px a field")];
+    Ok(FigureValue { value: 100.0 * (1.0 - (just_in_time / conventional).abs()), details })
+}
+
+/// Pixels between the first and the last row of the straight line through the right ends of what is white.
+fn slant(picture: &RgbImage) -> f64 {
+    let end = |row| (0..picture.width()).rev().find(|x| picture.get_pixel(*x, row)[0] > 100).map_or(0, |x| x + 1);
+    let rows = f64::from(picture.height());
+    let middle = (rows - 1.0) / 2.0;
+    let ends: Vec<f64> = (0..picture.height()).map(|row| f64::from(end(row))).collect();
+    let from_middle = |row: usize| row as f64 - middle;
+    let up: f64 = ends.iter().enumerate().map(|(row, column)| from_middle(row) * column).sum();
+    let down: f64 = (0..ends.len()).map(|row| from_middle(row).powi(2)).sum();
+    up / down * (rows - 1.0)
+}
+
+/// J5: what is counted in [`COUNTED`] fields after a start that both runs share.
+fn transforms(bench: &Bench) -> Result<FigureValue> {
+    let [line, field] = [Viewpoint::Strip, Viewpoint::Field].map(|viewpoint| {
+        let [short, long] = [FIELD.0, FIELD.0 + COUNTED]
+            .map(|fields| Ok(run(free_slave(bench)?, viewpoint, Aim::Middle, fields)?.record().vertex_transforms()));
+        Ok::<f64, ExperimentError>((long? - short?) as f64 / COUNTED as f64)
+    });
+    let (line, field) = (line?, field?);
+    let details = vec![
+        detail("line by line", line, "vertices a field"),
+        detail("one transform a field", field, "vertices a field"),
+    ];
+    Ok(FigureValue { value: line / field, details })
+}
+
+/// Fields over which transforms are counted.
+const COUNTED: u64 = 20;
+
+/// A machine with one slave, whose software costs no time.
+fn free_slave(bench: &Bench) -> Result<MachineConfig> {
+    let mut machine = MachineConfig { n_gps: 2, code: None, ..bench.machine("small-hmd")? };
+    for name in ["message", "triangle", "guard", "bin_entry", "token_entry", "edit", "pass", "structure"] {
+        machine.set(&format!("gp.{name}_ns"), 0)?;
+    }
+    Ok(machine)
+}

@@ -1,0 +1,229 @@
+//! Peak rates that were published: triangles of the machine, a renderer and a processor, operations of the i860, the rig's total.
+
+use super::group::{Measurement, free};
+use super::measured::{FigureValue, Result, detail, scene_named};
+use super::{Bench, Reading};
+use crate::rig::Rig;
+use i860::{Cpu, Ram, RunEnd, assemble};
+use pphigs::Shading;
+use pxpl5_gp::Stage;
+use pxpl5_machine::MachineConfig;
+use pxpl5_run::{Experiment, ExperimentError, Outcome, Pixels, RenderingControl};
+use std::sync::Arc;
+use tracking::tracker::TrackerConfig;
+
+pub(super) const TITLE: &str = "Peak rates";
+
+pub(super) const ABOUT: &str = "Rates of triangles are those of `typical:N`: right-angled triangles of 18 pixels that touch about 1.3 regions, \
+spread evenly, mono. J. Leech of the Pixel-Planes 5 team stated his rates on 3 April 1991 in sci.virtual-worlds, with more tuning \
+to come; he states neither the size of the machine nor that of the triangles. Intervals: the depth of the renderers' FIFO, \
+the channels of a sender, the channels for messages to FIFOs, and the times of a triangle on a processor and on a renderer, one at a time \
+at both ends of their ranges. All runs are by events.";
+
+/// Parameters that decide how fast triangles go through the machine, and that no source gives.
+const OF_TRIANGLES: &[&str] = &[
+    "renderer.fifo_words",
+    "ring.source_channels",
+    "ring.fifo_channels",
+    "gp.triangle_ns",
+    "renderer.triangle_clocks",
+    "renderer.phong_triangle_clocks",
+];
+
+/// Parameters of a renderer alone.
+const OF_RENDERER: &[&str] =
+    &["renderer.fifo_words", "renderer.triangle_clocks", "renderer.phong_triangle_clocks", "renderer.shade_clocks"];
+
+const LEECH: (&str, &str) = ("Leech 1991", "whole machine");
+
+pub(super) fn measurements() -> Vec<Measurement> {
+    let mut all = of_machine();
+    all.extend(of_boards());
+    all
+}
+
+fn of_machine() -> Vec<Measurement> {
+    let cause = "the heaviest of 20 regions decides, since each of 20 renderers has one, and a full FIFO holds a channel of the ring; the size \
+                 of the published machine and its triangles are not stated.";
+    vec![
+        Measurement {
+            figure: free(
+                ("R1", LEECH.0, LEECH.1),
+                "Gouraud triangles a second",
+                (1.6e6, "triangles/s", None),
+                "typical:40000 mono on large: triangles of a frame times frames a second",
+                cause,
+            ),
+            measure: |bench| triangle_rate(bench, "large", Shading::Gouraud),
+            moved_by: OF_TRIANGLES,
+        },
+        Measurement {
+            figure: free(
+                ("R2", LEECH.0, LEECH.1),
+                "Phong triangles a second: 1+ M, taken as more than 1 and less than the 1.6 M of Gouraud",
+                (1.3e6, "triangles/s", Some(0.3e6)),
+                "as R1 with Phong shading",
+                cause,
+            ),
+            measure: |bench| triangle_rate(bench, "large", Shading::Phong),
+            moved_by: OF_TRIANGLES,
+        },
+        Measurement {
+            figure: free(
+                ("R3", "F89", "design goal"),
+                "Phong triangles a second on 32 processors and 16 renderers",
+                (1e6, "triangles/s", None),
+                "as R2 on design-maximum",
+                cause,
+            ),
+            measure: |bench| triangle_rate(bench, "design-maximum", Shading::Phong),
+            moved_by: OF_TRIANGLES,
+        },
+    ]
+}
+
+fn of_boards() -> Vec<Measurement> {
+    let of_renderer =
+        "typical:4000 mono on small-hmd with one renderer: commands over the time in which the array works";
+    let of_array = "the published rate is a round number without shading model or machine state; the model's comes from the program of the \
+                    array, bit by bit.";
+    vec![
+        Measurement {
+            figure: free(
+                ("R4", "TR94", "renderer"),
+                "triangles a second of a renderer, Gouraud",
+                (150e3, "triangles/s", None),
+                of_renderer,
+                of_array,
+            ),
+            measure: |bench| renderer_rate(bench, Shading::Gouraud),
+            moved_by: OF_RENDERER,
+        },
+        Measurement {
+            figure: free(
+                ("R4b", "TR94", "renderer"),
+                "the same with Phong shading",
+                (150e3, "triangles/s", None),
+                of_renderer,
+                of_array,
+            ),
+            measure: |bench| renderer_rate(bench, Shading::Phong),
+            moved_by: OF_RENDERER,
+        },
+        Measurement {
+            figure: free(
+                ("R5", "F89", "processor"),
+                "triangles a second of a processor: 1 M over 32",
+                (31_250.0, "triangles/s", None),
+                "typical:2000 mono on small-hmd with one slave: triangles over the time of TRANSFORM",
+                "the design's rate of the whole machine over its processors; the optimised code of 1991 on is faster, which \
+                 `gp.triangle_ns` has from its own source.",
+            ),
+            measure: processor_rate,
+            moved_by: &["gp.triangle_ns", "gp.bin_entry_ns"],
+        },
+        Measurement {
+            figure: free(
+                ("R6", "I3D95", "pendulum"),
+                "tracker and rendering measured together from outside",
+                (90.0, "ms", None),
+                "the rig of figure 17 with the optical tracker on the bob: from the low point to the light under the photodiode",
+                "the photodiode's place on the screen and the detection of the low point are not published.",
+            ),
+            measure: rig_total,
+            moved_by: &["renderer.fifo_words", "ring.source_channels"],
+        },
+        Measurement {
+            figure: free(
+                ("R7", "i860PRM", "processor"),
+                "single-precision peak of the i860 at 40 MHz",
+                (80.0, "MFLOPS", None),
+                "100 turns of a loop of 256 pipelined multiply-adds, caches warm: operations over clocks; the loop itself takes the rest",
+                "",
+            ),
+            measure: |_| i860_peak(),
+            moved_by: &[],
+        },
+    ]
+}
+
+/// Triangles of a frame.
+const TRIANGLES: u64 = 40_000;
+
+/// Fields of a run: 15 to 20 frames.
+const FIELDS: u64 = 44;
+
+fn drawn(machine: MachineConfig, shading: Shading, triangles: u64, fields: u64) -> Result<Outcome> {
+    let pipeline = RenderingControl { shading, mono: true, ..Reading::USUAL.pipeline() };
+    let experiment = Experiment::new(machine, pipeline, scene_named(&format!("typical:{triangles}"))?);
+    experiment.fields(fields).pixels(Pixels::Off).run()
+}
+
+fn triangle_rate(bench: &Bench, preset: &str, shading: Shading) -> Result<FigureValue> {
+    let hz = drawn(bench.machine(preset)?, shading, TRIANGLES, FIELDS)?.updates_hz().unwrap_or(f64::NAN);
+    Ok(FigureValue { value: TRIANGLES as f64 * hz, details: vec![detail("frames a second", hz, "Hz")] })
+}
+
+/// Commands of a renderer over the time in which its array works: nearly all of them are triangles.
+fn renderer_rate(bench: &Bench, shading: Shading) -> Result<FigureValue> {
+    let machine = MachineConfig { n_renderers: 1, ..bench.machine("small-hmd")? };
+    let outcome = drawn(machine, shading, 4_000, 40)?;
+    let rates = outcome.record().renderers().iter().map(|renderer| {
+        let busy_s = renderer.busy().0 as f64 / 1e12;
+        renderer.stats().commands as f64 / busy_s
+    });
+    Ok(rates.sum::<f64>().into())
+}
+
+/// Triangles of a share over the time of TRANSFORM, the frames after the first.
+fn processor_rate(bench: &Bench) -> Result<FigureValue> {
+    let triangles = 2_000;
+    let machine = MachineConfig { n_gps: 2, ..bench.machine("small-hmd")? };
+    let outcome = drawn(machine, Shading::Phong, triangles, 60)?;
+    let stages = outcome.stages();
+    let transforms = stages.iter().filter(|span| span.stage == Stage::Transform).skip(1);
+    let spans_s: Vec<f64> = transforms.filter_map(|span| Some((span.end? - span.begin).as_ms() / 1e3)).collect();
+    let mean_s = spans_s.iter().sum::<f64>() / spans_s.len() as f64;
+    Ok((triangles as f64 / mean_s).into())
+}
+
+fn rig_total(bench: &Bench) -> Result<FigureValue> {
+    let machine = bench.reading.on(bench.machine("small-hmd")?)?;
+    let rig = Rig::assumed(TrackerConfig::optical_ceiling());
+    let measured = rig.measure(&machine, Arc::new(bench.reading.pipeline()));
+    let measured = measured.map_err(|error| ExperimentError::Scene(error.to_string()))?;
+    let [tracking, rendering] = [measured.outside.tracking, measured.outside.rendering].map(|part| part.mean_s * 1e3);
+    let details = vec![detail("tracking", tracking, "ms"), detail("rendering", rendering, "ms")];
+    Ok(FigureValue { value: measured.outside.total.mean_s * 1e3, details })
+}
+
+/// Turns of the loop of the i860, and multiply-adds in each.
+const TURNS: u32 = 100;
+const MULTIPLY_ADDS: usize = 256;
+
+/// Floating-point operations a second, in millions, at 40 MHz.
+fn i860_peak() -> Result<FigureValue> {
+    let failed = |reason: String| ExperimentError::Scene(format!("the peak of the i860: {reason}"));
+    let body = "m12apm.ss f8, f9, f0\n".repeat(MULTIPLY_ADDS);
+    let source = format!("begin: or {TURNS}, r0, r16\nagain: {body}adds -1, r16, r16\nbtne r0, r16, again\nend: nop");
+    let program = assemble("peak.s", CODE, &source).map_err(|error| failed(error.to_string()))?;
+    let end = program.symbol("end").ok_or_else(|| failed("the loop has no end".to_owned()))?;
+    let mut ram = Ram::new(0, 0x4000);
+    ram.load(CODE, &program.bytes).map_err(|error| failed(error.to_string()))?;
+    let mut cpu = Cpu::new(i860::Config::cycle());
+    let mut clocks = 0;
+    // The first run fills the cache.
+    for _ in 0..2 {
+        cpu.state.pc = CODE;
+        let before = cpu.clocks();
+        match cpu.run(&mut ram, Some(end), 1_000_000) {
+            RunEnd::Stopped => clocks = cpu.clocks() - before,
+            other => return Err(failed(format!("expected the end of the loop, found {other:?}"))),
+        }
+    }
+    let operations = f64::from(2 * TURNS) * MULTIPLY_ADDS as f64;
+    Ok((operations / clocks as f64 * 40.0).into())
+}
+
+/// Where the program lies.
+const CODE: u32 = 0x1000;

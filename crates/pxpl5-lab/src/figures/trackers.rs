@@ -1,0 +1,104 @@
+//! Published statements about trackers and the host's serial line.
+
+use super::Bench;
+use super::group::{Measurement, free};
+use super::measured::{FigureValue, Result, detail, scene_named};
+use pxpl5_measure::Budget;
+use pxpl5_run::{Experiment, ExperimentError, Head, Pixels};
+use std::sync::Arc;
+use tracking::Pose;
+use tracking::config::Tables;
+use tracking::motion::{Motion, Pan, Still};
+use tracking::predict::PredictorKind;
+use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
+
+pub(super) const TITLE: &str = "Trackers";
+
+pub(super) const ABOUT: &str = "The unpatched kernel looks at the serial line every 30 ms (TR94). Reports wait for the next look, and the host has the pose of \
+the last look until then. The Fastrak's filter is x' = a x + (1 - a) x'; a steady turn comes out dt (1 - a) / a later, with dt of 1/120 s.";
+
+pub(super) fn measurements() -> Vec<Measurement> {
+    let row = |id, (paper, section), statement, value, experiment, cause, measure| Measurement {
+        figure: free((id, paper, section), statement, value, experiment, cause),
+        measure,
+        moved_by: &[],
+    };
+    let filter = "a tracker without noise on a head that turns by 2 degrees a second: the angle between the pose of a report and the head's when \
+                  its first character is sent, over the rate";
+    vec![
+        row(
+            "T1",
+            ("TR94", "serial line"),
+            "polling adds almost two fields (taken as 1.5 to 2)",
+            (1.75, "fields", Some(0.25)),
+            "Fastrak, polled and patched, 200 seeds of 2 s: greatest wait of a report for the kernel. The mean in a run: full-screen:12 on \
+             small-hmd, mean time from the pose to the start of TRANSFORM, polled less patched",
+            "",
+            polling,
+        ),
+        row("T2", ("PF", "filter"), "apparent latency with a filter of 0.95", (4.2, "ms", None), filter, "", |_| {
+            apparent_latency(0.95)
+        }),
+        row("T3", ("PF", "filter"), "the same with 0.05", (162.0, "ms", None), filter, "", |_| apparent_latency(0.05)),
+    ]
+}
+
+fn model(config: TrackerConfig) -> Result<TrackerModel> {
+    TrackerModel::new(config).map_err(|error| ExperimentError::Scene(error.to_string()))
+}
+
+/// Seeds of the kernel's phase and reports of each.
+const SEEDS: u64 = 200;
+const REPORTS: usize = 240;
+
+fn polling(bench: &Bench) -> Result<FigureValue> {
+    let patched = TrackerConfig::fastrak();
+    let polled = patched.clone().with_polling_by(&Tables::PAPERS);
+    let mut waits_ms = Vec::new();
+    for seed in 1..=SEEDS {
+        let arrivals = |config: &TrackerConfig| {
+            let reports: Vec<TrackerReport> =
+                model(config.clone())?.reports(Still(Pose::IDENTITY), seed).take(REPORTS).collect();
+            Ok::<_, ExperimentError>(reports)
+        };
+        let pairs = arrivals(&polled)?.into_iter().zip(arrivals(&patched)?);
+        waits_ms.extend(pairs.map(|(late, early)| (late.arrives_ps - early.arrives_ps) as f64 / 1e9));
+    }
+    let field_ms = 1001.0 / 60.0;
+    let mean = waits_ms.iter().sum::<f64>() / waits_ms.len() as f64 / field_ms;
+    let greatest = waits_ms.iter().copied().fold(0.0, f64::max) / field_ms;
+    let in_a_run = (pose_to_transform_ms(bench, polled)? - pose_to_transform_ms(bench, patched)?) / field_ms;
+    let details = vec![detail("mean of all reports", mean, "fields"), detail("mean in a run", in_a_run, "fields")];
+    Ok(FigureValue { value: greatest, details })
+}
+
+/// Fields of a run: ten seconds.
+const FIELDS: u64 = 600;
+
+/// Mean time from the head's pose to the start of TRANSFORM of the picture that is drawn for it, ms.
+fn pose_to_transform_ms(bench: &Bench, tracker: TrackerConfig) -> Result<f64> {
+    let head = Head::new(Arc::new(Still(Pose::IDENTITY)), tracker, PredictorKind::None, 1);
+    let head = head.map_err(|error| ExperimentError::Scene(error.to_string()))?;
+    let machine = bench.reading.on(bench.machine("small-hmd")?)?;
+    let experiment = Experiment::new(machine, bench.reading.pipeline(), scene_named("full-screen:12")?);
+    let outcome = experiment.head(head).fields(FIELDS).pixels(Pixels::Off).run()?;
+    let Budget { tracking_ms, waiting_ms, sending_ms, .. } = Budget::of(&outcome);
+    Ok(tracking_ms + waiting_ms + sending_ms)
+}
+
+/// Rate of the turn, degrees a second: so slow that a quarter of a second of delay is half a degree.
+const SLOW: f64 = 2.0;
+
+/// How far behind a steady turn the Fastrak with this filter is when it sends, ms.
+fn apparent_latency(gain: f64) -> Result<FigureValue> {
+    let mut tables = Tables::PAPERS;
+    tables.fastrak.filter_gain = gain;
+    let config = TrackerConfig::fastrak_by(&tables).without_noise();
+    let (output_ps, rate_hz) = (config.sync_to_output_ps, u64::from(config.rate_hz));
+    let motion = Pan::at(SLOW);
+    let settled = model(config)?.reports(&motion, 1).nth(1_000);
+    let report = settled.ok_or_else(|| ExperimentError::Scene("the Fastrak fell silent".to_owned()))?;
+    let sent_ps = report.solution * tracking::time::PS_PER_S / rate_hz + output_ps;
+    let behind_deg = report.pose.angle_deg(&motion.pose(sent_ps));
+    Ok((behind_deg / SLOW * 1e3).into())
+}

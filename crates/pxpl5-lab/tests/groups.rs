@@ -1,0 +1,89 @@
+//! Figures by topic: each is measured by a run that could have given another value.
+
+use pxpl5_lab::figures::{Bench, FigureGroup, FigureRow};
+use pxpl5_run::Level;
+use std::sync::LazyLock;
+
+static ROWS: LazyLock<Vec<FigureRow>> = LazyLock::new(|| {
+    let groups = FigureGroup::all(&Bench::new(Level::Transaction)).expect("every figure has a value");
+    groups.into_iter().flat_map(|group| group.rows).collect()
+});
+
+fn row(id: &str) -> &'static FigureRow {
+    ROWS.iter().find(|row| row.id == id).unwrap_or_else(|| panic!("no row {id}"))
+}
+
+fn within(id: &str, [low, high]: [f64; 2]) {
+    let FigureRow { simulated, unit, .. } = row(id);
+    assert!((low..=high).contains(simulated), "{id}: {simulated} {unit}, expected {low} to {high}");
+}
+
+#[test]
+fn every_row_is_written_out_with_its_experiment() {
+    for row in ROWS.iter() {
+        println!(
+            "{:<4} {:>12.4} {:>12.4} {:<12} {:+.1} % {:?} {:?}",
+            row.id, row.published, row.simulated, row.unit, row.error_percent, row.interval, row.details
+        );
+        assert!(row.simulated.is_finite() && !row.experiment.is_empty(), "{}", row.id);
+        assert!(!row.misses() || !row.cause.is_empty(), "{} is missed without a word", row.id);
+        assert!(row.interval.is_none_or(|[low, high]| low <= row.simulated && row.simulated <= high), "{}", row.id);
+    }
+}
+
+/// JITP prints 3.3 degrees and 33 px, 0.013 degrees and 0.13 px; a half of the last digit is allowed.
+#[test]
+fn just_in_time_pixels_have_the_errors_of_the_paper() {
+    within("J1", [3.25, 3.35]);
+    within("J1b", [32.5, 33.5]);
+    within("J2", [0.0125, 0.0135]);
+    within("J2b", [0.125, 0.135]);
+    within("J3", [63.555, 63.556]);
+    within("J4", [98.0, 100.0]);
+}
+
+/// 240 visible lines against one transform: every triangle's corners once for each.
+#[test]
+fn line_by_line_takes_240_times_the_transforms() {
+    within("J5", [239.99, 240.01]);
+}
+
+/// 40 MHz over the 258 and 292 clocks of the array's programs, less what clearing and shading of regions take.
+#[test]
+fn a_renderer_draws_as_many_triangles_as_its_programs_clocks_allow() {
+    within("R4", [0.97 * 40e6 / 258.0, 40e6 / 258.0]);
+    within("R4b", [0.97 * 40e6 / 292.0, 40e6 / 292.0]);
+}
+
+/// Two operations a clock of 40 MHz, which the loop around them does not reach.
+#[test]
+fn the_i860_comes_near_its_peak_and_not_beyond() {
+    within("R7", [78.0, 79.99]);
+}
+
+/// More triangles at a time never fit through a machine whose senders have one channel.
+#[test]
+fn the_fifo_and_the_senders_channels_move_the_rate_of_the_machine() {
+    for id in ["R1", "R2", "R3"] {
+        let [low, high] = row(id).interval.expect("varied");
+        assert!(high > low, "{id}: {low} to {high}");
+    }
+}
+
+/// A report waits at most for one look of the kernel: 30 ms are 1.798 fields; the mean of all is half of that.
+#[test]
+fn polling_adds_at_most_a_look_and_half_of_it_in_the_mean() {
+    within("T1", [1.75, 1.799]);
+    let mean = row("T1").details.iter().find(|detail| detail.name == "mean of all reports").expect("stated");
+    assert!((mean.value - 0.899).abs() < 0.05, "{}", mean.value);
+}
+
+/// 3.75 ms + dt (1 - a) / a with dt = 1/120 s.
+#[test]
+fn the_filter_of_the_fastrak_is_as_late_as_its_closed_form() {
+    for (id, gain) in [("T2", 0.95), ("T3", 0.05)] {
+        let formula = 3.75 + 1e3 / 120.0 * (1.0 - gain) / gain;
+        within(id, [formula - 1e-3, formula + 1e-3]);
+        assert!(!row(id).misses(), "{id}");
+    }
+}
