@@ -52,8 +52,8 @@ pub const OF_FIGURES: [(&str, &str, &[&str]); 3] = [
 /// [`ExperimentError`], where a lens, scene or number is none; those here are.
 pub fn all(experiments: &Experiments) -> Result<Vec<Picture>, ExperimentError> {
     let (scene, path) = gallery()?;
-    let world = World::new(&scene, experiments.fits[1].cell_m)?;
-    let torn = Settings::CELLS.with_cells(experiments.fits[1].cell_m);
+    let world = World::new(&scene, experiments.fits[0].cell_m)?;
+    let torn = Settings::CELLS.with_cells(experiments.fits[0].cell_m);
     of_walk(world, &path, &torn, 1.0, FRAMES)
 }
 
