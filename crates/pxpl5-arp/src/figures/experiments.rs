@@ -5,6 +5,7 @@ use super::fit::fitted_cell_m;
 use super::interpretations::{Interpretations, Rules, ThresholdRow, threshold_rows};
 use super::lens::straight_edge;
 use crate::error::ExperimentError;
+use crate::hall::{Route, path_of, scaled};
 use crate::report::Report;
 use crate::settings::{Settings, SourceKind};
 use crate::walk::{WalkTally, at_frames, walk};
@@ -82,18 +83,18 @@ pub struct Experiments {
     pub turned_differ: u64,
 }
 
-/// The gallery of the experiments: 20 m are eight cells of 2.5 m, of which the scene has 191 segments. Table 2 prints 183 and 213.
-const GALLERY: &str = "gallery:20";
+/// Scale of the gallery's plan in the experiments: its 20 m are eight cells of 2.5 m, with 191 segments. Table 2 prints 183 and 213.
+const HALL_SCALE: f64 = 0.5;
 
 /// The gallery and its path.
 pub(crate) fn gallery() -> Result<(Scene, Walk), ExperimentError> {
-    let scene = builtin(GALLERY).map_err(|error| ExperimentError::Scene {
-        scene: GALLERY.to_owned(),
+    let scene = builtin("gallery").map_err(|error| ExperimentError::Scene {
+        scene: "gallery".to_owned(),
         expected: "a built-in scene",
         found: error.to_string(),
     })?;
-    let corners: Vec<DVec3> = scene.path().iter().map(|corner| corner.as_dvec3()).collect();
-    let path = Walk::new(&corners, 1.0)?;
+    let scene = scaled(&scene, HALL_SCALE)?;
+    let path = path_of(&scene, Route::Scene)?;
     Ok((scene, path))
 }
 

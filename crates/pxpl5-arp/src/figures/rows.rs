@@ -106,7 +106,6 @@ fn table_2(all: &Experiments) -> Vec<Row> {
 fn tears(all: &Experiments) -> Vec<Row> {
     let widest = |walk: usize| all.walks[walk].report.tears_px.after.map_or(0.0, |tears| tears.max);
     let [warped, uncut] = [1, 2].map(widest);
-    let pixels = |walk: usize| widest(walk) * all.walks[walk].settings.texel_deg() / PIXEL_DEG;
     let pixels = widest(0) * all.walks[0].settings.texel_deg() / PIXEL_DEG;
     let before = "widest tear before warping, 2 to 5 pixels of the display (printed: \"a few\"; the threshold was chosen so)";
     let torn = Row::number("A15", before, "px", [3.0, pixels], Standing::Fitted);
