@@ -19,7 +19,7 @@ pub struct FaceWarp {
     pub slower_from: DVec3,
 }
 
-/// Words of a warp: home cell, rings, memories, falloff, two lengths, two places.
+/// Words of a warp: home cell, rings (inner ones, growth in the upper half), memories, falloff, two lengths, two places.
 pub(crate) const WARP_WORDS: usize = 7 + 2 * (2 + 6);
 
 impl FaceWarp {
@@ -34,10 +34,10 @@ impl FaceWarp {
     }
 
     pub(crate) fn to_words(self) -> Vec<Word> {
-        let Dealing { home, side_m, inner_rings, memories } = self.dealing;
+        let Dealing { home, side_m, inner_rings, ring_growth, memories } = self.dealing;
         let falloff = Falloff::ALL.iter().position(|(_, falloff)| *falloff == self.falloff).unwrap_or_default();
         let cell = [home.x, home.z].map(|number| halves(number as u64)).concat();
-        let counts = [inner_rings as Word, memories as Word, falloff as Word];
+        let counts = [inner_rings as Word | (ring_growth as Word) << 16, memories as Word, falloff as Word];
         let reals =
             [[side_m, self.length_m].to_vec(), self.drawn_from.to_array().into(), self.slower_from.to_array().into()];
         let reals = reals.concat().into_iter().flat_map(|real: f64| halves(real.to_bits()));
@@ -47,7 +47,7 @@ impl FaceWarp {
     /// `None` for words that are no warp.
     pub(crate) fn from_words(words: &[Word; WARP_WORDS]) -> Option<Self> {
         let (whole, reals) = words.split_first_chunk::<7>()?;
-        let [x_low, x_high, z_low, z_high, inner_rings, memories, falloff] = *whole;
+        let [x_low, x_high, z_low, z_high, rings, memories, falloff] = *whole;
         let cell = |low: Word, high: Word| joined(low, high) as i64;
         let reals: Vec<f64> = reals.chunks_exact(2).map(|pair| f64::from_bits(joined(pair[0], pair[1]))).collect();
         let [side_m, length_m, places @ ..] = &reals[..] else { return None };
@@ -55,7 +55,8 @@ impl FaceWarp {
             dealing: Dealing {
                 home: Cell { x: cell(x_low, x_high), z: cell(z_low, z_high) },
                 side_m: *side_m,
-                inner_rings: inner_rings.into(),
+                inner_rings: (rings & 0xFFFF).into(),
+                ring_growth: (rings >> 16).into(),
                 memories: memories as usize,
             },
             falloff: Falloff::ALL.get(falloff as usize)?.1,
@@ -81,7 +82,7 @@ pub(crate) mod tests {
 
     pub(crate) fn warp() -> FaceWarp {
         FaceWarp {
-            dealing: Dealing { home: Cell { x: -3, z: 1 << 40 }, side_m: 5.0, inner_rings: 1, memories: 4 },
+            dealing: Dealing { home: Cell { x: -3, z: 1 << 40 }, side_m: 5.0, inner_rings: 1, ring_growth: 2, memories: 4 },
             falloff: Falloff::Smoothstep,
             length_m: 4.5,
             drawn_from: DVec3::new(0.1, 1.7, -2.0),

@@ -77,7 +77,7 @@ mod tests {
 
     /// It holds all structures but the third, and moves the fourth.
     fn update(number: u64) -> FaceUpdate {
-        let dealing = Dealing { home: Cell { x: 0, z: 0 }, side_m: 10.0, inner_rings: 0, memories: 2 };
+        let dealing = Dealing { home: Cell { x: 0, z: 0 }, side_m: 10.0, inner_rings: 0, ring_growth: 1, memories: 2 };
         let eye = EyeView { world_to_eye: Mat4::IDENTITY, head_to_eye: Mat4::IDENTITY, projection: Mat4::IDENTITY };
         let edits = vec![ModelEdit { structure: 3, model: Mat4::IDENTITY }];
         FaceUpdate {

@@ -52,6 +52,8 @@ pub struct Dealing {
     pub side_m: f64,
     /// Rings around the home cell that memory 0 holds besides it.
     pub inner_rings: u64,
+    /// Rings of each memory relative to the next faster one: memory 1 holds one, memory 2 holds `ring_growth`, and so on.
+    pub ring_growth: u64,
     /// Memories among which they are dealt.
     pub memories: usize,
 }
@@ -60,22 +62,40 @@ impl Dealing {
     /// The memory of a cell.
     #[must_use]
     pub fn memory(&self, cell: Cell) -> usize {
-        let beyond = self.home.ring(cell).saturating_sub(self.inner_rings);
-        usize::try_from(beyond).unwrap_or(usize::MAX).min(self.memories - 1)
+        let ring = self.home.ring(cell);
+        (0..self.memories - 1).find(|memory| ring <= self.last_ring(*memory)).unwrap_or(self.memories - 1)
+    }
+
+    /// The outermost ring of memory k, unless it is the slowest one: the inner rings, then 1 + g + g^2 + ... + g^(k-1) more, g being
+    /// [`Dealing::ring_growth`].
+    #[must_use]
+    pub fn last_ring(&self, memory: usize) -> u64 {
+        let next = |(rings, of_memory): (u64, u64)| {
+            (rings.saturating_add(of_memory), of_memory.saturating_mul(self.ring_growth))
+        };
+        (0..memory).fold((self.inner_rings, 1), |rings, _| next(rings)).0
     }
 
     /// Distance of a place from the border behind which memory k begins, m: from inside, 0 outside or on it. Memory 0 begins
     /// at the eye.
     #[must_use]
     pub fn distance(&self, place: DVec3, memory: usize) -> f64 {
-        if memory == 0 { 0.0 } else { self.inside_block(place, self.inner_rings + memory as u64 - 1) }
+        if memory == 0 { 0.0 } else { self.inside_block(place, self.last_ring(memory - 1)) }
     }
 
     /// Horizontal distance of a place from the border between memory k and k + 1, m, from inside; `None` for the slowest
     /// memory, which has no such border.
     #[must_use]
     pub fn to_slower(&self, place: DVec3, memory: usize) -> Option<f64> {
-        (memory + 1 < self.memories).then(|| self.inside_block(place, self.inner_rings + memory as u64))
+        (memory + 1 < self.memories).then(|| self.inside_block(place, self.last_ring(memory)))
+    }
+
+    /// Horizontal distance of a place from a cell, m; 0 inside.
+    fn to_cell(&self, place: DVec3, cell: Cell) -> f64 {
+        let along = |place: f64, number: i64| {
+            (border(number, self.side_m) - place).max(place - border(number.saturating_add(1), self.side_m)).max(0.0)
+        };
+        libm::hypot(along(place.x, cell.x), along(place.z, cell.z))
     }
 
     /// Distance to the border of the block of so many rings around home.
@@ -95,6 +115,7 @@ pub struct Cells {
     dealing: Dealing,
     threshold: Threshold,
     has_cascade: bool,
+    to_held_cells: bool,
     occupied: BTreeSet<Cell>,
     /// Where each memory was last drawn from; `None` before its first update.
     drawn_from: Vec<Option<DVec3>>,
@@ -106,11 +127,18 @@ impl Cells {
     #[must_use]
     pub fn new(timing: &PriorityTiming, occupied: impl IntoIterator<Item = Cell>, has_cascade: bool) -> Self {
         let memories = timing.memories as usize;
-        let home = Cell { x: 0, z: 0 };
+        let dealing = Dealing {
+            home: Cell { x: 0, z: 0 },
+            side_m: timing.cell_m,
+            inner_rings: timing.inner_rings,
+            ring_growth: timing.ring_growth,
+            memories,
+        };
         Self {
-            dealing: Dealing { home, side_m: timing.cell_m, inner_rings: timing.inner_rings, memories },
+            dealing,
             threshold: Threshold::of_degrees(timing.theta_deg),
             has_cascade,
+            to_held_cells: timing.to_held_cells == 1,
             occupied: occupied.into_iter().collect(),
             drawn_from: vec![None; memories],
         }
@@ -128,23 +156,41 @@ impl Cells {
         self.drawn_from.get(memory).copied().flatten()
     }
 
-    /// How far the eye may be from where a memory was drawn, m, before it is due.
+    /// How far the eye may be from where a memory was drawn, m, before it is due; infinite for a memory without cells, where
+    /// distances are those of cells that hold something.
     #[must_use]
     pub fn way(&self, eye: DVec3, memory: usize) -> f64 {
-        self.threshold.way(self.dealing.distance(eye, memory))
+        self.threshold.way(self.distances(eye).get(memory).copied().unwrap_or(0.0))
     }
 
-    fn is_due(&self, eye: DVec3, memory: usize) -> bool {
-        self.drawn_from[memory].is_none_or(|from| eye.distance(from) > self.way(eye, memory))
+    /// The distance that counts for each memory, m.
+    fn distances(&self, eye: DVec3) -> Vec<f64> {
+        if !self.to_held_cells {
+            return (0..self.dealing.memories).map(|memory| self.dealing.distance(eye, memory)).collect();
+        }
+        let mut distances = vec![f64::INFINITY; self.dealing.memories];
+        for cell in &self.occupied {
+            let nearest = &mut distances[self.dealing.memory(*cell)];
+            *nearest = nearest.min(self.dealing.to_cell(eye, *cell));
+        }
+        distances[0] = 0.0;
+        distances
     }
 
     /// A frame: what is drawn for this place of the eye.
     pub fn frame(&mut self, eye: DVec3) -> Update {
         let memories = self.dealing.memories;
         let is_first = self.drawn_from[0].is_none();
-        let mut due: Vec<bool> = (0..memories).map(|memory| self.is_due(eye, memory)).collect();
+        let ways: Vec<f64> = self.distances(eye).into_iter().map(|distance| self.threshold.way(distance)).collect();
+        let is_due = |(from, way): (&Option<DVec3>, &f64)| from.is_none_or(|from| eye.distance(from) > *way);
+        let mut due: Vec<bool> = self.drawn_from.iter().zip(&ways).map(is_due).collect();
+        // A memory without cells is right from everywhere: it is never due, and it does not hold back a new dealing.
+        for (from, _) in self.drawn_from.iter_mut().zip(&ways).filter(|(from, way)| from.is_some() && way.is_infinite()) {
+            *from = Some(eye);
+        }
         let cell = Cell::of(eye.x, eye.z, self.dealing.side_m);
-        let deals_anew = cell != self.dealing.home && due[memories - 1];
+        let slowest_may_deal = due[memories - 1] || ways[memories - 1].is_infinite();
+        let deals_anew = cell != self.dealing.home && slowest_may_deal;
         let mut together = vec![false; memories];
         if deals_anew {
             together = self.deal(cell);

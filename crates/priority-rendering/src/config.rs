@@ -7,13 +7,17 @@ parameters::parameter_table! {
     /// When an image is wrong, how the world is cut, and how fast memories are redrawn.
     pub struct PriorityTiming {
         /// The angle by which an image may be wrong before it is drawn again.
-        theta_deg: f64 = 0.17578125, "deg", Assumed, 0.05..=0.5 in 1e-9..=90.0, "not printed; 90/512: a texel of the display memory";
+        theta_deg: f64 = 0.3515625, "deg", Assumed, 0.09..=0.88 in 1e-9..=90.0, "CPR05 2.2: the spacing of pixels in the display memory, not printed; 90/256, so that tears are 3.75 pixels of 60/640 deg (CPR05 5: a few). Range: one such pixel to five texels of 90/512 deg";
         /// Rings of cells around the user's own that the fastest memory holds besides it.
         inner_rings: 1, "rings", Derived, 0..=2 in 0..=100, "with 0 the second memory of table 1 would be as fast as the first";
+        /// Rings that each memory holds, relative to the next faster one; memory 1 holds one ring.
+        ring_growth: 2, "1", Derived, 1..=2 in 1..=8, "CPR05 2.2: each memory has half the rate of the one before, so it may begin twice as far away; 1 gives equal rings";
+        /// Distance that decides when a memory is due: 0 to the border of its block, 1 to its nearest cell that holds something.
+        to_held_cells: 0, "1", Assumed, 0..=1, "not printed; `pxpl5 arp interpretations` ranks both";
         /// Side of a cell.
-        cell_m: f64 = 5.0, "m", Derived, 1.0..=100.0 in 1e-3..=1e6, "fitted to one rate of table 1";
+        cell_m: f64 = 2.5, "m", Derived, 1.0..=100.0 in 1e-3..=1e6, "fitted to one rate of table 1";
         /// Distance from a border within which warping moves vertices, at most a cell's side.
-        falloff_m: f64 = 5.0, "m", Assumed, 0.1..=100.0 in 1e-3..=1e6, "not printed: a cell's side";
+        falloff_m: f64 = 2.5, "m", Assumed, 0.1..=100.0 in 1e-3..=1e6, "not printed: a cell's side";
         /// Frames a second: the rate of the fastest memory.
         frame_hz: f64 = 60.0, "Hz", Published, 60.0..=60.0 in 1.0..=1000.0, "CPR05 4.2";
         /// Display memories of different rates.

@@ -15,10 +15,11 @@
 //!   never makes it wrong; a face out of sight can wait ([`until_in_sight_s`]).
 //! - **Objects** ([`Objects`]): an object is in the slowest memory in which its image stays right; memory k is drawn every 2^k
 //!   frames. It changes memories only in a frame that draws both, and both are shown together.
-//! - **Cells** ([`Cells`]): the world is cut in square columns. A cell's memory is its ring around the home cell, less the inner
-//!   rings. A memory is due when the eye has gone farther than its nearest cell allows. When the eye has left the home cell and the
-//!   slowest memory is due, cells are dealt anew, and the memories whose cells are others are shown together. With warping an update
-//!   of a memory makes all faster ones due (cascade).
+//! - **Cells** ([`Cells`]): the world is cut in square columns. A cell's ring around the home cell decides its memory. Memory 0 holds
+//!   the inner rings, memory 1 one ring, and each further memory `ring_growth` times as many as the one before. A memory is due when
+//!   the eye has gone farther than its nearest cell allows. That cell is the nearest of its block, or the nearest that holds
+//!   something (`to_held_cells`). When the eye has left the home cell and the slowest memory is due, cells are dealt anew, and the
+//!   memories whose cells are others are shown together. With warping an update of a memory makes all faster ones due (cascade).
 //! - **Segmentation** ([`Segmentation`]): meshes are cut at the borders of cells, each line once for all who share it, so that parts
 //!   meet in the same vertices bit for bit. A segment is what a mesh has in a cell.
 //! - **Warping** ([`RegionWarp`]): a vertex on the border to the slower memory is moved by the difference of the places that both

@@ -130,7 +130,7 @@ fn angles_from_places_that_the_symmetry_of_the_cube_tells() {
 }
 
 fn dealing() -> Dealing {
-    Dealing { home: Cell { x: 0, z: 0 }, side_m: 5.0, inner_rings: 1, memories: 4 }
+    Dealing { home: Cell { x: 0, z: 0 }, side_m: 5.0, inner_rings: 1, ring_growth: 1, memories: 4 }
 }
 
 #[test]
@@ -157,6 +157,22 @@ fn cases_23_and_24_cells_and_their_memories() {
     assert_eq!(memories, [0, 0, 1, 2, 3, 3]);
     let far = Cell { x: i64::MAX, z: i64::MIN };
     assert_eq!(dealing().memory(far), 3);
+}
+
+/// Memory k begins behind q + 1 + g + ... + g^(k-2) rings: with g = 2 behind 1, 2 and 4 of them.
+#[test]
+fn rings_that_double_begin_one_two_and_four_rings_away() {
+    let doubling = Dealing { ring_growth: 2, ..dealing() };
+    assert_eq!([0, 1, 2].map(|memory| doubling.last_ring(memory)), [1, 2, 4]);
+    let memories = (0..=7).map(|ring| doubling.memory(Cell { x: -ring, z: 0 })).collect::<Vec<_>>();
+    assert_eq!(memories, [0, 0, 1, 2, 2, 3, 3, 3]);
+    let eye = at(2.0, 1.0);
+    assert_eq!([1, 2, 3].map(|memory| doubling.distance(eye, memory)), [6.0, 11.0, 21.0]);
+    assert_eq!([0, 1, 2, 3].map(|memory| doubling.to_slower(eye, memory)), [Some(6.0), Some(11.0), Some(21.0), None]);
+    let eight = Dealing { memories: 8, ..doubling };
+    assert_eq!(eight.last_ring(6), 64);
+    assert_eq!(eight.memory(Cell { x: 64, z: 0 }), 6);
+    assert_eq!(eight.memory(Cell { x: 65, z: 0 }), 7);
 }
 
 #[test]
@@ -313,7 +329,8 @@ proptest::proptest! {
 
 #[test]
 fn numbers_are_refused_by_name() {
-    let papers = PriorityTiming::PAPERS;
+    PriorityTiming::PAPERS.check().expect("valid");
+    let papers = PriorityTiming { cell_m: 5.0, falloff_m: 5.0, ..PriorityTiming::PAPERS };
     papers.check().expect("valid");
     let refusal = |timing: PriorityTiming| timing.check().expect_err("refused").to_string();
     let wide = refusal(PriorityTiming { falloff_m: 6.0, ..papers });

@@ -4,7 +4,14 @@ use glam::DVec3;
 use priority_rendering::{Cell, Cells, Falloff, Objects, PriorityTiming, RegionWarp, Threshold, level};
 use proptest::prelude::*;
 
-const PAPERS: PriorityTiming = PriorityTiming::PAPERS;
+/// The interpretation that the specification's numbers are of: equal rings of cells of 5 m, a threshold of 90/512 degrees.
+const EQUAL_RINGS: PriorityTiming = PriorityTiming {
+    theta_deg: 90.0 / 512.0,
+    ring_growth: 1,
+    cell_m: 5.0,
+    falloff_m: 5.0,
+    ..PriorityTiming::PAPERS
+};
 const FRAME_M: f64 = 1.0 / 60.0;
 
 fn square(cells: i64) -> impl Iterator<Item = Cell> {
@@ -29,7 +36,7 @@ fn walk(cells: &mut Cells, path: impl Iterator<Item = DVec3>) -> (Vec<u64>, u64)
 
 /// Rates of the memories over two minutes of a straight walk at 1 m/s, in a direction and a lane.
 fn rates(side_m: f64, heading: f64, lane_m: f64) -> [f64; 4] {
-    let timing = PriorityTiming { cell_m: side_m, falloff_m: side_m, ..PAPERS };
+    let timing = PriorityTiming { cell_m: side_m, falloff_m: side_m, ..EQUAL_RINGS };
     let mut cells = Cells::new(&timing, square(60), false);
     let place = |n: u32| {
         let way = f64::from(n) * FRAME_M;
@@ -63,13 +70,13 @@ fn a_walk_along_cells_depends_on_its_lane_only_near_their_edges() {
     let middle = rates(5.0, 0.0, 2.5);
     assert_eq!(rates(5.0, 0.0, 1.5), middle);
     assert!(middle.is_sorted_by(|a, b| a > b), "{middle:?}");
-    assert!(Threshold::of_degrees(PAPERS.theta_deg).way(5.3) < FRAME_M);
+    assert!(Threshold::of_degrees(EQUAL_RINGS.theta_deg).way(5.3) < FRAME_M);
     assert_eq!(rates(5.0, 0.0, 0.3)[1], 60.0);
 }
 
 #[test]
 fn a_still_eye_needs_nothing_whatever_the_head_does() {
-    let mut cells = Cells::new(&PAPERS, square(5), true);
+    let mut cells = Cells::new(&EQUAL_RINGS, square(5), true);
     assert_eq!(cells.frame(at(1.0, 2.0)).due, [true; 4]);
     for _ in 0..100 {
         assert_eq!(cells.frame(at(1.0, 2.0)).due, [false; 4]);
@@ -79,10 +86,10 @@ fn a_still_eye_needs_nothing_whatever_the_head_does() {
 /// The margin before a re-deal lies between 0 and D_3; at a = 5 m that is at least 46.0 mm (15 m x 2 sin(theta / 2)).
 #[test]
 fn to_and_fro_across_a_border_deals_once_at_most() {
-    let threshold = Threshold::of_degrees(PAPERS.theta_deg);
+    let threshold = Threshold::of_degrees(EQUAL_RINGS.theta_deg);
     assert!((1e3 * threshold.way(15.0) - 46.02).abs() < 0.01);
     for start in [0, 7, 13] {
-        let mut cells = Cells::new(&PAPERS, square(5), true);
+        let mut cells = Cells::new(&EQUAL_RINGS, square(5), true);
         cells.frame(at(4.9, 2.0));
         let path = (start..start + 6_000).map(|n| at(5.0 + 0.020 * (f64::from(n) * 0.1).sin(), 2.0));
         assert!(walk(&mut cells, path).1 <= 1);
@@ -91,7 +98,7 @@ fn to_and_fro_across_a_border_deals_once_at_most() {
 
 #[test]
 fn a_jump_of_a_kilometre_deals_once_and_leaves_no_tear() {
-    let mut cells = Cells::new(&PAPERS, square(300), true);
+    let mut cells = Cells::new(&EQUAL_RINGS, square(300), true);
     cells.frame(at(1.0, 2.0));
     let update = cells.frame(at(1_001.0, 2.0));
     assert!(update.deals_anew && update.due == [true; 4], "{update:?}");
@@ -105,7 +112,7 @@ fn a_jump_of_a_kilometre_deals_once_and_leaves_no_tear() {
 #[test]
 fn thresholds_at_their_ends() {
     let walk_with = |theta_deg| {
-        let mut cells = Cells::new(&PriorityTiming { theta_deg, ..PAPERS }, square(5), false);
+        let mut cells = Cells::new(&PriorityTiming { theta_deg, ..EQUAL_RINGS }, square(5), false);
         cells.frame(at(0.1, 2.0));
         walk(&mut cells, (1..60).map(|n| at(0.1 + f64::from(n) * FRAME_M, 2.0))).0
     };
@@ -116,7 +123,7 @@ fn thresholds_at_their_ends() {
 #[test]
 fn one_memory_and_eight() {
     for memories in [1, 8] {
-        let mut cells = Cells::new(&PriorityTiming { memories, ..PAPERS }, square(12), true);
+        let mut cells = Cells::new(&PriorityTiming { memories, ..EQUAL_RINGS }, square(12), true);
         cells.frame(at(0.0, 0.0));
         let (updates, _) = walk(&mut cells, (1..300).map(|n| at(f64::from(n) * FRAME_M, 0.0)));
         assert_eq!(updates[0], 299);
@@ -127,7 +134,7 @@ fn one_memory_and_eight() {
 /// With the cascade a faster memory is never older than a slower one, so what warping joined stays joined.
 #[test]
 fn a_warped_border_is_closed_in_every_frame() {
-    let mut cells = Cells::new(&PAPERS, square(10), true);
+    let mut cells = Cells::new(&EQUAL_RINGS, square(10), true);
     let mut worst = 0.0_f64;
     let mut vertices: Vec<Vec<DVec3>> = vec![Vec::new(); 4];
     for n in 0..600 {
@@ -137,7 +144,7 @@ fn a_warped_border_is_closed_in_every_frame() {
         for memory in update.memories().filter(|memory| *memory < 3) {
             let [own, slower] = [memory, memory + 1].map(|k| cells.drawn_from(k).expect("drawn"));
             let warp = RegionWarp::new(Falloff::Linear, 5.0, own, slower).expect("a length");
-            let ring = (dealing.inner_rings + memory as u64) as f64;
+            let ring = dealing.last_ring(memory) as f64;
             let border = (dealing.home.x as f64 + ring + 1.0) * 5.0;
             let vertex = DVec3::new(border, 1.0, dealing.home.z as f64 * 5.0 + 1.0);
             assert_eq!(dealing.to_slower(vertex, memory), Some(0.0));
@@ -159,9 +166,9 @@ proptest! {
         steps in prop::collection::vec((-0.05..0.05_f64, -0.05..0.05_f64), 1..200),
         point in (0.0..1.0_f64, 0.0..4.0_f64, 0.0..1.0_f64),
     ) {
-        let mut cells = Cells::new(&PAPERS, square(6), false);
+        let mut cells = Cells::new(&EQUAL_RINGS, square(6), false);
         let mut eye = at(2.5, 2.5);
-        let bound = (2.0 * (PAPERS.theta_deg.to_radians() / 2.0).sin()).asin();
+        let bound = (2.0 * (EQUAL_RINGS.theta_deg.to_radians() / 2.0).sin()).asin();
         for (x, z) in steps {
             eye += DVec3::new(x, 0.0, z);
             cells.frame(eye);
@@ -178,7 +185,7 @@ proptest! {
     /// An object is in one memory in every frame and changes only when both are drawn and shown together.
     #[test]
     fn objects_change_memories_only_together(periods in prop::collection::vec(prop::collection::vec(0.0..0.3_f64, 5), 1..80)) {
-        let mut policy = Objects::new(&PAPERS, 5);
+        let mut policy = Objects::new(&EQUAL_RINGS, 5);
         let mut before = [None; 5];
         for (frame, periods) in (0_u64..).zip(periods) {
             let update = policy.frame(frame, &periods);
@@ -198,7 +205,7 @@ proptest! {
 #[test]
 fn images_are_drawn_again_before_they_are_wrong() {
     for period in [0.01, 0.0334, 0.05, 0.0667, 0.1, 0.1334, 0.3] {
-        let mut policy = Objects::new(&PAPERS, 1);
+        let mut policy = Objects::new(&EQUAL_RINGS, 1);
         let mut drawn_at = 0;
         for frame in 0..200_u64 {
             let update = policy.frame(frame, &[period]);
@@ -214,7 +221,7 @@ fn images_are_drawn_again_before_they_are_wrong() {
 /// 64 frames a second, so that times are exact: an image that is right for two frames, in the only memory, is drawn every second one.
 #[test]
 fn a_memory_rests_while_its_images_are_right_until_its_next_frame() {
-    let timing = PriorityTiming { frame_hz: 64.0, memories: 1, ..PAPERS };
+    let timing = PriorityTiming { frame_hz: 64.0, memories: 1, ..EQUAL_RINGS };
     let mut policy = Objects::new(&timing, 2);
     let due: Vec<bool> = (0..6).map(|frame| policy.frame(frame, &[2.0 / 64.0; 2]).due[0]).collect();
     assert_eq!(due, [true, false, true, false, true, false]);
@@ -224,7 +231,7 @@ fn a_memory_rests_while_its_images_are_right_until_its_next_frame() {
 /// An object that comes near leaves memory 1 for memory 0 in the next even frame, and is alone in what is shown together.
 #[test]
 fn an_object_moves_when_both_memories_are_drawn() {
-    let mut policy = Objects::new(&PriorityTiming { memories: 2, ..PAPERS }, 2);
+    let mut policy = Objects::new(&PriorityTiming { memories: 2, ..EQUAL_RINGS }, 2);
     assert_eq!(policy.memory(0), None, "it was not drawn yet");
     policy.frame(0, &[1.0, 1.0]);
     assert_eq!([0, 1, 2].map(|object| policy.memory(object)), [Some(1), Some(1), None]);
@@ -238,14 +245,14 @@ fn an_object_moves_when_both_memories_are_drawn() {
 /// From the middle of a cell of 5 m the slowest memory begins 17.5 m away, and 17.5 m x 2 sin(theta / 2) are 53.7 mm.
 #[test]
 fn cells_are_dealt_anew_when_the_home_cell_is_left_and_the_slowest_memory_is_due() {
-    let mut cells = Cells::new(&PAPERS, square(8), false);
+    let mut cells = Cells::new(&EQUAL_RINGS, square(8), false);
     let first = cells.frame(at(12.5, 12.5));
     assert!(!first.deals_anew && first.due == [true; 4], "{first:?}");
     assert_eq!(cells.dealing().home, Cell { x: 2, z: 2 });
     let within = cells.frame(at(12.5 + 0.054, 12.5));
     assert!(!within.deals_anew && within.due == [true; 4], "{within:?}");
     assert_eq!(within.together, [false; 4]);
-    let mut cells = Cells::new(&PAPERS, square(8), false);
+    let mut cells = Cells::new(&EQUAL_RINGS, square(8), false);
     cells.frame(at(14.999, 12.5));
     let across = cells.frame(at(15.001, 12.5));
     assert!(!across.deals_anew && !across.due[3], "{across:?}");
@@ -255,10 +262,44 @@ fn cells_are_dealt_anew_when_the_home_cell_is_left_and_the_slowest_memory_is_due
     assert_eq!(cells.dealing().home, Cell { x: 3, z: 2 });
 }
 
+/// The eye walks through the middle of a hall of seven cells of 5 m. From its middle cell the hall reaches three rings: the slowest of four
+/// memories holds nothing, and does not hold back a new dealing.
+#[test]
+fn a_memory_without_cells_is_never_due_and_does_not_hold_back_a_dealing() {
+    let timing = PriorityTiming { to_held_cells: 1, ..EQUAL_RINGS };
+    let hall = || (0..7).flat_map(|x| (0..7).map(move |z| Cell { x, z }));
+    let mut cells = Cells::new(&timing, hall(), false);
+    let eye = |z: f64| at(17.5, z);
+    cells.frame(eye(17.5));
+    assert_eq!(cells.dealing().home, Cell { x: 3, z: 3 });
+    assert_eq!(cells.way(eye(17.5), 3), f64::INFINITY);
+    let (updates, deals) = walk(&mut cells, (1..=120).map(|n| eye(17.5 + f64::from(n) * FRAME_M)));
+    assert_eq!((updates[3], deals), (0, 0), "two metres within the middle cell");
+    let across = cells.frame(eye(20.01));
+    assert!(across.deals_anew && across.due[3], "one ring on, a row of cells is four rings away: {across:?}");
+    assert_eq!(cells.dealing().home, Cell { x: 3, z: 4 });
+}
+
+/// Only one side of the hall has cells: those behind the eye. Seven cells in a row along z, the eye in the last of them, 2 m from the
+/// border to the next: the ring 2 cell begins 5 m + 3 m behind it. The block's border before it is 7 m away (7.5 m to the sides), where no cell is.
+#[test]
+fn distances_may_be_those_of_cells_that_hold_something() {
+    let row = || (0..7).map(|z| Cell { x: 0, z });
+    let eye = at(2.5, 33.0);
+    for (to_held_cells, distances) in [(0, [7.0, 12.0]), (1, [8.0, 13.0])] {
+        let mut cells = Cells::new(&PriorityTiming { to_held_cells, ..EQUAL_RINGS }, row(), false);
+        cells.frame(eye);
+        let threshold = Threshold::of_degrees(EQUAL_RINGS.theta_deg);
+        for (memory, distance) in [1, 2].into_iter().zip(distances) {
+            assert!((cells.way(eye, memory) - threshold.way(distance)).abs() < 1e-12, "{to_held_cells} {memory}");
+        }
+    }
+}
+
 /// The only cell with something in it is two rings before the eye, in memory 1, and then one ring: in memory 0.
 #[test]
 fn memories_whose_cells_are_the_same_need_not_be_shown_together() {
-    let mut cells = Cells::new(&PAPERS, [Cell { x: 2, z: 0 }], false);
+    let mut cells = Cells::new(&EQUAL_RINGS, [Cell { x: 2, z: 0 }], false);
     cells.frame(at(2.5, 2.5));
     let update = cells.frame(at(7.5, 2.5));
     assert!(update.deals_anew && update.due == [true; 4], "5 m make all due, changed or not");
@@ -269,14 +310,14 @@ fn memories_whose_cells_are_the_same_need_not_be_shown_together() {
 /// 0.37 m/s with five.
 #[test]
 fn far_objects_are_drawn_seldom() {
-    let threshold = Threshold::of_degrees(PAPERS.theta_deg);
+    let threshold = Threshold::of_degrees(EQUAL_RINGS.theta_deg);
     for (speed, memories, expected) in [(1.0, 4, 6.01), (0.37, 5, 13.40)] {
         let objects = 20_000;
         // The n-th of so many equal rings of area.
         let periods: Vec<f64> = (0..objects)
             .map(|n| threshold.way(100.0 * ((f64::from(n) + 0.5) / f64::from(objects)).sqrt()) / speed)
             .collect();
-        let mut policy = Objects::new(&PriorityTiming { memories, ..PAPERS }, objects as usize);
+        let mut policy = Objects::new(&PriorityTiming { memories, ..EQUAL_RINGS }, objects as usize);
         (0..160).for_each(|frame| {
             policy.frame(frame, &periods);
         });

@@ -11,6 +11,8 @@ use priority_rendering::{Dealing, PriorityError, RegionWarp};
 pub struct Content {
     /// The place of the eye.
     pub eye: DVec3,
+    /// The frame at whose beginning the eye was there.
+    pub frame: u64,
     /// The segments in it.
     pub segments: Vec<usize>,
     /// How vertices are moved, where they are: the warp, how cells were dealt, and which memory this is.

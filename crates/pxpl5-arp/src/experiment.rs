@@ -1,6 +1,7 @@
 //! A walk through a scene, and what is seen at its end.
 
 use crate::error::ExperimentError;
+use crate::hall::{path_of, scaled};
 use crate::look::Faces;
 use crate::pictures::ahead;
 use crate::plan::Plan;
@@ -8,7 +9,6 @@ use crate::report::{Looked, Report};
 use crate::settings::Settings;
 use crate::walk::{WalkTally, at_frames, walked};
 use crate::world::World;
-use glam::DVec3;
 use pxpl5_scene::Scene;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -49,23 +49,6 @@ pub struct WalkOutcome {
     pub report: WalkReport,
 }
 
-/// The path through a scene.
-///
-/// # Errors
-///
-/// [`ExperimentError::Scene`] for a scene without one.
-pub fn path_of(scene: &Scene) -> Result<Walk, ExperimentError> {
-    let corners: Vec<DVec3> = scene.path().iter().map(|corner| corner.as_dvec3()).collect();
-    if corners.len() < 2 {
-        return Err(ExperimentError::Scene {
-            scene: scene.name().to_owned(),
-            expected: "a path to walk along, as gallery and gallery:full have",
-            found: "none".to_owned(),
-        });
-    }
-    Ok(Walk::new(&corners, 1.0)?)
-}
-
 impl WalkOutcome {
     /// Walks; `finished` hears how many of all frames are done.
     ///
@@ -74,7 +57,9 @@ impl WalkOutcome {
     /// [`ExperimentError`] for settings or a scene that do not suit.
     pub fn of(scene: &Scene, plan: &Plan, finished: impl Fn(u64, u64)) -> Result<Self, ExperimentError> {
         let settings = plan.settings()?;
-        let path = path_of(scene)?;
+        let scaled = (plan.walk.hall_scale != 1.0).then(|| scaled(scene, plan.walk.hall_scale)).transpose()?;
+        let scene = scaled.as_ref().unwrap_or(scene);
+        let path = path_of(scene, plan.route())?;
         let world = World::new(scene, settings.numbers.cell_m)?;
         let frames = plan.walk.frames;
         let eye = at_frames(&path, plan.walk.m_per_s, settings.numbers.frame_hz);

@@ -22,13 +22,15 @@
 //!
 //! # Not here
 //!
-//! Trackers, hosts and scan-out: what a latency is made of besides the display's own stages is null. Pixel-Planes 5 as a source.
+//! Trackers and hosts: the eye is known at the beginning of each frame, its orientation at the latch. Latencies begin there; those of
+//! `pxpl5 run` have a tracker and a host. Pixel-Planes 5 as a source.
 
 mod compare;
 mod content;
 mod error;
 mod experiment;
 pub mod figures;
+mod hall;
 mod look;
 pub mod pictures;
 mod plan;
@@ -44,7 +46,8 @@ pub use address_recalculation;
 pub use compare::{ArpComparison, ComparedRow, compare, variant_count};
 pub use content::Content;
 pub use error::ExperimentError;
-pub use experiment::{WalkOutcome, WalkReport, path_of};
+pub use experiment::{WalkOutcome, WalkReport};
+pub use hall::{Route, path_of, scaled};
 pub use look::Faces;
 pub use plan::{Plan, WalkNumbers};
 pub use report::{Latency, Looked, MemoryReport, PriorityReport, Report, SCHEMA, TearsReport};

@@ -2,7 +2,8 @@
 
 use crate::error::ExperimentError;
 use crate::settings::{PolicyKind, Settings, SourceKind};
-use address_recalculation::{CompositionOrder, Latch, Lens, Picture};
+use crate::hall::Route;
+use address_recalculation::{ArpConfig, CompositionOrder, Latch, Lens, Picture};
 use parameters::{Entry, ParameterInfo, ParameterTable, Value, nearest};
 use priority_rendering::Falloff;
 use std::collections::BTreeMap;
@@ -14,16 +15,29 @@ parameters::parameter_table! {
         m_per_s: f64 = 1.0, "m/s", Published, 0.0..=3.0 in 0.0..=100.0, "CPR05 4.2: a walker";
         /// Length of the walk.
         frames: 1_800, "frames", Assumed, 60..=100_000 in 1..=1_000_000, "half a minute; table 1 is compared over two minutes";
+        /// Factor of the length and the width of scene and path; heights stay.
+        hall_scale: f64 = 1.0, "1", Assumed, 0.25..=4.0 in 0.01..=100.0, "not printed; 0.5 makes the gallery 20 m wide, eight cells of 2.5 m";
     }
 }
 
 /// Paths of choices, which stand in no table.
-const CHOICES: [&str; 8] =
-    ["policy", "segment", "warp", "priority.cascade", "source", "arp.latch", "arp.lens", "arp.order"];
+const CHOICES: [&str; 10] = [
+    "policy",
+    "segment",
+    "warp",
+    "priority.cascade",
+    "priority.threshold",
+    "source",
+    "walk.route",
+    "arp.latch",
+    "arp.lens",
+    "arp.order",
+];
 
 /// A walk that can be taken: settings by path over defaults that depend on each other.
 ///
 /// What is not said follows: cascade is on where cells are warped, objects are cut under `cells` alone, a falloff is as long as a cell.
+/// `priority.threshold` in pixels or texels goes before `priority.theta_deg`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// How fast and how long.
@@ -31,7 +45,38 @@ pub struct Plan {
     chosen: Settings,
     is_segmented: Option<bool>,
     has_cascade: Option<bool>,
+    threshold: Option<ThresholdChoice>,
+    route: Route,
     said: BTreeMap<String, String>,
+}
+
+/// A threshold in pixels, which becomes an angle when the display is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum ThresholdChoice {
+    /// Of the display: its horizontal angle over its pixels, mean over a line.
+    Pixels(f64),
+    /// Of a face: 90 degrees over those of its edge, in the mean.
+    Texels(f64),
+}
+
+impl ThresholdChoice {
+    fn degrees(self, display: &ArpConfig) -> f64 {
+        match self {
+            Self::Pixels(pixels) => pixels * display.timing.horizontal_deg / display.scan.visible_pixels as f64,
+            Self::Texels(texels) => texels * 90.0 / display.timing.face_texels as f64,
+        }
+    }
+}
+
+/// `2px` or `2texels`.
+fn threshold(text: &str) -> Result<ThresholdChoice, String> {
+    let expected = || "pixels of the display as 2px, or texels of a face as 2texels".to_owned();
+    let number = |text: &str| text.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
+    if let Some(pixels) = text.strip_suffix("px") {
+        return number(pixels).map(ThresholdChoice::Pixels).ok_or_else(expected);
+    }
+    let texels = text.strip_suffix("texels").or_else(|| text.strip_suffix("texel"));
+    texels.and_then(number).map(ThresholdChoice::Texels).ok_or_else(expected)
 }
 
 /// A table and the first part of its paths.
@@ -46,6 +91,8 @@ impl Plan {
             chosen: Settings::WARPED,
             is_segmented: None,
             has_cascade: None,
+            threshold: None,
+            route: Route::Scene,
             said: BTreeMap::new(),
         }
     }
@@ -92,6 +139,8 @@ impl Plan {
             "arp.latch" => choose(&mut self.chosen.display.latch, &Latch::ALL, text),
             "arp.order" => choose(&mut self.chosen.display.order, &CompositionOrder::ALL, text),
             "segment" => is_on(text).map(|is_on| self.is_segmented = Some(is_on)),
+            "walk.route" => choose(&mut self.route, &Route::ALL, text),
+            "priority.threshold" => threshold(text).map(|threshold| self.threshold = Some(threshold)),
             "priority.cascade" => is_on(text).map(|is_on| self.has_cascade = Some(is_on)),
             "source" => source(text).map(|source| self.chosen.source = source),
             "arp.lens" => lens(text).map(|lens| self.chosen.display.lens = lens),
@@ -128,6 +177,12 @@ impl Plan {
         self.chosen.display.picture()
     }
 
+    /// The way through the scene.
+    #[must_use]
+    pub const fn route(&self) -> Route {
+        self.route
+    }
+
     /// The settings, with what was not said.
     ///
     /// # Errors
@@ -139,6 +194,9 @@ impl Plan {
         settings.is_segmented = self.is_segmented.unwrap_or(is_of_cells);
         let is_warped = is_of_cells && settings.is_segmented && settings.falloff != Falloff::None;
         settings.has_cascade = self.has_cascade.unwrap_or(is_warped);
+        if let Some(threshold) = self.threshold {
+            settings.numbers.theta_deg = threshold.degrees(&settings.display);
+        }
         if !self.said.contains_key("priority.falloff_m") {
             settings.numbers.falloff_m = settings.numbers.cell_m;
         }

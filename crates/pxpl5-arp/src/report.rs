@@ -4,8 +4,10 @@ use crate::settings::{PolicyKind, Settings};
 use crate::tears::Percentiles;
 use crate::walk::{MemoryTally, WalkTally};
 use crate::world::World;
-use address_recalculation::{ArpConfig, ArpTiming, Latch, LookStats};
+use address_recalculation::{ArpConfig, Latch, LookStats};
 use cube_faces::Drawing;
+use pxpl5_sim::Span;
+use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -37,9 +39,9 @@ pub struct Report {
     pub priority: PriorityReport,
     /// Cuts between memories, in texels of 90 degrees over a face's edge; null where no memories meet.
     pub tears_px: TearsReport,
-    /// From a turn to the light, ms: the total, null as long as a part is, and its parts.
+    /// From an orientation that is known at the latch to the light, ms, mean over all pixels. A tracker and a host are no part of a walk.
     pub rotation_latency_ms: Latency,
-    /// From a step to the light, ms; as above.
+    /// From the beginning of the frame in which the eye was there to the light of what memory 0 shows, ms; null without a picture.
     pub translation_latency_ms: Latency,
     /// Mean difference of the eye's picture from a redraw for the same pose, pixels; null where nobody looked.
     pub sampling_error_px: Option<f64>,
@@ -62,6 +64,8 @@ pub struct MemoryReport {
     pub missed: u64,
     /// How far the eye was from where it was drawn, mean, mm.
     pub eye_age_mm: f64,
+    /// From the beginning of the frame in which the eye was where it was drawn from to the light, ms, mean over frames.
+    pub translation_latency_ms: Latency,
     /// Bytes of both buffers.
     pub bytes: u64,
 }
@@ -138,17 +142,8 @@ impl Report {
                 after: percentiles(&tally.tears.after),
                 stretch: percentiles(&tally.tears.stretch),
             },
-            rotation_latency_ms: rotation(timing),
-            translation_latency_ms: latency(&[
-                "tracker",
-                "host",
-                "wait",
-                "transform",
-                "render",
-                "copy",
-                "retrace",
-                "scan",
-            ]),
+            rotation_latency_ms: rotation(&settings.display),
+            translation_latency_ms: translation(tally.memories.first(), settings),
             sampling_error_px: None,
         }
     }
@@ -158,15 +153,50 @@ fn latch(display: &ArpConfig) -> &'static str {
     Latch::ALL.iter().find(|(_, latch)| *latch == display.latch).map_or("field", |(name, _)| name)
 }
 
-/// Nothing of a rotation's way is simulated here but the pipeline.
-fn rotation(timing: &ArpTiming) -> Latency {
-    let mut latency = latency(&["tracker", "host", "latch", "scan"]);
-    latency.parts.insert("pipeline", Some(timing.depth().0 as f64 / 1e9));
-    latency
+/// From the latch to the light: all stages, then the scan from the first pixel of what was latched together.
+fn rotation(display: &ArpConfig) -> Latency {
+    Latency::of(vec![("pipeline", Some(ms(display.timing.depth()))), ("scan", scan_ms(display, display.latch))])
 }
 
-fn latency(parts: &[&'static str]) -> Latency {
-    Latency { total: None, parts: parts.iter().map(|part| (*part, None)).collect() }
+/// From a place of the eye to the light: until the picture was drawn and shown, then until it is looked at, then the scan.
+fn translation(memory: Option<&MemoryTally>, settings: &Settings) -> Latency {
+    let memory = memory.filter(|memory| memory.shown_frames > 0);
+    let mean_ms = |frames: fn(&MemoryTally) -> u64| {
+        let mean = memory.map(|memory| frames(memory) as f64 / memory.shown_frames as f64);
+        mean.map(|frames| frames * 1e3 / settings.numbers.frame_hz)
+    };
+    Latency::of(vec![
+        ("draw", mean_ms(|memory| memory.drawing_frames)),
+        ("wait", mean_ms(|memory| memory.age_frames - memory.drawing_frames)),
+        ("scan", scan_ms(&settings.display, Latch::Field)),
+    ])
+}
+
+fn ms(span: Span) -> f64 {
+    span.0 as f64 / 1e9
+}
+
+/// Mean time from the first pixel of a field, a line or itself to a pixel's light, ms, over both fields; `None` of a scan that there
+/// cannot be.
+fn scan_ms(display: &ArpConfig, from: Latch) -> Option<f64> {
+    let scan = display.scan().ok()?;
+    let mut sum = 0.0;
+    for y in 0..scan.height() {
+        let field = PeriodNumber(u64::from(y % 2));
+        // All pixels of a line are equally far apart.
+        for x in [0, scan.width() - 1] {
+            let latched = scan.latches(from, x, y, field)?;
+            sum += ms(scan.lights(x, y, field)?.since(latched)) - ms(display.timing.depth());
+        }
+    }
+    Some(sum / 2.0 / f64::from(scan.height()))
+}
+
+impl Latency {
+    /// The sum of parts; none as long as a part is.
+    fn of(parts: Vec<(&'static str, Option<f64>)>) -> Self {
+        Self { total: parts.iter().map(|(_, part)| *part).sum(), parts: parts.into_iter().collect() }
+    }
 }
 
 fn memories(settings: &Settings, tally: &WalkTally) -> Vec<MemoryReport> {
@@ -186,6 +216,7 @@ impl MemoryReport {
             regions_copied: None,
             missed: memory.missed,
             eye_age_mm: memory.age_m * 1e3 / frames,
+            translation_latency_ms: translation(Some(memory), settings),
             bytes,
         }
     }

@@ -1,7 +1,7 @@
 //! A whole walk and what is counted of it.
 
 use crate::error::ExperimentError;
-use crate::settings::Settings;
+use crate::settings::{Settings, SourceKind};
 use crate::simulation::{FrameOutcome, Simulation};
 use crate::tears::Tears;
 use crate::world::World;
@@ -23,6 +23,14 @@ pub struct MemoryTally {
     pub segment_frames: u64,
     /// Distance of the eye from where it was drawn, summed over frames, m.
     pub age_m: f64,
+    /// Frames in which it showed something.
+    pub shown_frames: u64,
+    /// Frames since the eye was where it was drawn from, summed over those.
+    pub age_frames: u64,
+    /// The part of them until the picture was shown first.
+    pub drawing_frames: u64,
+    /// Frames that the picture that is shown needed.
+    drawn_in: u64,
 }
 
 /// What a walk has counted.
@@ -67,11 +75,17 @@ impl WalkTally {
             let segments = content.segments.len() as u64;
             tally.segment_frames += segments;
             tally.age_m += content.eye.distance(outcome.eye);
+            let age = self.frames - 1 - content.frame;
             if outcome.swapped[memory] {
+                // What needs time is shown from the next frame on.
+                tally.drawn_in = age + u64::from(simulation.settings().source != SourceKind::Ideal);
                 tally.updates += 1;
                 tally.segments_drawn += segments;
                 tally.triangles_drawn += content.triangles(simulation.world());
             }
+            tally.shown_frames += 1;
+            tally.age_frames += age.max(tally.drawn_in);
+            tally.drawing_frames += tally.drawn_in;
         }
         let tears = Tears::of(simulation.world(), simulation.shown());
         self.widest.push(tears.widest);

@@ -1,6 +1,8 @@
 //! The papers' figures: which are fitted, which are checked, and that the document says what comes out.
 
-use pxpl5_arp::figures::{Experiments, RATE_FITTED, RATES_HZ, Row, Standing, all, markdown};
+use pxpl5_arp::figures::{
+    Experiments, RATE_FITTED, RATES_HZ, Row, Rules, Situation, Standing, all, definitions, markdown,
+};
 use pxpl5_arp::pictures::{OF_FIGURES, Picture, all as all_pictures};
 use std::collections::BTreeSet;
 use std::sync::LazyLock;
@@ -12,26 +14,91 @@ fn rows(id: &str) -> Vec<&'static Row> {
 }
 
 #[test]
-fn table_1_the_side_of_a_cell_is_fitted_to_memory_1_and_to_nothing_else() {
+fn the_side_of_a_cell_is_fitted_to_memory_1_and_the_threshold_to_the_width_of_tears() {
     let fitted: Vec<&Row> = FIGURES.1.iter().filter(|row| row.standing == Standing::Fitted).collect();
-    assert_eq!(fitted.len(), 1);
-    assert_eq!((fitted[0].id, fitted[0].published), ("A12", RATES_HZ[RATE_FITTED]));
-    assert!(fitted[0].is_met, "{fitted:?}");
+    assert_eq!(fitted.iter().map(|row| row.id).collect::<Vec<_>>(), ["A12", "A15"]);
+    assert_eq!(fitted[0].published, RATES_HZ[RATE_FITTED]);
+    assert!(fitted.iter().all(|row| row.is_met), "{fitted:?}");
 }
 
 #[test]
 fn table_1_checked_rates_fall_from_memory_to_memory_and_memory_0_is_drawn_in_every_frame() {
-    for fit in &FIGURES.0.fits {
-        assert_eq!(fit.rates_hz[0], 60.0, "{fit:?}");
-        assert!(fit.rates_hz.windows(2).all(|pair| pair[0] >= pair[1]), "{fit:?}");
+    let tried = FIGURES.0.interpretations.ranked.iter().flat_map(|ranked| &ranked.tried);
+    let all = tried.map(|tried| tried.best.rates_hz.to_vec()).chain(FIGURES.0.fits.iter().map(|fit| fit.rates_hz.clone()));
+    for rates in all {
+        // A memory that holds nothing in a small hall is not drawn at all.
+        assert!((rates[0] - 60.0).abs() < 1e-9, "{rates:?}");
+        assert!(rates.windows(2).all(|pair| pair[0] >= pair[1]), "{rates:?}");
     }
 }
 
+/// An independent model of the policy, a program of its own, gave 40.6, 25.7 and 16.0 Hz for equal rings, distances to held cells and a
+/// straight walk through the middle of seven cells, 5.5 % off.
+/// For rings that double and the block's border it gave 4.7 to 6.4 % in all halls, for equal rings and the border 11 to 13 %.
 #[test]
-fn table_1_with_no_inner_rings_the_third_rate_is_out_by_more_than_with_one() {
-    // The specification excludes q = 0: its second rate is as fast as its first.
-    let error = |fit: usize| (FIGURES.0.fits[fit].rates_hz[2] / RATES_HZ[2] - 1.0).abs();
-    assert!(error(0) > error(1), "{:?}", FIGURES.0.fits);
+fn rings_that_double_explain_table_1_better_than_equal_rings() {
+    let ranked = &FIGURES.0.interpretations.ranked;
+    let of = |rules: Rules| ranked.iter().find(|ranked| ranked.rules == rules).expect("all are run");
+    let equal = of(Rules { ring_growth: 1, ..Rules::USUAL });
+    let double = of(Rules::USUAL);
+    assert!((4.0..7.0).contains(&double.mean_error_percent), "{double:?}");
+    assert!((10.0..14.0).contains(&equal.mean_error_percent), "{equal:?}");
+    assert_eq!(FIGURES.0.interpretations.usual().map(|(place, _)| place), Some(1), "the best without cascade");
+    let held = of(Rules { ring_growth: 1, to_held_cells: true, ..Rules::USUAL });
+    let straight = held.tried.iter().find(|tried| tried.situation == Situation::Straight).expect("run");
+    let expected = [40.6, 25.7, 16.0];
+    let rates = straight.best.rates_hz;
+    assert!(expected.iter().zip(&rates[1..]).all(|(expected, found)| (found / expected - 1.0).abs() < 0.05), "{rates:?}");
+}
+
+/// The home cell alone in memory 0: its second rate is as fast as its first.
+#[test]
+fn table_1_without_inner_rings_is_out_by_a_quarter_at_least() {
+    let ranked = &FIGURES.0.interpretations.ranked;
+    let outside = ranked.iter().filter(|ranked| ranked.rules.inner_rings == 0);
+    assert!(outside.clone().count() == 4 && outside.clone().all(|ranked| ranked.mean_error_percent > 25.0));
+}
+
+/// Each of three rates is left out once, and what is chosen then knows nothing of it.
+#[test]
+fn rates_that_are_left_out_are_predicted_by_the_others() {
+    let left_out = &FIGURES.0.interpretations.left_out;
+    assert_eq!(left_out.iter().map(|one| one.memory).collect::<Vec<_>>(), [1, 2, 3]);
+    for one in left_out {
+        let others: Vec<usize> = [1, 2, 3].into_iter().filter(|memory| *memory != one.memory).collect();
+        let all = FIGURES.0.interpretations.ranked.iter().flat_map(|ranked| &ranked.tried);
+        let least = all.flat_map(|tried| &tried.trials).map(|trial| trial.error_percent(&others));
+        assert_eq!(one.trial.error_percent(&others), least.fold(f64::INFINITY, f64::min));
+    }
+}
+
+/// 2 texels are 3.75 pixels, one texel 1.875; a memory that begins a side away and is a frame of 16.7 mm late tears by that angle more.
+#[test]
+fn a_threshold_in_pixels_tells_the_side_of_a_cell() {
+    let rows = &FIGURES.0.thresholds;
+    let row = |name: &str| rows.iter().find(|row| row.threshold == name).expect("listed");
+    assert!((row("2 texels").at_once_px - 3.75).abs() < 1e-9 && (row("1 texel").at_once_px - 1.875).abs() < 1e-9);
+    for row in rows {
+        let late = (1.0 / 60.0 / row.cell_m).to_degrees() / 0.09375;
+        assert!((row.frame_late_px - row.at_once_px - late).abs() < 1e-9, "{row:?}");
+    }
+    assert!((row("1 texel").cell_m / row("2 texels").cell_m - 2.0).abs() < 1e-9);
+}
+
+/// tan of the sphere's angular radius is 1/2, 1 and 2 at the limits: diameters of 2 sin(atan(x)) of the middle's distance. The chord
+/// makes them smaller by parts of theta.
+#[test]
+fn a8_lies_between_limits_that_depend_on_what_is_measured() {
+    let expected = [0.5_f64, 1.0, 2.0].map(|tangent| {
+        let sine = tangent.atan().sin();
+        [2.0 * sine, 2.0 * sine / (1.0 - sine)]
+    });
+    for (limit, [middle, nearest]) in FIGURES.0.size_limits.iter().zip(expected) {
+        assert!((limit.of_middle / middle - 1.0).abs() < 0.01, "{limit:?} {middle}");
+        assert!((limit.of_nearest / nearest - 1.0).abs() < 0.03, "{limit:?} {nearest}");
+    }
+    let row = rows("A8")[0];
+    assert!(row.is_met && row.verdict() == "within" && (4.6..5.0).contains(&row.ours), "{row:?}");
 }
 
 #[test]
@@ -41,9 +108,23 @@ fn table_2_cutting_moves_segments_outwards_and_saves() {
     assert!((cut.iter().sum::<f64>() - uncut.iter().sum::<f64>()).abs() < 1e-6, "nothing is lost");
 }
 
+/// D1 to D5 as the specification has computed them by hand.
 #[test]
-fn what_the_tables_print_gives_the_derived_numbers() {
-    assert!(FIGURES.1.iter().filter(|row| row.standing == Standing::Formula).all(|row| row.is_met));
+fn definitions_are_the_derived_numbers_and_no_rows() {
+    let all = definitions();
+    let values = |id: &str| all.iter().filter(|one| one.id == id).map(|one| one.value).collect::<Vec<f64>>();
+    let near = |id: &str, expected: &[f64]| {
+        let found = values(id);
+        let is_near = |(found, expected): (&f64, &f64)| (found - expected).abs() <= 1e-3 * expected.abs();
+        assert!(found.len() == expected.len() && found.iter().zip(expected).all(is_near), "{id}: {found:?}");
+    };
+    near("D1", &[1.0, 16.67, 1.529, 25.48, 2.127, 35.45, 3.715, 61.92]);
+    near("D2", &[183.0, 213.0]);
+    near("D3", &[7_335.0, 10_676.93, 31.3]);
+    near("D4", &[33.197, 16.456]);
+    near("D5", &[45.6]);
+    near("A17", &[0.65]);
+    assert!(["D1", "D2"].iter().all(|id| rows(id).is_empty()), "a row could have come out otherwise");
 }
 
 #[test]

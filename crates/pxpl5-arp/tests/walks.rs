@@ -1,14 +1,27 @@
 //! Walks: properties and hard cases of the policies with a source of faces.
 
-use address_recalculation::{CubeFace, FaceSet, TexelAddress};
+use address_recalculation::{CubeFace, FaceSet, Latch, Lens, TexelAddress};
 use glam::{DQuat, DVec3};
 use priority_rendering::Falloff;
 use pxpl5_arp::{
     ExperimentError, Faces, PolicyKind, Report, Settings, Simulation, SourceKind, Tears, World, at_frames, walk,
 };
+use pxpl5_arp::pictures::{Picture, of_walk};
 use pxpl5_scene::{Scene, builtin};
+use std::collections::BTreeMap;
 use std::sync::LazyLock;
 use tracking::motion::Walk;
+
+/// Cells of the scene's own cut, a threshold of 90/512 degrees, and the rules' usual rings.
+const CELLS: Settings = five_metres(Settings::CELLS);
+const WARPED: Settings = five_metres(Settings::WARPED);
+const OBJECTS: Settings = five_metres(Settings::OBJECTS);
+
+const fn five_metres(settings: Settings) -> Settings {
+    let mut settings = settings.with_cells(5.0);
+    settings.numbers.theta_deg = 90.0 / 512.0;
+    settings
+}
 
 static SCENE: LazyLock<Scene> = LazyLock::new(|| builtin("gallery").expect("built in"));
 static WORLD: LazyLock<World> = LazyLock::new(|| World::new(&SCENE, 5.0).expect("it can be cut"));
@@ -44,7 +57,7 @@ fn the_gallery_has_150_to_250_segments_with_cells_of_5_m() {
 #[test]
 fn memories_drawn_from_one_place_are_the_drawing_of_one_memory_bit_for_bit() {
     let eye = PATH.place(12.3);
-    let mut cells = simulated(&small(Settings::CELLS));
+    let mut cells = simulated(&small(CELLS));
     cells.frame(eye).expect("drawn");
     let faces = Faces::of(&cells).expect("drawn");
     let view = cells.settings().view().expect("a range");
@@ -69,7 +82,7 @@ fn memories_drawn_from_one_place_are_the_drawing_of_one_memory_bit_for_bit() {
 
 #[test]
 fn with_the_eye_still_nothing_is_due_whatever_the_head_does() {
-    for settings in [Settings::CELLS, Settings::WARPED] {
+    for settings in [CELLS, WARPED] {
         let mut simulation = simulated(&settings);
         let eye = PATH.place(3.0);
         assert!(simulation.frame(eye).expect("drawn").due[0]);
@@ -83,7 +96,7 @@ fn with_the_eye_still_nothing_is_due_whatever_the_head_does() {
 fn with_the_eye_still_objects_around_it_alone_are_due() {
     // From inside of a bounding sphere an image is wrong at once (3.6), also when nobody moves: floor, ceiling and walls of the
     // gallery are such objects.
-    let mut simulation = simulated(&Settings::OBJECTS);
+    let mut simulation = simulated(&OBJECTS);
     let eye = PATH.place(3.0);
     simulation.frame(eye).expect("drawn");
     for _ in 0..40 {
@@ -95,7 +108,7 @@ fn with_the_eye_still_objects_around_it_alone_are_due() {
 fn the_picture_after_a_turn_is_a_redraw_for_that_orientation_whatever_the_renderer() {
     // A renderer that is far too slow has drawn all memories once; then the eye stands still and the head turns.
     let eye = PATH.place(30.0);
-    let ideal = small(Settings::CELLS);
+    let ideal = small(CELLS);
     let slow = Settings { source: SourceKind::Timed { triangles_per_s: 700.0 }, ..ideal.clone() };
     let mut simulations = [simulated(&ideal), simulated(&slow)];
     for simulation in &mut simulations {
@@ -114,9 +127,9 @@ fn the_picture_after_a_turn_is_a_redraw_for_that_orientation_whatever_the_render
 #[test]
 fn no_vertex_of_any_memory_is_ever_off_by_more_than_theta() {
     // Chord: a point at distance d is off by at most asin(2 sin(theta / 2)), 1.2e-6 of theta more than theta.
-    let theta = Settings::CELLS.numbers.theta_deg.to_radians();
+    let theta = CELLS.numbers.theta_deg.to_radians();
     let bound = (2.0 * (theta / 2.0).sin()).asin() * (1.0 + 1e-9);
-    let mut simulation = simulated(&Settings::CELLS);
+    let mut simulation = simulated(&CELLS);
     let eye = at_frames(&PATH, 1.0, 60.0);
     let mut worst: f64 = 0.0;
     for frame in 0..2_000 {
@@ -136,7 +149,7 @@ fn no_vertex_of_any_memory_is_ever_off_by_more_than_theta() {
 #[test]
 fn each_segment_is_in_one_memory_in_every_frame_also_when_cells_are_dealt_anew() {
     for settings in
-        [Settings::CELLS, Settings::WARPED, Settings { is_segmented: false, ..Settings::CELLS }, Settings::OBJECTS]
+        [CELLS, WARPED, Settings { is_segmented: false, ..CELLS }, OBJECTS]
     {
         let mut simulation = simulated(&settings);
         let eye = at_frames(&PATH, 3.0, 60.0);
@@ -154,14 +167,14 @@ fn each_segment_is_in_one_memory_in_every_frame_also_when_cells_are_dealt_anew()
 fn warped_with_cascade_no_cut_gapes_and_without_it_some_do() {
     let eye = at_frames(&PATH, 1.0, 60.0);
     for falloff in [Falloff::Linear, Falloff::Smoothstep, Falloff::Step] {
-        let warped = Settings { falloff, ..Settings::WARPED };
+        let warped = Settings { falloff, ..WARPED };
         let tally = walk(&WORLD, &warped, 1_800, &eye).expect("walked");
         let widest = tally.tears.after.iter().copied().fold(0.0, f64::max);
         assert!(widest < 1e-12, "{falloff:?}: {widest}");
     }
-    let texel = Settings::WARPED.texel_deg().to_radians();
-    let no_cascade = Settings { has_cascade: false, ..Settings::WARPED };
-    let [torn, stale] = [Settings::CELLS, no_cascade].map(|settings| {
+    let texel = WARPED.texel_deg().to_radians();
+    let no_cascade = Settings { has_cascade: false, ..WARPED };
+    let [torn, stale] = [CELLS, no_cascade].map(|settings| {
         let tally = walk(&WORLD, &settings, 1_800, &eye).expect("walked");
         tally.tears.after.into_iter().fold(0.0, f64::max) / texel
     });
@@ -173,8 +186,8 @@ fn warped_with_cascade_no_cut_gapes_and_without_it_some_do() {
 #[test]
 fn uncut_nothing_tears_and_the_fastest_memory_draws_more() {
     let eye = at_frames(&PATH, 1.0, 60.0);
-    let uncut = walk(&WORLD, &Settings { is_segmented: false, ..Settings::CELLS }, 600, &eye).expect("walked");
-    let cut = walk(&WORLD, &Settings::CELLS, 600, &eye).expect("walked");
+    let uncut = walk(&WORLD, &Settings { is_segmented: false, ..CELLS }, 600, &eye).expect("walked");
+    let cut = walk(&WORLD, &CELLS, 600, &eye).expect("walked");
     assert!(uncut.tears.after.is_empty());
     assert!(uncut.memories[0].segment_frames > 2 * cut.memories[0].segment_frames);
     assert!(uncut.draws_per_s(60.0) > cut.draws_per_s(60.0));
@@ -182,7 +195,7 @@ fn uncut_nothing_tears_and_the_fastest_memory_draws_more() {
 
 #[test]
 fn a_jump_of_a_kilometre_deals_once_and_leaves_no_tear() {
-    let mut simulation = simulated(&Settings::WARPED);
+    let mut simulation = simulated(&WARPED);
     simulation.frame(PATH.place(0.0)).expect("drawn");
     let far = DVec3::new(1_000.0, 1.7, 0.0);
     assert!(simulation.frame(far).expect("drawn").deals_anew);
@@ -193,13 +206,13 @@ fn a_jump_of_a_kilometre_deals_once_and_leaves_no_tear() {
 #[test]
 fn forty_millimetres_to_and_fro_across_a_border_deal_at_most_once() {
     let eye = |frame: u64| DVec3::new(5.0 + if frame.is_multiple_of(2) { -0.02 } else { 0.02 }, 1.7, 2.0);
-    let tally = walk(&WORLD, &Settings::CELLS, 600, eye).expect("walked");
+    let tally = walk(&WORLD, &CELLS, 600, eye).expect("walked");
     assert!(tally.redeals <= 1, "{}", tally.redeals);
 }
 
 #[test]
 fn odd_places_of_the_eye_are_places_like_others() {
-    let mut simulation = simulated(&small(Settings::WARPED));
+    let mut simulation = simulated(&small(WARPED));
     let places = [
         DVec3::new(5.0, 1.7, 5.0),      // a corner of cells
         DVec3::new(-7.0, 1.5, -17.2),   // near or in a partition
@@ -218,14 +231,14 @@ fn odd_places_of_the_eye_are_places_like_others() {
 #[test]
 fn a_tiny_threshold_draws_everything_always_and_a_huge_one_nothing_again() {
     let rates = |theta_deg: f64| {
-        let mut settings = Settings::CELLS;
+        let mut settings = CELLS;
         settings.numbers.theta_deg = theta_deg;
         let tally = walk(&WORLD, &settings, 600, at_frames(&PATH, 1.0, 60.0)).expect("walked");
         tally.memories.iter().map(|memory| memory.updates).collect::<Vec<u64>>()
     };
     assert_eq!(rates(1e-6), [600; 4]);
     // Three metres within a cell: memory 1 begins 6 m away at least, so it would be due after 2 x 6 sin(45 deg) = 8.5 m.
-    let mut settings = Settings::CELLS;
+    let mut settings = CELLS;
     settings.numbers.theta_deg = 90.0;
     let inside = |frame: u64| DVec3::new(1.0 + 0.005 * frame as f64, 1.7, 2.5);
     let tally = walk(&WORLD, &settings, 600, inside).expect("walked");
@@ -235,7 +248,9 @@ fn a_tiny_threshold_draws_everything_always_and_a_huge_one_nothing_again() {
 #[test]
 fn one_memory_draws_all_and_eight_draw_less_than_four() {
     let draws = |memories: u64| {
-        let settings = Settings::CELLS.with_memories(memories);
+        // With rings that double the gallery is too small for eight memories.
+        let mut settings = CELLS.with_memories(memories);
+        settings.numbers.ring_growth = 1;
         walk(&WORLD, &settings, 900, at_frames(&PATH, 1.0, 60.0)).expect("walked").draws_per_s(60.0)
     };
     assert_eq!(draws(1), 60.0 * WORLD.segments.len() as f64);
@@ -245,7 +260,7 @@ fn one_memory_draws_all_and_eight_draw_less_than_four() {
 #[test]
 fn a_renderer_that_is_slowed_down_misses_slow_memories_first_and_shows_nothing_half_drawn() {
     let missed = |triangles_per_s: f64| {
-        let settings = Settings { source: SourceKind::Timed { triangles_per_s }, ..Settings::CELLS };
+        let settings = Settings { source: SourceKind::Timed { triangles_per_s }, ..CELLS };
         let tally = walk(&WORLD, &settings, 900, at_frames(&PATH, 1.0, 60.0)).expect("walked");
         tally.memories.iter().map(|memory| memory.missed).collect::<Vec<u64>>()
     };
@@ -254,7 +269,7 @@ fn a_renderer_that_is_slowed_down_misses_slow_memories_first_and_shows_nothing_h
     assert!(few[3] > few[0] && few.windows(2).all(|pair| pair[0] <= pair[1]), "{few:?}");
     assert!(missed(3_000.0)[0] > few[0]);
     // Before its first whole picture a memory shows nothing at all.
-    let slow = Settings { source: SourceKind::Timed { triangles_per_s: 3_000.0 }, ..Settings::CELLS };
+    let slow = Settings { source: SourceKind::Timed { triangles_per_s: 3_000.0 }, ..CELLS };
     let mut simulation = simulated(&slow);
     let outcome = simulation.frame(PATH.place(0.0)).expect("drawn");
     assert!(outcome.missed[3] && simulation.shown()[3].is_none());
@@ -266,9 +281,9 @@ fn what_faces_cannot_show_is_refused_by_name() {
     assert!(refused("molecules").contains("triangles alone"));
     assert!(refused("mig").contains("structures that do not move"));
     assert!(refused("full-screen:3").contains("fixed to the head"));
-    let rate = Settings { source: SourceKind::Timed { triangles_per_s: f64::NAN }, ..Settings::CELLS };
+    let rate = Settings { source: SourceKind::Timed { triangles_per_s: f64::NAN }, ..CELLS };
     assert!(matches!(Simulation::new(&WORLD, &rate), Err(ExperimentError::Rate(_))));
-    let mut cells = Settings::CELLS;
+    let mut cells = CELLS;
     cells.numbers.falloff_m = 6.0;
     let error = Simulation::new(&WORLD, &cells).expect_err("refused").to_string();
     assert!(error.contains("priority.falloff_m") && error.contains("found 6"), "{error}");
@@ -276,7 +291,7 @@ fn what_faces_cannot_show_is_refused_by_name() {
 
 #[test]
 fn the_report_has_every_key_of_the_schema_and_null_for_what_was_not_judged() {
-    let settings = Settings { policy: PolicyKind::Cells, ..Settings::WARPED };
+    let settings = Settings { policy: PolicyKind::Cells, ..WARPED };
     let tally = walk(&WORLD, &settings, 300, at_frames(&PATH, 1.0, 60.0)).expect("walked");
     let report = serde_json::to_value(Report::of(&WORLD, &settings, &tally, None)).expect("JSON");
     assert_eq!(report["schema"], "pxpl5-arp/1");
@@ -319,5 +334,73 @@ fn the_report_has_every_key_of_the_schema_and_null_for_what_was_not_judged() {
         (report["pipeline_ns"].as_f64(), report["memories"][0]["bytes"].as_u64()),
         (Some(650.0), Some(18_874_368))
     );
-    assert!(report["memories"][0]["regions_copied"].is_null() && report["rotation_latency_ms"]["total"].is_null());
+    assert!(report["memories"][0]["regions_copied"].is_null());
+}
+
+/// A pixel lights 239/2 lines of 4004/63 us and 639/2 pixels of 11/135 us after the first of its field in the mean, 639/2 pixels after the
+/// first of its line, and the pipeline is 650 ns deep.
+#[test]
+fn a_walk_has_the_latencies_of_its_display() {
+    let [lines_ms, pixels_ms] = [119.5 * 4.004 / 63.0, 319.5 * 0.011 / 135.0];
+    let all = [("field", lines_ms + pixels_ms), ("line", pixels_ms), ("pixel", 0.0)];
+    for ((name, latch), (expected_name, scan)) in Latch::ALL.into_iter().zip(all) {
+        assert_eq!(name, expected_name);
+        let mut settings = CELLS;
+        settings.display.latch = latch;
+        let tally = walk(&WORLD, &settings, 300, at_frames(&PATH, 1.0, 60.0)).expect("walked");
+        let report = Report::of(&WORLD, &settings, &tally, None);
+        let turn = &report.rotation_latency_ms;
+        assert!((turn.total.expect("simulated") - 0.00065 - scan).abs() < 1e-6, "{name}: {turn:?}");
+        // Memory 0 is drawn in every frame in no time: a step waits for the scan alone, whatever is latched.
+        let step = &report.translation_latency_ms;
+        assert!((step.total.expect("shown") - lines_ms - pixels_ms).abs() < 1e-6, "{name}: {step:?}");
+        let sums = report.memories.iter().map(|memory| &memory.translation_latency_ms);
+        assert!(sums.map(|latency| latency.total).is_sorted(), "far memories are older");
+    }
+}
+
+/// A memory that is drawn every n frames is (n - 1) / 2 frames old in the mean; what needs a frame to be drawn is shown one frame later.
+#[test]
+fn the_age_of_what_is_shown_is_a_part_of_the_latency_of_a_step() {
+    let eye = at_frames(&PATH, 1.0, 60.0);
+    let fast = Settings { source: SourceKind::Timed { triangles_per_s: 1e9 }, ..CELLS };
+    let reports = [CELLS, fast].map(|settings| {
+        let tally = walk(&WORLD, &settings, 1_200, &eye).expect("walked");
+        Report::of(&WORLD, &settings, &tally, None)
+    });
+    for memory in 0..4 {
+        let [ideal, timed] = [0, 1].map(|i| &reports[i].memories[memory].translation_latency_ms.parts);
+        assert_eq!(ideal["draw"], Some(0.0));
+        let frame_ms = 1e3 / 60.0;
+        assert!((timed["draw"].expect("shown") - frame_ms).abs() < 1e-9, "{timed:?}");
+        let least = (reports[0].memories[memory].period_frames.expect("drawn") - 1.0) / 2.0 * frame_ms;
+        let wait = ideal["wait"].expect("shown");
+        assert!(wait >= least - 0.2 && wait < 1.3 * least + 0.2, "{memory}: {wait}, {least}");
+    }
+}
+
+/// Faces look the same through every lens; beyond 170 degrees there is no flat picture.
+#[test]
+fn pictures_are_seen_through_the_lens_that_was_chosen() {
+    let names_of = |display: &dyn Fn(&mut Settings)| {
+        let mut settings = small(CELLS);
+        settings.display.scan.visible_pixels = 64;
+        settings.display.scan.visible_lines = 24;
+        display(&mut settings);
+        let pictures = of_walk(WORLD.clone(), &PATH, &settings, 1.0, 30).expect("drawn");
+        let pixels = pictures.into_iter().map(|picture| match picture {
+            Picture::Pixels(name, pixels) => (name, Some(pixels)),
+            Picture::Drawing(name, _) => (name, None),
+        });
+        pixels.collect::<BTreeMap<_, _>>()
+    };
+    let flat = names_of(&|_| {});
+    assert!(flat["eye"] == flat["eye-flat"] && flat.contains_key("cuts"), "flat is the default");
+    let radial = names_of(&|settings| settings.display.lens = Lens::Radial { k1: 0.32, k2: 0.0 });
+    assert!(radial["eye-flat"] == flat["eye-flat"] && radial["eye"] != flat["eye"]);
+    let wide = names_of(&|settings| {
+        settings.display.lens = Lens::Equidistant;
+        settings.display.timing.horizontal_deg = 200.0;
+    });
+    assert!(wide.contains_key("eye") && wide.contains_key("error") && !wide.contains_key("eye-flat"));
 }

@@ -2,8 +2,10 @@
 
 use super::compared::{composite_differs, turned_differ};
 use super::fit::fitted_cell_m;
+use super::interpretations::{Interpretations, Rules, ThresholdRow, threshold_rows};
 use super::lens::straight_edge;
 use crate::error::ExperimentError;
+use crate::hall::{Route, path_of, scaled};
 use crate::report::Report;
 use crate::settings::{Settings, SourceKind};
 use crate::walk::{WalkTally, at_frames, walk};
@@ -33,10 +35,8 @@ pub struct Walked {
 /// A side of a cell that was fitted to one rate of table 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
-    /// Rings of cells around the home cell in memory 0.
-    pub inner_rings: u64,
-    /// Whether an update of a memory makes all faster ones due.
-    pub has_cascade: bool,
+    /// The rules that it was fitted for.
+    pub rules: Rules,
     /// The side, m.
     pub cell_m: f64,
     /// Updates a second of each memory.
@@ -57,11 +57,15 @@ pub struct Slowed {
 /// Results of everything that is simulated.
 #[derive(Clone, Debug)]
 pub struct Experiments {
-    /// Fits of the side of a cell, the second one as published: one inner ring, no cascade.
-    pub fits: Vec<Fit>,
-    /// Segments of the gallery with cells of 5 m, and with those that were fitted.
-    pub segments: [usize; 2],
-    /// Cut and torn, cut and warped, uncut, warped without cascade; cells as fitted without cascade.
+    /// The side of a cell that was fitted in the gallery, for the usual rules and for equal rings.
+    pub fits: [Fit; 2],
+    /// All interpretations of table 1.
+    pub interpretations: Interpretations,
+    /// Thresholds, with the sides of cells that go with them.
+    pub thresholds: Vec<ThresholdRow>,
+    /// Segments of the gallery with the cells that were fitted.
+    pub segments: usize,
+    /// Cut and torn, cut and warped, uncut, warped without cascade; cells as fitted.
     pub walks: Vec<Walked>,
     /// A renderer that is slowed down.
     pub slowed: Vec<Slowed>,
@@ -69,6 +73,8 @@ pub struct Experiments {
     pub reductions: [f64; 2],
     /// Which component of validity decides, by size over distance.
     pub sizes: Vec<SizeRow>,
+    /// From which size on the size component decides, by interpretation.
+    pub size_limits: Vec<SizeLimit>,
     /// How an edge bends on the screen and through the lens, pixels.
     pub lens_px: [f64; 2],
     /// Texels in which four memories, drawn at once from one place, together are not what one memory shows.
@@ -77,6 +83,9 @@ pub struct Experiments {
     pub turned_differ: u64,
 }
 
+/// Scale of the gallery's plan in the experiments: its 20 m are eight cells of 2.5 m, with 191 segments. Table 2 prints 183 and 213.
+const HALL_SCALE: f64 = 0.5;
+
 /// The gallery and its path.
 pub(crate) fn gallery() -> Result<(Scene, Walk), ExperimentError> {
     let scene = builtin("gallery").map_err(|error| ExperimentError::Scene {
@@ -84,8 +93,8 @@ pub(crate) fn gallery() -> Result<(Scene, Walk), ExperimentError> {
         expected: "a built-in scene",
         found: error.to_string(),
     })?;
-    let corners: Vec<DVec3> = scene.path().iter().map(|corner| corner.as_dvec3()).collect();
-    let path = Walk::new(&corners, 1.0)?;
+    let scene = scaled(&scene, HALL_SCALE)?;
+    let path = path_of(&scene, Route::Scene)?;
     Ok((scene, path))
 }
 
@@ -104,12 +113,12 @@ impl Experiments {
     /// [`ExperimentError`], where a scene or number is none; those here are.
     pub fn run() -> Result<Self, ExperimentError> {
         let (scene, path) = gallery()?;
-        let mut fits = Vec::new();
-        for (inner_rings, has_cascade) in [(0, false), (1, false), (1, true), (2, false), (2, true)] {
-            let (cell_m, rates_hz) = fitted_cell_m(&scene, &path, inner_rings, has_cascade, EXPERIMENT_FRAMES)?;
-            fits.push(Fit { inner_rings, has_cascade, cell_m, rates_hz });
-        }
-        let side = fits[1].cell_m;
+        let fit = |rules: Rules| -> Result<Fit, ExperimentError> {
+            let (cell_m, rates_hz) = fitted_cell_m(&scene, &path, &rules, EXPERIMENT_FRAMES)?;
+            Ok(Fit { rules, cell_m, rates_hz })
+        };
+        let fits = [fit(Rules::USUAL)?, fit(Rules { ring_growth: 1, ..Rules::USUAL })?];
+        let side = fits[0].cell_m;
         let world = World::new(&scene, side)?;
         let cells = Settings::CELLS.with_cells(side);
         let kinds = [
@@ -125,15 +134,18 @@ impl Experiments {
             walks.push(Walked { name, settings, tally, report });
         }
         Ok(Self {
-            segments: [World::new(&scene, 5.0)?.segments.len(), world.segments.len()],
+            segments: world.segments.len(),
             slowed: slowed(&world, &cells, &path)?,
+            interpretations: Interpretations::run(|_, _| {})?,
+            thresholds: threshold_rows(side),
             fits,
             walks,
             reductions: [point_objects_reduction(1.0, 4), point_objects_reduction(0.37, 5)],
             sizes: size_rows(),
+            size_limits: size_limits(),
             lens_px: straight_edge(Lens::Radial { k1: 0.32, k2: 0.0 })?,
-            composite_differs: composite_differs(&world, &cells, path.place(12.3))?,
-            turned_differ: turned_differ(&world, &cells, path.place(30.0))?,
+            composite_differs: composite_differs(&world, &cells, path.place(6.15))?,
+            turned_differ: turned_differ(&world, &cells, path.place(15.0))?,
         })
     }
 }
@@ -153,10 +165,10 @@ fn slowed(world: &World, settings: &Settings, path: &Walk) -> Result<Vec<Slowed>
 /// Points on a disc of 100 m around a walker, evenly by area.
 const POINTS: usize = 20_000;
 
-/// 60 times the points over the draws of a second, at a speed (m/s) and with so many memories.
+/// 60 times the points over the draws of a second, at a speed (m/s), with so many memories and a threshold of 90/512 degrees.
 #[must_use]
 pub fn point_objects_reduction(speed: f64, memories: u64) -> f64 {
-    let numbers = PriorityTiming { memories, ..PriorityTiming::PAPERS };
+    let numbers = PriorityTiming { memories, theta_deg: 90.0 / 512.0, ..PriorityTiming::PAPERS };
     let threshold = Threshold::of_degrees(numbers.theta_deg);
     let distances = (0..POINTS).map(|point| 100.0 * libm::sqrt((point as f64 + 0.5) / POINTS as f64));
     let periods: Vec<f64> = distances.map(|distance_m| threshold.way(distance_m) / speed).collect();
@@ -192,4 +204,45 @@ fn size_row(threshold: &Threshold, size: f64) -> SizeRow {
     let rules = [SizeRule::Disc, SizeRule::Sphere];
     let size_s = rules.map(|rule| Threshold { size: rule, ..*threshold }.way_of_size(10.0, radius));
     SizeRow { size_over_distance: size, translation_s: threshold.way(10.0), size_s }
+}
+
+/// The size over distance from which on the size component decides, for an interpretation of both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SizeLimit {
+    /// The angle that may change by the threshold, or by twice the threshold, before the size is wrong.
+    pub angle: &'static str,
+    /// Threshold of the radius' angle, in those of translation.
+    pub factor: f64,
+    /// Diameter over the distance of the sphere's middle.
+    pub of_middle: f64,
+    /// Diameter over the distance of the sphere's nearest point.
+    pub of_nearest: f64,
+}
+
+/// Limits for spheres, translation being that of the middle: for a change of the diameter's angle, of the radius' angle (both by the
+/// threshold), and of the radius' angle by twice the threshold.
+#[must_use]
+pub fn size_limits() -> Vec<SizeLimit> {
+    let kinds = [
+        ("the diameter's, by theta", 0.5),
+        ("the radius', by theta", 1.0),
+        ("the radius', by 2 theta", 2.0),
+    ];
+    kinds.map(|(angle, factor)| size_limit(angle, factor)).to_vec()
+}
+
+/// Bisections: more than a double has bits.
+const HALVINGS: usize = 60;
+
+fn size_limit(angle: &'static str, factor: f64) -> SizeLimit {
+    let translation = Threshold::of_degrees(PriorityTiming::PAPERS.theta_deg);
+    let size = Threshold { angle: factor * translation.angle, size: SizeRule::Sphere, ..translation };
+    let decides = |radius: f64| size.way_of_size(1.0, radius) < translation.way(1.0);
+    let mut range = [0.0, 1.0];
+    for _ in 0..HALVINGS {
+        let middle = (range[0] + range[1]) / 2.0;
+        range[usize::from(decides(middle))] = middle;
+    }
+    let radius = range[1];
+    SizeLimit { angle, factor, of_middle: 2.0 * radius, of_nearest: 2.0 * radius / (1.0 - radius) }
 }

@@ -1,19 +1,26 @@
 //! What the papers print beside what comes out here.
 
 mod compared;
+mod definitions;
 mod document;
 mod experiments;
 mod fit;
+mod interpretations;
 mod lens;
 mod row;
 mod rows;
 
-pub use document::{markdown, missed, table};
+pub use definitions::{Definition, SEGMENTS, definitions};
+pub use document::{interpretations as interpretations_text, markdown, missed, table};
 pub use experiments::{
-    EXPERIMENT_FRAMES, Experiments, Fit, SizeRow, Slowed, Walked, point_objects_reduction, size_rows,
+    EXPERIMENT_FRAMES, Experiments, Fit, SizeLimit, SizeRow, Slowed, Walked, point_objects_reduction, size_limits,
+    size_rows,
 };
 pub(crate) use experiments::{gallery, looking_at};
 pub use fit::{RATE_FITTED, RATES_HZ, fitted_cell_m, policy_rates_hz};
+pub use interpretations::{
+    Interpretations, LeftOutRate, PIXEL_DEG, RankedRules, Rules, Situation, ThresholdRow, Trial, Tried, threshold_rows,
+};
 pub use lens::straight_edge;
 pub use row::{Row, Standing};
 pub use rows::rows;

@@ -6,12 +6,12 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Standing {
-    /// Computed from what is printed.
-    Formula,
     /// Simulated, with nothing fitted to it.
     Checked,
     /// Simulated with a number that was chosen so that this row agrees.
     Fitted,
+    /// It depends on what is not printed: the interval of all interpretations is compared.
+    Interpretation,
     /// Its conditions are not printed: the number cannot be reproduced, its shape is checked.
     Shape,
 }
@@ -21,9 +21,9 @@ impl Standing {
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
-            Self::Formula => "formula",
             Self::Checked => "checked",
             Self::Fitted => "fitted",
+            Self::Interpretation => "depends on the interpretation",
             Self::Shape => "cannot be reproduced, shape checked",
         }
     }
@@ -83,12 +83,14 @@ impl Row {
         self.published.is_normal().then(|| 100.0 * (self.ours / self.published - 1.0))
     }
 
-    /// What came of it: met, shape (what cannot be reproduced has the printed shape) or missed.
+    /// What came of it: met, within (the interval of all interpretations), shape (what cannot be reproduced has the printed shape) or
+    /// missed.
     #[must_use]
     pub const fn verdict(&self) -> &'static str {
         match (self.is_met, self.standing) {
             (false, _) => "missed",
             (true, Standing::Shape) => "shape",
+            (true, Standing::Interpretation) => "within",
             (true, _) => "met",
         }
     }
@@ -97,10 +99,8 @@ impl Row {
     #[must_use]
     pub fn cause(&self) -> &'static str {
         match self.id {
-            "A8" => {
-                "Neither form of the size component gives 10: by the disc it never decides, by the sphere from 1.41 on."
-            }
-            "A12" => "Scene, path, inner rings and threshold are not printed; one number cannot fit three rates.",
+            "A8" => "No interpretation of size and distance gives so much.",
+            "A12" => "Scene, path, rings and threshold are not printed; the one number that is fitted is that of memory 1.",
             _ => "The cause is not known.",
         }
     }

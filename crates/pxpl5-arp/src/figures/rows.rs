@@ -1,14 +1,14 @@
 //! All rows, experiment by experiment.
 
+use super::definitions::SEGMENTS;
 use super::experiments::{Experiments, Fit};
 use super::fit::{RATE_FITTED, RATES_HZ};
+use super::interpretations::PIXEL_DEG;
 use super::row::{Row, Standing};
-use priority_rendering::{draws_per_s, saved_percent};
+use priority_rendering::saved_percent;
 
-/// Segments drawn, with segmentation and without (table 2).
-const SEGMENTS: [[u64; 4]; 2] = [[87, 14, 20, 62], [160, 8, 3, 42]];
-
-/// Rows of E1 to E9; those of E1 that need a machine are not among them.
+/// Rows of E1 to E9; those of E1 that need a machine are not among them. What follows from printed numbers alone stands in
+/// [`definitions`](super::definitions()).
 #[must_use]
 pub fn rows(all: &Experiments) -> Vec<Row> {
     let experiments = [
@@ -27,15 +27,8 @@ pub fn rows(all: &Experiments) -> Vec<Row> {
 }
 
 fn rotation(all: &Experiments) -> Vec<Row> {
-    let render = |part: &str| all.walks[0].report.rotation_latency_ms.parts.get(part).copied().flatten().unwrap_or(0.0);
-    let rendered = render("render") + render("retrace");
-    let pipeline_us = all.walks[0].report.pipeline_ns / 1e3;
-    let share = "share of rendering and buffer swap in rotational latency";
-    let known = "orientation is known before an update's first pixel (less than)";
-    vec![
-        Row::number("A4", share, "ms", [0.0, rendered], Standing::Checked),
-        Row::limit("A17", known, "us", [1.0, pipeline_us], pipeline_us < 1.0),
-    ]
+    let turned = "pixels that a stalled renderer changes in what is seen after turns of 12, 90 and 180 degrees";
+    vec![Row::number("A4", turned, "px", [0.0, all.turned_differ as f64], Standing::Checked)]
 }
 
 fn composition(all: &Experiments) -> Vec<Row> {
@@ -43,15 +36,16 @@ fn composition(all: &Experiments) -> Vec<Row> {
     vec![Row::number("fig. 2", statement, "texels", [0.0, all.composite_differs as f64], Standing::Checked)]
 }
 
+/// "About ten times the distance": spheres, the distance being that of the nearest point; the radius' angle may change by the threshold.
 fn sizes(all: &Experiments) -> Vec<Row> {
-    let statement = "size over distance above which size may decide (discs: never)";
-    vec![Row::number("A8", statement, "1", [10.0, first_size(all)], Standing::Checked)]
-}
-
-/// The least size over distance of a sphere at which its size decides.
-fn first_size(all: &Experiments) -> f64 {
-    let deciding = all.sizes.iter().find(|row| row.size_s[1] < row.translation_s);
-    deciding.map_or(f64::INFINITY, |row| row.size_over_distance)
+    let limits = all.size_limits.iter().map(|limit| limit.of_nearest);
+    let [least, most] = [limits.clone().fold(f64::INFINITY, f64::min), limits.fold(0.0, f64::max)];
+    let ours = all.size_limits.iter().find(|limit| limit.factor == 1.0).map_or(f64::NAN, |limit| limit.of_nearest);
+    let statement = format!(
+        "size over the distance of the nearest point above which size may decide (interpretations: {least:.1} to {most:.1})"
+    );
+    let row = Row::number("A8", &statement, "1", [10.0, ours], Standing::Interpretation);
+    vec![Row { is_met: (least..=most).contains(&10.0), ..row }]
 }
 
 fn reductions(all: &Experiments) -> Vec<Row> {
@@ -70,23 +64,15 @@ fn reductions(all: &Experiments) -> Vec<Row> {
     rows
 }
 
-/// Table 1, and what follows from it alone.
+/// Table 1.
 fn table_1(all: &Experiments) -> Vec<Row> {
-    let mut rows: Vec<Row> = (0..4).map(|memory| rate(all, memory)).collect();
-    let periods = [(1.0, 16.67), (1.529, 25.48), (2.127, 35.45), (3.715, 61.92)];
-    for (memory, (frames, mm)) in periods.into_iter().enumerate() {
-        let period = format!("mean period of memory {memory}");
-        let way = format!("way walked in one period of memory {memory}");
-        rows.push(Row::number("D1", &period, "frames", [frames, 60.0 / RATES_HZ[memory]], Standing::Formula));
-        rows.push(Row::number("D1", &way, "mm", [mm, 1e3 / RATES_HZ[memory]], Standing::Formula));
-    }
-    rows
+    (0..4).map(|memory| rate(all, memory)).collect()
 }
 
 fn rate(all: &Experiments, memory: usize) -> Row {
     let standing = if memory == RATE_FITTED { Standing::Fitted } else { Standing::Checked };
-    let Fit { cell_m, rates_hz, .. } = &all.fits[1];
-    let statement = format!("update rate of memory {memory} (q = 1, cells of {cell_m:.1} m)");
+    let Fit { cell_m, rates_hz, .. } = &all.fits[0];
+    let statement = format!("update rate of memory {memory} (rings that double, cells of {cell_m:.1} m)");
     Row::number("A12", &statement, "Hz", [RATES_HZ[memory], rates_hz[memory]], standing)
 }
 
@@ -114,34 +100,18 @@ fn table_2(all: &Experiments) -> Vec<Row> {
     rows.push(Row::shape("D4", "saved against all at 60 Hz, uncut", "%", [16.456, saved[1]], saved[0] > saved[1]));
     let in_first = 100.0 * (1.0 - ours[0][0] / ours[1][0]);
     rows.push(Row::shape("D5", "saved in memory 0", "%", [45.6, in_first], in_first > 0.0));
-    rows.extend(printed_in_table_2());
-    rows
-}
-
-/// What follows from tables 1 and 2 alone.
-fn printed_in_table_2() -> Vec<Row> {
-    let mut rows = Vec::new();
-    let kinds = [("A13", "cut", 183.0, 7_335.0, 33.2), ("A14", "uncut", 213.0, 10_676.9, 16.5)];
-    for (segments, (id, kind, sum, draws, saved)) in SEGMENTS.iter().zip(kinds) {
-        let all = segments.iter().sum::<u64>() as f64;
-        let ours = draws_per_s(&RATES_HZ, segments);
-        let row = |id, statement: &str, unit, both| Row::number(id, statement, unit, both, Standing::Formula);
-        rows.push(row("D2", &format!("sum of {id}"), "1", [sum, all]));
-        rows.push(row("D3", &format!("sum of A12 x {id}"), "1/s", [draws, ours]));
-        rows.push(row("D4", &format!("saved by table 2, {kind}"), "%", [saved, saved_percent(ours, all * 60.0)]));
-    }
-    let first = saved_percent(SEGMENTS[0][0] as f64, SEGMENTS[1][0] as f64);
-    rows.push(Row::number("D5", "saved in memory 0 by table 2", "%", [45.6, first], Standing::Formula));
     rows
 }
 
 fn tears(all: &Experiments) -> Vec<Row> {
     let widest = |walk: usize| all.walks[walk].report.tears_px.after.map_or(0.0, |tears| tears.max);
-    let [torn, warped, uncut] = [0, 1, 2].map(widest);
-    let before = "widest tear before warping (printed: \"a few\")";
+    let [warped, uncut] = [1, 2].map(widest);
+    let pixels = widest(0) * all.walks[0].settings.texel_deg() / PIXEL_DEG;
+    let before = "widest tear before warping, 2 to 5 pixels of the display (printed: \"a few\"; the threshold was chosen so)";
+    let torn = Row::number("A15", before, "px", [3.0, pixels], Standing::Fitted);
     let after = "widest tear left after warping, with cascade";
     vec![
-        Row::shape("A15", before, "texels", [3.0, torn], torn > 0.5 && torn < 5.0),
+        Row { is_met: (2.0..=5.0).contains(&pixels), ..torn },
         Row::limit("A16", after, "texels", [0.0, warped], warped < 1e-6),
         Row::number("fig. 15", "widest tear without segmentation", "texels", [0.0, uncut], Standing::Checked),
     ]
@@ -155,10 +125,8 @@ fn slowed(all: &Experiments) -> Vec<Row> {
         "renderers of {} that are too slow for memory 3; faster memories never miss more often",
         all.slowed.len()
     );
-    let turned = "pixels that a stalled renderer changes in what is seen after turns of 12, 90 and 180 degrees";
     vec![
         Row::shape("2.1", &first, "1", [f64::NAN, misses as f64], ordered && misses > 0),
-        Row::number("2.1", turned, "px", [0.0, all.turned_differ as f64], Standing::Checked),
     ]
 }
 

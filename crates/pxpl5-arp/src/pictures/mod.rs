@@ -8,6 +8,7 @@ mod wires;
 
 pub use faces::cross;
 pub use plan::{cells_svg, updates_svg};
+pub(crate) use views::without_lens;
 pub use views::{Views, difference};
 pub use wires::cuts_svg;
 
@@ -52,12 +53,15 @@ pub const OF_FIGURES: [(&str, &str, &[&str]); 3] = [
 /// [`ExperimentError`], where a lens, scene or number is none; those here are.
 pub fn all(experiments: &Experiments) -> Result<Vec<Picture>, ExperimentError> {
     let (scene, path) = gallery()?;
-    let world = World::new(&scene, experiments.fits[1].cell_m)?;
-    let torn = Settings::CELLS.with_cells(experiments.fits[1].cell_m);
+    let world = World::new(&scene, experiments.fits[0].cell_m)?;
+    let mut torn = Settings::CELLS.with_cells(experiments.fits[0].cell_m);
+    // One of the pictures shows what a lens does.
+    torn.display.lens = Lens::Radial { k1: 0.32, k2: 0.0 };
     of_walk(world, &path, &torn, 1.0, FRAMES)
 }
 
-/// All pictures of a walk at so many m/s; at the frame and in the direction in which its widest tear would show most of what lies behind,
+/// All pictures of a walk at so many m/s. `eye` is seen through the display's lens; what shows it without a lens (`eye-flat` and `cuts`)
+/// is left out where the picture is too wide for a plane. The others are flat where that is possible; at the frame and in the direction in which its widest tear would show most of what lies behind,
 /// or, where nothing is cut between memories, at its end along the path.
 ///
 /// # Errors
@@ -89,7 +93,9 @@ pub fn of_walk(
     let side = settings.numbers.cell_m;
     let screen = settings.display.picture();
     pictures.push(Picture::Drawing("cells".to_owned(), cells_svg(&world, &simulation, path, eye(frame))));
-    pictures.push(Picture::Drawing("cuts".to_owned(), cuts_svg(&world, side, eye(frame), orientation, &screen)));
+    if Lens::Flat.check(&screen).is_ok() {
+        pictures.push(Picture::Drawing("cuts".to_owned(), cuts_svg(&world, side, eye(frame), orientation, &screen)));
+    }
     let tally = walk(&world, settings, frame + 60, &eye)?;
     pictures.push(Picture::Drawing("updates".to_owned(), updates_svg(&tally, frame.saturating_sub(60)..frame + 60)));
     pictures.extend(gaped);
@@ -115,11 +121,13 @@ fn seen(simulation: &Simulation<'_>, orientation: DQuat, eye: DVec3) -> Result<V
     let whole = Settings { display: simulation.settings().display.clone(), ..Settings::FULL }.with_memories(1);
     let whole = Faces::of(&shown(simulation.world(), &whole, 0..1, &|_| eye)?)?;
     pictures.push(Picture::Pixels("faces-whole".to_owned(), cross(&whole.memories[0], faces.background())));
-    let views = Views { faces: &faces, orientation };
-    let own = &simulation.settings().display.lens;
-    let lens = if *own == Lens::Flat { Lens::Radial { k1: 0.32, k2: 0.0 } } else { own.clone() };
-    pictures.push(Picture::Pixels("eye-flat".to_owned(), views.seen(Lens::Flat)?));
-    pictures.push(Picture::Pixels("eye".to_owned(), views.seen(lens)?));
+    let display = &simulation.settings().display;
+    let views = Views { faces: &faces, orientation, lens: without_lens(display) };
+    if views.lens == Lens::Flat {
+        pictures.push(Picture::Pixels("eye-flat".to_owned(), views.seen()?));
+    }
+    let through = Views { lens: display.lens.clone(), ..views.clone() };
+    pictures.push(Picture::Pixels("eye".to_owned(), through.seen()?));
     pictures.push(Picture::Pixels("memories".to_owned(), views.memories()?));
     pictures.push(Picture::Pixels("error".to_owned(), views.errors(simulation, eye)?));
     Ok(pictures)
@@ -136,7 +144,7 @@ fn tinted(
     for (tint, name) in [(Tint::Objects, "objects"), (Tint::Cells, "cells-seen")] {
         world.tint = tint;
         let faces = Faces::of(&shown(&world, settings, 0..1, &|_| eye)?)?;
-        let seen = Views { faces: &faces, orientation }.seen(Lens::Flat)?;
+        let seen = Views { faces: &faces, orientation, lens: without_lens(&settings.display) }.seen()?;
         pictures.push(Picture::Pixels(name.to_owned(), seen));
     }
     Ok(pictures)
@@ -167,7 +175,7 @@ fn gaping(
         let Some(vertex) = widest_upright(world, &simulation) else { continue };
         let orientation = looking_at(outcome.eye, vertex.with_y(outcome.eye.y));
         let faces = Faces::of(&simulation)?;
-        let seen = Views { faces: &faces, orientation }.seen(Lens::Flat)?;
+        let seen = Views { faces: &faces, orientation, lens: without_lens(&torn.display) }.seen()?;
         // A pixel of the gap is mixed with its neighbours: nothing else in the gallery is as bright.
         let white = seen.pixels().filter(|pixel| pixel.0.iter().all(|part| *part > 238)).count();
         if white > best.2 {
@@ -200,7 +208,7 @@ fn gaps(
         let settings = Settings { falloff, has_cascade: falloff != Falloff::None, is_segmented, ..torn.clone() };
         let simulation = shown(world, &settings, 0..frame + 1, eye)?;
         let faces = Faces::of(&simulation)?;
-        both.push(Views { faces: &faces, orientation }.seen(Lens::Flat)?);
+        both.push(Views { faces: &faces, orientation, lens: without_lens(&torn.display) }.seen()?);
     }
     let mut pictures = vec![Picture::Pixels("difference".to_owned(), difference(&both[0], &both[1]))];
     let names = ["tears", "warped", "unsegmented"].map(str::to_owned);

@@ -5,28 +5,35 @@ use crate::content::angle;
 use crate::error::ExperimentError;
 use crate::look::{Faces, picture, rgb};
 use crate::simulation::Simulation;
-use address_recalculation::{Lens, Picture};
+use address_recalculation::{ArpConfig, Lens, Picture};
 use cube_faces::CubeView;
 use glam::{DQuat, DVec3};
 use image::{Rgb, RgbImage};
 
 /// A look at faces.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Views<'a> {
     /// Of all memories.
     pub faces: &'a Faces,
     /// Of the head.
     pub orientation: DQuat,
+    /// Through which the eye looks.
+    pub lens: Lens,
+}
+
+/// The lens of pictures without one: none, or the display's own where its angle is too wide for a plane.
+pub(crate) fn without_lens(display: &ArpConfig) -> Lens {
+    if Lens::Flat.check(&display.picture()).is_ok() { Lens::Flat } else { display.lens.clone() }
 }
 
 impl Views<'_> {
-    /// Through a lens.
+    /// What the eye sees.
     ///
     /// # Errors
     ///
     /// [`ExperimentError::Display`] for a lens that there cannot be.
-    pub fn seen(&self, lens: Lens) -> Result<RgbImage, ExperimentError> {
-        Ok(self.faces.clone().through(lens).seen(self.orientation)?.0)
+    pub fn seen(&self) -> Result<RgbImage, ExperimentError> {
+        Ok(self.faces.clone().through(self.lens.clone()).seen(self.orientation)?.0)
     }
 
     /// The eye's picture tinted in the colour of the memory that won each pixel.
@@ -35,8 +42,8 @@ impl Views<'_> {
     ///
     /// As [`Views::seen`].
     pub fn memories(&self) -> Result<RgbImage, ExperimentError> {
-        let mut seen = self.seen(Lens::Flat)?;
-        let (width, winners) = self.faces.clone().through(Lens::Flat).winners(self.orientation)?;
+        let mut seen = self.seen()?;
+        let (width, winners) = self.faces.clone().through(self.lens.clone()).winners(self.orientation)?;
         let tints =
             picture(width, &winners, |winner| winner.map_or(0, |memory| MEMORY_COLOURS[usize::from(memory % 8)]));
         for (pixel, tint) in seen.pixels_mut().zip(tints.pixels()) {
@@ -56,11 +63,12 @@ impl Views<'_> {
         let view = simulation.settings().view()?;
         let screen = simulation.settings().display.picture();
         let bar = 24;
+        let focal = pixels_per_radian(&self.lens, &screen);
         Ok(RgbImage::from_fn(screen.width, screen.height + bar, |x, y| match y.checked_sub(screen.height) {
             Some(_) => heat(2.0 * f64::from(x) / f64::from(screen.width), x % (screen.width / 8) == 0),
             None => {
-                let ray = self.orientation * DVec3::from_array(Lens::Flat.view(&screen, x, y));
-                self.off(simulation, &view, ray, eye).map_or(rgb(0x0000_0040), |off| heat(off * focal(&screen), false))
+                let ray = self.orientation * DVec3::from_array(self.lens.view(&screen, x, y));
+                self.off(simulation, &view, ray, eye).map_or(rgb(0x0000_0040), |off| heat(off * focal, false))
             }
         }))
     }
@@ -77,9 +85,11 @@ impl Views<'_> {
     }
 }
 
-/// Pixels of a radian in the middle of a picture.
-fn focal(screen: &Picture) -> f64 {
-    f64::from(screen.width) / 2.0 / libm::tan(screen.horizontal_deg.to_radians() / 2.0)
+/// Pixels of a radian in the middle of a picture: over the two pixels beside it.
+fn pixels_per_radian(lens: &Lens, screen: &Picture) -> f64 {
+    let view = |x: u32| DVec3::from_array(lens.view(screen, x.min(screen.width - 1), screen.height / 2));
+    let middle = screen.width / 2;
+    1.0 / angle(view(middle.saturating_sub(1)), view(middle)).max(f64::MIN_POSITIVE)
 }
 
 /// From black over red and yellow to white at two pixels; blue marks every quarter of a pixel on the scale.

@@ -1,0 +1,55 @@
+//! What follows from printed numbers alone: no code under test could give another value, so there is no verdict.
+
+use super::fit::RATES_HZ;
+use address_recalculation::ArpTiming;
+use priority_rendering::{draws_per_s, saved_percent};
+use serde::Serialize;
+
+/// Segments drawn, with segmentation and without (table 2).
+pub const SEGMENTS: [[u64; 4]; 2] = [[87, 14, 20, 62], [160, 8, 3, 42]];
+
+/// A number that is computed from printed ones.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Definition {
+    /// Its name in the specification.
+    pub id: &'static str,
+    /// What it is, and what it is computed from.
+    pub statement: String,
+    /// Its value.
+    pub value: f64,
+    /// Its unit.
+    pub unit: &'static str,
+}
+
+fn definition(id: &'static str, statement: String, value: f64, unit: &'static str) -> Definition {
+    Definition { id, statement, value, unit }
+}
+
+/// All definitions.
+#[must_use]
+pub fn definitions() -> Vec<Definition> {
+    let mut all = Vec::new();
+    // A4 and A17 hold by the order of the stages: nothing that draws lies between the latch and the light.
+    let drawn = "share of rendering and buffer swap in rotational latency, by the order of the stages".to_owned();
+    all.push(definition("A4", drawn, 0.0, "ms"));
+    let stages = "from the latch to the light: 26 stages, whose clock is assumed so that this is below the printed 1 us".to_owned();
+    all.push(definition("A17", stages, ArpTiming::PAPERS.depth().0 as f64 / 1e6, "us"));
+    for (memory, rate) in RATES_HZ.into_iter().enumerate() {
+        all.push(definition("D1", format!("mean period of memory {memory}: 60 / A12"), 60.0 / rate, "frames"));
+        all.push(definition("D1", format!("way walked in one period of memory {memory}: A9 / A12"), 1e3 / rate, "mm"));
+    }
+    for (segments, (id, kind)) in SEGMENTS.iter().zip([("A13", "cut"), ("A14", "uncut")]) {
+        let sum = segments.iter().sum::<u64>() as f64;
+        let draws = draws_per_s(&RATES_HZ, segments);
+        all.push(definition("D2", format!("sum of {id}"), sum, "1"));
+        all.push(definition("D3", format!("draws a second, {kind}: sum of A12 x {id}"), draws, "1/s"));
+        let saved = saved_percent(draws, sum * 60.0);
+        all.push(definition("D4", format!("saved against all at 60 Hz by tables 1 and 2, {kind}"), saved, "%"));
+    }
+    let [cut, uncut] = SEGMENTS;
+    let saved = saved_percent(draws_per_s(&RATES_HZ, &cut), draws_per_s(&RATES_HZ, &uncut));
+    all.push(definition("D3", "saved by cutting, by tables 1 and 2".to_owned(), saved, "%"));
+    let first = saved_percent(cut[0] as f64, uncut[0] as f64);
+    all.push(definition("D5", "saved in memory 0 by table 2".to_owned(), first, "%"));
+    all
+}
