@@ -1,7 +1,7 @@
 //! Where the time goes from the head's pose to light.
 
-use pxpl5_run::{PictureTimes, Sampled, Samples, Settled, WARM_UP_PICTURES};
-use pxpl5_wire::ViewNumber;
+use pxpl5_run::{PictureTimes, Sampled, Samples, Settled};
+use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::collections::BTreeMap;
 
 /// Mean time in each stage from the head's pose to light, in milliseconds. The stages add up to the total. Of no picture there
@@ -33,14 +33,19 @@ impl Default for Budget {
     }
 }
 
-/// Stages of the complete pictures after the warm-up whose pose was measured, milliseconds.
+/// Stages of the complete pictures in the window whose pose was measured, milliseconds.
 #[derive(Debug, Default)]
 pub(crate) struct BudgetSum {
-    pictures: usize,
+    /// The first period of the window as it is known by now.
+    window_from: Option<PeriodNumber>,
     stages_ms: [Samples; STAGES],
-    /// Poses from the last picture's on: a head gives up what is old, and a silent tracker leaves that one to all that come.
+    /// Poses of the last pictures and of those to come: a head gives up what is old, and a silent tracker leaves one pose to all that
+    /// come.
     poses: Poses,
 }
+
+/// Poses before the newest picture's that are held: a slow display memory shows older views than a fast one.
+const OLDER_POSES: usize = 64;
 
 /// What is held of views, by their numbers.
 pub(crate) type Poses = BTreeMap<ViewNumber, Sampled>;
@@ -50,17 +55,19 @@ pub(crate) const STAGES: usize = 6;
 
 impl BudgetSum {
     pub(crate) fn take(&mut self, run: &Settled<'_>) {
-        if self.pictures == 0 {
+        let window_from = run.window.map(|window| window.first_period);
+        if self.window_from != window_from {
+            // All that was taken before lies before the window.
+            self.window_from = window_from;
             self.stages_ms = std::array::from_fn(|_| Samples::keeping(run.samples));
         }
-        let warm_up = WARM_UP_PICTURES.saturating_sub(self.pictures);
         self.poses.append(&mut poses(run));
-        for stages in of_pictures(run, &self.poses, run.pictures.get(warm_up..).unwrap_or_default()) {
+        for stages in of_pictures(run, &self.poses, run.steady_pictures()) {
             self.stages_ms.iter_mut().zip(stages).for_each(|(samples, ms)| samples.push(ms));
         }
-        self.pictures += run.pictures.len();
         if let Some(newest) = run.pictures.last() {
-            self.poses = self.poses.split_off(&newest.view);
+            let oldest = self.poses.range(..newest.view).rev().nth(OLDER_POSES).map(|(view, _)| *view);
+            self.poses = self.poses.split_off(&oldest.unwrap_or_default());
         }
     }
 
@@ -80,8 +87,12 @@ pub(crate) fn poses(run: &Settled<'_>) -> Poses {
 }
 
 /// Of complete pictures whose pose was measured and is held.
-pub(crate) fn of_pictures(run: &Settled<'_>, poses: &Poses, pictures: &[PictureTimes]) -> Vec<[f64; STAGES]> {
-    let complete = pictures.iter().filter(|times| times.is_shown());
+pub(crate) fn of_pictures<'a>(
+    run: &Settled<'_>,
+    poses: &Poses,
+    pictures: impl Iterator<Item = &'a PictureTimes>,
+) -> Vec<[f64; STAGES]> {
+    let complete = pictures.filter(|times| times.is_shown());
     complete.filter_map(|times| of_picture(run, times, poses.get(&times.view)?)).collect()
 }
 

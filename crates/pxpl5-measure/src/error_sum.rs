@@ -1,7 +1,7 @@
 //! Pixel errors, summed up period by period while a run goes on or when it is over.
 
 use crate::distribution::Distribution;
-use crate::errors::{CENTRE, FieldError, PixelErrors, Showing, UNJUDGED_FIELDS, grid};
+use crate::errors::{CENTRE, FieldError, PixelErrors, Showing, grid};
 use crate::raster::{offset, pose_of_field};
 use crate::registration::{Judge, middle};
 use crate::shown::{Drawn, Moment, Seen, Shown};
@@ -19,6 +19,8 @@ pub(crate) struct ErrorSum {
     showing: Option<Showing>,
     without: Option<Cause>,
     judging: Option<Judging>,
+    /// The first period of the window as it is known by now.
+    window_from: Option<PeriodNumber>,
     collected: Option<Collected>,
 }
 
@@ -33,6 +35,12 @@ impl ErrorSum {
         let Some(head) = run.head else { return };
         let showing = self.showing.unwrap_or_else(|| head.head().raster().into());
         let judging = self.judging.get_or_insert_with(|| Judging::begin(run, head, showing, self.without));
+        let window_from = run.window.map(|window| window.first_period);
+        if self.window_from != window_from {
+            // All that was taken before lies before the window.
+            self.window_from = window_from;
+            self.collected = None;
+        }
         let collected = self.collected.get_or_insert_with(|| Collected::keeping(run.samples));
         judging.shown.take(run, head);
         let fields = judging.fields(run);
@@ -56,7 +64,7 @@ struct Judging {
     content: Content,
     /// Whether a pixel is judged at the instant that it was drawn for, and not when it lights.
     at_one_instant: bool,
-    /// The first period that was not judged yet.
+    /// The first period that was not looked at yet.
     next: PeriodNumber,
 }
 
@@ -82,15 +90,14 @@ impl Judging {
             shown: Shown::begin(run, head),
             content,
             at_one_instant: without == Some(Cause::ScanOut),
-            next: PeriodNumber(UNJUDGED_FIELDS),
+            next: PeriodNumber::FIRST,
         }
     }
 
-    /// The periods that can be judged now: not the first, nor one that the run may not have ended.
+    /// The periods of the window that can be judged now.
     fn fields(&mut self, run: &Settled<'_>) -> impl Iterator<Item = PeriodNumber> + Clone + use<> {
-        let end = PeriodNumber(run.fields.saturating_sub(1)).min(run.until);
-        let fields = self.next.until(end);
-        self.next = self.next.max(end);
+        let fields = run.periods_from(self.next);
+        self.next = self.next.max(run.until);
         fields
     }
 
@@ -154,6 +161,7 @@ impl Judging {
         let (error, unjudged) = match seen {
             Seen::Nothing => (None, &mut errors.empty),
             Seen::Incomplete => (None, &mut errors.incomplete),
+            Seen::Before => (None, &mut errors.before),
             Seen::Complete(drawn) => {
                 let judged_at = if self.at_one_instant { drawn.instant(at) } else { at };
                 (self.judge.error(middle(x, y), &drawn, judged_at), &mut errors.behind)

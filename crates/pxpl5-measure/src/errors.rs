@@ -20,8 +20,8 @@ pub struct FieldError {
     pub centre_px: f64,
 }
 
-/// Errors over a grid of pixels and all fields, where pictures are shown that were complete in time: of others there is no
-/// error. What was not judged is no number (NaN; null in JSON).
+/// Errors over a grid of pixels and all fields of the window, where a picture is seen that was shown in the window, complete and in
+/// time: others have no error. What was not evaluated is no number (NaN; null in JSON).
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PixelErrors {
     /// Distance from where it should be, over the grid, pixels.
@@ -40,6 +40,8 @@ pub struct PixelErrors {
     pub empty: u64,
     /// Pixels that showed a part of a picture that was not complete in time.
     pub incomplete: u64,
+    /// Pixels that still showed a picture from before the window, such as one of start-up.
+    pub before: u64,
     /// The same field by field, in the order of time; of a run that keeps statistics only the first
     /// [`KEPT_SAMPLES`](pxpl5_run::KEPT_SAMPLES) fields.
     #[serde(skip)]
@@ -49,9 +51,6 @@ pub struct PixelErrors {
     #[serde(skip)]
     pub all_px: Vec<f64>,
 }
-
-/// Fields at the start that are not judged: pipelines fill, and the tracker's first reports arrive.
-pub const UNJUDGED_FIELDS: u64 = 15;
 
 /// Columns and rows of the grid; odd, so that the middle is one of its pixels.
 const GRID: u32 = 5;

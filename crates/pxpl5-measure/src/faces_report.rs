@@ -31,10 +31,12 @@ pub struct FacesReport {
 /// A display memory over a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MemoryReport {
-    /// Updates that were shown, a second.
-    pub updates_hz: f64,
-    /// Periods of the display from one to the next; nothing where none was shown.
+    /// Updates that were shown, a second, over the window; nothing where fewer than two were, since a single one has no rate.
+    pub updates_hz: Option<f64>,
+    /// Periods of the display from one to the next; nothing where there is no rate.
     pub period_frames: Option<f64>,
+    /// Updates that were shown in the whole run, start-up included.
+    pub updates: u64,
     /// Structures that it held at its last update.
     pub segments: usize,
     /// Regions that came.
@@ -79,12 +81,15 @@ impl FacesReport {
 impl MemoryReport {
     fn of(outcome: &Outcome, k: usize, memory: &DisplayMemory) -> Self {
         let stats = memory.stats();
-        let seconds = outcome.fields() as f64 * outcome.field_ms() * 1e-3;
+        let in_window = outcome.tally().memory_updates.get(&k).copied().unwrap_or_default();
+        // Periods from one update to the next, on average over the window.
+        let period = outcome.window().filter(|_| in_window >= 2).map(|window| window.periods() as f64 / in_window as f64);
         let notes = outcome.face_notes().all();
         let last = notes.iter().rfind(|note| note.memory == k);
         Self {
-            updates_hz: stats.swaps as f64 / seconds,
-            period_frames: (stats.swaps > 0).then(|| outcome.fields() as f64 / stats.swaps as f64),
+            updates_hz: period.map(|period| 1e3 / (period * outcome.field_ms())),
+            period_frames: period,
+            updates: stats.swaps,
             segments: last.map_or(0, |note| note.structures.iter().filter(|held| **held).count()),
             regions_copied: stats.regions,
             missed: stats.missed,

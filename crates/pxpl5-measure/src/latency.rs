@@ -2,13 +2,13 @@
 
 use pxpl5_run::{DefinedStatistics, LATENCY_PARTS, LatencyParts, Outcome, Samples};
 
-/// The parts of the latency of the complete pictures after the warm-up that are kept ([`pxpl5_run::Keep`]).
+/// The parts of the latency of the complete pictures in the window that are kept ([`pxpl5_run::Keep`]).
 #[must_use]
 pub fn latency_parts(outcome: &Outcome) -> Vec<LatencyParts> {
     outcome.latency_parts()
 }
 
-/// Their statistics in milliseconds, by name and definition, of all complete pictures after the warm-up.
+/// Their statistics in milliseconds, by name and definition, of all complete pictures in the window.
 pub(crate) fn latency_part_statistics(outcome: &Outcome) -> Vec<NamedStatistics> {
     let parts = LATENCY_PARTS.iter().zip(&outcome.tally().parts_ms);
     let named = parts.map(|(part, ms): (_, &Samples)| NamedStatistics {
@@ -43,7 +43,7 @@ pub struct SurfaceStatistics {
     pub statistics: DefinedStatistics,
 }
 
-/// Latencies of both surfaces and of the pair over the complete pictures after the warm-up; empty where surfaces have no TRANSFORM
+/// Latencies of both surfaces and of the pair over the complete pictures in the window; empty where surfaces have no TRANSFORM
 /// of their own.
 #[must_use]
 pub fn latency_by_surface(outcome: &Outcome) -> Vec<SurfaceStatistics> {

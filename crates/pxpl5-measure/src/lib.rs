@@ -38,7 +38,7 @@ mod turned;
 
 pub use budget::Budget;
 pub use causes::{ErrorCauses, ErrorPart};
-pub use errors::{FieldError, PixelErrors, Showing, UNJUDGED_FIELDS};
+pub use errors::{FieldError, PixelErrors, Showing};
 pub use faces_report::{FacesReport, MemoryReport};
 pub use head_sum::HeadSum;
 pub use latency::{NamedStatistics, SurfaceStatistics, latency_by_surface, latency_parts};

@@ -14,7 +14,7 @@ pub trait Measured {
     /// Everything as numbers.
     fn report(&self) -> Report;
 
-    /// The parts of the latency of every picture after the warm-up.
+    /// The parts of the latency of every complete picture in the window.
     fn latency_parts(&self) -> Vec<LatencyParts>;
 
     /// Latencies of both eyes and of the pair; empty where eyes have no TRANSFORM of their own.

@@ -60,7 +60,7 @@ pub fn pixel_errors(outcome: &Outcome) -> Option<PixelErrors> {
 }
 
 impl Budget {
-    /// Of the complete pictures after the warm-up whose pose was measured.
+    /// Of the complete pictures in the window whose pose was measured.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
         if let Some(said) = HeadSaid::while_it_ran(outcome) {
@@ -75,7 +75,7 @@ impl Budget {
     #[must_use]
     pub fn totals_ms(outcome: &Outcome) -> Vec<f64> {
         let run = outcome.settled();
-        let stages = of_pictures(&run, &poses(&run), outcome.steady_pictures());
+        let stages = of_pictures(&run, &poses(&run), run.steady_pictures());
         stages.iter().map(|stages| stages.iter().sum()).collect()
     }
 }

@@ -45,13 +45,13 @@ const fn of_run(name: &'static str, definition: &'static str, value: fn(&Outcome
 }
 
 const LATENCY: &str =
-    "latency as the pipeline defines it (see the report), over all complete pictures after the warm-up";
+    "latency as the pipeline defines it (see the report), over all complete pictures in the window";
 
-const EYE_LATENCY: &str = "from the start of an eye's TRANSFORM to the swap of its frame, over both eyes of all complete pictures after the warm-up; none for Slats";
+const EYE_LATENCY: &str = "from the start of an eye's TRANSFORM to the swap of its frame, over both eyes of all complete pictures in the window; none for Slats";
 
 const EYE_RETRACES: &str = "the same in retraces: those of that time, the one of the swap included";
 
-const ERROR_PX: &str = "distance of a pixel's content from where it should be when it lights, over a grid of pixels and all fields, where a picture is shown that was complete in time; only with a head.motion";
+const ERROR_PX: &str = "distance of a pixel's content from where it should be when it lights, over a grid of pixels and all fields of the window, where a picture is seen that was shown in the window, complete and in time; only with a head.motion";
 
 /// All quantities. Those that need events have no value at the analytic level.
 pub static QUANTITIES: [Quantity; 40] = [
@@ -70,7 +70,7 @@ pub static QUANTITIES: [Quantity; 40] = [
     // What is not a number is no value: see `Measure::of`.
     of_summary(
         "updates_hz",
-        "whole pictures shown a second, over the window of pictures_due; none where none was",
+        "whole pictures shown a second, over the window; none where fewer than two were",
         |s| s.updates_hz.unwrap_or(f64::NAN),
     ),
     of_summary("missed_retraces", "pictures due that were not shown: late, incomplete or missed", |s| {
@@ -130,7 +130,7 @@ pub static QUANTITIES: [Quantity; 40] = [
         "lines of regions that were overwritten before the display had shown them; none of a display that shows whole buffers",
         |_, r| r.lines_never_shown().map(|lines| lines as f64),
     ),
-    of_run("pictures", "complete pictures after the warm-up", |_, r| Some(r.pictures as f64)),
+    of_run("pictures", "complete pictures in the window", |_, r| Some(r.pictures as f64)),
     of_run("events", "events of the simulation", |_, r| Some(r.events as f64)),
     of_run("transform_ms", "mean time of TRANSFORM, an eye or a picture as the pipeline takes them", |o, _| {
         stage_ms(o, Stage::Transform)
@@ -210,7 +210,7 @@ impl Results {
     }
 }
 
-/// Mean over the pictures after the warm-up; no number where there are none.
+/// Mean over the pictures in the window; no number where there are none.
 fn stage_ms(outcome: &Outcome, stage: Stage) -> Option<f64> {
     let (_, samples) = outcome.tally().stage_ms.iter().find(|(of, _)| *of == stage)?;
     Some(samples.statistics().mean)

@@ -9,7 +9,7 @@ use crate::too_heavy::TooHeavy;
 use parameters::Value;
 use pxpl5_display::Counter;
 use pxpl5_machine::{LateRegion, Record};
-use pxpl5_run::{Aim, DefinedStatistics, DuePictures, Head, Outcome, Raster};
+use pxpl5_run::{Aim, DefinedStatistics, DuePictures, Head, Outcome, Raster, ResultWindow};
 use pxpl5_sim::{Time, TraceHash, mix};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -55,7 +55,10 @@ pub struct Report {
     pub spheres: usize,
     /// Periods of the display that were simulated: NTSC fields.
     pub fields: u64,
-    /// Complete pictures after the warm-up, that the statistics are over.
+    /// The periods of the display over which latencies, pictures due, errors and rates are computed; nothing of a run that was over
+    /// before they began.
+    pub window: Option<ResultWindow>,
+    /// Complete pictures in the window, that the statistics are over.
     pub pictures: usize,
     /// Latency in periods of the display: for NTSC, fields of 1001/60000 s.
     pub latency_fields: DefinedStatistics,
@@ -68,9 +71,9 @@ pub struct Report {
     pub latency_by_eye_ms: Vec<SurfaceStatistics>,
     /// Complete pictures that were shown in the whole run, the warm-up included.
     pub shown: u64,
-    /// Whole new pictures a second, over the window of `due`; nothing where none was shown.
+    /// Whole new pictures a second, over the window; nothing where fewer than two were shown.
     pub updates_hz: Option<f64>,
-    /// The pictures that were due, in a stated window, and what became of them; nothing where none was.
+    /// The pictures that were due in the window, and what became of them; nothing where none was.
     pub due: Option<DuePictures>,
     /// When a picture is due here, what it takes to be in time, and which are counted.
     pub due_definition: String,
@@ -199,6 +202,7 @@ impl Report {
             triangles: scene.triangles().len(),
             spheres: scene.spheres().len(),
             fields: outcome.fields(),
+            window: outcome.window(),
             pictures: tally.complete as usize,
             latency_fields: outcome.latency_fields().defined(pipeline.latency_definition()),
             latency_ms: outcome.latency_ms().defined(pipeline.latency_definition()),

@@ -4,7 +4,7 @@ pub(crate) use crate::drawn::{Drawn, FacesSeen, Moment};
 use crate::screen::Screen;
 use crate::turned::TurnedFaces;
 use pxpl5_display::{Display, Surface};
-use pxpl5_run::{Cause, Estimator, HeadViews, Sampled, Settled, Source};
+use pxpl5_run::{Cause, Estimator, HeadViews, ResultWindow, Sampled, Settled, Source};
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, ViewNumber};
 use std::collections::{BTreeMap, BTreeSet};
@@ -18,7 +18,9 @@ pub(crate) enum Seen {
     Nothing,
     /// A part of a picture that was not complete in time.
     Incomplete,
-    /// A part of one that was.
+    /// A part of a complete one that was shown before the window.
+    Before,
+    /// A part of one that was shown in the window, complete and in time.
     Complete(Drawn),
 }
 
@@ -27,8 +29,11 @@ pub(crate) enum Seen {
 pub(crate) struct Shown {
     screen: Screen,
     views: BTreeMap<PictureNumber, ViewNumber>,
-    /// Pictures that were complete in time.
-    complete: BTreeSet<PictureNumber>,
+    /// Pictures that were complete in time, each with the period from which on it was shown.
+    complete: BTreeMap<PictureNumber, PeriodNumber>,
+    /// The window outside of which pictures are not evaluated; `None` where none is ever due: there every picture is seen until the next
+    /// one covers it.
+    window: Option<ResultWindow>,
     moments: BTreeMap<ViewNumber, Viewed>,
     /// Of a display with faces.
     faces: Option<TurnedFaces>,
@@ -47,7 +52,8 @@ impl Shown {
         Self {
             screen: Screen::default(),
             views: BTreeMap::new(),
-            complete: BTreeSet::new(),
+            complete: BTreeMap::new(),
+            window: None,
             moments: BTreeMap::new(),
             faces: TurnedFaces::begin(run, head),
         }
@@ -65,7 +71,9 @@ impl Shown {
         self.screen.take(run);
         self.views.extend(run.pictures.iter().map(|times| (times.picture, times.view)));
         let complete = run.pictures.iter().filter(|times| times.is_shown());
-        self.complete.extend(complete.map(|times| times.picture));
+        let display = run.record.display();
+        self.complete.extend(complete.map(|times| (times.picture, display.period_at(times.shown_at))));
+        self.window = run.window.filter(|_| run.pipeline.periods_a_picture(run.record).is_some());
         self.moments.extend(head.sampled().iter().map(|sampled| (sampled.number, viewed(sampled))));
         self.faces.iter_mut().for_each(|faces| faces.take(run));
     }
@@ -80,7 +88,7 @@ impl Shown {
         let on_screen: BTreeSet<PictureNumber> = self.screen.targets().map(|target| target.picture).collect();
         let moments = &self.moments;
         self.views.retain(|picture, view| moments.contains_key(view) || on_screen.contains(picture));
-        self.complete.retain(|picture| self.views.contains_key(picture));
+        self.complete.retain(|picture, _| self.views.contains_key(picture));
         self.faces.iter_mut().for_each(|faces| faces.forget_before(instant));
     }
 
@@ -104,12 +112,14 @@ impl Shown {
         sources.flat_map(views_of).collect()
     }
 
-    /// What a pixel that lights at `at` shows, and whether its picture was complete in time.
+    /// What a pixel that lights at `at` shows, and whether its picture was complete in time, in the window.
     pub(crate) fn seen(&self, run: &Settled<'_>, [x, y]: [u32; 2], field: PeriodNumber, at: Time) -> Seen {
         if self.faces.is_none() {
-            let target = self.screen.shown(x, y, field, at);
-            if target.is_some_and(|target| !self.complete.contains(&target.picture)) {
-                return Seen::Incomplete;
+            if let Some(target) = self.screen.shown(x, y, field, at) {
+                let Some(shown) = self.complete.get(&target.picture) else { return Seen::Incomplete };
+                if self.window.is_some_and(|window| !window.holds_picture(*shown)) {
+                    return Seen::Before;
+                }
             }
         }
         self.drawn(run, [x, y], field, at).map_or(Seen::Nothing, Seen::Complete)

@@ -2,7 +2,7 @@
 
 use pxpl5_run::{Outcome, Summary};
 
-/// The numbers of an outcome over the pictures after the warm-up.
+/// The numbers of an outcome over the pictures in the window.
 #[must_use]
 pub fn summary(outcome: &Outcome) -> Summary {
     outcome.summary()

@@ -1,4 +1,4 @@
-//! How long a turn of the head takes to light, over all fields.
+//! How long a turn of the head takes to light, over all fields of the window.
 
 use pxpl5_run::{RotationLatency, Samples, Settled, Statistics};
 use pxpl5_wire::PeriodNumber;
@@ -9,15 +9,17 @@ use serde::Serialize;
 pub struct RotationPart {
     /// Its name: see [`RotationLatency`](pxpl5_run::RotationLatency).
     pub name: &'static str,
-    /// Over the middle pixel of all fields, milliseconds.
+    /// Over the middle pixel of all fields of the window, milliseconds.
     #[serde(flatten)]
     pub statistics: Statistics,
 }
 
-/// Rotation latencies of the middle pixel of every field, milliseconds.
+/// Rotation latencies of the middle pixel of every field of the window, milliseconds.
 #[derive(Debug, Default)]
 pub(crate) struct TurnSum {
     next: PeriodNumber,
+    /// The first period of the window as it is known by now.
+    window_from: Option<PeriodNumber>,
     total: Samples,
     parts: Vec<Samples>,
 }
@@ -31,11 +33,13 @@ pub(crate) struct Turns {
 
 impl TurnSum {
     pub(crate) fn take(&mut self, run: &Settled<'_>) {
-        if self.parts.is_empty() {
+        let window_from = run.window.map(|window| window.first_period);
+        if self.parts.is_empty() || self.window_from != window_from {
+            self.window_from = window_from;
             self.total = Samples::keeping(run.samples);
             self.parts = vec![self.total.clone(); RotationLatency::default().parts().len()];
         }
-        for latency in run.rotation_latencies(self.next) {
+        for latency in run.rotation_latencies(run.periods_from(self.next)) {
             self.total.push(latency.total().as_ms());
             let parts = self.parts.iter_mut().zip(latency.parts());
             parts.for_each(|(samples, (_, span))| samples.push(span.as_ms()));

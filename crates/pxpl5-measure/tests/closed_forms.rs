@@ -5,7 +5,7 @@
 //! line through two of its points is.
 
 use pxpl5_machine::MachineConfig;
-use pxpl5_measure::{Measured, PixelErrors, Showing, UNJUDGED_FIELDS};
+use pxpl5_measure::{Measured, PixelErrors, Showing};
 use pxpl5_run::{Aim, Cause, Experiment, Head, Outcome, PipelineSettings, Pixels, Registry, Sampled};
 use pxpl5_scene::builtin;
 use pxpl5_wire::ViewNumber;
@@ -176,11 +176,15 @@ impl Run {
         Content { measured: Measurement::Of(*view), drawn_for: predicted_for.0 as f64 * 1e-12 }
     }
 
-    /// The pixels that are judged: five by five of every field, as [`PixelErrors`] says.
-    fn judged() -> impl Iterator<Item = (u64, u64, u64)> {
+    /// The pixels that are judged: five by five of every field of the window, as [`PixelErrors`] says. Of Rendering Control only those
+    /// on which a frame is seen that was shown in the window.
+    fn judged(&self) -> impl Iterator<Item = (u64, u64, u64)> + '_ {
         let places = |size: u64| (0..5).map(move |i| (2 * i + 1) * size / 10);
         let in_field = move |field| places(480).flat_map(move |y| places(640).map(move |x| (field, y / 2, x)));
-        (UNJUDGED_FIELDS..FIELDS - 1).flat_map(in_field)
+        let window = self.outcome.window().expect("long enough");
+        assert_eq!(window.last_period.0, FIELDS - 1);
+        let (frames, first) = (self.pipeline == "rendering-control", window.first_period.0);
+        (first..FIELDS).filter(move |field| !frames || self.newest(*field).0 >= first).flat_map(in_field)
     }
 
     /// Mean error in pixels and degrees where a pixel's content is turned about the vertical by `turned_rad` to the left of where
@@ -188,7 +192,7 @@ impl Run {
     fn expected(&self, turned_rad: impl Fn(&Content, f64) -> f64) -> [f64; 2] {
         let mut sum = [0.0, 0.0];
         let mut n = 0.0;
-        for (field, row, x) in Self::judged() {
+        for (field, row, x) in self.judged() {
             let turned = turned_rad(&self.content(field, row, x), beam(field, row, x));
             let y = (2 * row + field % 2) as f64;
             let [pixels, degrees] = error(x as f64 + 0.5 - 320.0, 240.0 - (y + 0.5), turned);
@@ -308,7 +312,7 @@ fn blocks_of_frameless_rendering_are_drawn_for_the_middle_of_the_time_in_which_t
     let run = Run::new("frameless", Aim::Middle, Pan::at(20.0));
     let pass_s = 1.0 / run.outcome.report().updates_hz.expect("two passes");
     let early = |(field, row, x)| beam(field, row, x) - run.content(field, row, x).drawn_for;
-    let all: Vec<f64> = Run::judged().map(early).collect();
+    let all: Vec<f64> = run.judged().map(early).collect();
     let mean_s = all.iter().sum::<f64>() / all.len() as f64;
     println!("mean {:.3} ms of a pass of {:.3} ms", mean_s * 1e3, pass_s * 1e3);
     assert!(mean_s.abs() < pass_s * 0.1, "{mean_s} {pass_s}");

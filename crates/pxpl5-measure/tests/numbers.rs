@@ -184,9 +184,9 @@ fn the_hash_of_a_report_is_of_what_happened_and_of_what_is_said_of_it() {
     assert_ne!(report.trace_hash, outcome.record().trace_hash().to_string());
 }
 
-/// In six fields not all of four memories have been drawn.
+/// In six fields not all of four memories have been drawn, and none behind start-up.
 #[test]
-fn a_memory_that_was_never_shown_has_no_period() {
+fn a_memory_without_two_updates_in_the_window_has_neither_rate_nor_period() {
     let pipeline =
         (Registry::of_papers().pipeline("arp-priority").expect("listed").build)(&PipelineSettings::default());
     let config = pipeline.adapt(MachineConfig::small_hmd());
@@ -198,10 +198,33 @@ fn a_memory_that_was_never_shown_has_no_period() {
         Err(error) => panic!("{error}"),
     };
     let memories = outcome.report().arp.expect("faces").memories;
-    let [shown, never] =
-        [false, true].map(|never| memories.iter().filter(move |memory| (memory.updates_hz == 0.0) == never));
-    assert!(shown.clone().count() > 0 && shown.clone().all(|memory| memory.period_frames.is_some()), "{memories:?}");
-    assert!(never.clone().count() > 0 && never.clone().all(|memory| memory.period_frames.is_none()), "{memories:?}");
+    let [shown, never] = [false, true].map(|never| memories.iter().filter(move |memory| (memory.updates == 0) == never));
+    assert!(shown.count() > 0 && never.count() > 0, "{memories:?}");
+    assert!(memories.iter().all(|memory| (memory.updates_hz, memory.period_frames) == (None, None)), "{memories:?}");
+}
+
+/// A ball far away is drawn once, into the slowest memory: one update has no rate, however long the run is.
+#[test]
+fn a_single_update_has_no_rate() {
+    for fields in [60, 200] {
+        let pipeline =
+            (Registry::of_papers().pipeline("arp-priority").expect("listed").build)(&PipelineSettings::default());
+        let config = pipeline.adapt(MachineConfig::small_hmd());
+        let scene = Arc::new(builtin("sphere:1000").expect("even"));
+        let still = Head::new(
+            Arc::new(tracking::motion::Still(Pose::IDENTITY)),
+            TrackerConfig::ideal(),
+            PredictorKind::None,
+            1,
+        );
+        let experiment = Experiment::with(config, pipeline, scene).fields(fields).head(still.expect("in range"));
+        let report = experiment.pixels(Pixels::Off).run().expect("it shows something").report();
+        let memories = report.arp.expect("faces").memories;
+        let updates: Vec<u64> = memories.iter().map(|memory| memory.updates).collect();
+        assert_eq!((updates, report.shown), (vec![0, 0, 0, 1], 1), "{fields}");
+        assert_eq!(report.updates_hz, None, "{fields}");
+        assert!(memories.iter().all(|memory| memory.updates_hz.is_none()), "{fields}: {memories:?}");
+    }
 }
 
 /// Faces of 512 texels of 24 bits of colour and of depth, one memory, so 24 stages of 25 ns.
@@ -220,8 +243,8 @@ fn a_display_with_faces_is_reported_with_its_memory() {
     assert!(faces.matrix_loads >= 39, "{}", faces.matrix_loads);
     let [memory] = &faces.memories[..] else { panic!("{faces:?}") };
     assert_eq!(memory.bytes, 2 * 6 * 512 * 512 * 6);
-    let period = memory.period_frames.expect("updates were shown");
-    assert!((memory.updates_hz * period - FIELD_HZ).abs() < 1e-6, "{memory:?}");
+    let (period, hz) = memory.period_frames.zip(memory.updates_hz).expect("updates were shown");
+    assert!((hz * period - FIELD_HZ).abs() < 1e-6, "{memory:?}");
     assert_eq!((memory.segments, memory.missed), (1, 0));
     let whole = faces.rotation_latency_ms.expect("a head").mean;
     let parts: f64 = faces.rotation_latency_parts_ms.iter().map(|part| part.statistics.mean).sum();

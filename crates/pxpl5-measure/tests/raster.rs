@@ -5,8 +5,8 @@
 use glam::{DQuat, DVec3};
 use image::{Rgb, RgbImage};
 use pxpl5_machine::MachineConfig;
-use pxpl5_measure::{Measured, PixelErrors, RasterOffsets, Showing, UNJUDGED_FIELDS};
-use pxpl5_run::{Aim, Experiment, Head, Outcome, PipelineSettings, Pixels, Raster, Registry};
+use pxpl5_measure::{Measured, PixelErrors, RasterOffsets, Showing};
+use pxpl5_run::{Aim, Experiment, Head, Outcome, PipelineSettings, Pixels, Raster, Registry, WARM_UP_PERIODS};
 use pxpl5_scene::builtin;
 use pxpl5_wire::PeriodNumber;
 use std::sync::Arc;
@@ -139,7 +139,7 @@ fn after(right: f64, up: f64, angle: f64) -> [f64; 2] {
 /// The mean error of the 25 pixels of each field, from the place at which a pixel's content was drawn.
 fn mean_px(drawn_at: impl Fn(f64, f64) -> f64) -> f64 {
     let grid = |size: u64| (0..5).map(move |i| (2 * i + 1) * size / 10);
-    let fields = UNJUDGED_FIELDS..FIELDS - 1;
+    let fields = WARM_UP_PERIODS..FIELDS;
     let pixels = fields.flat_map(|field| grid(480).flat_map(move |y| grid(640).map(move |x| (field, y / 2, x))));
     let errors = pixels.map(|(field, row, x)| {
         let [right, up] = [x as f64 + 0.5 - 320.0, 240.0 - ((2 * row + field % 2) as f64 + 0.5)];
@@ -167,7 +167,7 @@ fn a_flat_raster_leaves_what_a_shift_is_no_turn() {
 #[test]
 fn an_ideal_view_of_a_steady_turn_has_no_error() {
     let errors = PixelErrors::shown(&run(DVec3::Y, Raster::Plain), Showing::Ideal);
-    assert_eq!(errors.judged, 25 * (FIELDS - 1 - UNJUDGED_FIELDS));
+    assert_eq!(errors.judged, 25 * (FIELDS - WARM_UP_PERIODS));
     assert!(errors.pixels.max < 1e-6 && errors.degrees.max < 1e-6, "{errors:?}");
 }
 
@@ -175,7 +175,7 @@ fn an_ideal_view_of_a_steady_turn_has_no_error() {
 fn errors_by_field_are_those_of_all_pixels_at_the_time_of_their_retraces() {
     let errors = run(DVec3::Y, Raster::Plain).pixel_errors().expect("a head");
     let fields: Vec<u64> = errors.by_field.iter().map(|error| error.field.0).collect();
-    assert_eq!(fields, (UNJUDGED_FIELDS..FIELDS - 1).collect::<Vec<_>>());
+    assert_eq!(fields, (WARM_UP_PERIODS..FIELDS).collect::<Vec<_>>());
     for error in &errors.by_field {
         let retrace_s = error.field.0 as f64 * 262.5 * LINE_S;
         assert!((error.time_s - retrace_s).abs() < 1e-9, "{error:?}");
@@ -203,6 +203,6 @@ fn what_is_behind_the_eye_when_it_lights_has_no_error_and_is_counted() {
     let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene).head(head);
     let outcome = experiment.fields(fields).pixels(Pixels::Off).run().expect("two triangles");
     let errors = outcome.pixel_errors().expect("a head");
-    assert_eq!((errors.judged, errors.behind), (0, 25 * (fields - 1 - UNJUDGED_FIELDS)));
+    assert_eq!((errors.judged, errors.behind), (0, 25 * (fields - WARM_UP_PERIODS)));
     assert!(errors.pixels.mean.is_nan() && errors.by_field.is_empty());
 }

@@ -10,8 +10,12 @@
 //!
 //! A picture is judged when its period ends, so that none is judged otherwise in a longer run.
 
+use crate::result_window::{ResultWindow, WARM_UP_PICTURES};
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
+
+/// Fewest pictures in a window that have a rate.
+pub(crate) const LEAST_UPDATES: u64 = 2;
 
 /// What became of a picture that was begun, the best first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -35,15 +39,6 @@ impl PictureEnd {
         }
     }
 }
-
-/// Periods of the display at the start of a run that are not judged: the first views are on their way, and the first pictures
-/// were ordered when their time had nearly passed (assumed).
-pub const WARM_UP_PERIODS: u64 = 8;
-
-/// Which periods are judged, for whoever reads a count.
-pub const WINDOW_DEFINITION: &str = "counted from the 9th period of the display to the last one that was over; later where the first \
-    picture comes later, and, where any picture was not shown, from the first that was not, since those before it may owe their \
-    time to queues that were still empty; but never from behind the middle of the run";
 
 /// The pictures that were due in a window of a run, each of which ended in one of four ways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -74,13 +69,19 @@ pub struct DuePictures {
 pub(crate) struct PictureEnds {
     /// Of each period, 0 for no picture, else one more than the place of the best end among all ends.
     of_periods: Vec<u8>,
+    begun: usize,
+    steady_from: Option<PeriodNumber>,
 }
 
 impl PictureEnds {
     const ALL: [PictureEnd; 3] = [PictureEnd::Shown, PictureEnd::Late, PictureEnd::Incomplete];
 
-    /// A picture that should be seen in a period ended so.
+    /// Notes the end of a picture that should be seen in a period. Pictures come in the order of their periods.
     pub(crate) fn note(&mut self, period: PeriodNumber, end: PictureEnd) {
+        self.begun += 1;
+        if self.begun > WARM_UP_PICTURES {
+            self.steady_from.get_or_insert(period);
+        }
         let place = period.0 as usize;
         if self.of_periods.len() <= place {
             self.of_periods.resize(place + 1, 0);
@@ -90,24 +91,35 @@ impl PictureEnds {
         *best = if *best == 0 { code } else { code.min(*best) };
     }
 
-    /// The best end of the pictures of some periods.
-    fn best(&self, periods: std::ops::RangeInclusive<u64>) -> Option<PictureEnd> {
-        let last = (*periods.end()).min((self.of_periods.len() as u64).checked_sub(1)?);
-        let of_periods = self.of_periods.get(*periods.start() as usize..=last as usize)?;
+    /// The period of the first picture behind [`WARM_UP_PICTURES`]; `None` where no more were begun.
+    pub(crate) const fn steady_from(&self) -> Option<PeriodNumber> {
+        self.steady_from
+    }
+
+    /// The best end of the pictures of `every` periods, the last of which is given.
+    pub(crate) fn best(&self, last: u64, every: u64) -> Option<PictureEnd> {
+        let end = (last as usize + 1).min(self.of_periods.len());
+        let of_periods = self.of_periods.get((last + 1).saturating_sub(every) as usize..end)?;
         let best = of_periods.iter().copied().filter(|code| *code > 0).min()?;
         Self::ALL.get(usize::from(best) - 1).copied()
     }
 
     /// The first period at or behind `start` with a picture.
-    fn first_from(&self, start: u64) -> Option<u64> {
+    pub(crate) fn first_from(&self, start: u64) -> Option<u64> {
         let behind = self.of_periods.get(start as usize..)?;
         behind.iter().position(|code| *code > 0).map(|place| start + place as u64)
+    }
+
+    /// Periods of a window in which a picture was shown in time.
+    pub(crate) fn periods_shown(&self, window: &ResultWindow) -> u64 {
+        let periods = window.first_period.until(window.last_period.next());
+        periods.filter(|period| self.best(period.0, 1) == Some(PictureEnd::Shown)).count() as u64
     }
 }
 
 impl DuePictures {
-    /// Counts them. `pictures` gives the period in which each picture that was begun should be seen, and its end;
-    /// `periods_a_picture` is the cadence, and `reached` the first period that was not over when the run ended.
+    /// Counts them. `pictures` gives the period in which each picture that was begun should be seen, and its end, in the order of
+    /// periods; `periods_a_picture` is the cadence, and `reached` the first period that was not over when the run ended.
     ///
     /// A picture that comes before it is due, but after the one before it was, is shown. `None` when no whole picture was due.
     #[must_use]
@@ -118,42 +130,21 @@ impl DuePictures {
     ) -> Option<Self> {
         let mut ends = PictureEnds::default();
         pictures.filter(|(period, _)| *period < reached).for_each(|(period, end)| ends.note(period, end));
-        Self::of_ends(&ends, periods_a_picture, reached)
+        let window = ResultWindow::of(&ends, Some(periods_a_picture), reached, reached)?;
+        Some(Self::of_ends(&ends, periods_a_picture, &window))
     }
 
-    /// Counts them, from the ends of all pictures of periods before `reached`.
-    pub(crate) fn of_ends(ends: &PictureEnds, periods_a_picture: u64, reached: PeriodNumber) -> Option<Self> {
+    /// Counts those of a window.
+    pub(crate) fn of_ends(ends: &PictureEnds, periods_a_picture: u64, window: &ResultWindow) -> Self {
         let every = periods_a_picture.max(1);
-        let periods = reached.0;
-        let middle = WARM_UP_PERIODS + periods.checked_sub(WARM_UP_PERIODS)? / 2;
-        let first_picture = ends.first_from(0).filter(|period| *period < periods).unwrap_or_default();
-        let start = first_picture.clamp(WARM_UP_PERIODS, middle).max(every - 1);
-        // The first picture there says in which periods pictures are due.
-        let anchor = ends.first_from(start).filter(|period| *period < periods).unwrap_or(start);
-        let due = (start + (anchor - start) % every..periods).step_by(every as usize);
-        let end_of = |period: u64| ends.best((period + 1).saturating_sub(every)..=period);
-        let is_shown = |period: &u64| end_of(*period) == Some(PictureEnd::Shown);
-        let in_time_first = due.clone().take_while(|period| is_shown(period) && *period < middle);
-        let left_out = if due.clone().all(|period| is_shown(&period)) { 0 } else { in_time_first.count() };
-        let mut judged = due.skip(left_out).peekable();
-        let first_period = (*judged.peek()? + 1).saturating_sub(every);
+        let ResultWindow { first_period, last_period, .. } = *window;
+        let due = (first_period.0 + every - 1..=last_period.0).step_by(every as usize);
         let mut counts = [0; 4];
-        judged.for_each(|period| counts[end_of(period).map_or(3, |end| end as usize)] += 1);
+        due.for_each(|period| counts[ends.best(period, every).map_or(3, |end| end as usize)] += 1);
         let [shown, late, incomplete, missed] = counts;
-        let due: u64 = counts.iter().sum();
-        let window = first_period..first_period + due * every;
-        let pictures = window.filter(|period| ends.best(*period..=*period) == Some(PictureEnd::Shown)).count() as u64;
-        Some(Self {
-            first_period: PeriodNumber(first_period),
-            last_period: PeriodNumber(first_period + due * every - 1),
-            periods_a_picture: every,
-            due,
-            shown,
-            late,
-            incomplete,
-            missed,
-            pictures,
-        })
+        let due = counts.iter().sum();
+        let pictures = ends.periods_shown(window);
+        Self { first_period, last_period, periods_a_picture: every, due, shown, late, incomplete, missed, pictures }
     }
 
     /// Pictures that were due and not shown: late, incomplete and missed.
@@ -175,10 +166,11 @@ impl DuePictures {
         self.late + self.incomplete > 0 || 2 * self.shown < self.due
     }
 
-    /// Pictures shown a second in the window, where a period of the display takes so many milliseconds; `None` where none was.
+    /// Returns the pictures shown a second, where a period of the display takes `period_ms`; `None` where fewer than two were
+    /// shown, since a single one has no rate.
     #[must_use]
     pub fn updates_hz(&self, period_ms: f64) -> Option<f64> {
         let window_ms = (self.due * self.periods_a_picture) as f64 * period_ms;
-        (self.pictures > 0).then_some(self.pictures as f64 * 1e3 / window_ms)
+        (self.pictures >= LEAST_UPDATES).then_some(self.pictures as f64 * 1e3 / window_ms)
     }
 }

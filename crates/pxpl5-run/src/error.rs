@@ -1,6 +1,6 @@
 //! Why an experiment gives no result.
 
-use crate::experiment::WARM_UP_PICTURES;
+use crate::result_window::WARM_UP_PICTURES;
 use crate::outcome::Outcome;
 use pxpl5_machine::{ConfigError, RunError};
 use pxpl5_sim::Time;

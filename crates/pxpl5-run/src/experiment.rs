@@ -30,9 +30,6 @@ pub enum Pixels {
     All,
 }
 
-/// Pictures that are discarded because the pipeline is still filling (TR94 discards the first frames too).
-pub const WARM_UP_PICTURES: usize = 4;
-
 /// Smallest and largest number of fields.
 pub const FIELDS_RANGE: (u64, u64) = (1, 10_000_000);
 
@@ -233,6 +230,7 @@ impl Experiment {
             next: None,
             until: self.end(),
             samples: usize::MAX,
+            window: None,
         }
     }
 

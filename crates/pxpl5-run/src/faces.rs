@@ -93,14 +93,15 @@ impl Outcome {
     /// where the display takes no faces.
     #[must_use]
     pub fn rotation_latencies(&self) -> Vec<RotationLatency> {
-        self.settled().rotation_latencies(PeriodNumber::FIRST)
+        let run = self.settled();
+        run.rotation_latencies(PeriodNumber::FIRST.until(run.until))
     }
 }
 
 impl Settled<'_> {
-    /// The rotation latency of the middle pixel of every settled field from one on, as far as it has one.
+    /// The rotation latency of the middle pixel of some settled fields, as far as they have one.
     #[must_use]
-    pub fn rotation_latencies(&self, from: PeriodNumber) -> Vec<RotationLatency> {
+    pub fn rotation_latencies(&self, fields: impl Iterator<Item = PeriodNumber>) -> Vec<RotationLatency> {
         let Some((latched, head)) = LatchedHead::of_run(self).zip(self.head) else { return Vec::new() };
         let Some(surface) = self.record.display().surfaces().first() else { return Vec::new() };
         let x = surface.width / 2;
@@ -108,6 +109,6 @@ impl Settled<'_> {
             let y = surface.height / 2 + FieldParity::of_field(field).first_line();
             latched.latency(head, x, y, field)
         };
-        from.until(self.until).filter_map(of_field).collect()
+        fields.filter_map(of_field).collect()
     }
 }

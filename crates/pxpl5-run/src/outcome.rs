@@ -1,12 +1,13 @@
 //! What came of an experiment, as data.
 
 use crate::assembled::Assembled;
-use crate::due::{DuePictures, WARM_UP_PERIODS, WINDOW_DEFINITION};
-use crate::experiment::{Experiment, WARM_UP_PICTURES};
+use crate::due::{DuePictures, LEAST_UPDATES};
+use crate::experiment::Experiment;
 use crate::face_notes::FaceNotes;
 use crate::head_views::HeadViews;
 use crate::latency::{LatencyParts, parts};
 use crate::pipeline::{PictureTimes, Pipeline};
+use crate::result_window::{ResultWindow, WINDOW_DEFINITION};
 use crate::statistics::Statistics;
 use crate::summary::Summary;
 use crate::sums::Settled;
@@ -61,7 +62,7 @@ impl Outcome {
     #[must_use]
     pub fn settled(&self) -> Settled<'_> {
         let all = self.experiment.settled(&self.record, self.head.as_ref(), &self.notes);
-        Settled { pictures: self.pictures(), ..all }
+        Settled { pictures: self.pictures(), window: self.closed.window, ..all }
     }
 
     /// What came of the sum that was taken while the run went on ([`Experiment::summed_by`]), if that is of this kind.
@@ -95,12 +96,23 @@ impl Outcome {
         &self.closed.pictures
     }
 
-    /// Those of them behind the first [`WARM_UP_PICTURES`] of the run.
+    /// The window over which latencies, pictures due, errors and rates are computed; `None` of a run that was over before it began.
+    #[must_use]
+    pub const fn window(&self) -> Option<ResultWindow> {
+        self.closed.window
+    }
+
+    /// Those of them in the window.
     #[must_use]
     pub fn steady_pictures(&self) -> &[PictureTimes] {
+        let Some(window) = self.closed.window else { return &[] };
+        let display = self.record.display();
+        // They are in the order in which they are shown.
+        let is_in = |times: &PictureTimes| window.holds_picture(display.period_at(times.shown_at));
         let pictures = self.pictures();
-        let taken_before = self.tally().pictures as usize - pictures.len();
-        pictures.get(WARM_UP_PICTURES.saturating_sub(taken_before)..).unwrap_or_default()
+        let first = pictures.iter().position(is_in).unwrap_or(pictures.len());
+        let end = pictures.iter().rposition(is_in).map_or(first, |last| last + 1);
+        &pictures[first..end]
     }
 
     /// Those of the steady ones that were complete in time: the others have no latency.
@@ -119,30 +131,30 @@ impl Outcome {
     #[must_use]
     pub fn due(&self) -> Option<DuePictures> {
         let every = self.pipeline().periods_a_picture(&self.record)?;
-        DuePictures::of_ends(self.closed.tally.ends(), every, self.reached)
+        Some(DuePictures::of_ends(self.closed.tally.ends(), every, &self.closed.window?))
     }
 
     /// When a picture is due here, what it takes to be in time, and which are counted.
     #[must_use]
     pub fn due_definition(&self) -> String {
-        let definition = self.pipeline().due_definition();
-        match self.pipeline().periods_a_picture(&self.record) {
-            Some(_) => format!("{definition}; {WINDOW_DEFINITION}"),
-            None => definition.to_owned(),
-        }
+        format!("{}; {WINDOW_DEFINITION}", self.pipeline().due_definition())
     }
 
-    /// Whole new pictures a second, over the window of [`Outcome::due`]; where none is ever due, over all of the run behind
-    /// the first [`WARM_UP_PERIODS`]. `None` where none was shown.
+    /// Whole new pictures a second, over the window: at most one a period of the display, since no more can be seen. `None` where
+    /// fewer than two were shown, since a single one has no rate, and where all that were shown belong to start-up.
     #[must_use]
     pub fn updates_hz(&self) -> Option<f64> {
+        let complete = self.closed.tally.complete;
+        if complete < LEAST_UPDATES {
+            return None;
+        }
         if self.pipeline().periods_a_picture(&self.record).is_some() {
             return self.due()?.updates_hz(self.field_ms());
         }
-        let judged = PeriodNumber(WARM_UP_PERIODS)..self.reached;
-        let pictures = self.closed.tally.shown_later() as f64 / self.pipeline().updates_per_picture(&self.record);
-        let window_ms = judged.end.since(judged.start) as f64 * self.field_ms();
-        (pictures > 0.0).then_some(pictures * 1e3 / window_ms)
+        let window = self.closed.window?;
+        let pictures = complete as f64 / self.pipeline().updates_per_picture(&self.record);
+        let seen = pictures.min(self.closed.tally.ends().periods_shown(&window) as f64);
+        Some(seen * 1e3 / (window.periods() as f64 * self.field_ms()))
     }
 
     /// Whether what a viewer sees at the end is complete: made of as many pictures as a whole screen takes (two fields,
@@ -215,7 +227,7 @@ impl Outcome {
         self.record.tick(self.experiment.end())
     }
 
-    /// Latency in milliseconds over the complete pictures after the warm-up, as the pipeline defines it.
+    /// Latency in milliseconds over the complete pictures in the window, as the pipeline defines it.
     #[must_use]
     pub fn latency_ms(&self) -> Statistics {
         self.closed.tally.latency_ms.statistics()
@@ -227,7 +239,7 @@ impl Outcome {
         self.closed.tally.latency_ms.statistics_in(self.field_ms())
     }
 
-    /// The parts of the latency of the complete pictures after the warm-up, as far as they are kept.
+    /// The parts of the latency of the complete pictures in the window, as far as they are kept.
     #[must_use]
     pub fn latency_parts(&self) -> Vec<LatencyParts> {
         let stages = self.stages();
@@ -236,7 +248,7 @@ impl Outcome {
         parts.collect()
     }
 
-    /// The few numbers that every level of modelling gives, over the pictures after the warm-up.
+    /// The few numbers that every level of modelling gives, over the pictures in the window.
     #[must_use]
     pub fn summary(&self) -> Summary {
         let tally = self.tally();

@@ -1,6 +1,6 @@
 //! What a run without prediction tells, summed up while it goes on.
 
-use crate::experiment::WARM_UP_PICTURES;
+use crate::result_window::WARM_UP_PICTURES;
 use crate::head_views::{HeadViews, Sampled};
 use crate::instants::Instants;
 use crate::latched_head::LatchedHead;
@@ -9,9 +9,9 @@ use crate::rehearsal::{Rehearsal, Rehearsed};
 use crate::sums::{Settled, Summing};
 use pxpl5_display::LightSpan;
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{FieldParity, PeriodNumber, ViewNumber};
+use pxpl5_wire::{FieldParity, PeriodNumber, PictureNumber, ViewNumber};
 use std::any::Any;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Least step of an interval for which a predictor is tuned, picoseconds: a millisecond. A finer one changes no number of a filter
 /// by a per cent.
@@ -28,6 +28,8 @@ pub(crate) struct RehearsalSum {
     intervals: Mean,
     turns: Mean,
     turned_to: PeriodNumber,
+    /// A picture of which it is not known yet which one takes its place.
+    waiting: Option<PictureTimes>,
 }
 
 /// When a view is shown, in as many pictures as are of it.
@@ -67,10 +69,9 @@ impl Summing for RehearsalSum {
     fn take(&mut self, settled: &Settled<'_>) {
         let Some(head) = settled.head else { return };
         let sampled = head.sampled();
-        let nexts = settled.pictures.iter().skip(1).chain(settled.next).map(Some).chain([None]);
-        for (times, next) in settled.pictures.iter().zip(nexts) {
-            let shown = settled.pipeline.shown(settled.record, times, next);
-            self.take_picture(times, shown);
+        for (times, next) in self.timed(settled) {
+            let shown = settled.pipeline.shown(settled.record, &times, next.as_ref());
+            self.take_picture(&times, shown);
         }
         self.end_views(settled, &sampled);
         self.take_turns(settled, head);
@@ -89,6 +90,23 @@ impl RehearsalSum {
             interval_ps: self.intervals.rounded_ps(),
             turn_interval_ps: self.turns.rounded_ps(),
         }
+    }
+
+    /// Pictures, each with the one that takes its place. Of display memories only the first is timed, which holds what must be drawn
+    /// most often; its last picture waits while the next one that is shown is of another memory.
+    fn timed(&mut self, settled: &Settled<'_>) -> Vec<(PictureTimes, Option<PictureTimes>)> {
+        let notes = settled.notes.all();
+        let of_others: BTreeSet<PictureNumber> =
+            notes.iter().filter(|note| note.memory > 0).map(|note| note.picture).collect();
+        let is_timed = |times: &&PictureTimes| !of_others.contains(&times.picture);
+        let timed = settled.pictures.iter().filter(is_timed).copied();
+        let mut timed: Vec<PictureTimes> = self.waiting.take().into_iter().chain(timed).collect();
+        let next = settled.next.filter(is_timed).copied();
+        if settled.next.is_some() && next.is_none() {
+            self.waiting = timed.pop();
+        }
+        let nexts = timed.iter().skip(1).copied().chain(next.or(self.waiting)).map(Some).chain([None]);
+        timed.iter().copied().zip(nexts).collect()
     }
 
     fn take_picture(&mut self, times: &PictureTimes, shown: LightSpan) {

@@ -2,10 +2,11 @@
 
 use crate::assembled::Assembled;
 use crate::error::ExperimentError;
-use crate::experiment::{Experiment, Pixels, WARM_UP_PICTURES};
+use crate::experiment::{Experiment, Pixels};
 use crate::ideal::ideal_picture;
 use crate::outcome::Outcome;
 use crate::preparation::Preparation;
+use crate::result_window::WARM_UP_PICTURES;
 use crate::stops::PROGRESS_FIELDS;
 use crate::window::Window;
 use image::RgbImage;

@@ -4,14 +4,14 @@ use crate::due::DuePictures;
 use crate::samples::Samples;
 use crate::statistics::Statistics;
 
-/// What came of an experiment at any level of modelling, over the pictures after the warm-up.
+/// What came of an experiment at any level of modelling, over the pictures in the window of the run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
     /// Latency of every complete picture as its pipeline defines it, milliseconds.
     pub latencies_ms: Samples,
     /// A period of the display, milliseconds: an NTSC field.
     pub field_ms: f64,
-    /// Whole pictures shown a second, over the window of `due`; `None` where none was shown.
+    /// Whole pictures shown a second, over the window of `due`; `None` where fewer than two were shown.
     pub updates_hz: Option<f64>,
     /// The pictures that were due, and what became of them; `None` where none was.
     pub due: Option<DuePictures>,

@@ -3,6 +3,7 @@
 use crate::face_notes::FaceNotes;
 use crate::head_views::HeadViews;
 use crate::pipeline::{PictureTimes, Pipeline};
+use crate::result_window::ResultWindow;
 use pxpl5_display::Aim;
 use pxpl5_machine::{Arrival, Record};
 use pxpl5_wire::PeriodNumber;
@@ -35,6 +36,30 @@ pub struct Settled<'a> {
     pub until: PeriodNumber,
     /// How many numbers of a kind are kept one by one: [`Samples::keeping`](crate::Samples::keeping).
     pub samples: usize,
+    /// The window over which results are computed, as far as it is known by now: it may still begin later, never earlier. Then all
+    /// that was handed on before lies outside. `None` where the run has none.
+    pub window: Option<ResultWindow>,
+}
+
+impl Settled<'_> {
+    /// The pictures that lie in the window.
+    pub fn steady_pictures(&self) -> impl Iterator<Item = &PictureTimes> {
+        let display = self.record.display();
+        let window = self.window;
+        let is_held = move |times: &&PictureTimes| {
+            window.is_some_and(|window| window.holds_picture(display.period_at(times.shown_at)))
+        };
+        self.pictures.iter().filter(is_held)
+    }
+
+    /// The periods of the window, from one that was not handed on before to the last one that will not change.
+    pub fn periods_from(&self, next: PeriodNumber) -> impl DoubleEndedIterator<Item = PeriodNumber> + Clone + use<> {
+        let Self { until, window, .. } = *self;
+        let (first, end) = window.map_or((until, until), |window| {
+            (window.first_period.max(next), window.last_period.next().min(until))
+        });
+        first.until(end.max(first))
+    }
 }
 
 /// Somebody who sums up a run while it goes on. He is handed everything once, in order, and keeps of it what he needs later: records are

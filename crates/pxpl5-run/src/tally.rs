@@ -3,12 +3,13 @@
 //! Pictures are taken in the order in which they are shown, each once, when everything that belongs to it has been observed. What
 //! is held does not grow with the run but for a byte a period ([`PictureEnds`]), where samples have a limit.
 
-use crate::due::{PictureEnds, WARM_UP_PERIODS};
-use crate::experiment::WARM_UP_PICTURES;
+use crate::due::PictureEnds;
+use crate::face_notes::FaceNotes;
 use crate::latency::{ENDS, LATENCY_PARTS, Pair, WHOSE, pair, parts};
 use crate::pipeline::{PictureTimes, Pipeline};
 use crate::samples::Samples;
 use crate::summary::retraces;
+use crate::sums::Settled;
 use pxpl5_gp::Stage;
 use pxpl5_machine::{Arrival, LateRegion, Record, StageSpan};
 use pxpl5_sim::{Span, Time};
@@ -18,14 +19,14 @@ use std::collections::BTreeMap;
 /// How many of the late regions are listed.
 pub const LATE_REGIONS_LISTED: usize = 20;
 
-/// Sums over a whole run. Latencies are those of complete pictures after the warm-up, in milliseconds.
+/// Sums over a run. Times are over the pictures in its [`ResultWindow`], in milliseconds; latencies are those of complete ones.
 #[derive(Clone, Debug)]
 pub struct Tally {
     /// Pictures that were begun and judged, complete or not.
     pub pictures: u64,
     /// Complete pictures that were shown, the warm-up included.
     pub shown: u64,
-    /// Complete pictures after the warm-up.
+    /// Complete pictures in the window.
     pub complete: u64,
     /// Complete pictures since the last one that was not.
     pub shown_in_a_row: u64,
@@ -45,6 +46,8 @@ pub struct Tally {
     pub copy_begins_ms: Samples,
     /// Time of TRANSFORM and of RENDER, of all pictures.
     pub stage_ms: [(Stage, Samples); 2],
+    /// Updates in the window that were shown, of each display memory that had any; empty where there is none.
+    pub memory_updates: BTreeMap<usize, u64>,
     /// Regions that came after their deadline.
     pub late_regions: u64,
     /// The first of them, [`LATE_REGIONS_LISTED`] at most.
@@ -54,17 +57,16 @@ pub struct Tally {
     /// Of surfaces and pairs of them, in the order of [`WHOSE`] and [`ENDS`].
     surfaces_ms: Vec<Samples>,
     ends: PictureEnds,
-    /// Complete pictures of periods behind the warm-up and before the end.
-    shown_later: u64,
-    /// The picture of the first that was steady, and the last one whose stages were counted.
-    first_steady: Option<PictureNumber>,
-    stages_to: Option<PictureNumber>,
+    /// The first period of the window as it is known by now.
+    window_from: Option<PeriodNumber>,
     /// Port time of all regions, and their pixels.
     region_ms: f64,
     region_pixels: u64,
     /// The period at whose begin the run ends, and a period in milliseconds.
     end: PeriodNumber,
     field_ms: f64,
+    /// Samples of each kind that are kept at most.
+    limit: usize,
 }
 
 /// Latency of a surface, or of a pair of them.
@@ -108,18 +110,18 @@ impl Tally {
             copy_ms: [none(), none()],
             copy_begins_ms: none(),
             stage_ms: [Stage::Transform, Stage::Render].map(|stage| (stage, none())),
+            memory_updates: BTreeMap::new(),
             late_regions: 0,
             first_late_regions: Vec::new(),
             records_looked_at: 0,
             surfaces_ms: vec![none(); WHOSE.len() * ENDS.len()],
             ends: PictureEnds::default(),
-            shown_later: 0,
-            first_steady: None,
-            stages_to: None,
+            window_from: None,
             region_ms: 0.0,
             region_pixels: 0,
             end,
             field_ms,
+            limit,
         }
     }
 
@@ -128,31 +130,62 @@ impl Tally {
         self.end = self.end.min(reached);
     }
 
-    /// Takes pictures, in the order in which they are shown, of which the record has everything.
-    pub(crate) fn take(&mut self, pipeline: &dyn Pipeline, record: &Record, pictures: &[PictureTimes]) {
-        let warm_up = (WARM_UP_PICTURES as u64).saturating_sub(self.pictures) as usize;
-        pictures.iter().for_each(|times| self.count(record, times));
-        let Some((steady, last)) = pictures.get(warm_up..).zip(pictures.last()) else { return };
-        let Some(first) = self.first_steady.or_else(|| steady.first().map(|times| times.picture)) else { return };
-        self.first_steady = Some(first);
+    /// Counts pictures, in the order in which they are shown: whatever the window is, they are part of the run.
+    pub(crate) fn count(&mut self, record: &Record, pictures: &[PictureTimes]) {
+        for times in pictures {
+            let period = record.display().period_at(times.shown_at);
+            self.pictures += 1;
+            if period < self.end {
+                self.ends.note(period, times.end);
+            }
+            self.shown_in_a_row = if times.is_shown() { self.shown_in_a_row + 1 } else { 0 };
+            self.shown += u64::from(times.is_shown());
+        }
+    }
+
+    /// Takes the times of counted pictures that lie in the window, of which the record has everything.
+    pub(crate) fn take(&mut self, settled: &Settled<'_>) {
+        let Settled { pipeline, record, notes, window, .. } = *settled;
+        let Some(window) = window else { return };
+        if self.window_from != Some(window.first_period) {
+            // All that was taken before lies before the window.
+            self.restart(window.first_period);
+        }
+        let steady: Vec<PictureTimes> = settled.steady_pictures().copied().collect();
+        if steady.is_empty() {
+            return;
+        }
         let stages = record.stages();
-        self.take_copies(pipeline, record, steady);
+        self.take_copies(pipeline, record, &steady);
         let complete = steady.iter().filter(|times| times.is_shown());
         complete.clone().for_each(|times| self.take_complete(record, times, of_picture(&stages, times.picture)));
         self.take_eye_swaps(&stages, complete);
-        self.take_stages(&stages, first, last.picture);
+        self.take_stages(&stages, &steady);
+        self.take_memories(notes, &steady);
     }
 
-    fn count(&mut self, record: &Record, times: &PictureTimes) {
-        let period = record.display().period_at(times.shown_at);
-        self.pictures += 1;
-        if period < self.end {
-            self.ends.note(period, times.end);
+    fn take_memories(&mut self, notes: &FaceNotes, pictures: &[PictureTimes]) {
+        let memories: BTreeMap<PictureNumber, usize> =
+            notes.all().iter().map(|note| (note.picture, note.memory)).collect();
+        for memory in pictures.iter().filter_map(|times| memories.get(&times.picture)) {
+            *self.memory_updates.entry(*memory).or_default() += 1;
         }
-        self.shown_in_a_row = if times.is_shown() { self.shown_in_a_row + 1 } else { 0 };
-        self.shown += u64::from(times.is_shown());
-        let is_later = (PeriodNumber(WARM_UP_PERIODS)..self.end).contains(&period);
-        self.shown_later += u64::from(times.is_shown() && is_later);
+    }
+
+    /// Begins the window's samples anew; what is counted over the whole run stays.
+    fn restart(&mut self, first_period: PeriodNumber) {
+        let fresh = Self::new(self.end, self.field_ms, self.limit);
+        let before = std::mem::replace(self, fresh);
+        self.window_from = Some(first_period);
+        self.pictures = before.pictures;
+        self.shown = before.shown;
+        self.shown_in_a_row = before.shown_in_a_row;
+        self.late_regions = before.late_regions;
+        self.first_late_regions = before.first_late_regions;
+        self.records_looked_at = before.records_looked_at;
+        self.ends = before.ends;
+        self.region_ms = before.region_ms;
+        self.region_pixels = before.region_pixels;
     }
 
     fn take_complete(&mut self, record: &Record, times: &PictureTimes, stages: &[StageSpan]) {
@@ -212,26 +245,20 @@ impl Tally {
         }
     }
 
-    /// Stages of the pictures behind those whose stages were taken before, up to `last`.
-    fn take_stages(&mut self, stages: &[StageSpan], first: PictureNumber, last: PictureNumber) {
-        let begin = stages.partition_point(|span| match self.stages_to {
-            Some(to) => span.picture <= to,
-            None => span.picture < first,
-        });
-        let end = stages.partition_point(|span| span.picture <= last);
-        let fresh = stages.get(begin..end).unwrap_or_default();
-        self.stages_to = self.stages_to.max(Some(last));
-        for (stage, samples) in &mut self.stage_ms {
-            let spans = fresh.iter().filter(|span| span.stage == *stage);
-            samples.extend(spans.filter_map(|span| Some((span.end? - span.begin).as_ms())));
+    /// Takes the stages of pictures.
+    fn take_stages(&mut self, stages: &[StageSpan], pictures: &[PictureTimes]) {
+        for times in pictures {
+            let own = of_picture(stages, times.picture);
+            for (stage, samples) in &mut self.stage_ms {
+                let spans = own.iter().filter(|span| span.stage == *stage);
+                samples.extend(spans.filter_map(|span| Some((span.end? - span.begin).as_ms())));
+            }
+            let of_eyes = own.iter().filter(|span| span.stage == Stage::Transform && span.surface.is_some());
+            self.eye_ms.extend(of_eyes.filter_map(|span| {
+                let copy = own.iter().find(|copy| copy.stage == Stage::Copy && copy.surface == span.surface)?;
+                Some(copy.end?.since(span.begin).as_ms())
+            }));
         }
-        let of_eyes = fresh.iter().filter(|span| span.stage == Stage::Transform && span.surface.is_some());
-        self.eye_ms.extend(of_eyes.filter_map(|span| {
-            let copy = of_picture(stages, span.picture)
-                .iter()
-                .find(|copy| copy.stage == Stage::Copy && copy.surface == span.surface)?;
-            Some(copy.end?.since(span.begin).as_ms())
-        }));
     }
 
     /// Takes regions that have arrived, each once; a message occupies a channel for `message`.
@@ -258,11 +285,6 @@ impl Tally {
 
     pub(crate) const fn ends(&self) -> &PictureEnds {
         &self.ends
-    }
-
-    /// Complete pictures of periods behind the warm-up: [`WARM_UP_PERIODS`].
-    pub(crate) const fn shown_later(&self) -> u64 {
-        self.shown_later
     }
 }
 

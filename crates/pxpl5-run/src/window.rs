@@ -6,6 +6,7 @@ use crate::face_notes::FaceNotes;
 use crate::head_views::HeadViews;
 use crate::keep::Keep;
 use crate::pipeline::{PictureTimes, Pipeline};
+use crate::result_window::ResultWindow;
 use crate::samples::KEPT_SAMPLES;
 use crate::sums::{Settled, Summing};
 use crate::tally::Tally;
@@ -46,6 +47,7 @@ pub(crate) struct Window {
 #[derive(Debug)]
 pub(crate) struct Closed {
     pub(crate) tally: Tally,
+    pub(crate) window: Option<ResultWindow>,
     pub(crate) said: Option<Box<dyn Any + Send + Sync>>,
     pub(crate) pictures: Vec<PictureTimes>,
 }
@@ -86,7 +88,10 @@ impl Window {
         let record = run.machine.record();
         let fresh = self.fresh(experiment.pipeline.as_ref(), record, now);
         let newest_taken = fresh.len().checked_sub(PICTURES_HELD + 1)?;
-        let settled_to = fresh[newest_taken].shown_at.min(before(record, now)?);
+        // Whole periods are taken, so that all pictures of each are known.
+        let last = fresh[newest_taken].shown_at.min(before(record, now)?);
+        let known = record.display().period_at(last);
+        let settled_to = Time(record.tick(known).0.checked_sub(1)?);
         let held = fresh.partition_point(|times| times.shown_at <= settled_to);
         let (pictures, held) = fresh.split_at(held);
         let needed =
@@ -96,7 +101,10 @@ impl Window {
         let arrivals = &record.observation().arrivals[self.arrivals_taken..];
         let (next, samples) = (held.first(), self.samples);
         let all = experiment.settled(record, run.head.as_ref(), &run.notes);
-        self.take(&Settled { arrivals, pictures, next, until, samples, ..all });
+        self.tally.count(record, pictures);
+        let every = experiment.pipeline.periods_a_picture(record);
+        let window = Some(ResultWindow::begun(self.tally.ends(), every, known, experiment.end()));
+        self.take(&Settled { arrivals, pictures, next, until, samples, window, ..all });
         self.taken_to = Some(settled_to);
         Some(begin)
     }
@@ -109,9 +117,8 @@ impl Window {
 
     /// Hands on what is settled to all who sum up.
     fn take(&mut self, settled: &Settled<'_>) {
-        let Settled { pipeline, record, arrivals, pictures, .. } = settled;
-        self.tally.take_arrivals(arrivals, record.message_span());
-        self.tally.take(*pipeline, record, pictures);
+        self.tally.take_arrivals(settled.arrivals, settled.record.message_span());
+        self.tally.take(settled);
         self.sum.iter_mut().for_each(|sum| sum.take(settled));
     }
 
@@ -132,8 +139,11 @@ impl Window {
         let arrivals = &record.observation().arrivals[self.arrivals_taken..];
         let samples = self.samples;
         let all = experiment.settled(record, head, notes);
-        self.take(&Settled { arrivals, pictures: &pictures, samples, ..all });
-        Closed { tally: self.tally, said: self.sum.map(|sum| sum.said()), pictures }
+        self.tally.count(record, &pictures);
+        let every = pipeline.periods_a_picture(record);
+        let window = ResultWindow::of(self.tally.ends(), every, reached, experiment.end());
+        self.take(&Settled { arrivals, pictures: &pictures, samples, window, ..all });
+        Closed { tally: self.tally, window, said: self.sum.map(|sum| sum.said()), pictures }
     }
 }
 

@@ -80,6 +80,33 @@ fn a_run_within_the_warm_up_says_nothing() {
     }
 }
 
+/// Frames that come every second period from 5 on: the fifth is swapped in at 13, and due in 12 and 13. Of single pictures of every
+/// period the ninth period comes later than the fifth picture.
+#[test]
+fn the_window_begins_with_the_ninth_period_or_the_fifth_picture_whichever_is_later() {
+    for (first, apart, every, expected) in [(5, 2, 2, 12), (2, 1, 1, 8), (0, 2, 2, 9), (20, 10, 10, 51)] {
+        let due = count(&regular(first, apart, 200, Shown), every, 200);
+        assert_eq!(due.first_period.0, expected, "{first} {apart} {every}");
+    }
+}
+
+/// The second half of a run does not move its window.
+#[test]
+fn a_failure_in_the_second_half_is_counted_over_the_whole_window() {
+    let mut pictures = regular(2, 1, 100, Shown);
+    pictures.retain(|picture| picture.0 != 80);
+    let due = count(&pictures, 1, 100);
+    assert_eq!((due.first_period.0, due.due, due.missed), (WARM_UP_PERIODS, 92, 1));
+}
+
+#[test]
+fn one_picture_has_no_rate() {
+    let mut pictures = regular(2, 1, 60, Incomplete);
+    pictures[20].1 = Shown;
+    let due = count(&pictures, 1, 60);
+    assert_eq!((due.shown, due.updates_hz(1001.0 / 60.0)), (1, None));
+}
+
 #[test]
 fn a_rate_is_the_pictures_shown_over_the_time_of_the_window() {
     let due = count(&regular(5, 2, 100, Shown), 2, 100);

@@ -305,15 +305,18 @@ impl Pipeline for FacePipeline {
         Ok(())
     }
 
-    /// The updates of memory 0, which holds what must be drawn most often.
+    /// The updates of all memories.
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
-        let Some(port) = record.ports().display().first() else { return Vec::new() };
+        let Ok(display) = display_of(record) else { return Vec::new() };
+        let ports = record.ports().display().iter().take(display.config().timing.display_memories as usize);
         let stages = record.stages();
-        let shown = record.shown_by(*port).into_iter().filter(|shown| shown.at < end);
-        match self.source {
+        let shown = ports.flat_map(|port| record.shown_by(*port)).filter(|shown| shown.at < end);
+        let mut pictures: Vec<PictureTimes> = match self.source {
             FaceSource::PixelPlanes => shown.filter_map(|shown| swapped_in(&stages, shown.picture, shown.at)).collect(),
             FaceSource::Ideal => shown.map(drawn_at_once).collect(),
-        }
+        };
+        pictures.sort_by_key(|times| (times.shown_at, times.picture));
+        pictures
     }
 
     fn can_forget(&self) -> bool {
@@ -330,10 +333,10 @@ impl Pipeline for FacePipeline {
     fn latency_definition(&self) -> &'static str {
         match self.source {
             FaceSource::PixelPlanes => {
-                "of translation: from the start of TRANSFORM of an update of memory 0 on the first slave to the retrace at which it is swapped in"
+                "of translation: from the start of TRANSFORM of an update of any display memory on the first slave to the retrace at which it is swapped in"
             }
             FaceSource::Ideal => {
-                "of translation: from the instant at which an update of memory 0 is drawn, in no time, to the retrace at which it is swapped in"
+                "of translation: from the instant at which an update of any display memory is drawn, in no time, to the retrace at which it is swapped in"
             }
         }
     }

@@ -1,9 +1,9 @@
 //! The table of pictures.
 
 use pxpl5_measure::{LATENCY_PARTS, LatencyParts, latency_parts};
-use pxpl5_run::{Outcome, PictureTimes, WARM_UP_PICTURES};
+use pxpl5_run::{Outcome, PictureTimes};
 use pxpl5_wire::PictureNumber;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Name and version of the table's schema; a column that is added at the end does not change it.
 pub const SCHEMA: &str = "pxpl5-pictures/2";
@@ -54,7 +54,7 @@ pub fn columns() -> Vec<Column> {
     columns.extend(LATENCY_PARTS.iter().map(|part| {
         Column::optional(
             &format!("{}_ps", part.name),
-            &format!("{}; missing during the warm-up and of a picture that was not complete in time", part.definition),
+            &format!("{}; missing outside of the window and of a picture that was not complete in time", part.definition),
         )
     }));
     columns
@@ -65,8 +65,9 @@ pub fn columns() -> Vec<Column> {
 pub fn rows(outcome: &Outcome) -> Vec<Vec<Option<u64>>> {
     let parts: BTreeMap<PictureNumber, LatencyParts> =
         latency_parts(outcome).into_iter().map(|parts| (parts.picture, parts)).collect();
-    let pictures = outcome.pictures().iter().enumerate();
-    pictures.map(|(i, times)| row(times, i >= WARM_UP_PICTURES, parts.get(&times.picture))).collect()
+    let steady: BTreeSet<PictureNumber> = outcome.steady_pictures().iter().map(|times| times.picture).collect();
+    let row_of = |times: &PictureTimes| row(times, steady.contains(&times.picture), parts.get(&times.picture));
+    outcome.pictures().iter().map(row_of).collect()
 }
 
 fn row(times: &PictureTimes, steady: bool, parts: Option<&LatencyParts>) -> Vec<Option<u64>> {
