@@ -1,7 +1,7 @@
 //! Draws a few triangles and spheres on one region and writes PNG files, for a look at the pixels.
 //!
 //! ```text
-//! cargo run --release -p pxpl5-renderer --example pictures -- DIRECTORY
+//! cargo run --release -p pxpl5-renderer --example draw_region -- DIRECTORY
 //! ```
 
 use pxpl5_renderer::{

@@ -1,5 +1,5 @@
 //! Writes what there is to look at: the six clip variants beside each other, a sheet of all slices, a slice before and after
-//! halftoning. `cargo run --release -p perspecta --example pictures -- SCENE FOLDER`.
+//! halftoning. `cargo run --release -p perspecta --example draw_volume -- SCENE FOLDER`.
 
 use image::{GenericImage, Rgb, RgbImage, imageops};
 use perspecta::{Camera, PerspectaConfig, ViewOptions, view_planes};

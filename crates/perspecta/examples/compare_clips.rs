@@ -1,5 +1,5 @@
 //! All clip variants and projections of a scene beside each other, as a table.
-//! `cargo run --release -p perspecta --example compare -- SCENE`.
+//! `cargo run --release -p perspecta --example compare_clips -- SCENE`.
 
 use perspecta::PerspectaConfig;
 use spatialgl::{
