@@ -87,7 +87,7 @@ fn on_screen(session: Session) -> Result<(), CliError> {
 
 #[cfg(not(feature = "screen"))]
 fn on_screen(_: Session) -> Result<(), CliError> {
-    Err(no_terminal("this program was built without the feature `screen`"))
+    Err(no_terminal("this command was built without the feature `screen` (cargo build --release -p pxpl5-cli --features screen)"))
 }
 
 fn no_terminal(reason: &str) -> CliError {
