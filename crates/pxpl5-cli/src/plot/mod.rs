@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 plot out/slats --x triangles --y missed_retraces --by copy --where code=1994 --out fig.svg
-  pxpl5 plot out/gps --x machine.n_gps --y latency_fields.mean --band seed --by pipeline --out fig.pdf
+  pxpl5 plot out/gps --x machine.n_gps --y latency_fields.mean --band seed --by pipeline --out fig.svg
   pxpl5 plot out/compare --x head_to_light_ms.mean --y error.mean_px.mean --by pipeline --y-scale log --out fig.png
 
 What varies and is named by neither --x, --by nor --band is an error. What was not judged is no 0: such rows are counted in the column
@@ -46,7 +46,7 @@ pub(crate) struct PlotArgs {
     /// Only rows with this value; may be repeated.
     #[arg(long = "where", value_name = "COLUMN=VALUE", value_parser = pair)]
     only: Vec<(String, String)>,
-    /// The figure: .svg, .png (300 dots an inch) or .pdf.
+    /// The figure: .svg; with the feature `print` also .png (300 dots per inch) and .pdf.
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
     /// Width of the figure, millimetres: 84 is a column of most journals, 174 two of them.
