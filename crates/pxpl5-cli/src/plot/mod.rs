@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 #[command(after_help = "Examples:
   pxpl5 plot out/slats --x triangles --y missed_retraces --by copy --where code=1994 --out fig.svg
   pxpl5 plot out/gps --x machine.n_gps --y latency_fields.mean --band seed --by pipeline --out fig.svg
-  pxpl5 plot out/compare --x head_to_light_ms.mean --y error.mean_px.mean --by pipeline --y-scale log --out fig.png
+  pxpl5 plot out/compare --x head_to_light_ms.mean --y error.mean_px.mean --by pipeline --y-scale log --out fig.svg
 
 What varies and is named by neither --x, --by nor --band is an error. What was not judged is no 0: such rows are counted in the column
 `missing`, and a place without any number is not drawn.")]
