@@ -1,14 +1,17 @@
 //! Machines that nobody built: every pipeline on every display that it draws for, with numbers of boards and parameters from all over
 //! what is allowed. What ARCHITECTURE.md promises is so on them too.
 //!
-//! Each case follows from a number, so that a failure names it; `PXPL5_FUZZ=100` tries a hundred times as many,
-//! `PXPL5_FUZZ_FROM` begins elsewhere.
+//! Reports of random runs must be true in themselves: counts add up, rates are possible, means lie between least and greatest, and
+//! what was not shown has no number. Each case follows from a number, so that a failure names it; `PXPL5_FUZZ=100` tries a hundred
+//! times as many, `PXPL5_FUZZ_FROM` begins elsewhere. `PXPL5_FUZZ=25 cargo test --test random_machines reports` checks 1,000 reports.
 
 use pxpl5::firmware::NodeId;
+use pxpl5::results::quantities_csv;
 use pxpl5::{
-    Experiment, ExperimentError, ExperimentFile, MachineConfig, Measured, Outcome, Pixels, RunError, Saving, Time,
-    Transfer, Workstation, registry,
+    Experiment, ExperimentError, ExperimentFile, MachineConfig, Measure, Measured, Outcome, Pixels, QUANTITIES, Results,
+    RunError, Saving, Statistics, Time, Transfer, WARM_UP_PERIODS, Workstation, registry,
 };
+use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// SplitMix64: a stream of numbers that follows from its begin.
@@ -35,8 +38,21 @@ fn setting(name: &str, default: u64) -> u64 {
     std::env::var(name).map_or(default, |text| text.parse().unwrap_or_else(|_| panic!("{name}={text}")))
 }
 
+/// How long and how heavy the runs are that are thought up: least and most.
+#[derive(Clone, Copy)]
+struct Sizes {
+    fields: (u64, u64),
+    triangles: (u64, u64),
+}
+
+/// Runs of a few pictures.
+const SHORT: Sizes = Sizes { fields: (9, 18), triangles: (4, 40) };
+
+/// Runs with a window of results, many of them too heavy for their machine.
+const REPORTED: Sizes = Sizes { fields: (1, 60), triangles: (1, 600) };
+
 /// An experiment and what it was made of; `None` where the machine refuses its numbers or has not what the pipeline needs.
-fn case(round: u64) -> Option<(Experiment, String)> {
+fn case(round: u64, sizes: Sizes) -> Option<(Experiment, String)> {
     let mut dice = Dice(round << 8 | 7);
     let registry = registry();
     let mut file = ExperimentFile::new();
@@ -52,8 +68,8 @@ fn case(round: u64) -> Option<(Experiment, String)> {
         set(format!("display={}", displays[dice.between(0, displays.len() as u64 - 1) as usize].name));
     }
     set(format!("scene={}", dice.of(&["full-screen:2", "mig", "molecules", "typical:40", "sphere:60"])));
-    set(format!("triangles={}", dice.between(4, 40)));
-    set(format!("fields={}", dice.between(9, 18)));
+    set(format!("triangles={}", dice.between(sizes.triangles.0, sizes.triangles.1)));
+    set(format!("fields={}", dice.between(sizes.fields.0, sizes.fields.1)));
     set(format!("machine.n_gps={}", dice.of(&[2, 3, 4, 7, 13, 31])));
     set(format!("machine.n_renderers={}", dice.of(&[1, 2, 3, 5, 9, 20])));
     set(format!("seed={}", dice.between(1, 9)));
@@ -188,7 +204,7 @@ fn assert_no_shown_buffer_is_written(outcome: &Outcome, told: &str) {
 #[test]
 fn a_ring_is_a_ring_and_every_region_arrives_on_machines_that_nobody_built() {
     let (mut ran, mut swapped) = (0, 0);
-    each_case(60, |experiment, told| {
+    each_case(60, SHORT, |experiment, told| {
         let (outcome, error) = outcome(experiment, told);
         // A machine whose numbers a pipeline cannot live with says which: it never just stands still.
         assert!(!matches!(error, Some(RunError::Deadlock { .. } | RunError::Ring { .. })), "{told}: {error:?}");
@@ -205,7 +221,7 @@ fn a_ring_is_a_ring_and_every_region_arrives_on_machines_that_nobody_built() {
 
 #[test]
 fn no_number_of_a_report_depends_on_ties_savings_or_threads_on_machines_that_nobody_built() {
-    each_case(10, |experiment, told| {
+    each_case(10, SHORT, |experiment, told| {
         let expected = report(experiment, told);
         for seed in 1..4 {
             assert_eq!(report(&experiment.clone().shuffle_ties(seed), told), expected, "{told}, ties {seed}");
@@ -219,7 +235,7 @@ fn no_number_of_a_report_depends_on_ties_savings_or_threads_on_machines_that_nob
 
 #[test]
 fn no_pixel_depends_on_threads_on_machines_that_nobody_built() {
-    each_case(6, |experiment, told| {
+    each_case(6, SHORT, |experiment, told| {
         let (lazy, _) = outcome(&experiment.clone().pixels(Pixels::Lazy), told);
         for threads in [0, 1, 3] {
             let host = Workstation::with_threads(threads);
@@ -232,14 +248,178 @@ fn no_pixel_depends_on_threads_on_machines_that_nobody_built() {
     });
 }
 
+fn number(value: &Value) -> Option<f64> {
+    value.as_f64()
+}
+
+fn whole(value: &Value, what: &str, told: &str) -> u64 {
+    value.as_u64().unwrap_or_else(|| panic!("{told}: {what}: {value}"))
+}
+
+/// Of every object with a number of values: without a value there is no number, and otherwise they are in order.
+fn assert_statistics_are_in_order(path: &str, value: &Value, told: &str) {
+    match value {
+        Value::Object(fields) => {
+            let of = |name: &str| fields.get(name).and_then(number);
+            if let Some(n) = fields.get("n").and_then(Value::as_u64).filter(|_| fields.contains_key("mean")) {
+                let names = ["mean", "min", "p50", "p90", "p99", "max"].into_iter().filter(|name| fields.contains_key(*name));
+                assert!(names.clone().all(|name| of(name).is_some() == (n > 0)), "{told}: {path}: {value}");
+                // The mean may differ from equal numbers in its last digits.
+                let near = |a: f64, b: f64| a <= b + 1e-9 * (a.abs() + b.abs() + 1e-3);
+                let in_order: Vec<f64> = names.filter(|name| *name != "mean").filter_map(of).collect();
+                assert!(in_order.windows(2).all(|pair| pair[0] <= pair[1]), "{told}: {path}: {value}");
+                if let (Some(mean), Some(max)) = (of("mean"), of("max")) {
+                    assert!(near(mean, max) && near(of("min").unwrap_or(f64::NEG_INFINITY), mean), "{told}: {path}: {value}");
+                }
+                if fields.contains_key("sd") {
+                    assert_eq!(of("sd").is_some(), n > 1, "{told}: {path}: {value}");
+                    assert!(of("sd").is_none_or(|sd| sd >= 0.0), "{told}: {path}: {value}");
+                }
+            }
+            fields.iter().for_each(|(key, value)| assert_statistics_are_in_order(&format!("{path}/{key}"), value, told));
+        }
+        Value::Array(values) => values.iter().for_each(|value| assert_statistics_are_in_order(path, value, told)),
+        _ => {}
+    }
+}
+
+/// Every picture due ends in one way, all counts are of one window, and no display shows more than a picture a period.
+fn assert_counts_add_up(report: &Value, field_ms: f64, told: &str) {
+    let fields = whole(&report["fields"], "fields", told);
+    let window = &report["window"];
+    let of = |name: &str| whole(&report["due"][name], name, told);
+    if window.is_null() {
+        assert!(report["due"].is_null() && report["updates_hz"].is_null(), "{told}: {report}");
+        assert_eq!(report["pictures"], 0, "{told}");
+    } else {
+        let [first, last] = ["first_period", "last_period"].map(|name| whole(&window[name], name, told));
+        assert!(WARM_UP_PERIODS <= first && first <= last && last < fields, "{told}: {window}");
+        if !report["due"].is_null() {
+            assert_eq!([of("first_period"), of("last_period")], [first, last], "{told}");
+            assert_eq!(last + 1 - first, of("due") * of("periods_a_picture"), "{told}: {}", report["due"]);
+        }
+    }
+    if !report["due"].is_null() {
+        let ends = of("shown") + of("late") + of("incomplete") + of("missed");
+        assert_eq!(ends, of("due"), "{told}: {}", report["due"]);
+        assert_eq!(report["missed_retraces"], of("due") - of("shown"), "{told}");
+        assert!(report["updates_hz"].is_null() || of("shown") > 1, "{told}: one picture has no rate");
+    }
+    let pictures = whole(&report["pictures"], "pictures", told);
+    assert!(pictures <= whole(&report["shown"], "shown", told), "{told}");
+    assert_eq!(report["latency_ms"]["n"], pictures, "{told}");
+    let rates = report["arp"]["memories"].as_array().into_iter().flatten().chain([report]);
+    for rate in rates.filter_map(|of| number(&of["updates_hz"])) {
+        assert!(pictures > 1 && rate > 0.0 && rate <= (1.0 + 1e-9) * 1e3 / field_ms, "{told}: {rate} Hz");
+    }
+}
+
+/// A pixel of the grid is evaluated, or counted for one reason; none is evaluated where nothing due was shown.
+fn assert_errors_are_of_what_was_shown(report: &Value, told: &str) {
+    let error = &report["head"]["error"];
+    let of = |name: &str| whole(&error[name], name, told);
+    let periods = match &report["window"] {
+        Value::Null => 0,
+        window => whole(&window["last_period"], "last", told) + 1 - whole(&window["first_period"], "first", told),
+    };
+    let all = ["judged", "behind", "empty", "incomplete", "before"].map(of).iter().sum::<u64>();
+    assert_eq!(all, 25 * periods, "{told}: {error}");
+    assert_eq!(error["pixels"]["n"], of("judged"), "{told}");
+    let shown = report["due"]["shown"].as_u64().unwrap_or(1);
+    assert!(shown > 0 || (of("judged"), of("behind")) == (0, 0), "{told}: {error}");
+    let budget = &report["head"]["end_to_end"];
+    let stages = ["tracking_ms", "waiting_ms", "sending_ms", "drawing_ms", "showing_ms", "scanning_ms"];
+    let sum = stages.map(|stage| number(&budget[stage])).into_iter().sum::<Option<f64>>();
+    let differs = sum.zip(number(&budget["total_ms"])).map_or(0.0, |(sum, total)| (sum - total).abs());
+    assert!(sum.is_some() == (budget["n"] != 0) && differs < 1e-6, "{told}: {budget}");
+    assert!(whole(&budget["n"], "n", told) <= whole(&report["pictures"], "pictures", told), "{told}");
+}
+
+/// The table of pictures has those over which the report's latency is, and no others.
+fn assert_the_table_of_pictures_agrees(outcome: &Outcome, report: &Value, told: &str) {
+    let text = pxpl5::results::csv(outcome);
+    let mut lines = text.lines();
+    let names: Vec<&str> = lines.next().expect("names").split(',').collect();
+    let rows: Vec<BTreeMap<&str, &str>> =
+        lines.map(|line| names.iter().copied().zip(line.split(',')).collect()).collect();
+    let complete = rows.iter().filter(|row| row["complete"] == "1");
+    assert_eq!(report["shown"], complete.clone().count() as u64, "{told}");
+    let steady = complete.filter(|row| row["steady"] == "1");
+    let latency = |row: &BTreeMap<&str, &str>| row["latency_ps"].parse::<f64>().expect("a picture in time") * 1e-9;
+    let latencies = Statistics::of(steady.map(latency));
+    assert_eq!(report["latency_ms"]["n"], latencies.n, "{told}");
+    for (name, expected) in [("mean", latencies.mean), ("min", latencies.min), ("max", latencies.max)] {
+        let found = number(&report["latency_ms"][name]);
+        assert_eq!(found.is_some(), latencies.n > 0, "{told}: {name}");
+        assert!(found.is_none_or(|found| (found - expected).abs() < 1e-9), "{told}: {name} {found:?} {expected}");
+    }
+}
+
+/// A quantity that has a value in the table has the report's, and none where the report has null.
+fn assert_the_table_of_quantities_agrees(results: &Results, report: &Value, told: &str) {
+    let measures: Vec<Measure> =
+        QUANTITIES.iter().map(|quantity| Measure::named(quantity.name).expect("listed")).collect();
+    let text = quantities_csv(&measures, results);
+    let cells: BTreeMap<&str, Option<f64>> = text
+        .lines()
+        .skip(1)
+        .filter_map(|line| line.split_once(','))
+        .map(|(name, rest)| (name, rest.split(',').next().and_then(|cell| cell.parse().ok())))
+        .collect();
+    for (name, path) in [
+        ("latency_fields.mean", "/latency_fields/mean"),
+        ("latency_ms.mean", "/latency_ms/mean"),
+        ("latency_ms.sd", "/latency_ms/sd"),
+        ("latency_ms.max", "/latency_ms/max"),
+        ("updates_hz", "/updates_hz"),
+        ("missed_retraces", "/missed_retraces"),
+        ("pictures_due", "/due/due"),
+        ("pictures_shown", "/due/shown"),
+        ("pictures_late", "/due/late"),
+        ("pictures_incomplete", "/due/incomplete"),
+        ("pictures_missed", "/due/missed"),
+        ("pictures", "/pictures"),
+        ("to_light_ms", "/head/end_to_end/total_ms"),
+        ("error_px.mean", "/head/error/pixels/mean"),
+        ("error_px.p99", "/head/error/pixels/p99"),
+        ("error_deg.mean", "/head/error/degrees/mean"),
+        ("rotation_ms", "/arp/rotation_latency_ms/mean"),
+    ] {
+        let found = cells.get(name).copied().unwrap_or_else(|| panic!("{told}: no {name}"));
+        assert_eq!(found, report.pointer(path).and_then(number), "{told}: {name}");
+    }
+}
+
+/// JSON, the table of pictures and that of quantities say the same, and nothing of what was not shown.
+#[test]
+fn reports_of_random_runs_are_true_in_themselves() {
+    let (mut shown, mut heavy, mut heads, mut without_window) = (0, 0, 0, 0);
+    each_case(40, REPORTED, |experiment, told| {
+        let (outcome, _) = outcome(&experiment.clone().record_traffic(false), told);
+        let report = serde_json::to_value(outcome.report()).expect("it is data");
+        assert_statistics_are_in_order("", &report, told);
+        assert_counts_add_up(&report, outcome.field_ms(), told);
+        if !report["head"].is_null() {
+            assert_errors_are_of_what_was_shown(&report, told);
+        }
+        assert_the_table_of_pictures_agrees(&outcome, &report, told);
+        shown += u64::from(report["latency_ms"]["n"] != 0);
+        heavy += u64::from(report["due"]["shown"] == 0);
+        heads += u64::from(!report["head"].is_null());
+        without_window += u64::from(report["window"].is_null());
+        assert_the_table_of_quantities_agrees(&Results::of_run(outcome), &report, told);
+    });
+    assert!(shown > 0 && heavy > 0 && heads > 0 && without_window > 0, "{shown} {heavy} {heads} {without_window}");
+}
+
 /// So many machines that can be built, or as many times that as is asked for.
-fn each_case(machines: u64, mut check: impl FnMut(&Experiment, &str)) {
+fn each_case(machines: u64, sizes: Sizes, mut check: impl FnMut(&Experiment, &str)) {
     /// Of so many that are thought up one can be built at least.
     const TRIES: u64 = 20;
     let first = setting("PXPL5_FUZZ_FROM", 0);
     let machines = machines * setting("PXPL5_FUZZ", 1);
     let mut built = 0;
-    for (experiment, told) in (first..first + TRIES * machines).filter_map(case).take(machines as usize) {
+    for (experiment, told) in (first..first + TRIES * machines).filter_map(|round| case(round, sizes)).take(machines as usize) {
         if first > 0 {
             // What hangs has no last word.
             println!("{told}");

@@ -86,7 +86,7 @@ class Outcome:
 
     @property
     def latency_ms(self) -> Statistics:
-        """Latency in milliseconds of simulated time over the complete pictures after the warm-up, as the pipeline defines it."""
+        """Latency in milliseconds of simulated time over the complete pictures in the window, as the pipeline defines it."""
         return Statistics(**self.report["latency_ms"])
 
     @property

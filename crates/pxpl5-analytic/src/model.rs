@@ -139,7 +139,8 @@ impl SlatsModel {
         let end = PictureEnd::of(copied_ns <= 2.0 * self.field_ns, times.in_time);
         let messages = if self.split { 2.0 } else { 1.0 };
         let apart = ((times.rendered_ns + messages * self.message_ns) / self.field_ns).ceil().max(1.0);
-        let begun = (WARM_UP_PERIODS..fields).step_by(apart as usize);
+        // Those before the window fill the pipeline.
+        let begun = (WARM_UP_PERIODS % apart as u64..fields).step_by(apart as usize);
         DuePictures::count(begun.map(|field| (PeriodNumber(field), end)), 1, PeriodNumber(fields))
     }
 

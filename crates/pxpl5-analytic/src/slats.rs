@@ -9,7 +9,7 @@ use crate::pipeline_of;
 use multiversion::multiversion;
 use pphigs::RegionBinning;
 use pxpl5_geometry::Viewport;
-use pxpl5_run::{ClosedForm, Estimates, Experiment, ExperimentError, Samples, Slats, Summary, WARM_UP_PICTURES};
+use pxpl5_run::{ClosedForm, Estimates, Experiment, ExperimentError, Samples, Slats, Summary, WARM_UP_PERIODS, WARM_UP_PICTURES};
 use pxpl5_wire::FieldParity;
 
 impl SlatsModel {
@@ -101,9 +101,10 @@ fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {
     Ok(summary(experiment.length(), &model, times))
 }
 
-/// Fields before the first picture behind the warm-up: the warm-up's, one in which the host's first view is under way, and
-/// the one that it is drawn in.
-const FIELDS_BEFORE: u64 = WARM_UP_PICTURES as u64 + 2;
+/// Fields before the first picture in the window of results. Start-up's pictures, the field in which the host's first view is under way,
+/// and the one in which it is drawn are over by then.
+const FIELDS_BEFORE: u64 = WARM_UP_PERIODS;
+const _: () = assert!(FIELDS_BEFORE >= WARM_UP_PICTURES as u64 + 2);
 
 /// A field that comes too late does so always.
 fn fields_needed(experiment: &Experiment) -> Option<u64> {
@@ -131,11 +132,11 @@ fn steady_field(experiment: &Experiment) -> Result<(SlatsModel, FieldTimes), Exp
 }
 
 fn summary(fields: u64, model: &SlatsModel, times: FieldTimes) -> Summary {
-    let pictures = fields.saturating_sub(FIELDS_BEFORE).max(1);
     let field_ms = model.field_ns * 1e-6;
     let due = model.due(times, fields);
+    let shown = due.map_or(0, |due| due.shown);
     Summary {
-        latencies_ms: std::iter::repeat_n(field_ms, if times.in_time { pictures as usize } else { 0 }).collect(),
+        latencies_ms: std::iter::repeat_n(field_ms, shown as usize).collect(),
         field_ms,
         updates_hz: due.and_then(|due| due.updates_hz(field_ms)),
         due,

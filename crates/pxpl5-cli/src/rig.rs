@@ -14,6 +14,8 @@ use std::fmt::Write;
 ///
 /// A tracker on a pendulum's bob feeds the host. When the host sees the low point it starts a frame; frames alternate dark and
 /// light under a photodiode in the middle of a line of the screen. The pipeline draws nothing else: it is not full.
+/// Displays that turn with the head and frameless rendering are refused, because no frame can be told by its light. Outside and
+/// inside that do not agree are an error.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 rig --pipeline rendering-control
@@ -43,7 +45,7 @@ const NOT_OURS: [&str; 8] =
 ///
 /// # Errors
 ///
-/// What is wrong with an option, or why nothing can be measured.
+/// What is wrong with an option, why nothing can be measured, or that outside and inside do not agree.
 pub(crate) fn run(args: RigArgs) -> Result<(), CliError> {
     let plan = plan(args.settings.gather()?)?;
     let tracker = plan.head.as_ref().map(|head| head.head().tracker().config().clone());
@@ -51,7 +53,8 @@ pub(crate) fn run(args: RigArgs) -> Result<(), CliError> {
     let mut rig = Rig { seed: plan.seed, passes: args.passes as usize, ..Rig::assumed(tracker) };
     rig.rig.photodiode_line = args.line.unwrap_or(rig.rig.photodiode_line);
     let measured = rig.measure(&plan.machine, plan.pipeline.clone()).map_err(CliError::failure)?;
-    print(&if args.json { json_text(&plan, &rig, &measured) } else { text(&plan, &rig, &measured) })
+    print(&if args.json { json_text(&plan, &rig, &measured) } else { text(&plan, &rig, &measured) })?;
+    if measured.agrees() { Ok(()) } else { Err(CliError::failure(verdict(&measured))) }
 }
 
 /// Pipeline, machine, tracker and seed of the settings, with what the rig brings along.
@@ -109,10 +112,12 @@ fn cell(latency: &Latency) -> String {
 
 fn verdict(measured: &Measurement) -> String {
     format!(
-        "Outside less inside: {:.2} ms. Expected: 0 to {:.2} ms of tracking (a report's interval) and up to {:.2} ms of rendering (the \
+        "Outside less inside: {:.2} ms. Expected: 0 to {:.2} ms of tracking (a report's interval) and {:.2} to {:.2} ms of rendering (the \
          photodiode's place in the scan). They {}.",
         measured.outside_less_inside_s() * 1e3,
         measured.tracking_bound_ps as f64 * 1e-9,
+        // No "-0.00".
+        0.0 - measured.rendering_early_ps as f64 * 1e-9,
         measured.rendering_bound_ps as f64 * 1e-9,
         if measured.agrees() { "agree" } else { "DO NOT AGREE" }
     )
@@ -132,6 +137,7 @@ fn json_text(plan: &Plan, rig: &Rig, measured: &Measurement) -> String {
         "inside_ms": side(&measured.inside),
         "outside_less_inside_ms": measured.outside_less_inside_s() * 1e3,
         "tracking_bound_ms": measured.tracking_bound_ps as f64 * 1e-9,
+        "rendering_early_bound_ms": measured.rendering_early_ps as f64 * 1e-9,
         "rendering_bound_ms": measured.rendering_bound_ps as f64 * 1e-9,
         "agrees": measured.agrees(),
     });

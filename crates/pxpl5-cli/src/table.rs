@@ -37,7 +37,7 @@ const ROWS: [TableRow; 13] = [
     ("updates per second", |r| r.updates_hz.map_or_else(|| "-".to_owned(), |hz| format!("{hz:.2}"))),
     ("not shown in time", not_shown),
     ("  late, incompl., missed", ends),
-    ("  counted in periods", window),
+    ("all over periods", window),
 ];
 
 /// The table as text.
@@ -73,8 +73,9 @@ fn ends(report: &Report) -> String {
     of_due(report, |due| format!("{}, {}, {}", due.late, due.incomplete, due.missed))
 }
 
+/// The window over which all results are computed.
 fn window(report: &Report) -> String {
-    of_due(report, |due| format!("{} to {}", due.first_period, due.last_period))
+    report.window.map_or_else(|| "-".to_owned(), |window| format!("{} to {}", window.first_period, window.last_period))
 }
 
 /// Where no picture is ever due, nothing.

@@ -166,3 +166,60 @@ fn what_is_wrong_with_an_option_is_said_and_the_exit_code_is_2() {
         assert!(message.contains(expected), "{message}");
     }
 }
+
+#[test]
+fn what_was_not_shown_or_is_never_due_is_null_in_json_and_empty_in_the_table() {
+    let out = folder("null");
+    let path = out.to_str().expect("a plain path");
+    let only = ["--only", "slats,ideal,frameless,jitp-dual-screen"];
+    let settings = ["--head", "pan:200", "--scene", "typical:500", "--gps", "3", "--fields", "30", "--seeds", "2", "--no-limits"];
+    let json = json(&compare(&[settings.as_slice(), &only, &["--json", "--out", path]].concat()));
+    // Of 22 fields due of either seed none was shown; what stands on the screen is from start-up.
+    let heavy = row(&json, "jitp-dual-screen");
+    assert_eq!((&heavy["due"], &heavy["not_shown"]), (&Value::from(44), &Value::from(44)), "{heavy}");
+    assert!(heavy["error"]["mean_px"]["mean"].is_null() && heavy["error"]["n"] == 0, "{heavy}");
+    assert_eq!(heavy["causes"], serde_json::json!([]), "{heavy}");
+    let failure = heavy["failure"].as_str().expect("the row says why");
+    assert!(failure.starts_with("cannot draw the scene: of 44 pictures due none was complete in time"), "{failure}");
+    for name in ["ideal", "frameless"] {
+        let never = row(&json, name);
+        for count in ["due", "not_shown", "late_regions"] {
+            assert!(never[count].is_null(), "{name} {count}: {never}");
+        }
+    }
+    assert!(row(&json, "ideal")["end_to_end"]["n"] == 0 && row(&json, "ideal")["updates_hz"]["mean"].is_null());
+    // The stages are those of both seeds, as the sum is.
+    let frameless = row(&json, "frameless");
+    assert_eq!(frameless["end_to_end"]["n"], frameless["head_to_light_ms"]["n"]);
+    let [total, mean] = [&frameless["end_to_end"]["total_ms"], &frameless["head_to_light_ms"]["mean"]];
+    assert!((total.as_f64().expect("shown") - mean.as_f64().expect("shown")).abs() < 1e-9, "{total} {mean}");
+    let table = std::fs::read_to_string(out.join("rows.csv")).expect("written");
+    let mut lines = table.lines();
+    let header: Vec<&str> = lines.next().expect("a header").split(',').collect();
+    let cell = |line: &str, name: &str| {
+        let place = header.iter().position(|column| *column == name).expect("a column");
+        line.split(',').nth(place).expect("a cell").to_owned()
+    };
+    for line in lines {
+        let name = cell(line, "pipeline");
+        let row = row(&json, &name);
+        for count in ["due", "not_shown", "late_regions"] {
+            assert_eq!(cell(line, count).parse().ok(), row[count].as_u64(), "{name} {count}");
+        }
+        assert_eq!(cell(line, "error_px_mean").parse().ok(), row["error"]["mean_px"]["mean"].as_f64(), "{name}");
+    }
+    // No point stands for what is not there.
+    let drawing = out.join("plot.svg");
+    let plot = pxpl5("plot", &[path, "--x", "pipeline", "--y", "not_shown", "--out", drawing.to_str().expect("plain")]);
+    assert!(plot.status.success(), "{}", String::from_utf8_lossy(&plot.stderr));
+    let points = std::fs::read_to_string(out.join("plot.csv")).expect("written");
+    let mut lines = points.lines();
+    let names: Vec<&str> = lines.next().expect("a header").split(',').collect();
+    let place = |name: &str| names.iter().position(|column| *column == name).expect("a column");
+    for line in lines {
+        let cells: Vec<&str> = line.split(',').collect();
+        let known = row(&json, cells[place("pipeline")])["not_shown"].is_u64();
+        assert_eq!((cells[place("mean")].is_empty(), cells[place("n")] == "0"), (!known, !known), "{line}");
+    }
+    let _ = std::fs::remove_dir_all(&out);
+}

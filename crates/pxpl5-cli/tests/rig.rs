@@ -32,3 +32,14 @@ fn what_the_rig_itself_brings_is_refused() {
         assert!(said.contains("does not apply to the rig"), "{said}");
     }
 }
+
+#[test]
+fn displays_that_turn_with_the_head_are_refused_with_the_reason() {
+    let folder = Folder::new("rig-turning");
+    for pipeline in ["arp-full-line", "frameless"] {
+        let output = folder.run(&["rig", "--pipeline", pipeline, "--tracker", "ideal", "--passes", "2"]);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!((output.status.code(), output.stdout.len()), (Some(1), 0), "{said}");
+        assert!(said.contains("expected a pipeline whose frames a photodiode can tell apart"), "{said}");
+    }
+}

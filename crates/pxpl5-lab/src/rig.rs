@@ -64,6 +64,18 @@ pub enum RigRunError {
         /// Those shown complete, as the pipeline says.
         found: usize,
     },
+    /// Light under the photodiode means nothing for the pipeline.
+    #[error(
+        "expected a pipeline whose frames a photodiode can tell apart, found {pipeline}: {reason}; {definition}"
+    )]
+    NoFrames {
+        /// Name of the pipeline.
+        pipeline: &'static str,
+        /// Why a step from dark to light is no frame.
+        reason: &'static str,
+        /// The pipeline's own words on when a picture is due.
+        definition: &'static str,
+    },
     /// The photodiode lies below the screen.
     #[error("photodiode: expected one of the {lines} lines that are lit in a period, from 0; found {found}")]
     Photodiode {
@@ -91,6 +103,7 @@ impl Rig {
     /// [`RigRunError`] when the pipeline cannot run there, or does not show what it is asked for.
     pub fn measure(&self, machine: &MachineConfig, pipeline: Arc<dyn Pipeline>) -> Result<Measurement, RigRunError> {
         let tracker = TrackerModel::new(self.tracker.clone())?;
+        check_frames(machine, pipeline.as_ref())?;
         let sightings = self.rig.sightings(&tracker, self.seed, self.passes.max(2))?;
         let experiment = self.experiment(machine, pipeline, &sightings)?;
         let mut photodiode = Photodiode::new(self.rig.photodiode_line);
@@ -105,7 +118,9 @@ impl Rig {
             started_ps: frame.transform_at.0,
             shown_ps: frame.shown_at.0,
         });
-        Ok(self.rig.compare(&tracker, photodiode.place_ps, &oscilloscope, inside.collect())?)
+        let measured = self.rig.compare(&tracker, photodiode.place_ps, &oscilloscope, inside.collect())?;
+        let counted = frames.iter().map(|frame| behind_the_retrace(outcome.record(), frame.shown_at)).max();
+        Ok(measured.counted_in_the_scan(counted.unwrap_or_default()))
     }
 
     /// The experiment: a head that turns away or back at every sighting, until the last frame must have been shown.
@@ -134,6 +149,27 @@ impl Rig {
         let fields = experiment.build()?.record().display().period_at(end).0 + 1;
         Ok(experiment.fields(fields))
     }
+}
+
+/// Refuses pipelines whose light under a photodiode does not tell when a frame is shown.
+fn check_frames(machine: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), RigRunError> {
+    let refused = |reason| {
+        let definition = pipeline.due_definition();
+        Err(RigRunError::NoFrames { pipeline: pipeline.name(), reason, definition })
+    };
+    if pipeline.draws_faces().is_some() {
+        return refused("its display turns with the head, so the light changes before any frame is drawn");
+    }
+    let machine = Machine::new(&pipeline.adapt(machine.clone()), 1, pipeline.layout()).map_err(ExperimentError::from)?;
+    if pipeline.periods_a_picture(machine.record()).is_none() {
+        return refused("parts of the screen change one by one, so the light under a photodiode is that of one part");
+    }
+    Ok(())
+}
+
+/// How long after the retrace that begins its period an instant is, picoseconds.
+fn behind_the_retrace(record: &Record, instant: Time) -> u64 {
+    instant.since(record.tick(record.display().period_at(instant))).0
 }
 
 /// The pose in which the lamp is behind the viewer's shoulder: dark frames.

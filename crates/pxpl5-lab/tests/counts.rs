@@ -2,8 +2,8 @@
 //! that breaks at a load stays broken above it.
 
 use pxpl5_lab::{ExperimentFile, registry};
-use pxpl5_measure::{Measured, Report};
-use pxpl5_run::{DuePictures, ExperimentError, Outcome};
+use pxpl5_measure::{ErrorCauses, Measured, Report, Showing};
+use pxpl5_run::{DuePictures, ExperimentError, Outcome, WARM_UP_PERIODS};
 
 /// A pipeline with so many triangles of the whole screen. Strips of eight lines where there are strips: an eighth of the events.
 fn run(pipeline: &str, triangles: u32, fields: u64) -> Result<Outcome, ExperimentError> {
@@ -125,4 +125,37 @@ fn a_pipeline_without_a_closed_form_says_how_its_limit_is_found() {
     let heavy = run("jitp-field", 3_000, 60).expect("fields are begun").report().too_heavy.expect("far too many");
     assert_eq!(heavy.triangles_in_time, None);
     assert!(heavy.advice.contains("pxpl5 limit --pipeline jitp-field"), "{heavy}");
+}
+
+/// Three processors cannot draw 500 triangles in a field; the picture of start-up stays on the screen, and is not evaluated however long the
+/// run is.
+#[test]
+fn a_picture_of_start_up_that_stays_on_the_screen_has_no_error() {
+    for fields in [30, 120] {
+        let text = format!(
+            "pipeline = \"jitp-dual-screen\"\nscene = \"typical:500\"\nfields = {fields}\npixels = \"off\"\n\
+             head.motion = \"pan:200\"\nmachine.n_gps = 3"
+        );
+        let plan = ExperimentFile::parse(&text, "test").and_then(|file| file.resolve()).expect("valid");
+        let outcome = plan.experiment(plan.load_scene().expect("built in")).run().expect("fields are begun");
+        let report = outcome.report();
+        let due = report.due.expect("fields are due");
+        assert_eq!((due.shown, due.due), (0, fields - WARM_UP_PERIODS), "{due:?}");
+        let error = report.head.expect("a head").error;
+        assert_eq!((error.judged, error.behind), (0, 0), "{error:?}");
+        assert!(error.pixels.mean.is_nan() && error.before > 0, "{error:?}");
+        assert!(ErrorCauses::of(&outcome, Showing::Plain, &error).is_none());
+    }
+}
+
+/// The only complete fields are those of start-up.
+#[test]
+fn a_run_all_of_whose_due_pictures_failed_has_no_latency() {
+    let text = "pipeline = \"jitp-dual-screen\"\nscene = \"full-screen:4\"\nfields = 60\npixels = \"off\"\nlevel = \"cycle\"";
+    let plan = ExperimentFile::parse(text, "test").and_then(|file| file.resolve()).expect("valid");
+    let outcome = plan.experiment(plan.load_scene().expect("built in")).run().expect("fields are begun");
+    let report = outcome.report();
+    let due = report.due.expect("fields are due");
+    assert_eq!((due.due, report.latency_ms.statistics.n), (due.shown + due.not_shown(), due.shown), "{due:?}");
+    assert!(due.shown > 0 || report.latency_ms.statistics.mean.is_nan(), "{due:?}");
 }

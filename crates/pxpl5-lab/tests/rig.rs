@@ -52,6 +52,21 @@ fn outside_and_inside_agree_within_a_report_and_the_photodiodes_place() {
     }
 }
 
+/// A display that turns with the head shows the turn and no frame; under frameless rendering one block lights and no frame.
+#[test]
+fn pipelines_without_frames_are_refused_with_the_reason() {
+    for (pipeline, reason) in [
+        ("arp-full", "turns with the head"),
+        ("arp-full-line", "turns with the head"),
+        ("arp-ideal-pixel", "turns with the head"),
+        ("frameless", "parts of the screen change one by one"),
+    ] {
+        let Err(refused) = measure(TrackerConfig::ideal(), named(pipeline), 2) else { panic!("{pipeline} is measured") };
+        let said = refused.to_string();
+        assert!(matches!(refused, RigRunError::NoFrames { .. }) && said.contains(reason), "{said}");
+    }
+}
+
 #[test]
 fn from_outside_a_field_of_slats_takes_a_field_and_the_photodiodes_place() {
     // One processor, which begins TRANSFORM with the retrace; several would be told first.

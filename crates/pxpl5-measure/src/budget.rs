@@ -33,6 +33,29 @@ impl Default for Budget {
     }
 }
 
+impl Budget {
+    /// The mean over the pictures of several runs.
+    #[must_use]
+    pub fn pooled(budgets: impl Iterator<Item = Self>) -> Self {
+        let known: Vec<Self> = budgets.filter(|budget| budget.n > 0).collect();
+        let n: u64 = known.iter().map(|budget| budget.n).sum();
+        let mean = |of: fn(&Self) -> f64| {
+            // Of no picture there is no number.
+            known.iter().map(|budget| of(budget) * budget.n as f64).sum::<f64>() / n as f64
+        };
+        Self {
+            tracking_ms: mean(|budget| budget.tracking_ms),
+            waiting_ms: mean(|budget| budget.waiting_ms),
+            sending_ms: mean(|budget| budget.sending_ms),
+            drawing_ms: mean(|budget| budget.drawing_ms),
+            showing_ms: mean(|budget| budget.showing_ms),
+            scanning_ms: mean(|budget| budget.scanning_ms),
+            total_ms: mean(|budget| budget.total_ms),
+            n,
+        }
+    }
+}
+
 /// Stages of the complete pictures in the window whose pose was measured, milliseconds.
 #[derive(Debug, Default)]
 pub(crate) struct BudgetSum {

@@ -178,6 +178,12 @@ fn an_error_of_one_side_is_found_by_the_other() {
         truth.iter().map(shift).collect()
     };
     assert!(agree(&scope, truth.clone()));
+    // Light before the pipeline shows the frame, by less than the photodiode's place of 7.6 ms: it is only possible where the pipeline
+    // counts frames that far inside the scan.
+    let place_too_late = place_ps(&rig) as i64 + 6 * PS_PER_MS as i64;
+    assert!(!agree(&scope, shifted(place_too_late)));
+    let measured = rig.compare(&tracker, place_ps(&rig), &scope, shifted(place_too_late)).unwrap();
+    assert!(measured.counted_in_the_scan(place_ps(&rig) + 6 * PS_PER_MS).agrees());
     // The pipeline counts a field too few, or stamps its start 20 ms late.
     assert!(!agree(&scope, shifted(-(NTSC_FIELD_PS as i64))));
     let late_stamp = |pass: &InsidePass| InsidePass { started_ps: pass.started_ps + 20 * PS_PER_MS, ..*pass };

@@ -60,7 +60,9 @@ fn over_prediction(comparison: &Comparison) -> String {
 }
 
 fn points(comparison: &Comparison, axes: &ChartAxes, across: impl Fn(&ComparisonRow) -> f64) -> String {
-    let points = judged(comparison).map(|row| {
+    // What has no latency, such as the reference, has no place in such a drawing.
+    let placed = judged(comparison).filter(|row| across(row).is_finite());
+    let points = placed.map(|row| {
         let error = &row.error.mean_px;
         MarkedPoint { name: row.pipeline.clone(), at: (across(row), error.mean), interval: (error.low, error.high) }
     });
@@ -85,11 +87,11 @@ const COLUMNS: [Column; 24] = [
     ("prediction_interval_ms_mean", |row| number(row.prediction_interval_ms.mean)),
     ("prediction_interval_ms_sd", |row| number(row.prediction_interval_ms.sd)),
     ("updates_hz", |row| number(row.updates_hz.mean)),
-    ("not_shown", |row| row.not_shown.to_string()),
-    ("due", |row| row.due.to_string()),
+    ("not_shown", |row| count(row.not_shown)),
+    ("due", |row| count(row.due)),
     ("best_predictor", |row| row.best_predictor().map_or_else(String::new, |best| best.kind.name().to_owned())),
     ("best_predictor_px", |row| row.best_predictor().map_or_else(String::new, |best| number(best.mean_px))),
-    ("late_regions", |row| row.late_regions.to_string()),
+    ("late_regions", |row| count(row.late_regions)),
     ("error_px_mean", |row| number(row.error.mean_px.mean)),
     ("error_px_low", |row| number(row.error.mean_px.low)),
     ("error_px_high", |row| number(row.error.mean_px.high)),
@@ -135,6 +137,11 @@ fn errors_csv(comparison: &Comparison) -> String {
         })
     });
     csv_table(["pipeline", "field", "time_s", "error_px_mean", "error_px_centre"], rows)
+}
+
+/// What was not counted is empty.
+fn count(value: Option<impl ToString>) -> String {
+    value.map_or_else(String::new, |value| value.to_string())
 }
 
 /// What is no number is empty.

@@ -60,7 +60,7 @@ fn line(row: &ComparisonRow) -> String {
     if let Some(failure) = &row.failure {
         return format!("{:<NAME$} {failure}\n", row.pipeline);
     }
-    let missed = if row.due == 0 { "-".to_owned() } else { format!("{} of {}", row.not_shown, row.due) };
+    let missed = row.not_shown.zip(row.due).map_or_else(|| "-".to_owned(), |(missed, due)| format!("{missed} of {due}"));
     let values = [
         number(row.head_to_light_ms.mean, 2),
         number(row.head_to_light_ms.sd, 2),

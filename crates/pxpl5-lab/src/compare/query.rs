@@ -8,8 +8,8 @@ use crate::experiment_file::{ExperimentFile, FileError, Plan, plain};
 use crate::limit::LimitQuery;
 use crate::parallel;
 use parameters::nearest;
-use pxpl5_measure::{Showing, UNJUDGED_FIELDS};
-use pxpl5_run::{Goal, Pixels};
+use pxpl5_measure::Showing;
+use pxpl5_run::{Goal, Pixels, WARM_UP_PERIODS};
 use pxpl5_scene::Scene;
 use serde::Serialize;
 use std::sync::Arc;
@@ -177,7 +177,7 @@ impl CompareQuery {
         if plan.head.is_none() {
             return Err(CompareError::NoHead);
         }
-        let expected = (UNJUDGED_FIELDS + 2, MOST_FIELDS);
+        let expected = (WARM_UP_PERIODS + 1, MOST_FIELDS);
         if !(expected.0..=expected.1).contains(&plan.fields) {
             return Err(CompareError::Fields { expected, found: plan.fields });
         }
@@ -216,7 +216,8 @@ impl CompareQuery {
             row.triangles_possible = LimitQuery::of_plan(&plan).search().ok().map(|limit| limit.triangles);
         }
         let error = trials.iter().find_map(|trial| trial.as_ref().err().cloned());
-        row.failure = error.or_else(|| nothing_shown(&row, plan.fields));
+        let shown: usize = ran.iter().map(|trial| trial.shown).sum();
+        row.failure = error.or_else(|| (shown == 0 && !row.is_judged()).then(|| nothing_shown(&row, plan.fields)));
         Ok(row)
     }
 }
@@ -227,15 +228,17 @@ impl Contender {
     }
 }
 
-/// What a row without a single complete picture says.
-fn nothing_shown(row: &ComparisonRow, fields: u64) -> Option<String> {
-    if row.is_judged() {
-        return None;
-    }
+/// What a row without a single picture in the window says.
+fn nothing_shown(row: &ComparisonRow, fields: u64) -> String {
     let could = row
         .triangles_possible
         .map_or_else(String::new, |n| format!("; it could draw {n} {}", row.triangles_definition));
-    Some(format!("no complete picture in {fields} fields: the scene is too heavy{could}"))
+    match row.due.filter(|due| *due > 0) {
+        Some(due) => format!(
+            "cannot draw the scene: of {due} pictures due none was complete in time, so the scene is too heavy{could}"
+        ),
+        None => format!("no picture was shown behind start-up in {fields} fields: simulate more fields{could}"),
+    }
 }
 
 /// What the number of triangles means.

@@ -86,18 +86,18 @@ pub struct ComparisonRow {
     pub latency_ms: Statistics,
     /// From the head's pose to the light of the picture's middle, milliseconds, over the same.
     pub head_to_light_ms: Statistics,
-    /// Its stages, milliseconds, of the first seed.
+    /// Its stages, milliseconds, over the same.
     pub end_to_end: Budget,
     /// From the measurement of the newest report to the instant that a picture is drawn for, milliseconds.
     pub prediction_interval_ms: Statistics,
-    /// Whole new pictures a second, over seeds; no number where fewer than two were shown.
+    /// Whole new pictures a second, over the seeds with two or more; no number where none has as many.
     pub updates_hz: MeanInterval,
-    /// Pictures that were due, of all seeds; 0 where none ever is.
-    pub due: u64,
+    /// Pictures that were due, of all seeds; nothing where none ever is.
+    pub due: Option<u64>,
     /// Those of them that were not shown: late, incomplete and missed.
-    pub not_shown: u64,
-    /// Regions that came after their deadline, of all seeds.
-    pub late_regions: usize,
+    pub not_shown: Option<u64>,
+    /// Regions that came after their deadline, of all seeds; nothing where regions have none.
+    pub late_regions: Option<usize>,
     /// Registration over a grid of pixels and all fields.
     pub error: ErrorSpread,
     /// The mean error by cause; they add up to it.
@@ -137,12 +137,12 @@ impl ComparisonRow {
             latency_definition: definition.to_owned(),
             latency_ms: pooled(trials, |trial| &trial.latency_ms),
             head_to_light_ms: pooled(trials, |trial| &trial.head_to_light_ms),
-            end_to_end: trials.first().filter(|_| !is_reference).map_or_else(Budget::default, |trial| trial.budget),
+            end_to_end: Budget::pooled(trials.iter().filter(|_| !is_reference).map(|trial| trial.budget)),
             prediction_interval_ms: pooled(trials, |trial| &trial.prediction_interval_ms),
             updates_hz: MeanInterval::of(&hz),
-            due: trials.iter().filter_map(|trial| trial.due).map(|due| due.due).sum(),
-            not_shown: trials.iter().filter_map(|trial| trial.due).map(|due| due.not_shown()).sum(),
-            late_regions: trials.iter().map(|trial| trial.late_regions).sum(),
+            due: sum(trials.iter().map(|trial| Some(trial.due?.due))),
+            not_shown: sum(trials.iter().map(|trial| Some(trial.due?.not_shown()))),
+            late_regions: sum(trials.iter().map(|trial| trial.due.map(|_| trial.late_regions))),
             error: ErrorSpread::of(trials),
             causes: causes(trials),
             predictors: Vec::new(),
@@ -167,6 +167,12 @@ impl ComparisonRow {
     pub const fn is_judged(&self) -> bool {
         self.error.n > 0
     }
+}
+
+/// The sum of what is known; nothing where nothing is.
+fn sum<T: std::iter::Sum>(values: impl Iterator<Item = Option<T>>) -> Option<T> {
+    let mut known = values.flatten().peekable();
+    known.peek().is_some().then(|| known.sum())
 }
 
 fn settings_text(contender: &Contender) -> String {

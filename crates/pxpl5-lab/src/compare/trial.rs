@@ -21,6 +21,8 @@ pub(super) struct Trial {
     pub(super) causes: Option<ErrorCauses>,
     pub(super) updates_hz: Option<f64>,
     pub(super) due: Option<DuePictures>,
+    /// Complete pictures in the window.
+    pub(super) shown: usize,
     pub(super) late_regions: usize,
     pub(super) host_seconds: f64,
     /// What the run knew before it.
@@ -63,6 +65,7 @@ impl Trial {
             errors,
             updates_hz: report.updates_hz.filter(|_| is_timed),
             due: report.due.filter(|_| is_timed),
+            shown: report.pictures,
             late_regions: report.late_regions,
             host_seconds: outcome.host_seconds().unwrap_or_default(),
             rehearsed: outcome.experiment().rehearsal().cloned(),

@@ -104,7 +104,26 @@ impl LimitQuery {
     /// [`ExperimentError`] when the machine cannot be built or the pipeline cannot run on it. A scene that does not
     /// fit into a board's memory, or that is too slow to be shown at all, misses the goal.
     pub fn search(&self) -> Result<Limit, ExperimentError> {
-        most(self.ceiling(), |triangles| self.reached(triangles))
+        let limit = most(self.ceiling(), |triangles| self.reached(triangles))?;
+        if limit.triangles == 0 {
+            self.check_rate()?;
+        }
+        Ok(limit)
+    }
+
+    /// Refuses a goal that means nothing: a rate where so little is redrawn that there is none, on a display that goes on turning what
+    /// was drawn.
+    fn check_rate(&self) -> Result<(), ExperimentError> {
+        let (Goal::RateHz(hz), Some(_)) = (self.criterion.goal, self.pipeline.draws_faces()) else { return Ok(()) };
+        let outcome = self.experiment(1)?.run()?;
+        if outcome.shown() == 0 || outcome.updates_hz().is_some() {
+            return Ok(());
+        }
+        let (shown, fields) = (outcome.shown(), self.criterion.fields);
+        Err(ExperimentError::Scene(format!(
+            "goal: expected a scene whose updates have a rate, to reach {hz} Hz; found one that is drawn and stays right: {shown} updates \
+             in {fields} fields, fewer than two of them behind start-up"
+        )))
     }
 
     /// Most triangles that are tried.
@@ -120,12 +139,16 @@ impl LimitQuery {
         }
     }
 
-    fn reached(&self, triangles: u32) -> Result<bool, ExperimentError> {
+    fn experiment(&self, triangles: u32) -> Result<Experiment, ExperimentError> {
         let scene = self.scene(triangles)?;
-        let experiment = Experiment::with(self.config.clone(), Arc::clone(&self.pipeline), scene)
+        Ok(Experiment::with(self.config.clone(), Arc::clone(&self.pipeline), scene)
             .fields(self.criterion.fields)
             .pixels(Pixels::Off)
-            .level(self.level);
+            .level(self.level))
+    }
+
+    fn reached(&self, triangles: u32) -> Result<bool, ExperimentError> {
+        let experiment = self.experiment(triangles)?;
         match summarise(&self.registry, &experiment) {
             Ok(summary) => Ok(is_reached(self.criterion.goal, &summary)),
             Err(ExperimentError::TooShort { .. } | ExperimentError::Run { .. }) => Ok(false),

@@ -37,7 +37,7 @@ pub fn columns() -> Vec<Column> {
             "picture",
             "number of the frame (Rendering Control), field (Slats, just-in-time pixels) or update (frameless)",
         ),
-        Column::always("steady", "1 for pictures after the warm-up, over which the report's statistics are; else 0"),
+        Column::always("steady", "1 for pictures in the window, over which the report's statistics are; else 0"),
         Column::always("complete", "1 if all of the picture was there in time, else 0"),
         Column::optional("sampled_at_ps", "when its pose was sampled"),
         Column::always("transform_at_ps", "start of TRANSFORM"),

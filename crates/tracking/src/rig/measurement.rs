@@ -111,6 +111,9 @@ pub struct Measurement {
     pub tracking_bound_ps: u64,
     /// How much longer rendering may be from outside: the photodiode's place in the scan.
     pub rendering_bound_ps: u64,
+    /// How much shorter rendering may be from outside: 0 unless the pipeline counts a frame as shown inside the scan, below the
+    /// photodiode.
+    pub rendering_early_ps: u64,
 }
 
 impl Measurement {
@@ -128,9 +131,18 @@ impl Measurement {
             inside: Side::inside(&inside_passes),
             tracking_bound_ps: tracker.report_interval_ps() * detection.half_intervals_late() / 2,
             rendering_bound_ps: place_ps,
+            rendering_early_ps: 0,
             outside_passes,
             inside_passes,
         }
+    }
+
+    /// The same of a pipeline that counts a frame as shown `counted_ps` behind the retrace: the beam passes a photodiode that hangs
+    /// higher before that.
+    #[must_use]
+    pub fn counted_in_the_scan(mut self, counted_ps: u64) -> Self {
+        self.rendering_early_ps = counted_ps.saturating_sub(self.rendering_bound_ps);
+        self
     }
 
     /// One report interval plus the photodiode's place in the scan (for detection by crossing): how far the total
@@ -146,15 +158,18 @@ impl Measurement {
         self.outside.total.mean_s - self.inside.total.mean_s
     }
 
-    /// Whether both measurements agree: outside tracking is longer by 0 to one report interval, outside rendering by at most
-    /// the photodiode's place in the scan either way, on average over the passes.
+    /// Returns true if both measurements agree on average over the passes. Outside tracking is longer by 0 to one report interval,
+    /// outside rendering by 0 to the photodiode's place in the scan. Light before a frame is shown is no agreement, unless the
+    /// pipeline counts frames inside the scan.
     #[must_use]
     pub fn agrees(&self) -> bool {
         let tracking_s = self.outside.tracking.mean_s - self.inside.tracking.mean_s;
         let rendering_s = self.outside.rendering.mean_s - self.inside.rendering.mean_s;
         let most_tracking_s = span_s(0, self.tracking_bound_ps) + ROUNDING_S;
         let most_rendering_s = span_s(0, self.rendering_bound_ps) + ROUNDING_S;
-        (-ROUNDING_S..=most_tracking_s).contains(&tracking_s) && rendering_s.abs() <= most_rendering_s
+        let least_rendering_s = -span_s(0, self.rendering_early_ps) - ROUNDING_S;
+        (-ROUNDING_S..=most_tracking_s).contains(&tracking_s)
+            && (least_rendering_s..=most_rendering_s).contains(&rendering_s)
     }
 }
 
