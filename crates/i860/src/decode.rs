@@ -192,6 +192,7 @@ fn floating_op(code: u32, result_double: bool) -> Option<Op> {
     Some(match code {
         0x00..=0x1F => Op::DualOp,
         0x20 => Op::Fmul,
+        0x24 => Op::Fmul3,
         0x21 => Op::Fmlow,
         0x22 => Op::Frcp,
         0x23 => Op::Frsqr,
@@ -219,6 +220,8 @@ fn floating_is_legal(i: &Instruction, pipelined: bool, source: bool, result: boo
     let narrowing = source && !result;
     match i.op {
         Op::Pfgt | Op::Pfle | Op::Pfeq => pipelined,
+        Op::Fmul3 => pipelined && source && result,
+        Op::Fix | Op::Ftrunc => result,
         Op::Fmlow => !pipelined && source && result,
         Op::Frcp | Op::Frsqr => !pipelined && !narrowing,
         Op::Fxfr => !pipelined,

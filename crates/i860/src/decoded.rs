@@ -237,13 +237,17 @@ fn floating_arms(i: &Instruction) -> u16 {
         _ if !pipelined => arm::SCALAR,
         _ => 0,
     };
-    if double && matches!(i.op, Op::Fmul | Op::Fmlow | Op::DualOp) { bits | arm::DOUBLE_MULTIPLY } else { bits }
+    if double && matches!(i.op, Op::Fmul | Op::Fmul3 | Op::Fmlow | Op::DualOp) {
+        bits | arm::DOUBLE_MULTIPLY
+    } else {
+        bits
+    }
 }
 
 /// In a dual operation the first source goes to the multiplier for four of the sixteen data paths.
 fn multiplier_source(i: &Instruction) -> u8 {
     let reads_first = match i.op {
-        Op::Fmul | Op::Fmlow => true,
+        Op::Fmul | Op::Fmul3 | Op::Fmlow => true,
         Op::DualOp => matches!(i.imm & 15, 9 | 11 | 13 | 15),
         _ => false,
     };

@@ -36,7 +36,8 @@ fn core_code(i: &Instruction, immediate: u32) -> (u32, u32) {
         Op::Fst => (0x0A | immediate, low16 | size_bits(i)),
         Op::Pfld => (0x18 | immediate, low16 | size_bits(i)),
         Op::Pst => (0x0F, low16 | size_bits(i)),
-        Op::Flush => (0x0D, low16 | u32::from(i.has(Flags::AUTOINCREMENT))),
+        // Bit 2 belongs to the operation.
+        Op::Flush => (0x0D, low16 & !7 | 4 | u32::from(i.has(Flags::AUTOINCREMENT))),
         Op::LdC => (0x0C, 0),
         Op::StC => (0x0E, 0),
         Op::Ixfr => (0x02, 0),
@@ -100,6 +101,7 @@ fn floating_code(i: &Instruction) -> u32 {
     let code = match i.op {
         Op::DualOp => i.imm as u32 & 0x1F,
         Op::Fmul => 0x20,
+        Op::Fmul3 => 0x24,
         Op::Fmlow => 0x21,
         Op::Frcp => 0x22,
         Op::Frsqr => 0x23,

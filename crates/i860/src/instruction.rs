@@ -98,6 +98,8 @@ pub enum Op {
     Fnop,
     /// `fmul`, `pfmul`: floating-point multiply.
     Fmul,
+    /// `pfmul3`: pipelined multiply of doubles through three stages, for handlers that fill a pipe again.
+    Fmul3,
     /// Low bits of the product of two significands.
     Fmlow,
     /// `frcp`: first approximation of a reciprocal.
@@ -238,7 +240,7 @@ impl Instruction {
     /// Whether the operation uses the multiplier.
     #[must_use]
     pub fn uses_multiplier(&self) -> bool {
-        matches!(self.op, Op::Fmul | Op::Fmlow | Op::Frcp | Op::Frsqr | Op::DualOp)
+        matches!(self.op, Op::Fmul | Op::Fmul3 | Op::Fmlow | Op::Frcp | Op::Frsqr | Op::DualOp)
     }
 
     /// Whether the operation uses the adder.

@@ -35,7 +35,7 @@
 //!   dual operations, pipelined loads, graphics unit, delay slots, `bla`, dual-instruction mode, control registers.
 //! - Arithmetic is IEEE, to nearest even, with the same bits on every host; fsr.FZ flushes results. Without traps a
 //!   NaN result is the first NaN operand made quiet, or the default NaN with its sign set.
-//! - A scalar operation, a seed too, destroys what the pipe of its unit holds: it becomes NaN here. The assembler objects to
+//! - A scalar operation, a seed too, destroys what the pipe of its unit holds: it becomes NaN here. The assembler warns of
 //!   code that takes a result out of a pipe behind one.
 //! - The seeds of `frcp` and `frsqr` come from a [`SeedTable`], because the part's table is not public.
 //! - Traps leave the state of the part at the handler's first instruction, and [`Cpu::step`] says which it was.
@@ -134,7 +134,9 @@ mod trap;
 #[cfg(feature = "vectors")]
 pub mod vectors;
 
-pub use assembler::{AssemblyError, AssemblyErrors, Program, assemble, instruction_word, link};
+pub use assembler::{
+    AssemblyError, AssemblyErrors, AssemblyWarning, Data, DataKind, Program, Rule, assemble, instruction_word, link,
+};
 pub use bus::{Bus, Ram, Unmapped};
 pub use cpu::Cpu;
 pub use decode::{IllegalWord, decode};

@@ -78,6 +78,7 @@ fn floating_name(op: Op) -> &'static str {
     match op {
         Op::Fnop => "fnop",
         Op::Fmul => "fmul",
+        Op::Fmul3 => "fmul3",
         Op::Fmlow => "fmlow",
         Op::Frcp => "frcp",
         Op::Frsqr => "frsqr",

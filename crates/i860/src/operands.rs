@@ -68,6 +68,7 @@ fn leaving(state: &State, i: &Instruction) -> Option<PipeStage> {
     }
     Some(match () {
         () if i.uses_adder() => state.adder[2],
+        () if i.op == Op::Fmul3 => state.multiplier[2],
         () if i.uses_multiplier() => last_product(state, i.has(Flags::SOURCE_DOUBLE)),
         () => state.graphics,
     })

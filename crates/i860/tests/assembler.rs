@@ -1,6 +1,6 @@
 //! Assembler and disassembler: round trips, and every check with its line and reason.
 
-use i860::{assemble, decode, disassemble, encode, instruction_word};
+use i860::{Rule, assemble, decode, disassemble, encode, instruction_word};
 use proptest::prelude::*;
 
 #[track_caller]
@@ -27,6 +27,11 @@ fn words_known_from_published_encodings_come_out() {
         ("adds -1, r4, r4", 0x9484_FFFF),
         ("orh 0x1234, r0, r31", 0xEC1F_1234),
         ("fld.d 8(r4)++, f8", 0x2488_0009),
+        ("flush 128(r1)", 0x3420_0084),
+        ("flush 128(r1)++", 0x3420_0085),
+        ("flush -8(r1)", 0x3420_FFFC),
+        ("pfmul3.dd f2, f4, f30", 0x489E_15A4),
+        ("d.pfmul3.dd f2, f4, f30", 0x489E_17A4),
     ] {
         let found = instruction_word(text, 0).expect(text);
         assert_eq!(found, word, "{text}: {found:08x}");
@@ -80,7 +85,6 @@ fn repetition_writes_its_block_out() {
 
 #[test]
 fn pairing_faults_name_their_line() {
-    assert_fault("nop\nd.fadd.ss f2, f3, f4\nnop", 2, "multiple of 8");
     assert_fault("d.fnop\nnop\nnop\nnop", 3, "expected a floating-point instruction");
     assert_fault("d.fnop\nnop\nd.fnop\nfadd.ss f2, f3, f4", 4, "expected a core instruction");
     assert_fault("d.fnop\nnop\nd.fadd.ss f2,f3,f4\nfld.l 0(r5),f4", 4, "the same register");
@@ -110,7 +114,6 @@ fn single_instruction_faults_name_their_line() {
     assert_fault("br nowhere\nnop", 1, "`nowhere` is not defined");
     assert_fault("bte r1, r2, 0x100000", 1, "words away");
     assert_fault("a: nop\na: nop", 2, "defined twice");
-    assert_fault("pfmul.ss f4, f5, f4", 1, "first source as destination");
     assert_fault("bla r4, r4, 0x1000\nnop", 1, "two different registers");
     assert_fault("br 0x1000\nbr 0x1000\nnop", 2, "in the slot");
     assert_fault("call 0x1000\nmov r0, r1", 2, "must not write r1");
@@ -126,21 +129,100 @@ fn all_faults_of_a_source_are_reported_in_line_order() {
     assert_eq!(errors[0].to_string(), "t.s:1: `foo` is not an operation");
 }
 
+#[test]
+fn semicolons_part_statements() {
+    let lines = "start: adds 1,r0,r4\nadds 2,r0,r5\naddu r4,r5,r6\nnop\nend: nop";
+    let expected = assemble("t.s", 0x1000, lines).expect("correct");
+    for source in [
+        "start:\tadds 1,r0,r4;\tadds 2,r0,r5\n\taddu r4,r5,r6; nop\nend:\tnop",
+        "start: adds 1,r0,r4;adds 2,r0,r5;addu r4,r5,r6;nop;end: nop // one; two",
+        ";;start: adds 1,r0,r4;; adds 2,r0,r5 ;\n addu r4,r5,r6\r\n; nop;\nend:; nop;",
+        ".macro both a, b; adds 1,r0,\\a; adds 2,r0,\\b; .endm\nstart: both r4, r5; addu r4,r5,r6; .rept 2; nop; .endr",
+    ] {
+        let found = assemble("t.s", 0x1000, source).expect(source);
+        assert_eq!(found.words(), expected.words(), "{source}");
+        assert_eq!(found.symbol("start"), Some(0x1000), "{source}");
+    }
+    let found = assemble("t.s", 0, "nop\nnop; foo; nop").expect_err("wrong").0;
+    assert_eq!((found.len(), found[0].to_string()), (1, "t.s:2: `foo` is not an operation".to_owned()));
+}
+
+#[test]
+fn a_listing_shows_source_lines_and_data_as_data() {
+    let source = "start: mov 0x12345678, r5 // both halves\n.macro two\nnop\nnop\n.endm\ntwo; nop\nend: nop\n.align 8\n\
+                  table: .long 7, end\n.byte 1, 2, 3, 4, 255\n.byte 0\n.short 0xffff\n.align 8\n.double -1.5\n.float 0.5\nlast:";
+    let program = assemble("t.s", 0x1000, source).expect("correct");
+    let expected = "\
+start:
+00001000  ec051234  orh 4660, r0, r5                    1  start: mov 0x12345678, r5 // both halves
+00001004  e4a55678  or 22136, r5, r5
+00001008  a0000000  nop                                 6  two; nop
+0000100c  a0000000  nop
+00001010  a0000000  nop
+end:
+00001014  a0000000  nop                                 7  end: nop
+table:
+00001018  00000007  .long 0x7                           9  table: .long 7, end
+0000101c  00001014  .long 0x1014
+00001020  04030201  .byte 0x1, 0x2, 0x3, 0x4           10  .byte 1, 2, 3, 4, 255
+00001024  ff        .byte 0xff
+00001025  00        .byte 0x0                          11  .byte 0
+00001026  ffff      .short 0xffff                      12  .short 0xffff
+00001028  bff8000000000000  .double -1.5                       14  .double -1.5
+00001030  3f000000  .float 0.5                         15  .float 0.5
+last:
+";
+    assert_eq!(program.listing(Some(source)), expected);
+    let gap = assemble("t.s", 0x1000, "nop\n.space 4000\nnop").expect("correct");
+    let listed = gap.listing(None);
+    assert_eq!(listed, "00001000  a0000000  nop\n00001004            .space 4000\n00001fa4  a0000000  nop\n");
+    assert_eq!(gap.data_at(0x1003), None);
+    assert!(gap.data_at(0x1004).is_some() && gap.data_at(0x1FA3).is_some() && gap.data_at(0x1FA4).is_none());
+}
+
+/// The first warning of a source, as it is told; the source itself assembles.
+#[track_caller]
+fn warning(source: &str) -> Option<(Rule, String)> {
+    let program = assemble("t.s", 0, source).expect(source);
+    program.warnings.first().map(|warning| (warning.rule, warning.to_string()))
+}
+
+#[test]
+fn rules_that_programs_break_are_warned_of() {
+    let reason = "t.s:2: a `d.` instruction must lie at a multiple of 8 (put a nop or .align 8 before it) [alignment]";
+    assert_eq!(warning("nop\nd.fadd.ss f2, f3, f4\nnop"), Some((Rule::Alignment, reason.to_owned())));
+    let reason = "t.s:1: a pipelined multiply must not have its first source as destination [multiply-source]";
+    assert_eq!(warning("pfmul.ss f4, f5, f4"), Some((Rule::MultiplySource, reason.to_owned())));
+    assert_eq!(warning("pfmul3.dd f4, f6, f4").map(|(rule, _)| rule), Some(Rule::MultiplySource));
+    assert_eq!(warning("nop\nnop"), None);
+    for (name, rule) in Rule::NAMES {
+        assert_eq!(rule.name(), name);
+    }
+}
+
 /// The manual: a scalar operation goes through the pipe of its unit, so that what was in it is lost.
 #[test]
-fn a_result_may_not_be_taken_out_behind_a_scalar_operation() {
-    let fault = |source: &str| assemble("t.s", 0, source).err().map(|errors| errors.0[0].to_string());
+fn a_result_taken_out_behind_a_scalar_operation_is_warned_of() {
+    let fault = |source: &str| {
+        warning(source).map(|(rule, text)| {
+            assert_eq!(rule, Rule::LostResult);
+            text
+        })
+    };
     let drain = "pfadd.ss f0, f0, f0\n".repeat(2);
     let lost = fault(&format!("pfadd.ss f2, f3, f0\nfadd.ss f4, f5, f6\n{drain}pfadd.ss f0, f0, f10"));
     let reason = "takes a result out of the adder's pipe that a scalar operation destroyed";
-    assert_eq!(lost.as_deref(), Some(format!("t.s:5: {reason}").as_str()));
+    assert_eq!(lost.as_deref(), Some(format!("t.s:5: {reason} [lost-result]").as_str()));
     assert!(fault("frcp.ss f2, f3\npfmul.ss f4, f5, f6").is_some(), "a seed goes through the multiplier");
+    let two = "fmul.dd f2, f4, f6\npfmul3.dd f2, f4, f0\npfmul3.dd f2, f4, f0\npfmul3.dd f2, f4, f8";
+    assert!(fault(two).is_some(), "its pipe has three stages");
     assert!(fault("fmul.dd f2, f4, f6\npfmul.dd f2, f4, f0\nm12apm.dd f2, f4, f8").is_some(), "the adder gets it");
     for sound in [
         format!("fadd.ss f4, f5, f6\npfadd.ss f2, f3, f0\n{drain}pfadd.ss f0, f0, f10"),
         format!("pfadd.ss f2, f3, f0\nfmul.ss f4, f5, f6\n{drain}pfadd.ss f0, f0, f10"),
         "fadd.ss f4, f5, f6\nelsewhere: pfadd.ss f0, f0, f10".to_owned(),
         "fmul.dd f2, f4, f6\npfmul.dd f2, f4, f0\npfmul.dd f2, f4, f0\npfmul.dd f2, f4, f8".to_owned(),
+        "fmul.dd f2,f4,f6\npfmul3.dd f2,f4,f0\npfmul3.dd f2,f4,f0\npfmul3.dd f2,f4,f0\npfmul3.dd f2,f4,f8".to_owned(),
     ] {
         assert_eq!(fault(&sound), None, "{sound}");
     }

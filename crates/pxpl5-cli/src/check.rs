@@ -1,16 +1,21 @@
 //! `pxpl5 check`.
 
 use crate::error::CliError;
+use crate::scenes;
 use crate::settings::SettingArgs;
 use crate::terminal::{print, warn};
 use clap::Args;
+use pxpl5::sweep::Sweep;
+use pxpl5::{ExperimentFile, Plan};
+use std::fmt::Write as _;
 
 /// Print the effective configuration of an experiment; nothing is run.
 ///
-/// What is printed is itself an experiment file that says the same.
+/// What is printed is itself an experiment file that says the same. Of a sweep that is its first point that is an experiment.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 check experiments/figure-04.toml
+  pxpl5 check experiments/sweep-slats.toml
   pxpl5 check --pipeline slats --scene mig --set gp.triangle_ns=30000")]
 pub(crate) struct CheckArgs {
     #[command(flatten)]
@@ -18,16 +23,52 @@ pub(crate) struct CheckArgs {
 }
 
 pub(crate) fn run(args: CheckArgs) -> Result<(), CliError> {
-    let plan = args.settings.gather()?.resolve()?;
+    let file = args.settings.gather()?;
+    let (plan, about) = if file.is_sweep() { of_sweep(file)? } else { (file.resolve()?, String::new()) };
     warn(&plan.warnings(), false);
-    let scene = plan.load_scene()?;
+    let scene = scenes::load(&plan, false)?;
     let version = env!("CARGO_PKG_VERSION");
     let hash = plan.experiment(scene).config_hash();
     print(&format!(
-        "# machine: {}\n# config_hash: {hash}\n# version: {version}\n# level: {}\n# seed: {}\n{}",
+        "{about}# machine: {}\n# config_hash: {hash}\n# version: {version}\n# level: {}\n# seed: {}\n{}",
         plan.machine.preset,
         plan.level_name(),
         plan.seed,
         plan.settings()
     ))
+}
+
+/// Points of a sweep that are checked at most. Assumed: some seconds.
+const MOST_CHECKED: u64 = 1_000;
+
+/// The first point of a sweep that is an experiment, and lines about the sweep. What `pxpl5 sweep` refuses is refused here.
+fn of_sweep(file: ExperimentFile) -> Result<(Plan, String), CliError> {
+    let sweep = Sweep::new(file)?;
+    sweep.header()?;
+    let points = sweep.space().points();
+    let checked = points.min(MOST_CHECKED);
+    let mut first = None;
+    let mut failed: Option<(u64, u64, String)> = None;
+    for point in 0..checked {
+        match sweep.plan(point) {
+            Ok(plan) => first = first.or(Some((point, plan))),
+            Err(error) => {
+                let (count, ..) = failed.get_or_insert((0, point, error.to_string()));
+                *count += 1;
+            }
+        }
+    }
+    // The header has found one, perhaps behind those that are checked.
+    let (point, plan) = match first {
+        Some(first) => first,
+        None => (0, sweep.plan(0)?),
+    };
+    if let Some((count, point, error)) = failed {
+        warn(&[format!("{count} of {checked} points are no experiments; point {point}: {error}")], false);
+    }
+    let mut about = format!("# sweep of {points} points, of which {checked} were checked; point {point}:\n");
+    for axis in sweep.space().axes() {
+        let _ = writeln!(about, "#   {}: {} values", axis.paths.join(", "), axis.len());
+    }
+    Ok((plan, about))
 }

@@ -4,6 +4,7 @@ use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::Work;
 use crate::output::OutputFile;
+use crate::scenes;
 use crate::settings::SettingArgs;
 use crate::terminal::{print, warn};
 use clap::{Args, ValueEnum};
@@ -58,7 +59,7 @@ pub(crate) fn run(args: FilmArgs) -> Result<(), CliError> {
         Whose::Both => FilmOf::All,
     };
     let file = OutputFile::open(&args.out)?;
-    let (scene, fields) = (plan.load_scene()?, args.from + args.length + 1);
+    let (scene, fields) = (scenes::load(&plan, args.quiet)?, args.from + args.length + 1);
     args.budget.admit(&Work { fields, ..Work::of(&plan, &scene, true) })?;
     let experiment = plan.experiment(scene).pixels(Pixels::Lazy).fields(fields);
     let texts = [("config_hash", experiment.config_hash().to_string()), ("settings", plan.settings().to_string())];

@@ -107,7 +107,7 @@ fn comparison(text: &str) -> Result<ResultRows, String> {
     Ok(ResultRows { kind: RowsKind::Comparison, rows: rows.collect(), about })
 }
 
-/// Every single value with its path.
+/// Every single value with its path; of a list of objects, each by what it is of: its `cause` or `kind`.
 fn flatten(path: &str, value: Value, row: &mut Row) {
     match value {
         Value::Object(inner) => {
@@ -116,7 +116,45 @@ fn flatten(path: &str, value: Value, row: &mut Row) {
                 flatten(&path, value, row);
             }
         }
-        Value::Array(_) => {}
+        Value::Array(list) => {
+            for (value, name) in list.into_iter().filter_map(|value| Some((value.clone(), name_of(&value)?))) {
+                flatten(&format!("{path}.{name}"), value, row);
+            }
+        }
         value => row.push((path.to_owned(), value)),
     }
+}
+
+/// What an object of a list is of; the share of no cause is the interaction of all.
+fn name_of(value: &Value) -> Option<String> {
+    let object = value.as_object()?;
+    match object.get("cause").or_else(|| object.get("kind"))? {
+        Value::String(name) => Some(name.clone()),
+        Value::Null => Some("interaction".to_owned()),
+        _ => None,
+    }
+}
+
+/// The name of a column today, where it had another one in tables of comparisons.
+pub(crate) fn renamed(old: &str) -> Option<String> {
+    let new = match old {
+        "updates_hz" => "updates_hz.mean",
+        "error_px_mean" => "error.mean_px.mean",
+        "error_px_low" => "error.mean_px.low",
+        "error_px_high" => "error.mean_px.high",
+        "seeds_judged" => "error.mean_px.n",
+        "error_px_p50" => "error.pixels.p50",
+        "error_px_p90" => "error.pixels.p90",
+        "error_px_p99" => "error.pixels.p99",
+        "pixels_judged" => "error.n",
+        _ => {
+            if let Some(cause) = old.strip_prefix("error_px_by_") {
+                return Some(format!("causes.{cause}.px.mean"));
+            }
+            let statistics = ["latency_ms", "head_to_light_ms", "prediction_interval_ms"];
+            let (name, end) = old.rsplit_once('_').filter(|(_, end)| ["mean", "sd"].contains(end))?;
+            return statistics.contains(&name).then(|| format!("{name}.{end}"));
+        }
+    };
+    Some(new.to_owned())
 }

@@ -1,10 +1,12 @@
 //! `pxpl5 scenes`.
 
 use crate::error::CliError;
-use crate::terminal::print;
+use crate::terminal::{print, warn};
 use clap::Args;
-use pxpl5::scene;
+use pxpl5::Plan;
+use pxpl5::scene::{self, Scene};
 use serde_json::json;
+use std::sync::Arc;
 
 /// List the built-in scenes.
 #[derive(Args, Debug)]
@@ -12,6 +14,18 @@ pub(crate) struct ScenesArgs {
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
+}
+
+/// The scene of a plan; warns of what its file holds and the reader makes something else of.
+///
+/// # Errors
+///
+/// For a scene that cannot be had.
+pub(crate) fn load(plan: &Plan, quiet: bool) -> Result<Arc<Scene>, CliError> {
+    let scene = plan.load_scene()?;
+    let named: Vec<String> = scene.warnings().iter().map(|warning| format!("{}: {warning}", scene.name())).collect();
+    warn(&named, quiet);
+    Ok(scene)
 }
 
 pub(crate) fn run(args: ScenesArgs) -> Result<(), CliError> {

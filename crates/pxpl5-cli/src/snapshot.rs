@@ -5,6 +5,7 @@ use crate::error::CliError;
 use crate::estimate::Work;
 use crate::options::registry;
 use crate::output::OutputFile;
+use crate::scenes;
 use crate::terminal::progress;
 use clap::Args;
 use pxpl5::{
@@ -108,7 +109,7 @@ impl SnapshotArgs {
     /// When the run fails, is not the one of the snapshot, or the snapshot cannot be written.
     pub(crate) fn simulate(&self, plan: &Plan, how: How<'_>) -> Result<Simulated, CliError> {
         let mut saving = self.saving(plan)?;
-        let scene = plan.load_scene()?;
+        let scene = scenes::load(plan, how.quiet)?;
         how.budget.admit(&Work::of(plan, &scene, how.keep == Keep::Everything))?;
         let host = how.threads.map_or_else(Workstation::new, |threads| Workstation::with_threads(threads as usize));
         let experiment = plan.experiment(scene.clone()).host(host).keep(how.keep);

@@ -4,29 +4,30 @@ use crate::budget::{BudgetArgs, YOUNG};
 use crate::error::CliError;
 use crate::estimate::Work;
 use crate::output::OutputFile;
+use crate::scenes;
 use crate::settings::SettingArgs;
 use crate::terminal::{print, progress, warn};
 use clap::{Args, ValueEnum};
 use pxpl5::trace_export::{Trace, chrome, perfetto};
 use pxpl5::{ExperimentError, PeriodNumber};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Run one experiment and write what happened as a trace for ui.perfetto.dev.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 trace --pipeline slats --scene mig --triangles 140 --fields 20 --out slats.pftrace
-  pxpl5 trace --pipeline rendering-control --scene mig --fields 30 --format chrome --out mig.json
+  pxpl5 trace --pipeline rendering-control --scene mig --fields 30 --out mig.json
 
 A trace holds every message; some tens of fields are enough to see a pipeline at work.")]
 pub(crate) struct TraceArgs {
     #[command(flatten)]
     settings: SettingArgs,
-    /// The file to write.
+    /// The file to write: .pftrace (or .perfetto-trace) for Perfetto's format, .json for Chrome's.
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
-    /// Format of the file.
-    #[arg(long, value_enum, default_value_t = Format::Perfetto)]
-    format: Format,
+    /// Format of the file, whatever its name; default: by the end of its name.
+    #[arg(long, value_enum)]
+    format: Option<Format>,
     #[command(flatten)]
     budget: BudgetArgs,
     /// Print nothing but errors.
@@ -34,7 +35,7 @@ pub(crate) struct TraceArgs {
     quiet: bool,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Format {
     /// A protobuf of Perfetto, times in nanoseconds.
     Perfetto,
@@ -42,12 +43,33 @@ enum Format {
     Chrome,
 }
 
+impl Format {
+    /// By the end of a file's name; Perfetto's for what is no file, such as a pipe.
+    ///
+    /// # Errors
+    ///
+    /// For any other end.
+    fn of(path: &Path) -> Result<Self, CliError> {
+        let end = path.extension().map(|end| end.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+        match end.as_str() {
+            "pftrace" | "perfetto-trace" => Ok(Self::Perfetto),
+            "json" => Ok(Self::Chrome),
+            _ if std::fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir()) => Ok(Self::Perfetto),
+            _ => Err(CliError::usage(format!(
+                "--out: expected a name that ends in .pftrace or .json, or a --format, found {}",
+                path.display()
+            ))),
+        }
+    }
+}
+
 pub(crate) fn run(args: TraceArgs) -> Result<(), CliError> {
+    let format = args.format.map_or_else(|| Format::of(&args.out), Ok)?;
     let plan = args.settings.gather()?.resolve()?;
     warn(&plan.warnings(), args.quiet);
     let file = OutputFile::open(&args.out)?;
     let bar = progress(plan.fields, "fields", args.quiet);
-    let scene = plan.load_scene()?;
+    let scene = scenes::load(&plan, args.quiet)?;
     args.budget.admit(&Work::of(&plan, &scene, true))?;
     let experiment = plan.experiment(scene).record_traffic(true);
     let watch = args.budget.watch(plan.fields);
@@ -59,7 +81,7 @@ pub(crate) fn run(args: TraceArgs) -> Result<(), CliError> {
     bar.finish_and_clear();
     let trace = Trace::of(&outcome);
     let mut bytes = Vec::new();
-    let written = match args.format {
+    let written = match format {
         Format::Perfetto => perfetto(&trace, &mut bytes),
         Format::Chrome => chrome(&trace, &mut bytes),
     };

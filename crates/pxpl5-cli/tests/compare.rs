@@ -122,7 +122,7 @@ fn a_folder_gets_the_tables_the_drawings_of_the_run_and_the_four_pictures() {
     let table = text("rows.csv");
     let mut lines = table.lines();
     let header: Vec<_> = lines.next().expect("a header").split(',').collect();
-    let mean = header.iter().position(|name| *name == "error_px_mean").expect("a column");
+    let mean = header.iter().position(|name| *name == "error.mean_px.mean").expect("a column");
     for (line, row) in lines.zip(rows(&json)) {
         let cell: f64 = line.split(',').nth(mean).and_then(|cell| cell.parse().ok()).expect("a number");
         assert_eq!(Some(cell), row["error"]["mean_px"]["mean"].as_f64(), "{line}");

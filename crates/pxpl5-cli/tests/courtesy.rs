@@ -167,12 +167,12 @@ fn a_run_that_takes_too_much_is_refused_with_an_estimate() {
             "--max-seconds",
         ),
         (
-            &["trace", "--pixels", "off", "--out", "o/t", "--max-seconds", "60", "--max-memory", "1000000"],
+            &["trace", "--pixels", "off", "--out", "o/t.pftrace", "--max-seconds", "60", "--max-memory", "1000000"],
             "--max-seconds",
         ),
         // However slow the host is, memory is what it is refused for.
         (
-            &["trace", "--pixels", "off", "--out", "o/t", "--max-memory", "200", "--max-seconds", "1000000000"],
+            &["trace", "--pixels", "off", "--out", "o/t.pftrace", "--max-memory", "200", "--max-seconds", "1000000000"],
             "--max-memory",
         ),
     ] {

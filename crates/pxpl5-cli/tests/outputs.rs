@@ -9,7 +9,8 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use support::{Folder, command, err, json, names};
 
-const TRACE: [&str; 8] = ["trace", "--pipeline", "slats", "--scene", "full-screen:4", "--fields", "8", "--out"];
+const TRACE: [&str; 10] =
+    ["trace", "--pipeline", "slats", "--scene", "full-screen:4", "--fields", "8", "--format", "perfetto", "--out"];
 const SAVE: [&str; 11] =
     ["run", "--pipeline", "slats", "--scene", "full-screen:4", "--fields", "12", "--quiet", "--save-at", "4", "--save"];
 const FILM: [&str; 11] =

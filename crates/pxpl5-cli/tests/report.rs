@@ -64,11 +64,20 @@ fn traces_come_in_both_formats() {
     // A trace is packets, field 1 of the outermost message; the first describes the host's track.
     assert_eq!(trace[0], 0x0a);
     assert!(trace.windows(4).any(|bytes| bytes == b"host"));
-    let output = folder.run(&[&run[..], &["a.json", "--format", "chrome"]].concat());
+    let output = folder.run(&[&run[..], &["a.json"]].concat());
     assert!(output.status.success(), "{}", err(&output));
     let json = std::fs::read(folder.0.join("a.json")).expect("written");
     let json: serde_json::Value = serde_json::from_slice(&json).expect("JSON");
     assert!(json["traceEvents"].as_array().is_some_and(|events| events.len() > 100));
+    let output = folder.run(&[&run[..], &["b.txt", "--format", "chrome"]].concat());
+    assert!(output.status.success(), "{}", err(&output));
+    assert_eq!(std::fs::read(folder.0.join("b.txt")).expect("written")[0], b'{');
+    for name in ["c.txt", "c", "c.csv"] {
+        let output = folder.run(&[&run[..], &[name]].concat());
+        assert_eq!(output.status.code(), Some(2), "{name}: {}", err(&output));
+        assert!(err(&output).contains("expected a name that ends in .pftrace or .json"), "{}", err(&output));
+        assert!(!folder.names().contains(&name.to_owned()));
+    }
 }
 
 #[test]

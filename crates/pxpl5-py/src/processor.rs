@@ -56,16 +56,9 @@ impl Program {
         self.program.symbols.clone()
     }
 
-    /// A line for each word: address, word, instruction.
+    /// A line for each word: address, word, instruction or data.
     fn listing(&self) -> String {
-        let words = self.program.words().into_iter();
-        let lines = (self.program.base..).step_by(4).zip(words).map(|(address, word)| {
-            let labels =
-                self.program.labels.iter().filter(|(_, at)| *at == address).map(|(name, _)| format!("{name}:\n"));
-            let labels: String = labels.collect();
-            format!("{labels}  {address:08x}  {word:08x}  {}\n", i860::disassemble(word, address))
-        });
-        lines.collect()
+        self.program.listing(None)
     }
 
     /// Where it stands, how long it is, and its labels.

@@ -111,8 +111,11 @@ pub fn check_faces(config: &MachineConfig, pipeline: &dyn Pipeline) -> Result<()
     }
 }
 
-/// A motion that ends must not end before the run.
+/// A motion that ends must not end before the run, and the run must not need what the motion does not know.
 fn check_recording(head: &Head, until: Time) -> Result<(), ExperimentError> {
+    if let Some((from_ps, to_ps)) = head.motion.gap_ps(until.0) {
+        return Err(ExperimentError::RecordingGap { from: Time(from_ps), to: Time(to_ps), run: until });
+    }
     match head.motion.ends_ps().filter(|ends_ps| *ends_ps < until.0) {
         Some(ends_ps) => Err(ExperimentError::Recording { recording: Time(ends_ps), run: until }),
         None => Ok(()),

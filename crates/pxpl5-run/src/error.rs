@@ -50,6 +50,22 @@ pub enum ExperimentError {
         /// The end of the run.
         run: Time,
     },
+    /// The run needs a stretch of which the recording of the head has no pose.
+    #[error(
+        "the recording of the head has no pose from {:.3} s to {:.3} s and the run takes {:.3} s: simulate fewer fields, or let the head \
+         stand still there (head.end = \"hold\")",
+        seconds(*from),
+        seconds(*to),
+        seconds(*run)
+    )]
+    RecordingGap {
+        /// The last pose before it.
+        from: Time,
+        /// The first pose after it.
+        to: Time,
+        /// The end of the run.
+        run: Time,
+    },
     /// The analytic level has no events that an experiment could observe.
     #[error("level: expected transaction or cycle, found analytic, which has no events (it is for sweeps and limits)")]
     Level,

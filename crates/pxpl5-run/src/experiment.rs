@@ -298,12 +298,15 @@ impl Experiment {
         out_of_range(&self.config, self.pipeline.as_ref()).into_iter().chain(of_head).collect()
     }
 
-    /// What cannot be taken for the machine: see [`out_of_range`] and [`times_of_table`].
+    /// What cannot be taken for the machine: see [`out_of_range`] and [`times_of_table`]. And what is to be said of the files of the
+    /// head's motion and of the scene.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let supposed = self.out_of_range();
         let of_table = times_of_table(self.level, &self.config, self.pipeline.as_ref());
-        supposed.iter().map(Parameter::warning).chain(of_table).collect()
+        let of_head = self.head.iter().flat_map(|head| head.motion().warnings());
+        let of_scene = self.scene.warnings().iter().map(|warning| format!("{}: {warning}", self.scene.name()));
+        supposed.iter().map(Parameter::warning).chain(of_table).chain(of_head).chain(of_scene).collect()
     }
 
     /// The scene that is drawn.

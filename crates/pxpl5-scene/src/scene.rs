@@ -110,6 +110,7 @@ pub struct SceneParts {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     parts: SceneParts,
+    warnings: Vec<String>,
 }
 
 impl Scene {
@@ -123,7 +124,20 @@ impl Scene {
             parts.structures.push(structure_of_all(&parts));
         }
         parts.check()?;
-        Ok(Self { parts })
+        Ok(Self { parts, warnings: Vec::new() })
+    }
+
+    /// Replaces what is to be said of the file that the scene was read from.
+    #[must_use]
+    pub fn with_warnings(mut self, warnings: Vec<String>) -> Self {
+        self.warnings = warnings;
+        self
+    }
+
+    /// What a reader made of its file that the writer may not have meant, a sentence each; empty for other scenes.
+    #[must_use]
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
     }
 
     /// Name of the scene, as reports show it.

@@ -100,13 +100,36 @@ fn obj_files_made_for_it_take_at_most_seven_times_their_size() {
     is_accepted("corners.obj", obj_of_corners(500));
     is_accepted("short-corners.obj", obj_of_corners(99));
     is_accepted("many-corners.obj", obj_of_corners(1100));
-    is_accepted("polygon.obj", (points("v ", 9) + "f" + &" 1 2".repeat(900_000)).into_bytes());
+    // What has no area is refused: a triangle beside the polygon has one.
+    let seen = points("v ", 9) + "v 0 5 0\nf 1 2 10\n";
+    is_accepted("polygon.obj", (seen.clone() + "f" + &" 1 2".repeat(900_000)).into_bytes());
     is_accepted("apart.obj", "v 1 2 3\nv 4 5 6\nv 7 8 0\nf -1 -2 -3\n".repeat(400_000).into_bytes());
-    is_accepted("nines.obj", (points("v ", 9) + "f -1 -2 -3 -4 -5 -6 -7 -8 -9\n").repeat(60_000).into_bytes());
+    is_accepted(
+        "nines.obj",
+        (seen.clone() + &(points("v ", 9) + "f -1 -2 -3 -4 -5 -6 -7 -8 -9\n").repeat(60_000)).into_bytes(),
+    );
     let window = "v .1 0 1\nvn 0 0 1\nf -1//-1 -1//-2 -1//-3 -1//-4 -1//-5 -1//-6 -1//-7 -1//-8 -1//-9\n";
-    is_accepted("window.obj", (points("v ", 9) + &points("vn ", 9) + &window.repeat(60_000)).into_bytes());
+    is_accepted(
+        "window.obj",
+        (seen.clone() + &points("v ", 9) + &points("vn ", 9) + &window.repeat(60_000)).into_bytes(),
+    );
+    // A polygon of many notches, whose ears are cut, and faces without smoothing.
+    let comb: String = (0..15_000).fold(String::new(), |mut text, n| {
+        writeln!(text, "v {} {} 0", if n % 2 == 0 { 9.5 } else { 1.25 }, f64::from(n) / 1e3).expect("into a string");
+        text
+    });
+    let face: String = (1..=15_002).fold(String::from("f"), |mut text, n| {
+        write!(text, " {n}").expect("into a string");
+        text
+    });
+    let (_, faces) = taken("flat.obj", (points("v ", 999) + &"f 1 22 500\n".repeat(500_000)).into_bytes());
+    assert!(matches!(faces, Err(LoadError::TooMuchMemory { .. })), "{faces:?}");
+    let smooth = points("v ", 999) + "s 1\n" + &"f 1 22 500\n".repeat(500_000);
+    is_accepted("smooth.obj", smooth.into_bytes());
+    let (_, comb) = taken("comb.obj", format!("{comb}v 20 15 0\nv 20 -1 0\n{face}\n").into_bytes());
+    assert!(comb.is_ok(), "{comb:?}");
     is_accepted("points.obj", (points("v ", 1_000_000) + "f 1 2 30\n").into_bytes());
-    is_accepted("normals.obj", (points("v ", 9) + &points("vn ", 1_000_000) + "f 1//1 2//2 3\n").into_bytes());
+    is_accepted("normals.obj", (seen + &points("vn ", 1_000_000) + "f 1//1 2//2 3\n").into_bytes());
 }
 
 #[test]
@@ -133,7 +156,9 @@ fn ply(kind: &str, vertices: usize, vertex: &[u8], corners: impl Iterator<Item =
          property list uint {kind} vertex_indices\nend_header\n"
     );
     let mut file = header.into_bytes();
-    file.extend(vertex.repeat(vertices));
+    // What has no area is refused: the first three vertices are a triangle with one.
+    file.extend([1, 2, 3, 2, 2, 3, 1, 3, 3]);
+    file.extend(vertex.repeat(vertices - 3));
     file.extend((count as u32).to_le_bytes());
     file.extend(corners.flatten());
     file

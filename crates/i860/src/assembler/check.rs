@@ -1,13 +1,17 @@
 //! Rules that an instruction must keep by itself and with its neighbours. What breaks them is undefined on the part.
 //!
-//! * a `d.` instruction lies at a multiple of 8
 //! * a pair is a floating-point instruction, then a core instruction
 //! * the halves of a pair do not write the same register, do not both set CC, and `bc.t`/`bnc.t` does not stand
 //!   beside a compare
 //! * no branch in the slot of a delayed branch; a `call` slot does not write r1
-//! * a pipelined multiply does not have its first source as destination
 //! * `bla` has two different registers
-//! * no result is taken out of a pipe that a scalar operation has gone through since it was put in
+//!
+//! Three more rules are broken by programs that run ([`Rule`]); those are warned of:
+//!
+//! * a `d.` instruction lies at a multiple of 8: others assemble one in the second word of a pair too
+//! * a pipelined multiply does not have its first source as destination
+//! * no result is taken out of a pipe that a scalar operation has gone through since it was put in: code that empties a pipe takes
+//!   such a result and does not use it
 //!
 //! Pairing is followed in address order, as a reader would; a program that jumps into the middle of a dual stretch
 //! is on its own.
@@ -20,16 +24,47 @@ use std::collections::BTreeSet;
 
 type Located = (u32, usize, Instruction);
 
-/// All broken rules, as source line and reason; `labels` are the addresses that code elsewhere may jump to.
-pub(super) fn faults(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usize, String)> {
-    let mut faults: Vec<(usize, String)> = program
-        .iter()
-        .filter_map(|(address, line, i)| alone(*address, i).map(|reason| (*line, reason.to_owned())))
-        .collect();
+/// A rule that programs break and run all the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Rule {
+    /// A `d.` instruction lies at a multiple of 8.
+    Alignment,
+    /// A pipelined multiply does not have its first source as destination.
+    MultiplySource,
+    /// No result is taken out of a pipe behind a scalar operation.
+    LostResult,
+}
+
+impl Rule {
+    /// All of them, by the names under which their warnings are turned off.
+    pub const NAMES: [(&'static str, Self); 3] =
+        [("alignment", Self::Alignment), ("multiply-source", Self::MultiplySource), ("lost-result", Self::LostResult)];
+
+    /// The name under which its warnings are turned off.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        Self::NAMES.iter().find(|(_, rule)| *rule == self).map_or("", |(name, _)| name)
+    }
+}
+
+/// All broken rules that make a program wrong, as source line and reason.
+pub(super) fn faults(program: &[Located]) -> Vec<(usize, String)> {
+    let same = |i: &Instruction| i.op == Op::Bla && i.src1 == i.src2;
+    let bla = program.iter().filter(|(.., i)| same(i));
+    let mut faults: Vec<(usize, String)> =
+        bla.map(|(_, line, _)| (*line, "bla needs two different registers".to_owned())).collect();
     faults.extend(program.windows(2).filter_map(slot));
     faults.extend(pairs(program));
-    faults.extend(lost_results(program, labels));
     faults
+}
+
+/// All broken rules that are warned of, as source line, rule and reason; `labels` are the addresses that code elsewhere may jump to.
+pub(super) fn warnings(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usize, Rule, String)> {
+    let each = program.iter().flat_map(|(address, line, i)| {
+        alone(*address, i).into_iter().map(|(rule, reason)| (*line, rule, reason.to_owned()))
+    });
+    let lost = lost_results(program, labels).into_iter().map(|(line, reason)| (line, Rule::LostResult, reason));
+    each.chain(lost).collect()
 }
 
 /// Operations put into a pipe since a scalar one went through it; `None` where what it holds is not known.
@@ -92,7 +127,7 @@ fn lost_results(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usize, Stri
         }
         let used = PipeUse::of(i);
         let double = i.has(Flags::SOURCE_DOUBLE);
-        for (unit, stages) in [(0, 3), (1, if double { 2 } else { 3 })] {
+        for (unit, stages) in [(0, 3), (1, if double && i.op != Op::Fmul3 { 2 } else { 3 })] {
             if used.takes[unit] && pipes[unit].has_lost(stages) {
                 let name = ["adder", "multiplier"][unit];
                 faults.push((
@@ -111,20 +146,19 @@ fn lost_results(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usize, Stri
     faults
 }
 
-fn alone(address: u32, i: &Instruction) -> Option<&'static str> {
+fn alone(address: u32, i: &Instruction) -> Option<(Rule, &'static str)> {
     let multiplier_first = match i.op {
-        Op::Fmul => i.has(Flags::PIPELINED),
+        Op::Fmul | Op::Fmul3 => i.has(Flags::PIPELINED),
         Op::DualOp => matches!(i.imm & 15, 9 | 11 | 13 | 15),
         _ => false,
     };
     match () {
         () if i.is_floating() && i.has(Flags::DUAL) && !address.is_multiple_of(8) => {
-            Some("a `d.` instruction must lie at a multiple of 8 (put a nop or .align 8 before it)")
+            Some((Rule::Alignment, "a `d.` instruction must lie at a multiple of 8 (put a nop or .align 8 before it)"))
         }
         () if multiplier_first && i.dest >= 2 && i.src1 == i.dest => {
-            Some("a pipelined multiply must not have its first source as destination")
+            Some((Rule::MultiplySource, "a pipelined multiply must not have its first source as destination"))
         }
-        () if i.op == Op::Bla && i.src1 == i.src2 => Some("bla needs two different registers"),
         () => None,
     }
 }

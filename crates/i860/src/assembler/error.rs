@@ -1,5 +1,8 @@
 //! What is wrong with a source.
 
+use super::check::Rule;
+use std::fmt;
+
 /// A fault in the source.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}:{line}: {reason}")]
@@ -10,6 +13,25 @@ pub struct AssemblyError {
     pub line: usize,
     /// What is wrong: expected and found.
     pub reason: String,
+}
+
+/// A rule that a source breaks, which may be what its writer wants.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AssemblyWarning {
+    /// File name as given.
+    pub file: String,
+    /// Line from 1; of the call, for text from a macro.
+    pub line: usize,
+    /// The rule.
+    pub rule: Rule,
+    /// What is wrong: expected and found.
+    pub reason: String,
+}
+
+impl fmt::Display for AssemblyWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}: {} [{}]", self.file, self.line, self.reason, self.rule.name())
+    }
 }
 
 /// All faults of a source, in the order of its lines.

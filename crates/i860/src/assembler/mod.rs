@@ -11,15 +11,20 @@
 //! | `h%x l%x ha%x` | halves of a constant; `ha%` goes with a signed `l%` |
 //! | `mov`, `nop`, `fmov.ss .dd .sd .ds` | the usual pseudo-operations; `mov constant, r` takes one or two words |
 //!
+//! | `;` | parts instructions on one line |
+//! | `// text` | a comment |
+//!
 //! After layout every instruction is checked: see the list in the module `check`.
 
 mod check;
 mod error;
 mod expression;
+mod listing;
 mod operand;
 mod source;
 
-pub use error::{AssemblyError, AssemblyErrors};
+pub use check::Rule;
+pub use error::{AssemblyError, AssemblyErrors, AssemblyWarning};
 
 use crate::encode::encode;
 use crate::instruction::{Flags, Instruction, Op};
@@ -42,9 +47,53 @@ pub struct Program {
     pub labels: Vec<(String, u32)>,
     /// Source line of every instruction in its own source, by address.
     pub lines: Vec<(u32, usize)>,
+    /// What is no instruction, by address.
+    pub data: Vec<Data>,
+    /// Rules that are broken and may be meant to be, by line.
+    pub warnings: Vec<AssemblyWarning>,
+}
+
+/// What a directive puts into memory.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Data {
+    /// Address of its first byte.
+    pub address: u32,
+    /// Number of its bytes.
+    pub bytes: u32,
+    /// Line in its own source.
+    pub line: usize,
+    /// What the bytes are.
+    pub kind: DataKind,
+}
+
+/// What the bytes of a directive are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DataKind {
+    /// Integers of so many bytes each: `.byte`, `.short`, `.long`.
+    Integers(u32),
+    /// `.float`.
+    Singles,
+    /// `.double`.
+    Doubles,
+    /// What `.align`, `.org` and `.space` leave free.
+    Gap,
 }
 
 impl Program {
+    /// A program of which only the bytes are known.
+    #[must_use]
+    pub fn of_bytes(base: u32, bytes: Vec<u8>) -> Program {
+        Program {
+            base,
+            bytes,
+            symbols: BTreeMap::new(),
+            labels: Vec::new(),
+            lines: Vec::new(),
+            data: Vec::new(),
+            warnings: Vec::new(),
+        }
+    }
+
     /// The contents as words (the last one filled up with zeros).
     #[must_use]
     pub fn words(&self) -> Vec<u32> {
@@ -70,7 +119,7 @@ impl Program {
 /// assert_eq!(program.words().len(), 8 + 3);
 /// ```
 pub fn link(base: u32, sources: &[(&str, &str)]) -> Result<Program, AssemblyErrors> {
-    let empty = Program { base, bytes: Vec::new(), symbols: BTreeMap::new(), labels: Vec::new(), lines: Vec::new() };
+    let empty = Program::of_bytes(base, Vec::new());
     sources.iter().try_fold(empty, |mut all, (file, source)| {
         all.bytes.resize(all.bytes.len().next_multiple_of(32), 0);
         let next = assemble(file, base + all.bytes.len() as u32, source)?;
@@ -80,6 +129,8 @@ pub fn link(base: u32, sources: &[(&str, &str)]) -> Result<Program, AssemblyErro
         });
         all.labels.extend(next.labels);
         all.lines.extend(next.lines);
+        all.data.extend(next.data);
+        all.warnings.extend(next.warnings);
         Ok(all)
     })
 }
@@ -108,6 +159,19 @@ enum Item {
     Gap {
         end: u32,
     },
+}
+
+impl Item {
+    /// What its bytes are; `None` for an instruction.
+    fn data_kind(&self) -> Option<DataKind> {
+        match self {
+            Self::Instruction { .. } => None,
+            Self::Integers { size, .. } => Some(DataKind::Integers(*size)),
+            Self::Floats { double: false, .. } => Some(DataKind::Singles),
+            Self::Floats { double: true, .. } => Some(DataKind::Doubles),
+            Self::Gap { .. } => Some(DataKind::Gap),
+        }
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -318,27 +382,37 @@ impl Assembler<'_> {
     fn finish(mut self) -> Result<Program, AssemblyErrors> {
         let mut bytes = Vec::new();
         let mut instructions = Vec::new();
+        let mut data = Vec::new();
         for placed in std::mem::take(&mut self.placed) {
             match self.emit(&placed) {
-                Ok((data, decoded)) => {
-                    bytes.extend(data);
-                    instructions.extend(decoded.map(|i| (placed.address, placed.line, i)));
+                Ok((emitted, decoded)) => {
+                    let kind = placed.item.data_kind().filter(|_| !emitted.is_empty());
+                    let bytes_of_it = emitted.len() as u32;
+                    let (address, line) = (placed.address, placed.line);
+                    data.extend(kind.map(|kind| Data { address, bytes: bytes_of_it, line, kind }));
+                    bytes.extend(emitted);
+                    instructions.extend(decoded.map(|i| (address, line, i)));
                 }
                 Err(reason) => self.fault(placed.line, reason),
             }
         }
-        let labels = self.labels.iter().map(|(_, address)| *address).collect();
-        for (line, reason) in check::faults(&instructions, &labels) {
+        for (line, reason) in check::faults(&instructions) {
             self.fault(line, reason);
         }
         self.errors.sort_by_key(|e| e.line);
         if !self.errors.is_empty() {
             return Err(AssemblyErrors(self.errors));
         }
+        let labels = self.labels.iter().map(|(_, address)| *address).collect();
+        let mut warnings: Vec<AssemblyWarning> = check::warnings(&instructions, &labels)
+            .into_iter()
+            .map(|(line, rule, reason)| AssemblyWarning { file: self.file.to_owned(), line, rule, reason })
+            .collect();
+        warnings.sort_by_key(|warning| warning.line);
         let symbols = self.symbols.into_iter().map(|(name, value)| (name, value as u32)).collect();
         let lines = instructions.iter().map(|(address, line, _)| (*address, *line)).collect();
         self.labels.sort_by_key(|(_, address)| *address);
-        Ok(Program { base: self.base, bytes, symbols, labels: self.labels, lines })
+        Ok(Program { base: self.base, bytes, symbols, labels: self.labels, lines, data, warnings })
     }
 
     fn emit(&self, placed: &Placed) -> Result<(Vec<u8>, Option<Instruction>), String> {

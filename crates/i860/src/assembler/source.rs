@@ -1,4 +1,4 @@
-//! Source text to plain lines: comments go, macros and repetitions are written out.
+//! Source text to plain lines: comments go, statements are parted at `;`, macros and repetitions are written out.
 
 use super::error::AssemblyError;
 use super::operand::split;
@@ -82,16 +82,18 @@ struct Expander<'a> {
     budget: Budget,
 }
 
-/// Everything from `//` or `;` on is comment.
-fn without_comment(text: &str) -> &str {
-    let end = [text.find("//"), text.find(';')].into_iter().flatten().min();
-    text[..end.unwrap_or(text.len())].trim()
+/// The statements of a line, which `;` parts; everything from `//` on is comment.
+fn statements(line: &str) -> impl Iterator<Item = &str> {
+    let code = line.split("//").next().unwrap_or_default();
+    code.split(';').map(str::trim).filter(|statement| !statement.is_empty())
 }
 
 /// Expands macros and repetitions.
 pub(super) fn expand(file: &str, source: &str) -> Result<Vec<Line>, AssemblyError> {
-    let plain = (1..).zip(source.lines().map(without_comment)).filter(|(_, text)| !text.is_empty());
-    let lines: Vec<Line> = plain.map(|(number, text)| Line { number, text: text.to_owned() }).collect();
+    let lines = (1..).zip(source.lines());
+    let lines: Vec<Line> = lines
+        .flat_map(|(number, line)| statements(line).map(move |text| Line { number, text: text.to_owned() }))
+        .collect();
     let mut expander = Expander { file, macros: BTreeMap::new(), lines: Vec::new(), calls: 0, budget: Budget::new() };
     expander.block(&lines, 0)?;
     Ok(expander.lines)

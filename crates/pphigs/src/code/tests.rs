@@ -37,7 +37,7 @@ fn end(program: &Program) -> u32 {
     program.base + program.bytes.len() as u32
 }
 
-/// A breakpoint in one of them is met in no other.
+/// A breakpoint in one of them is met in no other; and the assembler has nothing to say of any.
 #[test]
 fn no_two_programs_of_a_board_lie_in_the_same_place() {
     for kernel in kernels().filter(Kernel::can_serve_both_eyes) {
@@ -47,6 +47,7 @@ fn no_two_programs_of_a_board_lie_in_the_same_place() {
     for kernel in kernels() {
         for program in [program(kernel, true), interpolating::program(kernel)] {
             assert!(program.base == CODE && end(&program) <= SORT_CODE, "{kernel:?} ends at {:#x}", end(&program));
+            assert_eq!(program.warnings, [], "{kernel:?}");
         }
     }
     let sort = surrounding::program();
@@ -58,11 +59,15 @@ fn no_two_programs_of_a_board_lie_in_the_same_place() {
     let order = ordering::program();
     assert!(order.base == ORDER_CODE && end(&order) <= ORDER_HEAD, "{:#x}", end(&order));
     let begin = begin::program();
+    for program in [&*sort, &*token, &*windows, &*order, &*begin] {
+        assert_eq!(program.warnings, []);
+    }
     assert!(begin.base == BEGIN_CODE && end(&begin) <= SPHERE_CODE, "{:#x}", end(&begin));
     let spheres = SURFACES.into_iter().flat_map(|surface| PICTURES.map(|picture| (surface, picture)));
     let kernel = |(surface, picture)| BOTH.map(|keeps_boxes| SphereKernel { surface, picture, keeps_boxes });
     for kernel in spheres.flat_map(kernel) {
         let program = sphere_program(kernel, true);
         assert!(program.base == SPHERE_CODE && end(&program) <= PARAMETERS, "{kernel:?}: {:#x}", end(&program));
+        assert_eq!(program.warnings, [], "{kernel:?}");
     }
 }

@@ -1,8 +1,11 @@
 //! The files of a comparison: tables for other programs, and drawings of what was run.
 
+use pxpl5::Cause;
 use pxpl5::compare::{Comparison, ComparisonRow};
+use pxpl5::tracking::predict::PredictorKind;
 use pxpl5::views::charts::{ChartAxes, Curve, MarkedPoint, curve_chart, point_chart};
 use pxpl5::views::results::csv_table;
+use serde_json::Value;
 
 /// Names and contents.
 pub(super) fn files(comparison: &Comparison) -> [(&'static str, String); 6] {
@@ -77,50 +80,57 @@ fn axes(comparison: &Comparison, title: &str, across: &str, up: &str) -> ChartAx
 /// Columns of the table of rows, and what stands in them.
 type Column = (&'static str, fn(&ComparisonRow) -> String);
 
-const COLUMNS: [Column; 24] = [
+const COLUMNS: [Column; 22] = [
     ("pipeline", |row| row.pipeline.clone()),
     ("settings", |row| row.settings.clone()),
-    ("latency_ms_mean", |row| number(row.latency_ms.mean)),
-    ("latency_ms_sd", |row| number(row.latency_ms.sd)),
-    ("head_to_light_ms_mean", |row| number(row.head_to_light_ms.mean)),
-    ("head_to_light_ms_sd", |row| number(row.head_to_light_ms.sd)),
-    ("prediction_interval_ms_mean", |row| number(row.prediction_interval_ms.mean)),
-    ("prediction_interval_ms_sd", |row| number(row.prediction_interval_ms.sd)),
-    ("updates_hz", |row| number(row.updates_hz.mean)),
+    ("latency_ms.mean", |row| number(row.latency_ms.mean)),
+    ("latency_ms.sd", |row| number(row.latency_ms.sd)),
+    ("head_to_light_ms.mean", |row| number(row.head_to_light_ms.mean)),
+    ("head_to_light_ms.sd", |row| number(row.head_to_light_ms.sd)),
+    ("prediction_interval_ms.mean", |row| number(row.prediction_interval_ms.mean)),
+    ("prediction_interval_ms.sd", |row| number(row.prediction_interval_ms.sd)),
+    ("updates_hz.mean", |row| number(row.updates_hz.mean)),
     ("not_shown", |row| count(row.not_shown)),
     ("due", |row| count(row.due)),
-    ("best_predictor", |row| row.best_predictor().map_or_else(String::new, |best| best.kind.name().to_owned())),
-    ("best_predictor_px", |row| row.best_predictor().map_or_else(String::new, |best| number(best.mean_px))),
     ("late_regions", |row| count(row.late_regions)),
-    ("error_px_mean", |row| number(row.error.mean_px.mean)),
-    ("error_px_low", |row| number(row.error.mean_px.low)),
-    ("error_px_high", |row| number(row.error.mean_px.high)),
-    ("seeds_judged", |row| row.error.mean_px.n.to_string()),
-    ("error_px_p50", |row| number(row.error.pixels.p50)),
-    ("error_px_p90", |row| number(row.error.pixels.p90)),
-    ("error_px_p99", |row| number(row.error.pixels.p99)),
-    ("pixels_judged", |row| row.error.n.to_string()),
+    ("error.mean_px.mean", |row| number(row.error.mean_px.mean)),
+    ("error.mean_px.low", |row| number(row.error.mean_px.low)),
+    ("error.mean_px.high", |row| number(row.error.mean_px.high)),
+    ("error.mean_px.n", |row| row.error.mean_px.n.to_string()),
+    ("error.pixels.p50", |row| number(row.error.pixels.p50)),
+    ("error.pixels.p90", |row| number(row.error.pixels.p90)),
+    ("error.pixels.p99", |row| number(row.error.pixels.p99)),
+    ("error.n", |row| row.error.n.to_string()),
     ("triangles_possible", |row| row.triangles_possible.map_or_else(String::new, |n| n.to_string())),
     ("failure", |row| row.failure.clone().unwrap_or_default()),
 ];
 
-/// A row for each pipeline; the causes of its error are the last columns. What was not judged is empty.
+/// A row for each pipeline, under the names that the numbers have in comparison.json; its predictors and the causes of its error are
+/// the last columns. What was not judged is empty.
 fn rows_csv(comparison: &Comparison) -> String {
-    let causes = comparison.pipelines.iter().map(|row| &row.causes).max_by_key(|causes| causes.len());
-    let names: Vec<String> = causes
-        .into_iter()
-        .flatten()
-        .map(|share| format!("error_px_by_{}", share.cause.map_or("interaction", pxpl5::Cause::name).replace('-', "_")))
-        .collect();
-    let columns = COLUMNS.iter().map(|(name, _)| (*name).to_owned()).chain(names.iter().cloned());
-    let rows = comparison.pipelines.iter().map(|row| {
-        let mut cells: Vec<String> = COLUMNS.iter().map(|(_, value)| value(row)).collect();
-        cells.extend(
-            (0..names.len()).map(|i| row.causes.get(i).map_or_else(String::new, |share| number(share.px.mean))),
-        );
-        cells
+    let causes: Vec<Option<Cause>> = Cause::ALL.into_iter().map(Some).chain([None]).collect();
+    let of_predictors =
+        PredictorKind::ALL.map(|kind| format!("predictors.{}.mean_px", written(serde_json::to_value(kind))));
+    let of_causes = causes.iter().map(|cause| {
+        let cause = cause.map_or_else(|| "interaction".to_owned(), |cause| written(serde_json::to_value(cause)));
+        format!("causes.{cause}.px.mean")
     });
-    csv_table(columns, rows)
+    let columns = COLUMNS.iter().map(|(name, _)| (*name).to_owned()).chain(of_predictors).chain(of_causes);
+    let rows = comparison.pipelines.iter().map(|row| {
+        let predictor =
+            |kind: PredictorKind| row.predictors.iter().find(|mean| mean.kind == kind).map(|mean| mean.mean_px);
+        let cause =
+            |cause: &Option<Cause>| row.causes.iter().find(|share| share.cause == *cause).map(|share| share.px.mean);
+        let numbers = PredictorKind::ALL.into_iter().map(predictor).chain(causes.iter().map(cause));
+        let numbers = numbers.map(|value| value.map_or_else(String::new, number));
+        COLUMNS.iter().map(|(_, value)| value(row)).chain(numbers).collect::<Vec<String>>()
+    });
+    csv_table(columns.collect::<Vec<String>>(), rows)
+}
+
+/// A name as JSON has it.
+fn written(name: serde_json::Result<Value>) -> String {
+    name.ok().and_then(|name| name.as_str().map(str::to_owned)).unwrap_or_default()
 }
 
 /// A row for each field of each pipeline, of the first seed.

@@ -10,6 +10,7 @@ mod views;
 mod words;
 
 use crate::error::CliError;
+use crate::scenes;
 use crate::settings::SettingArgs;
 use crate::terminal::{print, warn};
 use clap::Args;
@@ -44,7 +45,7 @@ pub(crate) fn run(args: DebugArgs) -> Result<(), CliError> {
     let script = script(args.commands, args.do_file)?;
     let plan = args.settings.gather()?.resolve()?;
     warn(&plan.warnings(), args.quiet);
-    let experiment = plan.experiment(plan.load_scene()?).host(Workstation::new()).record_traffic(true);
+    let experiment = plan.experiment(scenes::load(&plan, args.quiet)?).host(Workstation::new()).record_traffic(true);
     let session = Session::new(experiment.stepper()?);
     match script {
         Some(commands) => scripted(session, &commands),

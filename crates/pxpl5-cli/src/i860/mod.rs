@@ -5,11 +5,11 @@ mod run;
 
 use crate::error::CliError;
 use crate::output::OutputFile;
-use crate::terminal::print;
-use ::i860::{Config, Program, assemble, disassemble, vectors};
+use crate::terminal::{print, warn};
+use ::i860::{Config, Program, Rule, assemble, disassemble, vectors};
 use clap::{Args, Subcommand};
 use flate2::read::MultiGzDecoder;
-use names::{address, labels_at};
+use names::address;
 use run::{RunOptions, execute};
 use std::fmt::Write as _;
 use std::io::Read;
@@ -34,6 +34,8 @@ enum Command {
         /// Write the bytes to this file instead of listing them.
         #[arg(short, long)]
         output: Option<PathBuf>,
+        #[command(flatten)]
+        warnings: Warnings,
     },
     /// Disassemble a file of little-endian words.
     Disasm {
@@ -73,6 +75,8 @@ enum Command {
         /// Leave out the listing by address.
         #[arg(long)]
         quiet: bool,
+        #[command(flatten)]
+        warnings: Warnings,
     },
     /// Run a file of conformance vectors (JSON lines, perhaps gzip-compressed).
     Vectors {
@@ -87,18 +91,34 @@ enum Command {
     },
 }
 
+/// Which warnings of the assembler are told.
+#[derive(Args, Debug, Default)]
+struct Warnings {
+    /// Turn a warning of the assembler off; may be repeated or a list with commas.
+    #[arg(long, value_name = "RULE", value_delimiter = ',', value_parser = ["all", "alignment", "multiply-source", "lost-result"])]
+    allow: Vec<String>,
+}
+
+impl Warnings {
+    fn tell(&self, program: &Program) {
+        let is_allowed = |rule: Rule| self.allow.iter().any(|name| name == "all" || name == rule.name());
+        let told: Vec<String> =
+            program.warnings.iter().filter(|warning| !is_allowed(warning.rule)).map(ToString::to_string).collect();
+        warn(&told, false);
+    }
+}
+
 /// Runs the command.
 ///
 /// # Errors
 /// What to tell the user before a non-zero exit.
 pub(crate) fn run(args: I860Args) -> Result<(), CliError> {
     match args.command {
-        Command::Asm { file, base, output } => asm(&file, base, output.as_deref()),
-        Command::Disasm { file, base } => {
-            print(&listing(base, &words_of(&read(&file).map_err(CliError::failure)?), None))
-        }
-        Command::Run { file, base, entry, stop, budget, memory, show, json, quiet } => {
+        Command::Asm { file, base, output, warnings } => asm(&file, base, output.as_deref(), &warnings),
+        Command::Disasm { file, base } => print(&listing(base, &words_of(&read(&file).map_err(CliError::failure)?))),
+        Command::Run { file, base, entry, stop, budget, memory, show, json, quiet, warnings } => {
             let program = load(&file, base).map_err(CliError::failure)?;
+            warnings.tell(&program);
             let options = RunOptions { entry, stop, budget, memory, show, json, quiet };
             let (report, result) = execute(&program, &options).map_err(CliError::failure)?;
             print(&report)?;
@@ -128,16 +148,19 @@ fn text_of(file: &Path, bytes: Vec<u8>) -> Result<String, String> {
     String::from_utf8(bytes).map_err(|e| format!("{}: not UTF-8 text: {e}", file.display()))
 }
 
-fn assembled(file: &Path, base: u32) -> Result<Program, String> {
-    let source = text_of(file, read(file)?)?;
-    assemble(&file.display().to_string(), base, &source).map_err(|e| e.to_string())
+/// A program and its source, whose comments may be in any encoding.
+fn assembled(file: &Path, base: u32) -> Result<(Program, String), String> {
+    let source = String::from_utf8_lossy(&read(file)?).into_owned();
+    let program = assemble(&file.display().to_string(), base, &source).map_err(|e| e.to_string())?;
+    Ok((program, source))
 }
 
-fn asm(file: &Path, base: u32, output: Option<&Path>) -> Result<(), CliError> {
-    let program = assembled(file, base).map_err(CliError::failure)?;
+fn asm(file: &Path, base: u32, output: Option<&Path>, warnings: &Warnings) -> Result<(), CliError> {
+    let (program, source) = assembled(file, base).map_err(CliError::failure)?;
+    warnings.tell(&program);
     match output {
         Some(path) => OutputFile::open(path)?.write(&program.bytes),
-        None => print(&listing(base, &program.words(), Some(&program))),
+        None => print(&program.listing(Some(&source))),
     }
 }
 
@@ -150,21 +173,20 @@ fn word_of(bytes: &[u8]) -> u32 {
     (0..4).map(|n| u32::from(bytes.get(n).copied().unwrap_or(0)) << (8 * n)).sum()
 }
 
-fn listing(base: u32, words: &[u32], program: Option<&Program>) -> String {
+fn listing(base: u32, words: &[u32]) -> String {
     let mut text = String::new();
     for (n, word) in (0..).zip(words) {
         let pc = base.wrapping_add(4 * n);
-        let _ = writeln!(text, "{}{pc:08x}  {word:08x}  {}", labels_at(program, pc), disassemble(*word, pc));
+        let _ = writeln!(text, "{pc:08x}  {word:08x}  {}", disassemble(*word, pc));
     }
     text
 }
 
 fn load(file: &Path, base: u32) -> Result<Program, String> {
     if file.extension().is_some_and(|e| e == "s") {
-        return assembled(file, base);
+        return assembled(file, base).map(|(program, _)| program);
     }
-    let bytes = read(file)?;
-    Ok(Program { base, bytes, symbols: Default::default(), labels: Vec::new(), lines: Vec::new() })
+    Ok(Program::of_bytes(base, read(file)?))
 }
 
 /// Runs a file of vectors; gives the report and the number that failed.

@@ -13,7 +13,6 @@ pub(super) fn address(text: &str) -> Result<u32, String> {
 }
 
 /// A line for each label of an address.
-pub(super) fn labels_at(program: Option<&Program>, pc: u32) -> String {
-    let labels = program.map_or(&[][..], |p| &p.labels);
-    labels.iter().filter(|(_, at)| *at == pc).map(|(name, _)| format!("{name}:\n")).collect()
+pub(super) fn labels_at(program: &Program, pc: u32) -> String {
+    program.labels.iter().filter(|(_, at)| *at == pc).map(|(name, _)| format!("{name}:\n")).collect()
 }

@@ -250,8 +250,12 @@ fn cycle_listing(program: &Program, cpu: &Cpu) -> String {
     for (n, word) in program.words().iter().enumerate() {
         let pc = program.base.wrapping_add(4 * n as u32);
         let (clocks, visits) = cpu.watched().map_or((0, 0), |watched| watched.at(pc));
-        let labels = labels_at(Some(program), pc);
-        let _ = writeln!(text, "{labels}{visits:>11} {clocks:>11}  {pc:08x}  {word:08x}  {}", disassemble(*word, pc));
+        let labels = labels_at(program, pc);
+        let what = match program.data_at(pc) {
+            Some(_) => format!(".long {word:#x}"),
+            None => disassemble(*word, pc),
+        };
+        let _ = writeln!(text, "{labels}{visits:>11} {clocks:>11}  {pc:08x}  {word:08x}  {what}");
     }
     text
 }

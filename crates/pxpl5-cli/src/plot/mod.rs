@@ -7,7 +7,7 @@ mod question;
 use crate::error::CliError;
 use crate::output::OutputFolder;
 use crate::rows::{self, ResultRows, RowsKind};
-use crate::terminal::{complain, print};
+use crate::terminal::{complain, print, warn};
 use formats::Format;
 use pxpl5::results::csv_table;
 use pxpl5::views::charts::AxisScale;
@@ -116,7 +116,7 @@ pub(crate) fn run(args: PlotArgs) -> Result<(), CliError> {
     let format = Format::of(&args.out)?;
     let folder = rows::folder_of(&args.results);
     let results = rows::of(folder)?.ok_or_else(|| no_rows(folder))?;
-    let question = args.question(results.kind);
+    let question = with_new_names(args.question(results.kind), &results, args.quiet);
     let groups = question.groups(&results)?;
     let missing: usize = groups.iter().map(|group| group.missing).sum();
     if groups.iter().all(|group| group.n == 0) {
@@ -134,6 +134,23 @@ pub(crate) fn run(args: PlotArgs) -> Result<(), CliError> {
     }
     let places = groups.iter().filter(|group| group.n > 0).count();
     print(&format!("{places} places are drawn in {}, the numbers are beside it.\n", args.out.display()))
+}
+
+/// The question with the names of today in place of those that columns of comparisons once had; says so.
+fn with_new_names(mut question: Question, results: &ResultRows, quiet: bool) -> Question {
+    if results.kind != RowsKind::Comparison {
+        return question;
+    }
+    let is_known = |name: &str| results.rows.iter().flatten().any(|(key, _)| key == name);
+    let only = question.only.iter_mut().map(|(name, _)| name);
+    let names = [&mut question.x, &mut question.y].into_iter().chain(&mut question.by).chain(only);
+    for name in names {
+        if let Some(new) = rows::renamed(name).filter(|new| !is_known(name) && is_known(new)) {
+            warn(&[format!("the column `{name}` is called `{new}` now")], quiet);
+            *name = new;
+        }
+    }
+    question
 }
 
 fn no_rows(folder: &Path) -> CliError {

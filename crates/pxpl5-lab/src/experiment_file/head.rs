@@ -82,6 +82,11 @@ impl HeadChoice {
         Arc::clone(&self.head)
     }
 
+    /// What is to be said of the recording of its motion.
+    pub(crate) fn warnings(&self) -> impl Iterator<Item = String> {
+        self.head.motion().warnings().into_iter().map(|warning| format!("{}: {warning}", self.motion))
+    }
+
     /// The numbers of its tracker, of the port and of the predictor.
     #[must_use]
     pub fn parameters(&self) -> Vec<Parameter> {

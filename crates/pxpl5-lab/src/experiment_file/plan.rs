@@ -305,11 +305,13 @@ impl Plan {
         out_of_range(&self.machine, self.pipeline.as_ref()).into_iter().chain(of_head).collect()
     }
 
-    /// What cannot be taken for the machine: parameters that no source allows, and times of a table where code is asked for.
+    /// What cannot be taken for the machine: parameters that no source allows, and times of a table where code is asked for. And
+    /// what is to be said of the recording of the head.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let of_table = times_of_table(self.level, &self.machine, self.pipeline.as_ref());
-        self.out_of_range().iter().map(Parameter::warning).chain(of_table).collect()
+        let of_head = self.head.iter().flat_map(HeadChoice::warnings);
+        self.out_of_range().iter().map(Parameter::warning).chain(of_table).chain(of_head).collect()
     }
 
     /// Name of the level of modelling.

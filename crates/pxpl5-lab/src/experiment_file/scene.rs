@@ -24,9 +24,6 @@ pub struct SceneChoice {
     pub contents: Option<Arc<[u8]>>,
 }
 
-/// Extensions of model files.
-const MODEL_FILES: [&str; 4] = ["ply", "obj", "pdb", "ent"];
-
 impl SceneChoice {
     pub(super) fn read(file: &ExperimentFile) -> Result<Self, FileError> {
         let how = "a built-in scene (`pxpl5 scenes` lists them) or a model file (.ply, .obj, .pdb)";
@@ -76,13 +73,16 @@ impl SceneChoice {
             return Ok(scene);
         }
         let motion = self.motion.motion(&scene)?;
+        let warnings = scene.warnings().to_vec();
         let parts = Arc::unwrap_or_clone(scene).into_parts();
-        Ok(Arc::new(Scene::new(pxpl5_scene::SceneParts { motion, ..parts })?))
+        Ok(Arc::new(Scene::new(pxpl5_scene::SceneParts { motion, ..parts })?.with_warnings(warnings)))
     }
 }
 
-/// Whether a scene's name is a path: it has a model file's extension, or a separator.
+/// Returns true if a scene's name is a path: it has a separator, or an extension of whatever format. No built-in scene has one; what
+/// follows the point in `typical:1.5` is none.
 pub(crate) fn is_file(name: &str) -> bool {
-    let extension = Path::new(name).extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-    name.contains(['/', std::path::MAIN_SEPARATOR]) || extension.is_some_and(|e| MODEL_FILES.contains(&e.as_str()))
+    let extension =
+        Path::new(name).extension().map(|end| end.to_string_lossy().starts_with(|c: char| c.is_alphabetic()));
+    name.contains(['/', std::path::MAIN_SEPARATOR]) || extension == Some(true)
 }

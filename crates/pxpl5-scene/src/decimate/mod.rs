@@ -43,7 +43,7 @@ impl Scene {
             triangles: triangles_kept(self, n - kept_spheres),
             spheres: (0..spheres).map(|sphere| is_kept(sphere, spheres, kept_spheres)).collect(),
         };
-        Self::new(kept.of(self.clone().into_parts()))
+        Ok(Self::new(kept.of(self.clone().into_parts()))?.with_warnings(self.warnings().to_vec()))
     }
 }
 

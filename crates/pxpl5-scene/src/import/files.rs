@@ -45,9 +45,7 @@ pub fn load_placed(path: impl AsRef<Path>, placement: Placement) -> Result<Scene
 fn not_a_model(path: &Path, file: String) -> LoadError {
     match fs::metadata(path) {
         Ok(data) if data.is_dir() => LoadError::NotAFile { file, found: "a directory" },
-        Err(source) => LoadError::Io { file, source },
-        Ok(_) => {
-            LoadError::UnknownFormat { file, found: path.extension().unwrap_or_default().to_string_lossy().into() }
-        }
+        Err(source) if path.extension().is_none() => LoadError::Io { file, source },
+        _ => LoadError::UnknownFormat { file, found: path.extension().unwrap_or_default().to_string_lossy().into() },
     }
 }

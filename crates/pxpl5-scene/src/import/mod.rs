@@ -8,6 +8,7 @@ mod obj;
 mod pdb;
 mod placement;
 mod ply;
+mod polygon;
 mod source;
 
 use std::io::Read;
@@ -51,9 +52,10 @@ impl Placement {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
     /// Polygon file: ASCII, binary little-endian or binary big-endian; element `vertex` with `x y z`, optionally
-    /// `nx ny nz` and `red green blue`; element `face`, or `tristrips`, with `vertex_indices` or `vertex_index`.
+    /// `nx ny nz` and `red green blue`; element `face`, perhaps with `red green blue`, or `tristrips`, with `vertex_indices` or `vertex_index`.
     Ply,
-    /// Wavefront object: `v`, `vn`, `f`; everything else is passed over. No line continuations.
+    /// Wavefront object: `v` with or without colours, `vn`, `f`, `s`; everything else is passed over. A line that ends in `\` goes on
+    /// in the next one.
     Obj,
     /// Protein Data Bank: `ATOM` and `HETATM` of the first model become spheres; of an atom's alternate locations the first.
     Pdb,
@@ -127,7 +129,8 @@ fn read_placed(
 
 /// Reads a model from memory; `name` stands for it in errors and as the name of the scene.
 ///
-/// Polygons are cut into fans; missing normals become the mean of the adjacent triangles, weighted by area. The model
+/// Polygons are cut into triangles, concave ones too. Missing normals become the mean of the adjacent triangles, weighted by area; in
+/// OBJ files only within a smoothing group, and faces without one are flat. The model
 /// is moved so that the centre of its box is the origin, and scaled so that its farthest point is
 /// [`crate::config::IMPORT_RADIUS_M`] away: so both eyes see all of it under [`Scene::motion`], whatever the units of the file.
 /// Its axes stay: +y is up, +z faces the viewer.
@@ -161,6 +164,7 @@ enum Content {
 
 fn read(bytes: &[u8], format: Format, name: &str, placement: Placement) -> Result<Content, LoadError> {
     let source = Source { name, bytes };
+    source.check_is_bytes_of_text()?;
     if bytes.len() as u64 > MAX_FILE_BYTES {
         return Err(LoadError::TooLarge { file: name.to_owned(), expected: MAX_FILE_BYTES });
     }

@@ -1,8 +1,12 @@
 //! What the readers of meshes end in: columns that hold no more than the file says, so that a model takes at most seven times its file.
 
+use std::hash::{BuildHasher, RandomState};
+
 use glam::{DVec3, Vec3};
+use hashbrown::HashTable;
 
 use super::mesh::{Fit, area, seen_by, unit};
+use super::polygon::{self, Cut, MOST_CORNERS, has_area};
 use super::{Placement, Source};
 use crate::config::{DEFAULT_COLOUR, MEMORY_FLOOR_BYTES, MEMORY_TIMES_FILE};
 use crate::error::LoadError;
@@ -36,7 +40,7 @@ impl Places {
         }
     }
 
-    fn at(&self, point: usize) -> DVec3 {
+    pub(super) fn at(&self, point: usize) -> DVec3 {
         match self {
             Self::Single(places) => places[point].as_dvec3(),
             Self::Double(places) => places[point],
@@ -50,6 +54,14 @@ impl Places {
         }
     }
 
+    /// Height of the flattest triangle that is none by rounding alone, relative to its longest edge.
+    const fn least_height(&self) -> f64 {
+        match self {
+            Self::Single(_) => 1e-6,
+            Self::Double(_) => 1e-12,
+        }
+    }
+
     fn bytes(&self) -> usize {
         match self {
             Self::Single(places) => size_of_val(places.as_slice()),
@@ -58,19 +70,64 @@ impl Places {
     }
 }
 
-/// A point, and its normal counted from 1; 0 for none. Short, since a file can have many times more of them than points.
+/// A point, and what else makes a vertex of it ([`Detail`]). Short, since a file can have many times more of them than points.
 pub(super) type Corner = (u32, u32);
+
+/// The second number of a [`Corner`].
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Detail {
+    /// A normal counted from 1, or else the group of faces (0, or from 2^31 on) that the corner is shaded smoothly with.
+    Normal,
+    /// Red, green and blue of a face, the lowest byte first.
+    Colour,
+}
+
+/// The vertices by their corners, in 5 bytes each: the corners themselves are the model's. Looked up only, never walked, so its
+/// order shows nowhere.
+#[derive(Default)]
+pub(super) struct Vertices {
+    table: HashTable<u32>,
+    hasher: RandomState,
+}
+
+impl Vertices {
+    /// The vertex of a corner: a new one where there is none yet.
+    pub(super) fn of(&mut self, corners: &mut Vec<Corner>, corner: Corner) -> u32 {
+        let hash = self.hasher.hash_one(corner);
+        if let Some(&known) = self.table.find(hash, |&vertex| corners[vertex as usize] == corner) {
+            return known;
+        }
+        let next = corners.len() as u32;
+        push_slowly(corners, corner);
+        let hasher = &self.hasher;
+        self.table.insert_unique(hash, next, |&vertex| hasher.hash_one(corners[vertex as usize]));
+        next
+    }
+}
+
+/// Adds an item to a list that grows by an eighth, not twice: a file can consist of such items.
+pub(super) fn push_slowly<T>(list: &mut Vec<T>, item: T) {
+    if list.len() == list.capacity() {
+        list.reserve_exact(list.len() / 8 + 1024);
+    }
+    list.push(item);
+}
 
 /// A mesh as its file has it.
 pub(super) struct Model {
     pub(super) places: Places,
     /// Of unit length; zero where the file gives none; empty as long as it has given none at all.
     pub(super) normals: Vec<Vec3>,
-    /// Of each vertex; empty where all have [`DEFAULT_COLOUR`].
+    /// Of each point; empty where all have [`DEFAULT_COLOUR`].
     pub(super) colours: Vec<[u8; 3]>,
     /// The vertices; empty where each point is a vertex, with the normal of its number.
     pub(super) corners: Vec<Corner>,
+    pub(super) detail: Detail,
     pub(super) triangles: Vec<[u32; 3]>,
+    /// What was read otherwise than its writer may have meant.
+    pub(super) warnings: Vec<String>,
+    /// Polygons with a notch that were too long for ears.
+    too_long: usize,
 }
 
 /// A direction of a file with length 1, as a vertex has it; zero for one without length.
@@ -80,7 +137,64 @@ pub(super) fn direction(v: DVec3) -> Vec3 {
 
 impl Model {
     pub(super) fn new(places: Places) -> Self {
-        Self { places, normals: Vec::new(), colours: Vec::new(), corners: Vec::new(), triangles: Vec::new() }
+        Self {
+            places,
+            normals: Vec::new(),
+            colours: Vec::new(),
+            corners: Vec::new(),
+            detail: Detail::Normal,
+            triangles: Vec::new(),
+            warnings: Vec::new(),
+            too_long: 0,
+        }
+    }
+
+    /// Cuts the polygon whose fan are the last triangles, from `first` on, into others where the fan would fill a notch.
+    pub(super) fn cut_polygon(&mut self, first: usize) {
+        match polygon::cut(&self.triangles[first..], |vertex| self.places.at(self.point(vertex as usize))) {
+            Cut::Fan => {}
+            Cut::Ears(ears) => {
+                self.triangles.truncate(first);
+                self.triangles.extend(ears);
+            }
+            Cut::TooLong => self.too_long += 1,
+        }
+    }
+
+    /// The normal of the polygon whose fan are the last triangles, from `first` on; zero for one without area.
+    pub(super) fn polygon_normal(&self, first: usize) -> Vec3 {
+        direction(polygon::normal(&self.triangles[first..], |vertex| self.places.at(self.point(vertex as usize))))
+    }
+
+    /// Refuses a model, while it is read, that no file of this size needs: as it is, and with triangles that are to come.
+    pub(super) fn check_reading(&self, source: &Source<'_>, more_triangles: usize) -> Result<(), LoadError> {
+        let found = source.bytes.len()
+            + self.lists_bytes()
+            + self.corners.len() * TABLE_BYTES
+            + more_triangles * size_of::<[u32; 3]>();
+        check_memory(source.name, found, source.bytes.len())
+    }
+
+    fn lists_bytes(&self) -> usize {
+        self.places.bytes()
+            + size_of_val(self.normals.as_slice())
+            + size_of_val(self.colours.as_slice())
+            + size_of_val(self.corners.as_slice())
+            + size_of_val(self.triangles.as_slice())
+    }
+
+    fn corner_places(&self, triangle: [u32; 3]) -> [DVec3; 3] {
+        triangle.map(|vertex| self.places.at(self.point(vertex as usize)))
+    }
+
+    /// Refuses a model of which nothing can be seen.
+    fn check_areas(&self, name: &str) -> Result<(), LoadError> {
+        let least = self.places.least_height();
+        if self.triangles.iter().any(|&t| has_area(self.corner_places(t), least)) {
+            return Ok(());
+        }
+        let expected = if self.triangles.is_empty() { "triangle" } else { "triangle with an area" };
+        Err(LoadError::NothingToDraw { file: name.to_owned(), expected })
     }
 
     /// A fitted scene of the mesh. The file's own bytes are not needed any more.
@@ -90,17 +204,22 @@ impl Model {
         file_bytes: usize,
         placement: Placement,
     ) -> Result<Scene, LoadError> {
-        if self.triangles.is_empty() {
-            return Err(LoadError::NothingToDraw { file: name.to_owned(), expected: "triangle" });
+        if self.too_long > 0 {
+            self.warnings.push(format!(
+                "{} with a notch and more than {MOST_CORNERS} corners: the notch is filled",
+                counted(self.too_long, "polygon")
+            ));
         }
+        let warnings = std::mem::take(&mut self.warnings);
         if self.corners.is_empty() {
             self.drop_unused();
         }
         self.check_memory(name, file_bytes)?;
+        self.check_areas(name)?;
         let points = (0..self.vertices()).map(|vertex| (self.places.at(self.point(vertex)), 0.0));
         let fit = placement.fit(points);
         let vertices = self.fitted_vertices(&fit);
-        Ok(seen_by(placement.motion(), name, vertices, self.triangles, Vec::new()))
+        Ok(seen_by(placement.motion(), name, vertices, self.triangles, Vec::new()).with_warnings(warnings))
     }
 
     fn vertices(&self) -> usize {
@@ -114,52 +233,73 @@ impl Model {
 
     /// The normal that the file gives a vertex; zero where it gives none.
     fn given_normal(&self, vertex: usize) -> Vec3 {
-        let number = self.corners.get(vertex).map_or(vertex + 1, |corner| corner.1 as usize);
+        let number = match (self.corners.get(vertex), self.detail) {
+            (Some(corner), Detail::Normal) => corner.1 as usize,
+            _ => self.point(vertex) + 1,
+        };
         number.checked_sub(1).and_then(|index| self.normals.get(index)).copied().unwrap_or(Vec3::ZERO)
     }
 
-    /// The vertices of a scene, rounded to single precision. Where the file gives no normal it is the mean over the triangles around
-    /// the point, weighted by area; +z if there are only triangles without area.
+    fn colour(&self, vertex: usize) -> [u8; 3] {
+        match (self.corners.get(vertex), self.detail) {
+            (Some(corner), Detail::Colour) => packed_colour(corner.1),
+            _ => self.colours.get(self.point(vertex)).copied().unwrap_or(DEFAULT_COLOUR),
+        }
+    }
+
+    /// The vertices of a scene, rounded to single precision. Where the file gives no normal it is the mean over the triangles that
+    /// share the corner, weighted by area; +z if there are only triangles without area.
     fn fitted_vertices(&self, fit: &Fit) -> Vec<Vertex> {
         let mut vertices = Vec::with_capacity(self.vertices());
         vertices.extend((0..self.vertices()).map(|vertex| Vertex {
             position: fit.place(self.places.at(self.point(vertex))).as_vec3(),
             normal: self.given_normal(vertex),
-            colour: self.colours.get(vertex).copied().unwrap_or(DEFAULT_COLOUR),
+            colour: self.colour(vertex),
         }));
         if vertices.iter().all(|vertex| vertex.normal != Vec3::ZERO) {
             return vertices;
         }
         let step = self.summed_at_once();
-        for first in (0..self.places.len()).step_by(step) {
+        for first in (0..self.shaded()).step_by(step) {
             self.complete_normals(&mut vertices, fit, first, step);
         }
         vertices
     }
 
-    /// Points whose areas are summed up at a time: sums are in double precision, and all at once would be as much as the places.
-    fn summed_at_once(&self) -> usize {
-        (self.places.len() / 8).max(1 << 16)
+    /// The number of what a vertex shares its shading with: vertices of one number have one mean normal. Faces of different colours
+    /// share the points between them; faces of different groups do not.
+    fn shading(&self, vertex: usize) -> usize {
+        if self.detail == Detail::Colour { self.point(vertex) } else { vertex }
     }
 
-    /// Gives a normal to every vertex without one on `count` points from `first` on.
+    /// How many numbers [`Self::shading`] gives.
+    fn shaded(&self) -> usize {
+        if self.detail == Detail::Colour { self.places.len() } else { self.vertices() }
+    }
+
+    /// Numbers whose areas are summed up at a time: sums are in double precision, and all at once would be as much as the places.
+    fn summed_at_once(&self) -> usize {
+        (self.shaded() / 8).max(1 << 16)
+    }
+
+    /// Gives a normal to every vertex without one whose shading is one of `count` numbers from `first` on.
     fn complete_normals(&self, vertices: &mut [Vertex], fit: &Fit, first: usize, count: usize) {
-        let mut sums = vec![DVec3::ZERO; count.min(self.places.len() - first)];
+        let mut sums = vec![DVec3::ZERO; count.min(self.shaded() - first)];
         for triangle in &self.triangles {
-            let points = triangle.map(|corner| self.point(corner as usize));
-            if points.iter().all(|point| point.wrapping_sub(first) >= sums.len()) {
+            let shadings = triangle.map(|corner| self.shading(corner as usize));
+            if shadings.iter().all(|shading| shading.wrapping_sub(first) >= sums.len()) {
                 continue;
             }
             // Of places that are fitted already: the areas of the tiniest models would leave the range of f64.
-            let area = area(points.map(|point| fit.place(self.places.at(point))));
-            for point in points {
-                if let Some(sum) = sums.get_mut(point.wrapping_sub(first)) {
+            let area = area(self.corner_places(*triangle).map(|place| fit.place(place)));
+            for shading in shadings {
+                if let Some(sum) = sums.get_mut(shading.wrapping_sub(first)) {
                     *sum += area;
                 }
             }
         }
         for (number, vertex) in vertices.iter_mut().enumerate() {
-            if let (Some(sum), Vec3::ZERO) = (sums.get(self.point(number).wrapping_sub(first)), vertex.normal) {
+            if let (Some(sum), Vec3::ZERO) = (sums.get(self.shading(number).wrapping_sub(first)), vertex.normal) {
                 vertex.normal = unit(*sum).unwrap_or(DVec3::Z).as_vec3();
             }
         }
@@ -191,14 +331,20 @@ impl Model {
 
     /// What the model takes while its scene is made, besides the file.
     fn check_memory(&self, name: &str, file_bytes: usize) -> Result<(), LoadError> {
-        let lists = self.places.bytes()
-            + size_of_val(self.normals.as_slice())
-            + size_of_val(self.colours.as_slice())
-            + size_of_val(self.corners.as_slice())
-            + size_of_val(self.triangles.as_slice());
-        let sums = self.summed_at_once().min(self.places.len()) * size_of::<DVec3>();
-        check_memory(name, lists + sums + self.vertices() * size_of::<Vertex>(), file_bytes)
+        let sums = self.summed_at_once().min(self.shaded()) * size_of::<DVec3>();
+        check_memory(name, self.lists_bytes() + sums + self.vertices() * size_of::<Vertex>(), file_bytes)
     }
+}
+
+/// The colour of a [`Corner`] of [`Detail::Colour`].
+fn packed_colour(packed: u32) -> [u8; 3] {
+    let [red, green, blue, _] = packed.to_le_bytes();
+    [red, green, blue]
+}
+
+/// A number with its noun in the right form.
+pub(super) fn counted(count: usize, noun: &str) -> String {
+    if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
 }
 
 /// Refuses what takes more than [`MEMORY_TIMES_FILE`] times its file.
@@ -208,10 +354,9 @@ fn check_memory(name: &str, found: usize, file_bytes: usize) -> Result<(), LoadE
     if found <= expected { Ok(()) } else { Err(LoadError::TooMuchMemory { file: name.to_owned(), expected, found }) }
 }
 
-/// Refuses triangles, before they are made, that no file of this size needs: of some that come on top of others.
-pub(super) fn check_triangles(source: &Source<'_>, others: usize, more: usize) -> Result<(), LoadError> {
-    check_memory(source.name, (others + more) * size_of::<[u32; 3]>() + source.bytes.len(), source.bytes.len())
-}
+/// Bytes of a table of vertices for each of them at most: five, of places of which between 7/16 and 7/8 are taken, and half as many more
+/// while it grows.
+const TABLE_BYTES: usize = 17;
 
 /// Keeps what is to be kept, and no room for the rest; of an empty list there is nothing to keep.
 fn retain<T>(items: &mut Vec<T>, keep: &[bool]) {

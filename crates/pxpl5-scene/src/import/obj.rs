@@ -2,32 +2,37 @@
 //!
 //! Read here and not by a library: the well-kept one, tobj, reports no line, no expectation and no finding.
 
-use std::hash::{BuildHasher, RandomState};
-
-use glam::DVec3;
-use hashbrown::HashTable;
+use glam::{DVec3, Vec3};
 
 use super::Source;
-use super::model::{Corner, Model, Places, direction};
-use super::source::excerpt;
+use super::model::{Model, Places, Vertices, counted, direction, push_slowly};
+use super::source::{excerpt, is_not_a_number, text};
+use crate::config::DEFAULT_COLOUR;
 use crate::error::{FilePlace, LoadError};
 
 pub(super) fn read(source: &Source<'_>) -> Result<Model, LoadError> {
     let mut reader = Reader::new(source)?;
-    for (number, line) in source.lines()? {
-        reader.line(FilePlace::Line(number), line)?;
+    // Faces may stand before the points that they refer to.
+    for (number, line) in statements(source) {
+        reader.point(FilePlace::Line(number), line)?;
     }
-    let mut model = reader.model;
-    model.corners.shrink_to_fit();
-    Ok(model)
+    for (number, line) in statements(source) {
+        reader.surface(FilePlace::Line(number), line)?;
+    }
+    Ok(reader.finished())
 }
 
 struct Reader<'a> {
     source: &'a Source<'a>,
-    /// The vertices by their corners, in 5 bytes each: the corners themselves are the model's. Looked up only, never walked, so
-    /// its order shows nowhere.
-    vertices: HashTable<u32>,
-    hasher: RandomState,
+    counts: Counts,
+    /// Points and normals up to the line that is read: negative indices count back from them.
+    points: usize,
+    normals: usize,
+    /// Normals of the file that are no numbers, and the line of the first.
+    not_numbers: Option<(usize, FilePlace)>,
+    /// The group of faces that are shaded smoothly together, [`Corner`](super::model::Corner)'s second number; `None` for flat faces.
+    smoothing: Option<u32>,
+    vertices: Vertices,
     model: Model,
 }
 
@@ -37,121 +42,247 @@ struct Counts {
     points: usize,
     normals: usize,
     triangles: usize,
+    /// The largest number of a colour: fractions go to 1, bytes to 255.
+    brightest: f64,
+    has_materials: bool,
 }
 
 impl Counts {
-    /// Looks at the words of all lines and at no number.
-    fn of(source: &Source<'_>) -> Result<Self, LoadError> {
+    /// Looks at the words of all lines, and at the numbers of colours only.
+    fn of(source: &Source<'_>) -> Self {
         let mut counts = Self::default();
-        for (_, line) in source.lines()? {
+        for (_, line) in statements(source) {
             let mut words = words(line);
             match words.next() {
-                Some("v") => counts.points += 1,
-                Some("vn") => counts.normals += 1,
-                Some("f") => counts.triangles += words.count().saturating_sub(2),
+                Some(b"v") => {
+                    counts.points += 1;
+                    let colour = words.skip(3).take(3).filter_map(|word| text(word).parse().ok());
+                    counts.brightest = colour.fold(counts.brightest, f64::max);
+                }
+                Some(b"vn") => counts.normals += 1,
+                Some(b"f") => counts.triangles += words.count().saturating_sub(2),
+                Some(b"usemtl") => counts.has_materials = true,
                 _ => {}
             }
         }
-        Ok(counts)
+        counts
     }
 }
 
-/// The words of a line in front of its comment.
-fn words(line: &str) -> impl Iterator<Item = &str> {
-    line.split('#').next().unwrap_or_default().split_whitespace()
+/// The statements of a file with the numbers of their first lines: a line that ends in `\` goes on in the next one. A comment does
+/// not, since paths of folders end so too.
+fn statements<'a>(source: &Source<'a>) -> impl Iterator<Item = (u64, &'a [u8])> {
+    let mut lines = source.lines();
+    let bytes = source.bytes;
+    std::iter::from_fn(move || {
+        let (number, first) = lines.next()?;
+        let mut last = first;
+        while last.trim_ascii_end().ends_with(b"\\") && code(last).len() == last.len() {
+            match lines.next() {
+                Some((_, line)) => last = line,
+                None => break,
+            }
+        }
+        // All lines lie in the file, one behind the other.
+        let begin = first.as_ptr() as usize - bytes.as_ptr() as usize;
+        let end = last.as_ptr() as usize - bytes.as_ptr() as usize + last.len();
+        Some((number, &bytes[begin..end]))
+    })
+}
+
+/// What stands in front of a comment; in `1.#QNAN` there is none.
+fn code(line: &[u8]) -> &[u8] {
+    let is_comment = |at: &usize| line[*at] == b'#' && (*at == 0 || line[at - 1] != b'.');
+    &line[..(0..line.len()).find(is_comment).unwrap_or(line.len())]
+}
+
+/// The words of a statement in front of its comment, without the `\` between its lines.
+fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+    code(line)
+        .split(u8::is_ascii_whitespace)
+        .map(|word| word.strip_suffix(b"\\").unwrap_or(word))
+        .filter(|w| !w.is_empty())
 }
 
 impl<'a> Reader<'a> {
     fn new(source: &'a Source<'a>) -> Result<Self, LoadError> {
-        let counts = Counts::of(source)?;
+        let counts = Counts::of(source);
         let mut model = Model::new(Places::Double(Vec::new()));
         model.places.reserve_exact(counts.points);
         model.normals.reserve_exact(counts.normals);
         model.triangles.reserve_exact(counts.triangles);
-        Ok(Self { source, vertices: HashTable::new(), hasher: RandomState::new(), model })
+        Ok(Self {
+            source,
+            counts,
+            points: 0,
+            normals: 0,
+            not_numbers: None,
+            smoothing: None,
+            vertices: Vertices::default(),
+            model,
+        })
     }
 
-    fn line(&mut self, at: FilePlace, line: &str) -> Result<(), LoadError> {
+    fn finished(self) -> Model {
+        let mut model = self.model;
+        model.corners.shrink_to_fit();
+        if let Some((count, first)) = self.not_numbers {
+            let what = counted(count, "normal");
+            model.warnings.push(format!("{what} without numbers, first in {first}: computed from the faces instead"));
+        }
+        if self.counts.has_materials && model.colours.is_empty() {
+            model.warnings.push("colours of materials (usemtl) are not read: faces have one colour".to_owned());
+        }
+        model
+    }
+
+    /// Reads points and normals.
+    fn point(&mut self, at: FilePlace, line: &[u8]) -> Result<(), LoadError> {
         let mut words = words(line);
         match words.next() {
-            Some("v") => self.model.places.push(self.vector(at, words)?),
-            Some("vn") => self.model.normals.push(direction(self.vector(at, words)?)),
-            Some("f") => self.face(at, line, words)?,
-            // Texture coordinates, groups, objects, materials, smoothing groups, curves.
+            Some(b"v") => {
+                let place = self.vector(at, &mut words)?;
+                self.model.places.push(self.source.coordinates(at, place)?.into());
+                self.colour(at, words)
+            }
+            Some(b"vn") => {
+                let normal = self.normal(at, words)?;
+                self.model.normals.push(normal);
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Reads faces, and how they are shaded. Texture coordinates, groups, objects, materials and curves are passed over.
+    fn surface(&mut self, at: FilePlace, line: &[u8]) -> Result<(), LoadError> {
+        let mut words = words(line);
+        match words.next() {
+            Some(b"v") => self.points += 1,
+            Some(b"vn") => self.normals += 1,
+            Some(b"s") => self.smoothing = words.next().and_then(smoothing_group),
+            Some(b"f") => self.face(at, line, words)?,
             _ => {}
         }
         Ok(())
     }
 
-    /// Cuts a polygon into triangles that share its first corner.
-    fn face<'w>(&mut self, at: FilePlace, line: &str, words: impl Iterator<Item = &'w str>) -> Result<(), LoadError> {
+    /// Cuts a polygon into triangles.
+    fn face<'w>(&mut self, at: FilePlace, line: &[u8], words: impl Iterator<Item = &'w [u8]>) -> Result<(), LoadError> {
+        let first = self.model.triangles.len();
+        // The normal of a flat face is known when its corners are.
+        let flat = self.model.normals.len() as u32 + 1;
+        let mut needs_normal = false;
         let mut known = [0; 2];
         let mut count = 0;
         for word in words {
-            let corner = self.corner(at, word)?;
+            let (point, normal) = self.corner(at, word)?;
+            needs_normal |= normal.is_none() && self.smoothing.is_none();
+            let detail = normal.or(self.smoothing).unwrap_or(flat);
+            let vertex = self.vertices.of(&mut self.model.corners, (point, detail));
             match count {
-                0 | 1 => known[count] = corner,
+                0 | 1 => known[count] = vertex,
                 _ => {
-                    self.model.triangles.push([known[0], known[1], corner]);
-                    known[1] = corner;
+                    self.model.triangles.push([known[0], known[1], vertex]);
+                    known[1] = vertex;
                 }
             }
             count += 1;
         }
         if count < 3 {
-            let found = format!("{count} in {}", excerpt(line.split('#').next().unwrap_or_default()));
+            let found = format!("{count} in {}", excerpt(&String::from_utf8_lossy(code(line))));
             return Err(self.source.syntax(at, "a face of at least 3 corners", found));
         }
+        if needs_normal {
+            let normal = self.model.polygon_normal(first);
+            push_slowly(&mut self.model.normals, normal);
+        }
+        self.model.cut_polygon(first);
+        self.model.check_reading(self.source, 0)
+    }
+
+    fn vector<'w>(&self, at: FilePlace, words: &mut impl Iterator<Item = &'w [u8]>) -> Result<[f64; 3], LoadError> {
+        let mut v = [0.0; 3];
+        for (x, axis) in v.iter_mut().zip(["x", "y", "z"]) {
+            *x = self.number(at, axis, words.next().unwrap_or_default())?;
+        }
+        Ok(v)
+    }
+
+    fn number(&self, at: FilePlace, what: &str, word: &[u8]) -> Result<f64, LoadError> {
+        match text(word) {
+            word if is_not_a_number(word) => Ok(f64::NAN),
+            word => word.parse().map_err(|_| self.source.syntax(at, format!("a number for {what}"), excerpt(word))),
+        }
+    }
+
+    /// A direction; zero for one that is no number, which is computed as if it was not there.
+    fn normal<'w>(&mut self, at: FilePlace, mut words: impl Iterator<Item = &'w [u8]>) -> Result<Vec3, LoadError> {
+        let normal = DVec3::from_array(self.vector(at, &mut words)?);
+        if normal.is_finite() {
+            return Ok(direction(normal));
+        }
+        self.not_numbers.get_or_insert((0, at)).0 += 1;
+        Ok(Vec3::ZERO)
+    }
+
+    /// The colour behind a point, if there is one: a single number there is a weight.
+    fn colour<'w>(&mut self, at: FilePlace, mut words: impl Iterator<Item = &'w [u8]>) -> Result<(), LoadError> {
+        let found = [words.next(), words.next(), words.next()];
+        let colour = match found {
+            [Some(red), Some(green), Some(blue)] => {
+                let full = if self.counts.brightest > 1.0 { 1.0 } else { 255.0 };
+                let mut colour = [0; 3];
+                for (part, (name, word)) in colour.iter_mut().zip([("red", red), ("green", green), ("blue", blue)]) {
+                    *part = (self.number(at, name, word)? * full + 0.5) as u8;
+                }
+                colour
+            }
+            _ if self.model.colours.is_empty() => return Ok(()),
+            _ => DEFAULT_COLOUR,
+        };
+        if self.model.colours.is_empty() {
+            self.model.colours.reserve_exact(self.counts.points);
+            self.model.colours.resize(self.model.places.len() - 1, DEFAULT_COLOUR);
+        }
+        self.model.colours.push(colour);
         Ok(())
     }
 
-    fn vector<'w>(&self, at: FilePlace, mut words: impl Iterator<Item = &'w str>) -> Result<DVec3, LoadError> {
-        let mut v = [0.0; 3];
-        for (x, axis) in v.iter_mut().zip(["x", "y", "z"]) {
-            let word = words.next().unwrap_or_default();
-            *x = word.parse().map_err(|_| {
-                let expected = format!("a number for {axis}");
-                self.source.syntax(at, expected, excerpt(word))
-            })?;
-        }
-        self.source.coordinates(at, v).map(DVec3::from_array)
-    }
-
-    /// A corner is point, point/texture, point//normal or point/texture/normal.
-    fn corner(&mut self, at: FilePlace, word: &str) -> Result<u32, LoadError> {
-        let mut fields = word.splitn(3, '/');
+    /// A corner is point, point/texture, point//normal or point/texture/normal; the normal counts from 1.
+    fn corner(&self, at: FilePlace, word: &[u8]) -> Result<(u32, Option<u32>), LoadError> {
+        let mut fields = text(word).splitn(3, '/');
         let point = fields.next().unwrap_or_default();
-        let point = self.index(at, "vertices", point, self.model.places.len())?;
+        let point = self.index(at, "vertices", point, [self.points, self.counts.points])?;
         let normal = match fields.nth(1) {
-            None | Some("") => 0,
-            Some(normal) => self.index(at, "normals", normal, self.model.normals.len())? + 1,
+            None | Some("") => return Ok((point, None)),
+            Some(normal) => self.index(at, "normals", normal, [self.normals, self.counts.normals])? + 1,
         };
-        Ok(self.vertex((point, normal)))
-    }
-
-    /// The vertex of a corner: a new one where there is none yet.
-    fn vertex(&mut self, corner: Corner) -> u32 {
-        let corners = &mut self.model.corners;
-        let hash = self.hasher.hash_one(corner);
-        if let Some(&known) = self.vertices.find(hash, |&vertex| corners[vertex as usize] == corner) {
-            return known;
-        }
-        let next = corners.len() as u32;
-        if corners.len() == corners.capacity() {
-            // By an eighth, not twice: a file can consist of corners.
-            corners.reserve_exact(corners.len() / 8 + 1024);
-        }
-        corners.push(corner);
-        let hasher = &self.hasher;
-        self.vertices.insert_unique(hash, next, |&vertex| hasher.hash_one(corners[vertex as usize]));
-        next
+        let is_given = self.model.normals[normal as usize - 1] != Vec3::ZERO;
+        Ok((point, is_given.then_some(normal)))
     }
 
     /// 1 is the first of the file; -1 the last so far.
-    fn index(&self, at: FilePlace, what: &'static str, word: &str, count: usize) -> Result<u32, LoadError> {
+    fn index(
+        &self,
+        at: FilePlace,
+        what: &'static str,
+        word: &str,
+        [so_far, all]: [usize; 2],
+    ) -> Result<u32, LoadError> {
         let written: i64 =
             word.parse().map_err(|_| self.source.syntax(at, format!("an index of {what}"), excerpt(word)))?;
-        let zero_based = if written < 0 { written.saturating_add(count as i64) } else { written - 1 };
-        self.source.index(at, what, zero_based, count, written)
+        let zero_based = if written < 0 { written.saturating_add(so_far as i64) } else { written - 1 };
+        self.source.index(at, what, zero_based, all, written)
     }
+}
+
+/// The group that `s` names; `None` where it turns smoothing off.
+fn smoothing_group(word: &[u8]) -> Option<u32> {
+    let group = match text(word).parse::<u64>() {
+        Ok(group) => group,
+        Err(_) => u64::from(!word.eq_ignore_ascii_case(b"off")),
+    };
+    // From 2^31 on there are no numbers of normals.
+    (group > 0).then_some(1 << 31 | group as u32)
 }

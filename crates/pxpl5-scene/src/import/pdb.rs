@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use glam::DVec3;
 
 use super::mesh::{Fit, seen_by};
-use super::source::excerpt;
+use super::source::{excerpt, text};
 use super::{Placement, Source};
 use crate::error::{FilePlace, LoadError};
 use crate::scene::{Scene, Sphere};
@@ -86,11 +86,11 @@ impl Atom {
 pub(crate) fn read_atoms(source: &Source<'_>) -> Result<Vec<Atom>, LoadError> {
     let mut atoms = Vec::new();
     let mut alternates = Alternates::default();
-    for (number, line) in source.lines()? {
+    for (number, line) in source.lines() {
         let at = FilePlace::Line(number);
         match columns(line, 1, 6) {
-            "ATOM" | "HETATM" if alternates.is_first(line) => atoms.push(atom(source, at, line)?),
-            "ENDMDL" => break,
+            b"ATOM" | b"HETATM" if alternates.is_first(line) => atoms.push(atom(source, at, line)?),
+            b"ENDMDL" => break,
             _ => {}
         }
     }
@@ -102,14 +102,14 @@ pub(crate) fn read_atoms(source: &Source<'_>) -> Result<Vec<Atom>, LoadError> {
 struct Alternates<'a> {
     /// Name of the first residue at a place of the chain (columns 22 to 27) that has alternates: others there are another
     /// molecule's.
-    residues: HashMap<&'a str, &'a str>,
+    residues: HashMap<&'a [u8], &'a [u8]>,
     /// Place and name of every atom that has alternates.
-    atoms: HashSet<(&'a str, &'a str)>,
+    atoms: HashSet<(&'a [u8], &'a [u8])>,
 }
 
 impl<'a> Alternates<'a> {
     /// Whether an atom has one location only, or this is the first of them.
-    fn is_first(&mut self, line: &'a str) -> bool {
+    fn is_first(&mut self, line: &'a [u8]) -> bool {
         if columns(line, 17, 17).is_empty() {
             return true;
         }
@@ -119,35 +119,78 @@ impl<'a> Alternates<'a> {
     }
 }
 
-fn atom(source: &Source<'_>, at: FilePlace, line: &str) -> Result<Atom, LoadError> {
+fn atom(source: &Source<'_>, at: FilePlace, line: &[u8]) -> Result<Atom, LoadError> {
     let mut position = [0.0; 3];
     for (x, (axis, first)) in position.iter_mut().zip([("x", 31), ("y", 39), ("z", 47)]) {
-        let field = columns(line, first, first + 7);
+        let field = text(columns(line, first, first + 7));
         *x = field.parse().map_err(|_| {
             let expected = format!("a number for {axis} in columns {first} to {}", first + 7);
             source.syntax(at, expected, excerpt(field))
         })?;
     }
     Ok(Atom {
-        name: columns(line, 13, 16).to_owned(),
+        name: text(columns(line, 13, 16)).to_owned(),
         position: DVec3::from_array(source.coordinates(at, position)?),
         element: element_of(line),
     })
 }
 
-/// Columns 77 and 78; in files older than 1996, which lack them, columns 13 and 14.
-fn element_of(line: &str) -> Element {
-    let symbol = match columns(line, 77, 78) {
-        "" => columns(line, 13, 14),
-        symbol => symbol,
-    };
-    let symbol = symbol.trim_start_matches(|c: char| c.is_ascii_digit());
+/// Symbols of two letters that are in no residue of [`RESIDUES`], and are not in [`ELEMENTS`]. H with a second letter is left out:
+/// in a molecule it is a hydrogen with the name of its place.
+const OTHER_SYMBOLS: [&str; 48] = [
+    "LI", "BE", "NE", "AL", "SI", "AR", "SC", "TI", "CR", "NI", "CU", "GA", "GE", "AS", "KR", "RB", "SR", "ZR", "NB",
+    "MO", "RU", "RH", "PD", "AG", "CD", "IN", "SN", "SB", "TE", "XE", "CS", "BA", "LA", "CE", "PR", "SM", "EU", "GD",
+    "TB", "YB", "LU", "TA", "RE", "OS", "IR", "PT", "AU", "PB",
+];
+
+/// Residues that consist of H, D, C, N, O, S and P alone: amino acids, nucleotides and water.
+const RESIDUES: [&str; 38] = [
+    "ALA", "ARG", "ASN", "ASP", "ASX", "CYS", "GLN", "GLU", "GLX", "GLY", "HIS", "ILE", "LEU", "LYS", "MET", "PHE",
+    "PRO", "SER", "THR", "TRP", "TYR", "VAL", "A", "C", "G", "U", "I", "T", "DA", "DC", "DG", "DT", "DU", "DI", "HOH",
+    "DOD", "WAT", "ACE",
+];
+
+/// Columns 77 and 78 where they hold an element; other files have nothing there, or a number of the line, and name the atom in
+/// columns 13 to 16.
+fn element_of(line: &[u8]) -> Element {
+    let symbol = text(columns(line, 77, 78));
+    if !symbol.is_empty() && symbol.bytes().all(|byte| byte.is_ascii_alphabetic()) {
+        return known(symbol);
+    }
+    let name: Vec<u8> = line.iter().skip(12).take(4).map(u8::to_ascii_uppercase).collect();
+    let residue = text(columns(line, 18, 20)).to_ascii_uppercase();
+    known(symbol_of_name(text(&name), &residue))
+}
+
+fn known(symbol: &str) -> Element {
     let known = ELEMENTS.iter().find(|e| e.symbol.eq_ignore_ascii_case(symbol));
     known.copied().unwrap_or(OTHER)
 }
 
+/// The symbol in the four columns of an atom's name: its element stands to the right in the first two of them, unless the name takes
+/// all four.
+fn symbol_of_name<'n>(name: &'n str, residue: &str) -> &'n str {
+    let letters = name.trim().trim_start_matches(|c: char| c.is_ascii_digit());
+    let first = letters.get(..1).unwrap_or_default();
+    let symbol = letters.get(..2).filter(|two| two.bytes().all(|byte| byte.is_ascii_alphabetic()));
+    let is_single = matches!(first, "H" | "D" | "B" | "C" | "N" | "O" | "F" | "P" | "S" | "K" | "I");
+    match symbol {
+        None => first,
+        // An ion is its own residue.
+        Some(two) if two == residue => two,
+        _ if RESIDUES.contains(&residue) => first,
+        Some(two @ ("CL" | "BR" | "FE")) => two,
+        // Column 13 is empty, or holds the number of a hydrogen: the symbol is one letter.
+        _ if is_single && !name.starts_with(|c: char| c.is_ascii_alphabetic()) => first,
+        _ if matches!(first, "H" | "D") => first,
+        Some(two) if name.trim().len() == 4 && is_single && !matches!(two, "SE" | "SI") => first,
+        Some(two) if ELEMENTS.iter().any(|e| e.symbol == two) || OTHER_SYMBOLS.contains(&two) => two,
+        _ => first,
+    }
+}
+
 /// Columns `first` to `last` without white space around; empty beyond the line's end.
-fn columns(line: &str, first: usize, last: usize) -> &str {
+fn columns(line: &[u8], first: usize, last: usize) -> &[u8] {
     let end = last.min(line.len());
-    line.get(first - 1..end).unwrap_or_default().trim()
+    line.get(first - 1..end).unwrap_or_default().trim_ascii()
 }

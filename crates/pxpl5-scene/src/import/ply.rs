@@ -1,16 +1,17 @@
 //! PLY: the library reads header and rows; here is what rows mean, and where a faulty one stands.
 
 use std::io::{Cursor, ErrorKind};
+use std::str::FromStr;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{
     ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
 };
 
 use super::Source;
-use super::model::{Model, Places, check_triangles, direction};
-use super::source::excerpt;
+use super::model::{Detail, Model, Places, Vertices, counted, direction, push_slowly};
+use super::source::{MARK, excerpt, is_not_a_number, text};
 use crate::config::DEFAULT_COLOUR;
 use crate::error::{FilePlace, LoadError};
 
@@ -18,16 +19,35 @@ pub(super) fn read(source: &Source<'_>) -> Result<Model, LoadError> {
     let mut rows = Rows::after_header(source)?;
     let mut mesh = Model::new(Places::Single(Vec::new()));
     let elements: Vec<ElementDef> = rows.header.elements.values().cloned().collect();
-    for element in &elements {
+    let last_vertices = elements.iter().rposition(|element| element.name == "vertex").unwrap_or_default();
+    let announced = elements.iter().filter(|element| element.name == "vertex");
+    rows.longest_list =
+        announced.fold(LIST, |numbers, e| numbers.saturating_add(e.count.saturating_mul(LIST_PER_VERTEX)));
+    // Elements may come in any order: faces before vertices are passed over and read at the end.
+    let mut passed_over = Vec::new();
+    for (number, element) in elements.iter().enumerate() {
         rows.check_length(element)?;
         match element.name.as_str() {
             "vertex" => rows.vertices(element, &mut mesh)?,
+            "face" | "tristrips" if number < last_vertices => {
+                passed_over.push((element, rows.cursor.position(), rows.line));
+                rows.skip(element)?;
+            }
             "face" => rows.faces(element, &mut mesh)?,
             "tristrips" => rows.strips(element, &mut mesh)?,
             _ => rows.skip(element)?,
         }
     }
     rows.check_end()?;
+    for (element, position, line) in passed_over {
+        rows.cursor.set_position(position);
+        rows.line = line;
+        match element.name.as_str() {
+            "face" => rows.faces(element, &mut mesh)?,
+            _ => rows.strips(element, &mut mesh)?,
+        }
+    }
+    rows.add_warnings(&mut mesh);
     Ok(mesh)
 }
 
@@ -36,11 +56,19 @@ struct Rows<'a> {
     source: &'a Source<'a>,
     header: Header,
     cursor: Cursor<&'a [u8]>,
+    /// What ends a line, in an ASCII file.
+    end: u8,
     /// Number of the next line, in an ASCII file.
     line: u64,
     text: &'a str,
     /// Most numbers that a list may have: of so many vertices no face and no strips need more.
     longest_list: usize,
+    /// Normals of the file that are no numbers, and the place of the first.
+    not_numbers: Option<(usize, FilePlace)>,
+    /// Set where the colours of faces are passed over for those of vertices.
+    has_both_colours: bool,
+    /// The vertices of faces with colours.
+    coloured: Vertices,
 }
 
 /// Numbers that a list may have whatever the file, and for each vertex on top of that. Assumed: strips of single triangles take 8
@@ -48,22 +76,56 @@ struct Rows<'a> {
 const LIST: usize = 1 << 16;
 const LIST_PER_VERTEX: usize = 8;
 
+/// Bytes in which a header without end is looked for its fault. Assumed, from a few lines upwards.
+const HEADER: usize = 1 << 16;
+
+/// The header as text with lines that end in LF, the place behind it, and what ends its lines. Bytes that are no ASCII, which only
+/// comments and names have, become underscores.
+fn header_of(bytes: &[u8]) -> (String, usize, u8) {
+    let begin = if bytes.starts_with(MARK) { MARK.len() } else { 0 };
+    let end = match bytes[begin..].iter().position(|byte| matches!(byte, b'\r' | b'\n')) {
+        Some(at) if bytes[begin + at] == b'\r' && bytes.get(begin + at + 1) != Some(&b'\n') => b'\r',
+        _ => b'\n',
+    };
+    let mut length = 0;
+    let whole = bytes[begin..].split_inclusive(|byte| *byte == end).any(|line| {
+        length += line.len();
+        line.trim_ascii() == b"end_header"
+    });
+    let behind = if whole { begin + length } else { bytes.len().min(begin + HEADER) };
+    let plain = |byte: &u8| match *byte {
+        byte if byte == end => '\n',
+        byte if byte.is_ascii() => char::from(byte),
+        _ => '_',
+    };
+    (bytes[begin..behind].iter().map(plain).collect(), behind, end)
+}
+
 impl<'a> Rows<'a> {
     fn after_header(source: &'a Source<'a>) -> Result<Self, LoadError> {
-        let mut reader = Reader::new(Cursor::new(source.bytes));
+        let (text, behind, end) = header_of(source.bytes);
+        let mut reader = Reader::new(Cursor::new(text.as_bytes()));
         let parsed = Parser::<VertexRow>::new().read_header(&mut reader);
         let line = reader.line() as u64;
-        let cursor = reader.into_inner();
-        source.text(cursor.position() as usize)?;
         let header = parsed.map_err(|e| {
             let line = e.line().map_or(line, |line| line as u64);
-            header_fault(source, line.max(1), &e)
+            header_fault(source, &text, line.max(1), &e)
         })?;
-        check_header(source, source.text(cursor.position() as usize)?)?;
-        if header.encoding == Encoding::Ascii {
-            source.text(source.bytes.len())?;
-        }
-        Ok(Self { source, header, line, cursor, text: "", longest_list: LIST })
+        check_header(source, &text)?;
+        let mut cursor = Cursor::new(source.bytes);
+        cursor.set_position(behind as u64);
+        Ok(Self {
+            source,
+            header,
+            cursor,
+            end,
+            line,
+            text: "",
+            longest_list: LIST,
+            not_numbers: None,
+            has_both_colours: false,
+            coloured: Vertices::default(),
+        })
     }
 
     fn place(&self) -> FilePlace {
@@ -92,12 +154,7 @@ impl<'a> Rows<'a> {
         let row = match self.header.encoding {
             Encoding::Ascii => {
                 self.next_line(element)?;
-                lists(self.text, element).try_for_each(|length| self.check_list(at, length))?;
-                if let Some(surplus) = surplus(self.text, element) {
-                    let expected = format!("the end of {}", row_of(element));
-                    return Err(self.source.syntax(at, expected, excerpt(surplus)));
-                }
-                parser.read_ascii_element(self.text, element)
+                return Ok((at, self.ascii_row(at, element)?));
             }
             Encoding::BinaryLittleEndian => parser.read_little_endian_element(&mut self.cursor, element),
             Encoding::BinaryBigEndian => parser.read_big_endian_element(&mut self.cursor, element),
@@ -106,14 +163,35 @@ impl<'a> Rows<'a> {
     }
 
     fn row_fault(&self, at: FilePlace, element: &ElementDef, error: &ParseError) -> LoadError {
-        let expected = row_of(element);
-        match (self.header.encoding, error.kind()) {
-            (_, ErrorKind::UnexpectedEof) => self.source.truncated(at, expected, "the end of the file"),
+        match error.kind() {
+            ErrorKind::UnexpectedEof => self.source.truncated(at, row_of(element), "the end of the file"),
             // The numbers are there, but the header gives a property a type that it cannot have.
-            (_, ErrorKind::InvalidData) | (Encoding::BinaryLittleEndian | Encoding::BinaryBigEndian, _) => {
-                self.source.syntax(at, expected, message(error))
+            _ => self.source.syntax(at, row_of(element), message(error)),
+        }
+    }
+
+    /// Reads the numbers of a line. The library's own reader takes neither `.5` nor `nan`.
+    fn ascii_row<E: PropertyAccess>(&self, at: FilePlace, element: &ElementDef) -> Result<E, LoadError> {
+        let wrong = || self.source.syntax(at, row_of(element), excerpt(self.text));
+        let mut words = self.text.split_ascii_whitespace();
+        let mut row = E::new();
+        for (name, property) in &element.properties {
+            let value = match &property.data_type {
+                PropertyType::Scalar(kind) => words.next().and_then(|word| scalar(kind, word)),
+                PropertyType::List(_, kind) => {
+                    let length = words.next().and_then(|word| word.parse().ok()).ok_or_else(wrong)?;
+                    self.check_list(at, length)?;
+                    list(kind, &mut words, length)
+                }
+            };
+            if row.set_property(name, value.ok_or_else(wrong)?) == PropertyAccessResult::UnsupportedType {
+                let found = format!("the property {name:?} of type {:?}", property.data_type);
+                return Err(self.source.syntax(at, row_of(element), found));
             }
-            (Encoding::Ascii, _) => self.source.syntax(at, expected, excerpt(self.text)),
+        }
+        match words.next() {
+            None => Ok(row),
+            Some(surplus) => Err(self.source.syntax(at, format!("the end of {}", row_of(element)), excerpt(surplus))),
         }
     }
 
@@ -126,12 +204,12 @@ impl<'a> Rows<'a> {
                 let at = self.place();
                 return Err(self.source.truncated(at, row_of(element), "the end of the file"));
             }
-            let length = rest.iter().position(|&byte| byte == b'\n').map_or(rest.len(), |end| end + 1);
+            let length = rest.iter().position(|&byte| byte == self.end).map_or(rest.len(), |end| end + 1);
             self.cursor.set_position((begin + length) as u64);
             self.line += 1;
-            // All of an ASCII file is text: the header's reader has looked.
-            self.text = std::str::from_utf8(&rest[..length]).unwrap_or_default();
-            if !self.text.trim().is_empty() {
+            let line = rest[..length].trim_ascii();
+            if !line.is_empty() {
+                self.text = text(line);
                 return Ok(());
             }
         }
@@ -160,27 +238,32 @@ impl<'a> Rows<'a> {
         }
         let has = |names: [&str; 3]| names.iter().any(|name| element.properties.contains_key(*name));
         let has_normals = has(["nx", "ny", "nz"]);
-        let has_colours = has(["red", "green", "blue"]) || has(["diffuse_red", "diffuse_green", "diffuse_blue"]);
+        let has_colours = has_colours(element);
         mesh.places.reserve_exact(element.count);
         mesh.normals.reserve_exact(if has_normals { element.count } else { 0 });
         mesh.colours.reserve_exact(if has_colours { element.count } else { 0 });
         for _ in 0..element.count {
             let (at, row) = self.next::<VertexRow>(element)?;
             mesh.places.push(self.source.coordinates(at, row.position)?.into());
-            let normal = self.source.coordinates(at, row.normal)?;
             if has_normals {
-                mesh.normals.push(direction(DVec3::from_array(normal)));
+                let normal = DVec3::from_array(row.normal);
+                if !normal.is_finite() {
+                    self.not_numbers.get_or_insert((0, at)).0 += 1;
+                }
+                mesh.normals.push(if normal.is_finite() { direction(normal) } else { Vec3::ZERO });
             }
             if has_colours {
                 mesh.colours.push(row.colour);
             }
         }
-        self.longest_list = LIST + LIST_PER_VERTEX * mesh.places.len();
         Ok(())
     }
 
-    /// Cuts polygons into triangles that share their first corners.
+    /// Cuts polygons into triangles.
     fn faces(&mut self, element: &ElementDef, mesh: &mut Model) -> Result<(), LoadError> {
+        let has_colours = has_colours(element);
+        self.has_both_colours |= has_colours && !mesh.colours.is_empty();
+        let has_colours = has_colours && mesh.colours.is_empty();
         for _ in 0..element.count {
             let (at, row) = self.next::<FaceRow>(element)?;
             if row.len() < 3 {
@@ -188,16 +271,44 @@ impl<'a> Rows<'a> {
                 return Err(self.source.syntax(at, "a face of at least 3 corners", found));
             }
             self.check_list(at, row.len())?;
-            check_triangles(self.source, mesh.triangles.len(), row.len() - 2)?;
-            let first = self.corner(at, &row, 0, mesh)?;
-            let mut before = self.corner(at, &row, 1, mesh)?;
+            mesh.check_reading(self.source, row.len() - 2)?;
+            let fan = mesh.triangles.len();
+            let colour = has_colours.then_some(row.colour);
+            let first = self.vertex(at, &row, 0, colour, mesh)?;
+            let mut before = self.vertex(at, &row, 1, colour, mesh)?;
             for n in 2..row.len() {
-                let corner = self.corner(at, &row, n, mesh)?;
-                push(&mut mesh.triangles, [first, before, corner]);
+                let corner = self.vertex(at, &row, n, colour, mesh)?;
+                push_slowly(&mut mesh.triangles, [first, before, corner]);
                 before = corner;
             }
+            mesh.cut_polygon(fan);
         }
         Ok(())
+    }
+
+    /// The vertex at a corner: the point itself, or with the colour of its face.
+    fn vertex(
+        &mut self,
+        at: FilePlace,
+        row: &FaceRow,
+        n: usize,
+        colour: Option<[u8; 3]>,
+        mesh: &mut Model,
+    ) -> Result<u32, LoadError> {
+        let point = self.corner(at, row, n, mesh)?;
+        let Some([red, green, blue]) = colour else { return Ok(point) };
+        mesh.detail = Detail::Colour;
+        Ok(self.coloured.of(&mut mesh.corners, (point, u32::from_le_bytes([red, green, blue, 0]))))
+    }
+
+    fn add_warnings(&self, mesh: &mut Model) {
+        if let Some((count, first)) = self.not_numbers {
+            let what = counted(count, "normal");
+            mesh.warnings.push(format!("{what} without numbers, first in {first}: computed from the faces instead"));
+        }
+        if self.has_both_colours {
+            mesh.warnings.push("vertices and faces have colours: those of the vertices are drawn".to_owned());
+        }
     }
 
     fn corner(&self, at: FilePlace, row: &FaceRow, n: usize, mesh: &Model) -> Result<u32, LoadError> {
@@ -210,7 +321,7 @@ impl<'a> Rows<'a> {
         for _ in 0..element.count {
             let (at, row) = self.next::<FaceRow>(element)?;
             self.check_list(at, row.len())?;
-            check_triangles(self.source, mesh.triangles.len(), row.len())?;
+            mesh.check_reading(self.source, row.len())?;
             let mut strip = Vec::with_capacity(3);
             let mut turned = 0;
             for n in 0..row.len() {
@@ -221,7 +332,7 @@ impl<'a> Rows<'a> {
                 }
                 strip.push(self.corner(at, &row, n, mesh)?);
                 if let [_, _, last] = strip[..] {
-                    push(&mut mesh.triangles, [strip[turned], strip[1 - turned], last]);
+                    push_slowly(&mut mesh.triangles, [strip[turned], strip[1 - turned], last]);
                     strip.remove(0);
                     turned = 1 - turned;
                 }
@@ -247,12 +358,25 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// Adds a triangle to a list that grows by an eighth, not twice: a file can consist of them.
-fn push(triangles: &mut Vec<[u32; 3]>, triangle: [u32; 3]) {
-    if triangles.len() == triangles.capacity() {
-        triangles.reserve_exact(triangles.len() / 8 + 1024);
-    }
-    triangles.push(triangle);
+/// Names of the three parts of a colour.
+const COLOURS: [[&str; 3]; 3] =
+    [["red", "green", "blue"], ["diffuse_red", "diffuse_green", "diffuse_blue"], ["r", "g", "b"]];
+
+fn has_colours(element: &ElementDef) -> bool {
+    COLOURS.as_flattened().iter().any(|name| element.properties.contains_key(*name))
+}
+
+/// Sets the part of a colour that a property is: integers from 0 to 255 or fractions from 0 to 1.
+fn set_colour(colour: &mut [u8; 3], name: &str, property: &Property) -> PropertyAccessResult {
+    let Some(part) = COLOURS.iter().find_map(|names| names.iter().position(|known| *known == name)) else {
+        return PropertyAccessResult::Ignored;
+    };
+    colour[part] = match (property, number(property)) {
+        (Property::Float(_) | Property::Double(_), Some(value)) => (value * 255.0 + 0.5) as u8,
+        (_, Some(value)) => value as u8,
+        (_, None) => return PropertyAccessResult::UnsupportedType,
+    };
+    PropertyAccessResult::Set
 }
 
 /// Whether single precision holds the places of an element's rows exactly.
@@ -292,36 +416,43 @@ fn check_header(source: &Source<'_>, header: &str) -> Result<(), LoadError> {
     Ok(())
 }
 
-/// How long the lists of a row say that they are.
-fn lists<'t>(row: &'t str, element: &'t ElementDef) -> impl Iterator<Item = usize> + 't {
-    let mut words = row.split_whitespace();
-    element.properties.values().filter_map(move |property| {
-        let first = words.next()?;
-        if !matches!(property.data_type, PropertyType::List(..)) {
-            return None;
-        }
-        let count: usize = first.parse().ok()?;
-        count.checked_sub(1).map(|last| words.nth(last));
-        Some(count)
+/// A number of a type, written in digits.
+fn scalar(kind: &ScalarType, word: &str) -> Option<Property> {
+    Some(match kind {
+        ScalarType::Char => Property::Char(word.parse().ok()?),
+        ScalarType::UChar => Property::UChar(word.parse().ok()?),
+        ScalarType::Short => Property::Short(word.parse().ok()?),
+        ScalarType::UShort => Property::UShort(word.parse().ok()?),
+        ScalarType::Int => Property::Int(word.parse().ok()?),
+        ScalarType::UInt => Property::UInt(word.parse().ok()?),
+        ScalarType::Float if is_not_a_number(word) => Property::Float(f32::NAN),
+        ScalarType::Double if is_not_a_number(word) => Property::Double(f64::NAN),
+        ScalarType::Float => Property::Float(word.parse().ok()?),
+        ScalarType::Double => Property::Double(word.parse().ok()?),
     })
 }
 
-/// What stands in a row behind the numbers of its element.
-fn surplus<'t>(row: &'t str, element: &ElementDef) -> Option<&'t str> {
-    let mut words = row.split_whitespace();
-    for property in element.properties.values() {
-        let first = words.next()?;
-        if matches!(property.data_type, PropertyType::List(..)) {
-            let count: usize = first.parse().ok()?;
-            count.checked_sub(1).map(|last| words.nth(last));
-        }
-    }
-    words.next()
+/// So many numbers of a type.
+fn list<'w>(kind: &ScalarType, words: &mut impl Iterator<Item = &'w str>, length: usize) -> Option<Property> {
+    Some(match kind {
+        ScalarType::Char => Property::ListChar(numbers(words, length)?),
+        ScalarType::UChar => Property::ListUChar(numbers(words, length)?),
+        ScalarType::Short => Property::ListShort(numbers(words, length)?),
+        ScalarType::UShort => Property::ListUShort(numbers(words, length)?),
+        ScalarType::Int => Property::ListInt(numbers(words, length)?),
+        ScalarType::UInt => Property::ListUInt(numbers(words, length)?),
+        ScalarType::Float => Property::ListFloat(numbers(words, length)?),
+        ScalarType::Double => Property::ListDouble(numbers(words, length)?),
+    })
 }
 
-fn header_fault(source: &Source<'_>, line: u64, error: &ParseError) -> LoadError {
+fn numbers<'w, T: FromStr>(words: &mut impl Iterator<Item = &'w str>, length: usize) -> Option<Vec<T>> {
+    let list: Vec<T> = words.take(length).map_while(|word| word.parse().ok()).collect();
+    (list.len() == length).then_some(list)
+}
+
+fn header_fault(source: &Source<'_>, text: &str, line: u64, error: &ParseError) -> LoadError {
     let at = FilePlace::Line(line);
-    let text = String::from_utf8_lossy(source.bytes);
     match (error.kind(), text.lines().nth(line as usize - 1)) {
         (ErrorKind::UnexpectedEof, _) | (_, None) => {
             source.truncated(at, "a line of a PLY header", "the end of the file")
@@ -377,30 +508,12 @@ impl PropertyAccess for VertexRow {
             "nx" => &mut self.normal[0],
             "ny" => &mut self.normal[1],
             "nz" => &mut self.normal[2],
-            _ => return self.set_colour(name, &property),
+            _ => return set_colour(&mut self.colour, name, &property),
         };
         let Some(value) = number(&property) else {
             return PropertyAccessResult::UnsupportedType;
         };
         *slot = value;
-        PropertyAccessResult::Set
-    }
-}
-
-impl VertexRow {
-    /// Integers from 0 to 255 or fractions from 0 to 1.
-    fn set_colour(&mut self, name: &str, property: &Property) -> PropertyAccessResult {
-        let slot = match name {
-            "red" | "diffuse_red" => &mut self.colour[0],
-            "green" | "diffuse_green" => &mut self.colour[1],
-            "blue" | "diffuse_blue" => &mut self.colour[2],
-            _ => return PropertyAccessResult::Ignored,
-        };
-        *slot = match (property, number(property)) {
-            (Property::Float(_) | Property::Double(_), Some(value)) => (value * 255.0 + 0.5) as u8,
-            (_, Some(value)) => value as u8,
-            (_, None) => return PropertyAccessResult::UnsupportedType,
-        };
         PropertyAccessResult::Set
     }
 }
@@ -422,16 +535,17 @@ fn number(property: &Property) -> Option<f64> {
 /// Corners as the file has them: in a file of a byte each, another list of them would be many times as long.
 struct FaceRow {
     corners: Property,
+    colour: [u8; 3],
 }
 
 impl PropertyAccess for FaceRow {
     fn new() -> Self {
-        Self { corners: Property::ListUChar(Vec::new()) }
+        Self { corners: Property::ListUChar(Vec::new()), colour: DEFAULT_COLOUR }
     }
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
         if !matches!(name, "vertex_indices" | "vertex_index") {
-            return PropertyAccessResult::Ignored;
+            return set_colour(&mut self.colour, name, &property);
         }
         match property {
             Property::ListChar(_)

@@ -9,23 +9,23 @@ pub(crate) struct Source<'a> {
 }
 
 impl<'a> Source<'a> {
-    /// The first `length` bytes as text.
-    pub(crate) fn text(&self, length: usize) -> Result<&'a str, LoadError> {
-        let bytes = &self.bytes[..length];
-        std::str::from_utf8(bytes).map_err(|e| LoadError::NotText {
-            file: self.name.to_owned(),
-            at: FilePlace::Byte(e.valid_up_to() as u64),
-            found: bytes[e.valid_up_to()],
-        })
+    /// Refuses text in units of 16 bits, by the mark that it begins with.
+    pub(crate) fn check_is_bytes_of_text(&self) -> Result<(), LoadError> {
+        match self.bytes {
+            [found @ 0xff, 0xfe, ..] | [found @ 0xfe, 0xff, ..] => {
+                Err(LoadError::NotText { file: self.name.to_owned(), at: FilePlace::Byte(0), found: *found })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// All lines with their numbers, from 1, whether they end in LF, CR LF or, as they did once, in CR alone; without the mark by
-    /// which some editors begin a text (U+FEFF).
-    pub(crate) fn lines(&self) -> Result<impl Iterator<Item = (u64, &'a str)>, LoadError> {
-        let text = self.text(self.bytes.len())?;
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let end = if text.contains('\n') { '\n' } else { '\r' };
-        Ok((1..).zip(text.split_terminator(end).map(|line| line.strip_suffix('\r').unwrap_or(line))))
+    /// which some editors begin a text (U+FEFF). They are bytes: comments and names may be in any encoding.
+    pub(crate) fn lines(&self) -> impl Iterator<Item = (u64, &'a [u8])> + Clone {
+        let text = self.bytes.strip_prefix(MARK).unwrap_or(self.bytes);
+        let end = if text.contains(&b'\n') { b'\n' } else { b'\r' };
+        let text = text.strip_suffix(&[end]).unwrap_or(text);
+        (1..).zip(text.split(move |byte| *byte == end).map(|line| line.strip_suffix(b"\r").unwrap_or(line)))
     }
 
     pub(crate) fn syntax(&self, at: FilePlace, expected: impl Into<String>, found: impl Into<String>) -> LoadError {
@@ -60,6 +60,20 @@ impl<'a> Source<'a> {
             _ => Err(LoadError::Index { file: self.name.to_owned(), at, what, expected: count, found }),
         }
     }
+}
+
+/// U+FEFF in UTF-8.
+pub(crate) const MARK: &[u8] = b"\xef\xbb\xbf";
+
+/// A word of a file as text; one that is none gives a sign that no number has.
+pub(crate) fn text(word: &[u8]) -> &str {
+    std::str::from_utf8(word).unwrap_or("\u{fffd}")
+}
+
+/// Returns true for words by which programs write a value that is no number, such as `nan`, `-nan(ind)` and `1.#QNAN`.
+pub(crate) fn is_not_a_number(word: &str) -> bool {
+    let word = word.trim_start_matches(['-', '+']).as_bytes();
+    word.get(..3).is_some_and(|begin| begin.eq_ignore_ascii_case(b"nan")) || word.contains(&b'#')
 }
 
 /// A piece of a file short enough for a message.

@@ -60,6 +60,17 @@ pub trait Motion: Debug {
         None
     }
 
+    /// The first stretch before `until_ps` of which nothing is known, ps: from its last pose to its next. No run may need it. `None`
+    /// where there is none, or where the head is to stand still there.
+    fn gap_ps(&self, _until_ps: u64) -> Option<(u64, u64)> {
+        None
+    }
+
+    /// What is to be said of the file that it was read from, a sentence each.
+    fn warnings(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// When it has moved for the last time, ps, as far as that is known: a filter that is tuned on it learns nothing from a head that
     /// stands still for ever. By default its end, if it has one.
     fn moves_until_ps(&self) -> Option<u64> {
@@ -105,6 +116,12 @@ macro_rules! forward {
             }
             fn ends_ps(&self) -> Option<u64> {
                 (**self).ends_ps()
+            }
+            fn gap_ps(&self, until_ps: u64) -> Option<(u64, u64)> {
+                (**self).gap_ps(until_ps)
+            }
+            fn warnings(&self) -> Vec<String> {
+                (**self).warnings()
             }
             fn moves_until_ps(&self) -> Option<u64> {
                 (**self).moves_until_ps()

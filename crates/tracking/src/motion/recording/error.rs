@@ -76,8 +76,8 @@ pub enum RecordingError {
         /// Time stamp of this line, s; where a file counts from its first line, from there.
         found_s: f64,
     },
-    /// Time stamps do not rise.
-    #[error("line {line}, {column}: expected more than {previous_s} s, the time of the line before, found {found_s} s")]
+    /// A time stamp is before that of the line before.
+    #[error("line {line}, {column}: expected {previous_s} s or more, the time of the line before, found {found_s} s")]
     NotRising {
         /// Number of the line, from 1.
         line: u64,

@@ -31,6 +31,11 @@ const FARTHEST_M: f64 = 1e8;
 /// loses its place and finds it again a recording jumps within a millisecond.
 const FASTEST: f64 = 1e6;
 
+/// How many times longer than usual (the median) the time between two samples is in a gap, and how long at least, s. Assumed: 3 to 20,
+/// and 0.1 to 1; a head at 200 degrees a second turns by 40 in a fifth of a second, and no straight line tells how.
+const GAP_TIMES: u64 = 5;
+const GAP_S: f64 = 0.2;
+
 /// Time stamp (ps) and pose.
 type Sample = (u64, Pose);
 
@@ -40,7 +45,7 @@ pub enum End {
     /// Nothing: a run that goes on after it is refused.
     #[default]
     Refuse,
-    /// The head stands still.
+    /// The head stands still; so it does where samples are missing for long.
     Hold,
     /// The recording begins again; unless it ends where it began, the head jumps.
     Loop,
@@ -71,10 +76,13 @@ pub struct RecordingFormat {
 pub struct Recording {
     samples: Vec<Sample>,
     end: End,
+    /// Stretches without samples, each from one sample to the next, ps: in order.
+    gaps: Vec<(u64, u64)>,
+    warnings: Vec<String>,
 }
 
 impl Recording {
-    /// Reads a file of poses; times must rise strictly. What it is, is told by its contents:
+    /// Reads a file of poses; times must rise. Of samples of one time the first is kept ([`Motion::warnings`]). What it is, is told by its contents:
     ///
     /// | file | first line | time | quaternion | axes |
     /// |---|---|---|---|---|
@@ -98,10 +106,23 @@ impl Recording {
     ///
     /// As [`Self::read`].
     pub fn read_as(mut input: impl Read, format: &RecordingFormat) -> Result<Self, RecordingError> {
-        let mut text = String::new();
-        let unreadable = |error: std::io::Error| RecordingError::Unreadable { why: error.to_string() };
-        input.read_to_string(&mut text).map_err(unreadable)?;
-        Ok(Self { samples: read::samples(&text, &format.columns, format.axes)?, end: End::default() })
+        let mut bytes = Vec::new();
+        let unreadable = |why: String| RecordingError::Unreadable { why };
+        input.read_to_end(&mut bytes).map_err(|error| unreadable(error.to_string()))?;
+        if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+            return Err(unreadable("expected UTF-8 text, found text in units of 16 bits".to_owned()));
+        }
+        // Comments may be in any encoding.
+        let text = String::from_utf8_lossy(&bytes);
+        let read::Samples { samples, repeated } = read::samples(&text, &format.columns, format.axes)?;
+        let gaps = gaps(&samples);
+        let warnings = repeated.into_iter().chain(gap_warning(&gaps)).collect();
+        Ok(Self { samples, end: End::default(), gaps, warnings })
+    }
+
+    /// Returns true if two samples are the ends of a gap in which the head is to stand still.
+    fn holds_between(&self, (before_ps, _): &Sample) -> bool {
+        self.end == End::Hold && self.gaps.binary_search_by_key(before_ps, |(from_ps, _)| *from_ps).is_ok()
     }
 
     /// The same recording with another end.
@@ -145,6 +166,7 @@ impl Motion for Recording {
     fn pose(&self, t_ps: u64) -> Pose {
         let t_ps = self.within(t_ps);
         match self.bracket(t_ps) {
+            Some((a, _)) if self.holds_between(a) => a.1,
             Some((a, b)) => a.1.interpolate(&b.1, span_s(a.0, t_ps) / span_s(a.0, b.0)),
             None if t_ps < self.samples[0].0 => self.samples[0].1,
             None => self.samples[self.samples.len() - 1].1,
@@ -161,15 +183,55 @@ impl Motion for Recording {
     fn ends_ps(&self) -> Option<u64> {
         (self.end == End::Refuse).then_some(self.span_ps().1)
     }
+    fn gap_ps(&self, until_ps: u64) -> Option<(u64, u64)> {
+        let first = self.gaps.first().copied().filter(|(from_ps, _)| *from_ps < until_ps);
+        first.filter(|_| self.end != End::Hold)
+    }
+    fn warnings(&self) -> Vec<String> {
+        self.warnings.clone()
+    }
     fn moves_until_ps(&self) -> Option<u64> {
         (self.end != End::Loop).then_some(self.span_ps().1)
     }
     fn velocity(&self, t_ps: u64) -> DVec3 {
-        let between = self.bracket(self.within(t_ps));
+        let between = self.bracket(self.within(t_ps)).filter(|(a, _)| !self.holds_between(a));
         between.map_or(DVec3::ZERO, |(a, b)| (b.1.position - a.1.position) / span_s(a.0, b.0))
     }
     fn angular_velocity(&self, t_ps: u64) -> DVec3 {
         self.bracket(self.within(t_ps))
+            .filter(|(a, _)| !self.holds_between(a))
             .map_or(DVec3::ZERO, |(a, b)| rotation::difference(a.1.orientation, b.1.orientation) / span_s(a.0, b.0))
     }
+}
+
+/// Times between samples that are much longer than usual.
+fn gaps(samples: &[Sample]) -> Vec<(u64, u64)> {
+    let spans = || samples.windows(2).map(|pair| (pair[0].0, pair[1].0));
+    let mut lengths: Vec<u64> = spans().map(|(from_ps, to_ps)| to_ps - from_ps).collect();
+    if lengths.is_empty() {
+        return Vec::new();
+    }
+    let middle = lengths.len() / 2;
+    let usual_ps = *lengths.select_nth_unstable(middle).1;
+    let is_gap = |(from_ps, to_ps): &(u64, u64)| {
+        to_ps - from_ps > usual_ps.saturating_mul(GAP_TIMES) && span_s(*from_ps, *to_ps) > GAP_S
+    };
+    spans().filter(is_gap).collect()
+}
+
+/// Gaps that a warning lists one by one.
+const GAPS_LISTED: usize = 3;
+
+fn gap_warning(gaps: &[(u64, u64)]) -> Option<String> {
+    if gaps.is_empty() {
+        return None;
+    }
+    let one =
+        |&(from_ps, to_ps): &(u64, u64)| format!("{:.3} s from {:.3} s on", span_s(from_ps, to_ps), span_s(0, from_ps));
+    let listed: Vec<String> = gaps.iter().take(GAPS_LISTED).map(one).collect();
+    let more = match gaps.len().saturating_sub(GAPS_LISTED) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    Some(format!("no pose for {}{more}", listed.join(", ")))
 }

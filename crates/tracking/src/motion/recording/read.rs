@@ -58,8 +58,15 @@ fn bare(field: &str) -> &str {
     field.trim().trim_matches('"')
 }
 
+/// What a file holds.
+pub(super) struct Samples {
+    pub(super) samples: Vec<Sample>,
+    /// What is to be said of samples that were left out.
+    pub(super) repeated: Option<String>,
+}
+
 /// Reads the samples of a recording, in this crate's axes.
-pub(super) fn samples(text: &str, columns: &Columns, axes: Option<Axes>) -> Result<Vec<Sample>, RecordingError> {
+pub(super) fn samples(text: &str, columns: &Columns, axes: Option<Axes>) -> Result<Samples, RecordingError> {
     let lines = text.trim_start_matches('\u{feff}').lines().zip(1..);
     let lines = lines.map(|(text, number)| Line { number, text: text.trim() }).filter(|line| !line.text.is_empty());
     let lines: Vec<Line<'_>> = lines.collect();
@@ -67,17 +74,48 @@ pub(super) fn samples(text: &str, columns: &Columns, axes: Option<Axes>) -> Resu
     let axes = axes.unwrap_or(layout.axes);
     let mut first_ps = None;
     let mut samples: Vec<Sample> = Vec::new();
+    let mut repeated = Repeated::default();
     for line in lines.iter().filter(|line| line.number > layout.begins_after && !line.text.starts_with('#')) {
         let (stamp_ps, pose) = layout.sample(line)?;
         let origin_ps = if layout.from_first { *first_ps.get_or_insert(stamp_ps) } else { 0 };
         let t_ps = layout.time(line, stamp_ps - origin_ps, samples.last())?;
+        // Public ground truths have such pairs: the tracker reported twice within one tick of its clock.
+        if samples.last().is_some_and(|(before_ps, _)| *before_ps == t_ps) {
+            repeated.add(line.number);
+            continue;
+        }
         let sample = (t_ps, axes.convert(pose));
         if let Some(before) = samples.last() {
             check_speed(line, before, &sample)?;
         }
         samples.push(sample);
     }
-    if samples.is_empty() { Err(RecordingError::Empty) } else { Ok(samples) }
+    if samples.is_empty() { Err(RecordingError::Empty) } else { Ok(Samples { samples, repeated: repeated.warning() }) }
+}
+
+/// Samples of the time of the one before.
+#[derive(Default)]
+struct Repeated {
+    count: usize,
+    first_line: u64,
+}
+
+impl Repeated {
+    fn add(&mut self, line: u64) {
+        self.first_line = if self.count == 0 { line } else { self.first_line };
+        self.count += 1;
+    }
+
+    fn warning(&self) -> Option<String> {
+        let Self { count, first_line } = self;
+        match count {
+            0 => None,
+            1 => Some(format!("line {first_line} repeats the time of the line before: its pose is left out")),
+            _ => Some(format!(
+                "{count} lines repeat the time of the line before, first line {first_line}: their poses are left out"
+            )),
+        }
+    }
 }
 
 fn check_speed(line: &Line<'_>, (before_ps, before): &Sample, (t_ps, pose): &Sample) -> Result<(), RecordingError> {
@@ -195,7 +233,7 @@ impl Layout {
         let column = self.columns[0].name.clone();
         let line = line.number;
         let found_s = t_ps as f64 / PS_PER_S as f64;
-        if let Some((previous_ps, _)) = previous.filter(|(previous_ps, _)| t_ps <= i128::from(*previous_ps)) {
+        if let Some((previous_ps, _)) = previous.filter(|(previous_ps, _)| t_ps < i128::from(*previous_ps)) {
             let previous_s = *previous_ps as f64 / PS_PER_S as f64;
             return Err(RecordingError::NotRising { line, column, previous_s, found_s });
         }

@@ -55,7 +55,7 @@ fn bad_rows_are_named_by_line_and_column_and_times_are_in_seconds() {
         ("soon,0,0,0,1,0,0,0\n", "line 3, time_s: expected a finite number, found \"soon\""),
         ("1,0,0,0,1,0,0\n", "line 3: expected 8 fields, found 7"),
         ("1,0,0,0,1,0,0,0,9\n", "line 3: expected 8 fields, found 9"),
-        ("0.25,0,0,0,1,0,0,0\n", "line 3, time_s: expected more than 0.5 s, the time of the line before, found 0.25 s"),
+        ("0.25,0,0,0,1,0,0,0\n", "line 3, time_s: expected 0.5 s or more, the time of the line before, found 0.25 s"),
         ("1e9,0,0,0,1,0,0,0\n", "line 3, time_s: expected 0 to 10000000 s, found 1000000000 s"),
         ("1,0,0,0,0,0,0,0\n", "line 3, qw,qx,qy,qz: expected a quaternion of length 1, found 0"),
     ];
@@ -155,7 +155,7 @@ fn errors_of_other_formats_name_their_own_columns() {
     assert_eq!(said, "line 4, tz: expected a finite number, found \"up\"");
     let euroc = EUROC.replace("1403636581338555648", "1403636580338555648");
     let said = Recording::read(euroc.as_bytes()).unwrap_err().to_string();
-    assert_eq!(said, "line 3, timestamp [ns]: expected more than 0 s, the time of the line before, found -0.5 s");
+    assert_eq!(said, "line 3, timestamp [ns]: expected 0 s or more, the time of the line before, found -0.5 s");
     let short = EUROC.replace(",-0.70710678,0,0.2", "");
     assert_eq!(Recording::read(short.as_bytes()).unwrap_err().to_string(), "line 3: expected 8 fields, found 6");
 }
@@ -206,4 +206,62 @@ fn axes_can_be_said() {
     assert!(recording.pose(0).angle_deg(&Pose::IDENTITY) < 1e-6, "north is -z");
     let left = Pose::facing(rotation::about_y(90f64.to_radians()));
     assert!(recording.pose(PS_PER_S).angle_deg(&left) < 1e-6);
+}
+
+#[test]
+fn of_samples_of_one_time_the_first_is_kept_and_the_others_are_told() {
+    let twice = "0.0 0 0 0 0 0 0 1\n1.0 0 0 0 0 0 0 1\n1.0 0.001 0 0 0 0 0 1\n4.0 0 0 0 0 0 0 1\n";
+    let recording = Recording::read(twice.as_bytes()).unwrap();
+    assert_eq!((recording.n_samples(), recording.pose(PS_PER_S).position), (3, DVec3::ZERO));
+    assert_eq!(recording.warnings(), ["line 3 repeats the time of the line before: its pose is left out"]);
+    let thrice =
+        "\u{feff}# caf\u{e9}\r\n\r\n5\t0 0 0 0 0 0 1\r\n5.0 1 0 0 0 0 0 1\r\n5e0 2 0 0 0 0 0 1\r\n6 3 0 0 0 0 0 1\r\n";
+    let recording = Recording::read(thrice.as_bytes()).unwrap();
+    assert_eq!(recording.n_samples(), 2);
+    let told = ["2 lines repeat the time of the line before, first line 4: their poses are left out"];
+    assert_eq!(recording.warnings(), told);
+    let own = load("1,5,0,0,1,0,0,0\n1,6,0,0,1,0,0,0\n2,7,0,0,1,0,0,0\n").unwrap();
+    assert_eq!((own.n_samples(), own.warnings().len()), (2, 1));
+    let euroc = EUROC.replace("1403636581338555648", "1403636580838555648");
+    assert_eq!(Recording::read(euroc.as_bytes()).unwrap().n_samples(), 2);
+    let back = "0 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n";
+    let said = Recording::read(back.as_bytes()).unwrap_err().to_string();
+    assert_eq!(said, "line 3, timestamp: expected 2 s or more, the time of the line before, found 1 s");
+}
+
+/// A hundred samples a second over three seconds, less those between two instants.
+fn with_gap(from_ms: u64, to_ms: u64) -> String {
+    let times = (0..300).map(|n| 10 * n).filter(|ms| !(from_ms + 1..to_ms).contains(ms));
+    times.map(|ms| format!("{}.{:03},{}e-3,0,0,1,0,0,0\n", ms / 1000, ms % 1000, ms)).collect()
+}
+
+#[test]
+fn a_stretch_without_samples_is_told_and_no_run_may_need_it_unless_the_head_is_held() {
+    let recording = load(&with_gap(280, 2_490)).unwrap();
+    assert_eq!(recording.warnings(), ["no pose for 2.210 s from 0.280 s on"]);
+    let gap = (280 * PS_PER_MS, 2_490 * PS_PER_MS);
+    for end in [End::Refuse, End::Loop] {
+        let recording = recording.clone().ending(end);
+        assert_eq!(recording.gap_ps(280 * PS_PER_MS), None, "a run that ends before it");
+        assert_eq!(recording.gap_ps(281 * PS_PER_MS), Some(gap));
+    }
+    let held = recording.ending(End::Hold);
+    assert_eq!(held.gap_ps(PS_PER_S), None);
+    assert_eq!(held.pose(PS_PER_S).position.x, 0.280);
+    assert_eq!((held.velocity(PS_PER_S), held.angular_velocity(PS_PER_S)), (DVec3::ZERO, DVec3::ZERO));
+    assert!((held.pose(2_495 * PS_PER_MS).position.x - 2.495).abs() < 1e-12);
+}
+
+#[test]
+fn short_pauses_and_slow_recordings_are_no_gaps() {
+    assert!(load(&with_gap(280, 470)).unwrap().warnings().is_empty(), "less than a fifth of a second");
+    assert_eq!(load(&with_gap(280, 530)).unwrap().warnings().len(), 1);
+    let slow: String = [0, 1, 2, 6, 7, 8].map(|s| format!("{s},0,0,0,1,0,0,0\n")).concat();
+    assert!(load(&slow).unwrap().warnings().is_empty(), "less than five times the usual time");
+}
+
+#[test]
+fn comments_of_recordings_may_be_in_any_encoding() {
+    let recording = Recording::read(&b"# Universit\xe9\n0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n"[..]).unwrap();
+    assert_eq!(recording.n_samples(), 2);
 }

@@ -1,0 +1,113 @@
+//! A program as a table of addresses, words and what they are.
+
+use super::{Data, DataKind, Program};
+use crate::disassembler::disassemble;
+use std::fmt::Write as _;
+
+/// Columns of an instruction's text, behind which the source begins. Assumed: wider than all but a few.
+const TEXT_COLUMNS: usize = 30;
+
+impl Program {
+    /// Returns what lies at an address, if that is no instruction.
+    #[must_use]
+    pub fn data_at(&self, address: u32) -> Option<&Data> {
+        let after = self.data.partition_point(|data| data.address <= address);
+        let data = self.data.get(after.checked_sub(1)?)?;
+        (address.wrapping_sub(data.address) < data.bytes).then_some(data)
+    }
+
+    /// Lists address, word, instruction or data, and the lines of `source` that they come from. Without a source the lines are left
+    /// out.
+    ///
+    /// ```
+    /// let source = "start: mov 3, r5\nend: nop\ntable: .long 7";
+    /// let listing = i860::assemble("t.s", 0x1000, source).unwrap().listing(Some(source));
+    /// assert!(listing.contains("00001000  e4050003  or 3, r0, r5                        1  start: mov 3, r5"));
+    /// assert!(listing.contains("table:\n00001008  00000007  .long 0x7"));
+    /// ```
+    #[must_use]
+    pub fn listing(&self, source: Option<&str>) -> String {
+        let source: Vec<&str> = source.unwrap_or_default().lines().collect();
+        let mut rows = Rows { text: String::new(), labels: &self.labels, source, line: 0 };
+        let mut data = self.data.as_slice();
+        for &(address, line) in &self.lines {
+            while let Some((first, rest)) = data.split_first().filter(|(first, _)| first.address < address) {
+                rows.data(self, first);
+                data = rest;
+            }
+            let word = self.number(address, 4) as u32;
+            rows.row(address, &format!("{word:08x}"), &disassemble(word, address), line);
+        }
+        data.iter().for_each(|data| rows.data(self, data));
+        rows.labels_before(u32::MAX);
+        rows.text
+    }
+
+    /// The number of up to eight bytes at an address.
+    fn number(&self, address: u32, bytes: u32) -> u64 {
+        let from = address.wrapping_sub(self.base) as usize;
+        let bytes = self.bytes.iter().skip(from).take(bytes as usize);
+        bytes.rev().fold(0, |number, byte| number << 8 | u64::from(*byte))
+    }
+}
+
+/// The rows of a listing.
+struct Rows<'a> {
+    text: String,
+    /// Those that are not listed yet, by address.
+    labels: &'a [(String, u32)],
+    source: Vec<&'a str>,
+    /// The line of the row before.
+    line: usize,
+}
+
+impl Rows<'_> {
+    fn labels_before(&mut self, end: u32) {
+        while let Some(((name, _), rest)) = self.labels.split_first().filter(|((_, at), _)| *at < end) {
+            let _ = writeln!(self.text, "{name}:");
+            self.labels = rest;
+        }
+    }
+
+    fn row(&mut self, address: u32, bytes: &str, what: &str, line: usize) {
+        self.labels_before(address.saturating_add(1));
+        let _ = write!(self.text, "{address:08x}  {bytes:<8}  {what}");
+        // A line that makes several rows stands at the first one.
+        if let Some(source) = self.source.get(line.wrapping_sub(1)).filter(|_| line != self.line) {
+            let pad = TEXT_COLUMNS.saturating_sub(what.chars().count());
+            let _ = write!(self.text, "{:pad$}  {line:>5}  {}", "", source.trim());
+        }
+        self.line = line;
+        self.text.push('\n');
+    }
+
+    fn data(&mut self, program: &Program, data: &Data) {
+        let end = data.address.wrapping_add(data.bytes);
+        let step = match data.kind {
+            DataKind::Gap => return self.row(data.address, "", &format!(".space {}", data.bytes), data.line),
+            DataKind::Doubles => 8,
+            _ => 4,
+        };
+        for address in (data.address..end).step_by(step) {
+            let bytes = (step as u32).min(end - address);
+            let number = program.number(address, bytes);
+            let digits = 2 * bytes as usize;
+            self.row(address, &format!("{number:0digits$x}"), &text(data.kind, number, bytes), data.line);
+        }
+    }
+}
+
+/// Data as a directive that gives them again.
+fn text(kind: DataKind, number: u64, bytes: u32) -> String {
+    match kind {
+        DataKind::Doubles => format!(".double {:?}", f64::from_bits(number)),
+        DataKind::Singles => format!(".float {:?}", f32::from_bits(number as u32)),
+        DataKind::Gap => format!(".space {bytes}"),
+        DataKind::Integers(size) => {
+            let directive = [".byte", ".short", ".long"][size.trailing_zeros().min(2) as usize];
+            let mask = u64::MAX >> (64 - 8 * size);
+            let parts = (0..bytes / size).map(|n| format!("{:#x}", number >> (8 * size * n) & mask));
+            format!("{directive} {}", parts.collect::<Vec<_>>().join(", "))
+        }
+    }
+}

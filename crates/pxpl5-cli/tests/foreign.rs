@@ -1,0 +1,175 @@
+//! Files of other programs as the command takes them.
+
+mod support;
+
+use serde_json::Value;
+use support::{Folder, err, out};
+
+/// A pyramid with a material, lines that go on, and a comment in Latin-1.
+const MODEL: &[u8] =
+    b"# Gr\xf6\xdfe\nusemtl M\xe9tall\nv 0 0 0\nv 1 0 \\\n0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+
+#[test]
+fn what_a_reader_makes_of_a_model_is_told() {
+    let folder = Folder::new("foreign-model");
+    folder.file("model.obj", MODEL);
+    let run = folder.run(&["check", "--pipeline", "slats", "--scene", "model.obj"]);
+    assert!(run.status.success(), "{}", err(&run));
+    let told = "pxpl5: warning: model.obj: colours of materials (usemtl) are not read: faces have one colour\n";
+    assert_eq!(err(&run), told);
+    let run = ["run", "--pipeline", "slats", "--scene", "model.obj", "--triangles", "3", "--fields", "40", "--json"];
+    let run = folder.run(&run);
+    assert_eq!(err(&run), told);
+    let report: Value = serde_json::from_slice(&run.stdout).expect("an object");
+    assert_eq!(report["warnings"][0], told.trim_start_matches("pxpl5: warning: ").trim_end());
+}
+
+#[test]
+fn a_model_in_a_format_that_cannot_be_read_is_refused_with_those_that_can() {
+    let folder = Folder::new("foreign-format");
+    folder.file("model.stl", "solid");
+    for name in ["model.stl", "./model.stl", "model.STL"] {
+        folder.file(name, "solid");
+        let run = folder.run(&["run", "--pipeline", "slats", "--scene", name]);
+        let said = err(&run);
+        assert!(!run.status.success() && said.contains("expected an extension .ply, .obj or .pdb"), "{said}");
+    }
+    let run = folder.run(&["run", "--pipeline", "slats", "--scene", "there-is-none.gltf"]);
+    assert!(
+        !run.status.success() && err(&run).contains("there-is-none.gltf: expected an extension .ply"),
+        "{}",
+        err(&run)
+    );
+    let run = folder.run(&["run", "--pipeline", "slats", "--scene", "there-is-none.ply"]);
+    assert!(
+        !run.status.success() && err(&run).contains("there-is-none.ply: expected a readable file"),
+        "{}",
+        err(&run)
+    );
+    let run = folder.run(&["run", "--pipeline", "slats", "--scene", "typical:1.5"]);
+    assert!(!run.status.success() && err(&run).contains("expected N"), "{}", err(&run));
+    folder.file("point.obj", "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n");
+    let run = folder.run(&["run", "--pipeline", "slats", "--scene", "point.obj"]);
+    assert!(!run.status.success() && err(&run).contains("point.obj: expected at least one triangle with an area"));
+}
+
+/// A hundred poses a second for three seconds, none between 0.28 s and 2.49 s, and one twice.
+fn recording() -> String {
+    let times = (0..300).map(|n| 10 * n).filter(|ms| !(281..2490).contains(ms));
+    let rows = times.map(|ms| format!("{}.{:03} 0 0 0 0 0 0 1\n", 1000 + ms / 1000, ms % 1000));
+    let mut text: String = rows.collect();
+    text.insert_str(0, "1000.000 0.001 0 0 0 0 0 1\n");
+    text
+}
+
+#[test]
+fn recordings_with_repeated_times_and_gaps_are_told_and_a_run_that_needs_a_gap_is_refused() {
+    let folder = Folder::new("foreign-recording");
+    folder.file("head.tum", recording());
+    let run = |more: &[&str]| {
+        let args =
+            ["run", "--pipeline", "slats", "--scene", "full-screen:4", "--head", "head.tum", "--tracker", "ideal"];
+        folder.run(&[&args[..], more].concat())
+    };
+    let refused = run(&["--fields", "60"]);
+    assert!(!refused.status.success());
+    let said = err(&refused);
+    assert!(said.contains("warning: head.tum: line 2 repeats the time of the line before"), "{said}");
+    assert!(said.contains("warning: head.tum: no pose for 2.210 s from 0.280 s on"), "{said}");
+    assert!(said.contains("no pose from 0.280 s to 2.490 s") && said.contains("head.end = \"hold\""), "{said}");
+    let held = run(&["--fields", "60", "--set", "head.end=hold"]);
+    assert!(held.status.success(), "{}", err(&held));
+    let short = run(&["--fields", "14"]);
+    assert!(!err(&short).contains("no pose from"), "{}", err(&short));
+}
+
+const SLATS: &str = "pipeline = \"slats\"\nscene = \"mig\"\n";
+
+#[test]
+fn check_refuses_the_sweeps_that_sweep_refuses_with_the_same_words() {
+    let folder = Folder::new("foreign-sweep");
+    for (name, sweep) in [
+        ("range.toml", "[sweep.grid]\ntriangles = { from = 10, to = 5, step = 0 }\n"),
+        ("key.toml", "[sweep.grid]\ntriangle = [1, 2]\n"),
+        ("empty.toml", "[sweep.grid]\ntriangles = []\n"),
+        ("table.toml", "[sweep.gird]\ntriangles = [1, 2]\n"),
+        ("value.toml", "[sweep.grid]\nlevel = [\"none\"]\n"),
+    ] {
+        folder.file(name, format!("{SLATS}{sweep}"));
+        let [check, swept] = [&["check", name][..], &["sweep", name, "--out", "o"]].map(|args| folder.run(args));
+        assert!(!check.status.success() && !swept.status.success(), "{name}");
+        assert_eq!(err(&check), err(&swept), "{name}");
+        assert!(!err(&check).is_empty());
+    }
+}
+
+#[test]
+fn check_prints_the_first_experiment_of_a_sound_sweep() {
+    let folder = Folder::new("foreign-sound-sweep");
+    folder.file("s.toml", format!("{SLATS}[sweep.grid]\ntriangles = [10, 20, 9999]\nseed = [1, 2]\n"));
+    let check = folder.run(&["check", "s.toml"]);
+    assert!(check.status.success(), "{}", err(&check));
+    let text = out(&check);
+    assert!(text.starts_with("# sweep of 6 points, of which 6 were checked; point 0:\n"), "{text}");
+    assert!(text.contains("#   triangles: 3 values\n") && text.contains("triangles = 10"), "{text}");
+    folder.file("again.toml", &text);
+    let again = folder.run(&["check", "again.toml"]);
+    assert_eq!(
+        out(&again).lines().find(|line| line.contains("config_hash")),
+        text.lines().find(|line| line.contains("config_hash"))
+    );
+}
+
+#[test]
+fn assembler_listings_have_source_lines_and_warnings_can_be_turned_off() {
+    let folder = Folder::new("foreign-assembler");
+    folder.file(
+        "a.s",
+        b"start:\tadds 1,r0,r4;\tadds 2,r0,r5 // Gr\xf6\xdfe\n\tpfmul.ss f4,f5,f4\nend:\tnop\ntable:\t.long 7, 8\n",
+    );
+    let listed = folder.run(&["i860", "asm", "a.s"]);
+    assert!(listed.status.success(), "{}", err(&listed));
+    let text = out(&listed);
+    let first = "00001000  94040001  adds 1, r0, r4                      1  start:\tadds 1,r0,r4;\tadds 2,r0,r5 // Gr";
+    assert!(text.contains(first), "{text}");
+    assert!(text.contains("00001004  94050002  adds 2, r0, r5\n"), "{text}");
+    assert!(
+        text.contains("table:\n00001010  00000007  .long 0x7                           4  table:\t.long 7, 8\n"),
+        "{text}"
+    );
+    let told =
+        "pxpl5: warning: a.s:2: a pipelined multiply must not have its first source as destination [multiply-source]\n";
+    assert_eq!(err(&listed), told);
+    for allow in [&["--allow", "multiply-source"][..], &["--allow", "lost-result,multiply-source"], &["--allow", "all"]]
+    {
+        assert_eq!(err(&folder.run(&[&["i860", "asm", "a.s"], allow].concat())), "", "{allow:?}");
+    }
+    let run = folder.run(&["i860", "run", "a.s", "--allow", "all", "--json"]);
+    let json: Value = serde_json::from_slice(&run.stdout).expect("an object");
+    assert_eq!((&json["r"][4], &json["r"][5]), (&"00000001".into(), &"00000002".into()));
+    let wrong = folder.run(&["i860", "asm", "a.s", "--allow", "everything"]);
+    assert!(!wrong.status.success() && err(&wrong).contains("lost-result"));
+}
+
+#[test]
+fn columns_of_comparisons_have_the_same_names_in_tables_plots_and_json() {
+    let folder = Folder::new("foreign-columns");
+    let settings = ["--fields", "24", "--seeds", "1", "--scene", "full-screen:2", "--no-limits", "--only", "slats"];
+    let compared = folder.run(&[&["compare", "--out", "c"][..], &settings].concat());
+    assert!(compared.status.success(), "{}", err(&compared));
+    let table = std::fs::read_to_string(folder.0.join("c/rows.csv")).expect("written");
+    let header = table.lines().next().expect("a header").to_owned();
+    // `plot` names all columns of comparison.json when it is asked for one that there is not.
+    let unknown = folder.run(&["plot", "c", "--x", "no-column", "--y", "due", "--out", "f.svg"]);
+    let known: Vec<String> =
+        err(&unknown).trim_end().rsplit_once("There are: ").expect("a list").1.split(", ").map(str::to_owned).collect();
+    for column in header.split(',') {
+        assert!(known.iter().any(|name| name == column), "{column} is not in {known:?}");
+    }
+    let old = ["plot", "c", "--x", "head_to_light_ms_mean", "--y", "error_px_by_latency", "--out", "f.svg"];
+    let old = folder.run(&old);
+    assert!(old.status.success(), "{}", err(&old));
+    let said = err(&old);
+    assert!(said.contains("the column `head_to_light_ms_mean` is called `head_to_light_ms.mean` now"), "{said}");
+    assert!(said.contains("the column `error_px_by_latency` is called `causes.latency.px.mean` now"), "{said}");
+}

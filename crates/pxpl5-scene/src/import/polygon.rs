@@ -1,0 +1,150 @@
+//! Polygons of a file as triangles: a fan where they are convex, ears where they have a notch.
+
+use earcut::Earcut;
+use glam::{DVec2, DVec3};
+
+/// Corners that a polygon with a notch may have. Derived: cutting ears off takes about 136 bytes a corner, so that this many stay
+/// near [`crate::config::MEMORY_FLOOR_BYTES`].
+pub(super) const MOST_CORNERS: usize = 1 << 15;
+
+/// Least sine of the angle at which an edge counts as turning back. Assumed, 1e-7 to 1e-4: single precision keeps points of a straight
+/// line straight to 6e-8.
+const STRAIGHT: f64 = 1e-6;
+
+/// Triangles for a polygon.
+pub(super) enum Cut {
+    /// The fan covers it.
+    Fan,
+    /// These cover it, turned as the polygon is.
+    Ears(Vec<[u32; 3]>),
+    /// It has a notch, and more corners than [`MOST_CORNERS`].
+    TooLong,
+}
+
+/// Returns how to cut the polygon whose fan about its first corner is given; `place` gives the place of a corner.
+pub(super) fn cut(fan: &[[u32; 3]], place: impl Fn(u32) -> DVec3) -> Cut {
+    // A triangle has no notch.
+    if fan.len() < 2 {
+        return Cut::Fan;
+    }
+    let Some(flat) = Projection::of(fan, &place) else { return Cut::Fan };
+    let flat = |corner| flat.point(place(corner));
+    if is_convex(fan, &flat) {
+        return Cut::Fan;
+    }
+    // Corners on top of the one before add no area; without them fewer have to be looked at.
+    let mut ring: Vec<u32> = Vec::new();
+    for corner in corners(fan) {
+        if ring.last().is_none_or(|&before| flat(before) != flat(corner)) {
+            ring.push(corner);
+        }
+        if ring.len() > MOST_CORNERS {
+            return Cut::TooLong;
+        }
+    }
+    ears(&ring, flat)
+}
+
+/// The corners of a polygon, from its fan.
+fn corners(fan: &[[u32; 3]]) -> impl Iterator<Item = u32> + Clone {
+    let first = fan.iter().take(1).flat_map(|triangle| [triangle[0], triangle[1]]);
+    first.chain(fan.iter().map(|triangle| triangle[2]))
+}
+
+fn ears(ring: &[u32], flat: impl Fn(u32) -> DVec2) -> Cut {
+    let places: Vec<[f64; 2]> = ring.iter().map(|&corner| flat(corner).to_array()).collect();
+    let mut indices: Vec<u32> = Vec::new();
+    Earcut::new().earcut_slice(&places, &[], &mut indices);
+    // The projection sees the polygon anticlockwise; so must be its triangles.
+    let turned = |[a, b, c]: [u32; 3]| {
+        let (a2, b2, c2) = (flat(a), flat(b), flat(c));
+        if (b2 - a2).perp_dot(c2 - a2) < 0.0 { [a, c, b] } else { [a, b, c] }
+    };
+    let triangles = indices.chunks_exact(3);
+    let triangles: Vec<_> = triangles.map(|t| turned([t[0], t[1], t[2]].map(|index| ring[index as usize]))).collect();
+    if triangles.is_empty() { Cut::Fan } else { Cut::Ears(triangles) }
+}
+
+/// Returns true if no corner of a polygon turns clockwise, and no edge runs back over the one before.
+fn is_convex(fan: &[[u32; 3]], flat: impl Fn(u32) -> DVec2) -> bool {
+    // The first two edges come again at the end: the turns at the last and the first corner.
+    let again = corners(fan).take(2);
+    let mut points = corners(fan).chain(again).map(flat);
+    let Some(mut before) = points.next() else { return true };
+    let mut edge = DVec2::ZERO;
+    for point in points {
+        let next = (point - before).normalize_or_zero();
+        if next == DVec2::ZERO {
+            continue;
+        }
+        let turn = edge.perp_dot(next);
+        if turn < -STRAIGHT || turn < STRAIGHT && edge.dot(next) < 0.0 {
+            return false;
+        }
+        before = point;
+        edge = next;
+    }
+    true
+}
+
+/// The view of a polygon along the axis nearest to its normal, from the side where it runs anticlockwise.
+struct Projection {
+    origin: DVec3,
+    /// Brings the farthest corner near 1: squares of the smallest and the largest numbers of a file would leave the range of f64.
+    scale: f64,
+    /// The axes that remain.
+    axes: [usize; 2],
+}
+
+impl Projection {
+    /// `None` for a polygon without area.
+    fn of(fan: &[[u32; 3]], place: impl Fn(u32) -> DVec3) -> Option<Self> {
+        let (origin, scale) = near_one(fan, &place)?;
+        let area = area(fan, |corner| (place(corner) - origin) * scale);
+        if area.abs().max_element() < 1e-12 {
+            return None;
+        }
+        let axis = (0..3).max_by(|&a, &b| area[a].abs().total_cmp(&area[b].abs()))?;
+        let axes = [(axis + 1) % 3, (axis + 2) % 3];
+        Some(Self { origin, scale, axes: if area[axis] > 0.0 { axes } else { [axes[1], axes[0]] } })
+    }
+
+    fn point(&self, place: DVec3) -> DVec2 {
+        let v = (place - self.origin) * self.scale;
+        DVec2::new(v[self.axes[0]], v[self.axes[1]])
+    }
+}
+
+/// The power of two that brings a length near 1; `None` for 0.
+fn scale_to_one(length: f64) -> Option<f64> {
+    let (_, exponent) = libm::frexp(length);
+    // A power above the range of f64 would be needed for the smallest numbers; they come near enough to 1.
+    (length > 0.0).then(|| libm::ldexp(1.0, -exponent.max(-1022)))
+}
+
+/// The first corner, and the scale that brings the farthest one from it near 1; `None` for a polygon that is a point.
+fn near_one(fan: &[[u32; 3]], place: impl Fn(u32) -> DVec3) -> Option<(DVec3, f64)> {
+    let origin = place(fan.first()?[0]);
+    let farthest = corners(fan).map(|corner| (place(corner) - origin).abs().max_element()).fold(0.0, f64::max);
+    Some((origin, scale_to_one(farthest)?))
+}
+
+/// The area of a polygon twice, along its normal, of places that count from the first corner.
+fn area(fan: &[[u32; 3]], from_first: impl Fn(u32) -> DVec3) -> DVec3 {
+    fan.iter().map(|&[_, b, c]| from_first(b).cross(from_first(c))).sum()
+}
+
+/// Returns the normal of a polygon, of any length; zero for one without area.
+pub(super) fn normal(fan: &[[u32; 3]], place: impl Fn(u32) -> DVec3) -> DVec3 {
+    match near_one(fan, &place) {
+        Some((origin, scale)) => area(fan, |corner| (place(corner) - origin) * scale),
+        None => DVec3::ZERO,
+    }
+}
+
+/// Returns true if a triangle is higher than `least` times its longest edge.
+pub(super) fn has_area([a, b, c]: [DVec3; 3], least: f64) -> bool {
+    let edges = [b - a, c - a];
+    let longest = [edges[0], edges[1], c - b].map(|edge| edge.abs().max_element()).into_iter().fold(0.0, f64::max);
+    scale_to_one(longest).is_some_and(|scale| (edges[0] * scale).cross(edges[1] * scale).length() > least)
+}
