@@ -3,6 +3,7 @@
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::Work;
+use crate::too_heavy::too_heavy;
 use crate::output::OutputFile;
 use crate::settings::SettingArgs;
 use crate::terminal::{print, warn};
@@ -57,9 +58,10 @@ pub(crate) fn run(args: FilmArgs) -> Result<(), CliError> {
         Whose::Right => FilmOf::One(Eye::Right.into()),
         Whose::Both => FilmOf::All,
     };
-    let file = OutputFile::open(&args.out)?;
+    let file = OutputFile::open(&args.out, "--out")?;
     let (scene, fields) = (plan.load_scene()?, args.from + args.length + 1);
     args.budget.admit(&Work { fields, ..Work::of(&plan, &scene, true) })?;
+    warn(too_heavy(&plan, &scene, fields).as_slice(), args.quiet);
     let experiment = plan.experiment(scene).pixels(Pixels::Lazy).fields(fields);
     let texts = [("config_hash", experiment.config_hash().to_string()), ("settings", plan.settings().to_string())];
     let mut bytes = Vec::new();

@@ -9,9 +9,12 @@ mod session;
 mod views;
 mod words;
 
+use crate::budget::BudgetArgs;
 use crate::error::CliError;
+use crate::estimate::Work;
 use crate::settings::SettingArgs;
 use crate::terminal::{print, warn};
+use crate::too_heavy::too_heavy;
 use clap::Args;
 use command::split;
 use pxpl5::Workstation;
@@ -35,6 +38,8 @@ pub(crate) struct DebugArgs {
     /// The same with the commands of a file, one a line.
     #[arg(long, value_name = "FILE", conflicts_with = "commands")]
     do_file: Option<PathBuf>,
+    #[command(flatten)]
+    budget: BudgetArgs,
     /// Print no warnings.
     #[arg(long, short)]
     quiet: bool,
@@ -44,7 +49,10 @@ pub(crate) fn run(args: DebugArgs) -> Result<(), CliError> {
     let script = script(args.commands, args.do_file)?;
     let plan = args.settings.gather()?.resolve()?;
     warn(&plan.warnings(), args.quiet);
-    let experiment = plan.experiment(plan.load_scene()?).host(Workstation::new()).record_traffic(true);
+    let scene = plan.load_scene()?;
+    args.budget.admit(&Work::of(&plan, &scene, true))?;
+    warn(too_heavy(&plan, &scene, plan.fields).as_slice(), args.quiet);
+    let experiment = plan.experiment(scene).host(Workstation::new()).record_traffic(true);
     let session = Session::new(experiment.stepper()?);
     match script {
         Some(commands) => scripted(session, &commands),

@@ -136,7 +136,7 @@ fn assembled(file: &Path, base: u32) -> Result<Program, String> {
 fn asm(file: &Path, base: u32, output: Option<&Path>) -> Result<(), CliError> {
     let program = assembled(file, base).map_err(CliError::failure)?;
     match output {
-        Some(path) => OutputFile::open(path)?.write(&program.bytes),
+        Some(path) => OutputFile::open(path, "-o")?.write(&program.bytes),
         None => print(&listing(base, &program.words(), Some(&program))),
     }
 }
