@@ -6,13 +6,13 @@ use clap::Args;
 use std::cell::OnceCell;
 use std::time::Instant;
 
-/// Most memory and time that a run may take.
+/// Most memory and time that a command may take.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct BudgetArgs {
-    /// Refuse a run that would take more memory than this, in MB of 10^6 bytes.
+    /// Refuse what would take more memory than this, in MB of 10^6 bytes.
     #[arg(long, value_name = "MB", default_value_t = MOST_MEGABYTES, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
     max_memory: u64,
-    /// Refuse a run that would take longer than this, in seconds.
+    /// Refuse what would take longer than this, in seconds.
     #[arg(long, value_name = "S", default_value_t = MOST_SECONDS, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
     max_seconds: u64,
 }
@@ -50,13 +50,18 @@ pub(crate) struct Watch {
 }
 
 impl BudgetArgs {
+    /// Of limits, each of which may be missing.
+    pub(crate) fn of(max_memory: Option<u64>, max_seconds: Option<u64>) -> Self {
+        Self { max_memory: max_memory.unwrap_or(u64::MAX), max_seconds: max_seconds.unwrap_or(u64::MAX) }
+    }
+
     /// Refuses a run before it starts, by what it is estimated to take.
     ///
     /// # Errors
     ///
     /// The estimate, and what to do about it.
     pub(crate) fn admit(&self, work: &Work) -> Result<(), CliError> {
-        self.admit_estimate(work.estimate())
+        self.admit_estimate(work.estimate(), "simulate fewer fields")
     }
 
     /// Refuses many runs before the first starts: their times one after the other, on so many threads; the memory of the largest on
@@ -67,11 +72,17 @@ impl BudgetArgs {
     /// As [`BudgetArgs::admit`].
     pub(crate) fn admit_all(&self, runs: impl IntoIterator<Item = Work>, threads: usize) -> Result<(), CliError> {
         let whole = Estimate::of_all(runs.into_iter().map(|work| work.estimate()), threads);
-        self.admit_estimate(whole)
+        self.admit_estimate(whole, "simulate fewer fields")
     }
 
-    fn admit_estimate(&self, Estimate { bytes, seconds }: Estimate) -> Result<(), CliError> {
-        match self.excess(bytes / 1e6, seconds) {
+    /// Refuses anything before it starts; `advice` says how to make it smaller.
+    ///
+    /// # Errors
+    ///
+    /// As [`BudgetArgs::admit`].
+    pub(crate) fn admit_estimate(&self, estimate: Estimate, advice: &str) -> Result<(), CliError> {
+        let Estimate { bytes, seconds } = estimate;
+        match self.excess(bytes / 1e6, seconds, advice) {
             Some(reason) => {
                 Err(CliError::failure(format!("{reason}; estimated before it starts, nothing was written")))
             }
@@ -125,21 +136,21 @@ impl BudgetArgs {
     fn refusal(&self, before: Taken, taken: Taken, part: f64) -> Option<String> {
         let megabytes = if taken.bytes > TELLING_BYTES { taken.bytes / part / 1e6 } else { 0.0 };
         let seconds = if taken.seconds > TELLING_SECONDS { taken.seconds / part } else { 0.0 };
-        self.excess(before.bytes / 1e6 + megabytes, before.seconds + seconds)
+        self.excess(before.bytes / 1e6 + megabytes, before.seconds + seconds, "simulate fewer fields")
     }
 
     /// What is more than allowed, if anything is.
-    fn excess(&self, megabytes: f64, seconds: f64) -> Option<String> {
+    fn excess(&self, megabytes: f64, seconds: f64, advice: &str) -> Option<String> {
         let most = self.max_memory;
         if megabytes > most as f64 {
             return Some(format!(
-                "the run is expected to take {megabytes:.0} MB, more than {most}: simulate fewer fields, or allow it with --max-memory"
+                "the run is expected to take {megabytes:.0} MB, more than {most}: {advice}, or allow it with --max-memory"
             ));
         }
         let most = self.max_seconds;
         (seconds > most as f64).then(|| {
             format!(
-                "the run is expected to take {seconds:.0} s, more than {most}: simulate fewer fields, or allow it with --max-seconds"
+                "the run is expected to take {seconds:.0} s, more than {most}: {advice}, or allow it with --max-seconds"
             )
         })
     }

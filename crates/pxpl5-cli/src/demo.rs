@@ -75,7 +75,7 @@ struct Run {
 }
 
 pub(crate) fn run(args: DemoArgs) -> Result<(), CliError> {
-    let folder = OutputFolder::open(&args.out)?;
+    let folder = OutputFolder::of_run(&args.out, "demo")?;
     let runs: Vec<Run> =
         EXPERIMENTS.iter().map(|(name, text)| one(name, text, args.quiet)).collect::<Result<_, _>>()?;
     write(folder, &runs)?;

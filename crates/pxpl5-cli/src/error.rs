@@ -1,6 +1,7 @@
 //! What ends a command early.
 
 use pxpl5::compare::CompareError;
+use pxpl5::lab::manifest::ManifestError;
 use pxpl5::sweep::SweepError;
 use pxpl5::{ExperimentError, FileError, SnapshotError};
 use std::fmt::Display;
@@ -60,7 +61,19 @@ impl From<SweepError> for CliError {
         match error {
             SweepError::File(error) => error.into(),
             SweepError::Locked { .. } => Self { code: BUSY, message: error.to_string() },
-            SweepError::NotEmpty { .. } | SweepError::Foreign { .. } => Self::usage(error),
+            SweepError::NotEmpty { .. }
+            | SweepError::Foreign { .. }
+            | SweepError::Occupied { .. }
+            | SweepError::Manifest(ManifestError::NoManifest { .. }) => Self::usage(error),
+            _ => Self::failure(error),
+        }
+    }
+}
+
+impl From<ManifestError> for CliError {
+    fn from(error: ManifestError) -> Self {
+        match error {
+            ManifestError::NoManifest { .. } => Self::usage(error),
             _ => Self::failure(error),
         }
     }

@@ -32,7 +32,7 @@ pub(crate) struct FiguresArgs {
 }
 
 pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
-    let file = args.write.as_deref().map(OutputFile::open).transpose()?;
+    let file = args.write.as_deref().map(|path| OutputFile::open(path, "--write")).transpose()?;
     let bar = progress(0, "figures", false);
     let figures = run_all_with(&Bench::new(Level::Transaction), |done, of| advance(&bar, done, of));
     bar.finish_and_clear();

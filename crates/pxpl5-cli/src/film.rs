@@ -7,6 +7,7 @@ use crate::output::OutputFile;
 use crate::scenes;
 use crate::settings::SettingArgs;
 use crate::terminal::{print, warn};
+use crate::too_heavy::too_heavy;
 use clap::{Args, ValueEnum};
 use pxpl5::{Eye, Film, FilmOf, PeriodNumber, Pixels};
 use std::path::PathBuf;
@@ -58,9 +59,10 @@ pub(crate) fn run(args: FilmArgs) -> Result<(), CliError> {
         Whose::Right => FilmOf::One(Eye::Right.into()),
         Whose::Both => FilmOf::All,
     };
-    let file = OutputFile::open(&args.out)?;
+    let file = OutputFile::open(&args.out, "--out")?;
     let (scene, fields) = (scenes::load(&plan, args.quiet)?, args.from + args.length + 1);
     args.budget.admit(&Work { fields, ..Work::of(&plan, &scene, true) })?;
+    warn(too_heavy(&plan, &scene, fields).as_slice(), args.quiet);
     let experiment = plan.experiment(scene).pixels(Pixels::Lazy).fields(fields);
     let texts = [("config_hash", experiment.config_hash().to_string()), ("settings", plan.settings().to_string())];
     let mut bytes = Vec::new();

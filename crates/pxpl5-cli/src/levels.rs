@@ -32,7 +32,7 @@ pub(crate) struct LevelsArgs {
 
 pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
     if let Some(path) = &args.scaling {
-        let file = OutputFile::open(path)?;
+        let file = OutputFile::open(path, "--scaling")?;
         let bar = progress(3, "tables", false);
         let by_triangles = growth::by_triangles()?;
         bar.inc(1);
@@ -42,7 +42,7 @@ pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
         bar.finish_and_clear();
         return file.write(growth::markdown(&by_triangles, &by_machine, &applications).as_bytes());
     }
-    let chart = args.chart.as_deref().map(OutputFile::open).transpose()?;
+    let chart = args.chart.as_deref().map(|path| OutputFile::open(path, "--chart")).transpose()?;
     let bar = progress(0, "figures at all levels", false);
     let reports = compare_with(|done, of| advance(&bar, done, of));
     bar.finish_and_clear();

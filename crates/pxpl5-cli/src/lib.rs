@@ -39,6 +39,7 @@ mod snapshot;
 mod sweep;
 mod table;
 mod terminal;
+mod too_heavy;
 mod trace;
 mod volume;
 

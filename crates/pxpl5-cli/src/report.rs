@@ -1,5 +1,6 @@
 //! `pxpl5 report`: a results folder as one page.
 
+mod files;
 mod load;
 mod tables;
 
@@ -8,6 +9,7 @@ use crate::output::OutputFile;
 use crate::rows::folder_of;
 use crate::terminal::print;
 use clap::Args;
+use files::Files;
 use pxpl5::views::page;
 use std::path::PathBuf;
 
@@ -35,12 +37,13 @@ pub(crate) struct ReportArgs {
 
 pub(crate) fn run(args: ReportArgs) -> Result<(), CliError> {
     let folder = folder_of(&args.results);
-    let page = match tables::of(folder)? {
+    let files = Files::of(folder, args.quiet)?;
+    let page = match tables::of(&files)? {
         Some(tables) => page::html_of_tables(&tables),
-        None => page::html(&load::runs(folder)?),
+        None => page::html(&load::runs(&files)?),
     };
     let path = args.write.unwrap_or_else(|| folder.join("report.html"));
-    let file = OutputFile::open(&path)?;
+    let file = OutputFile::of_results(&path, "--write", folder)?;
     let silent = args.quiet || file.is_standard_output();
     file.write(page.as_bytes())?;
     if silent {

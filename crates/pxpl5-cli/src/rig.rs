@@ -1,6 +1,8 @@
 //! `pxpl5 rig`: latency measured from outside, as by I3D95's pendulum, beside the system's own time stamps.
 
+use crate::budget::BudgetArgs;
 use crate::error::CliError;
+use crate::estimate::Work;
 use crate::settings::SettingArgs;
 use crate::terminal::print;
 use clap::Args;
@@ -32,10 +34,15 @@ pub(crate) struct RigArgs {
     /// Line of a field under the photodiode on the screen, 0 at the top; default 120, the middle of NTSC's 240.
     #[arg(long, value_name = "N")]
     line: Option<u32>,
+    #[command(flatten)]
+    budget: BudgetArgs,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
 }
+
+/// Fields from one low point to the next at most: a second.
+const FIELDS_OF_PASS: u64 = 60;
 
 /// Keys that would say what the rig itself says.
 const NOT_OURS: [&str; 8] =
@@ -52,6 +59,8 @@ pub(crate) fn run(args: RigArgs) -> Result<(), CliError> {
     let tracker = tracker.ok_or_else(|| CliError::failure("no tracker"))?;
     let mut rig = Rig { seed: plan.seed, passes: args.passes as usize, ..Rig::assumed(tracker) };
     rig.rig.photodiode_line = args.line.unwrap_or(rig.rig.photodiode_line);
+    let fields = args.passes * FIELDS_OF_PASS;
+    args.budget.admit(&Work { fields, ..Work::of(&plan, &*plan.load_scene()?, true) })?;
     let measured = rig.measure(&plan.machine, plan.pipeline.clone()).map_err(CliError::failure)?;
     print(&if args.json { json_text(&plan, &rig, &measured) } else { text(&plan, &rig, &measured) })?;
     if measured.agrees() { Ok(()) } else { Err(CliError::failure(verdict(&measured))) }

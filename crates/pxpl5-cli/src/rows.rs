@@ -1,6 +1,7 @@
 //! Rows of a results folder: what `pxpl5 sweep` and `pxpl5 compare` wrote.
 
 use crate::error::CliError;
+use pxpl5::lab::manifest::Manifest;
 use pxpl5::sweep::ROWS_FILE;
 use serde_json::{Map, Value};
 use std::fs;
@@ -37,11 +38,15 @@ pub(crate) struct ResultRows {
 pub(crate) fn of(folder: &Path) -> Result<Option<ResultRows>, CliError> {
     type Reader = fn(&str) -> Result<ResultRows, String>;
     let readers: [(&str, Reader); 2] = [(ROWS_FILE, sweep), (COMPARISON_FILE, comparison)];
+    let manifest = Manifest::read(folder)?;
     for (name, read) in readers {
         let path = folder.join(name);
-        if path.is_file() {
+        // A file that is not listed is of another run.
+        if path.is_file() && manifest.as_ref().is_none_or(|manifest| manifest.lists(name)) {
             let problem = |what: String| CliError::failure(format!("{}: {what}", path.display()));
-            let text = fs::read_to_string(&path).map_err(|error| problem(error.to_string()))?;
+            let listed = manifest.as_ref().map(|manifest| manifest.read_file(folder, name)).transpose()?.flatten();
+            let bytes = listed.map_or_else(|| fs::read(&path), Ok).map_err(|error| problem(error.to_string()))?;
+            let text = String::from_utf8(bytes).map_err(|error| problem(error.to_string()))?;
             return read(&text).map(Some).map_err(problem);
         }
     }

@@ -24,7 +24,10 @@ use std::path::PathBuf;
   pxpl5 run --pipeline slats --scene mig --triangles 100 --set gp.triangle_ns=30000
   pxpl5 run --pipeline slats --scene mig --triangles 50 --level cycle
   pxpl5 run --pipeline slats --scene head --triangles 100 --save-at 60 --save s.json
-  pxpl5 run --restore s.json --fields 600")]
+  pxpl5 run --restore s.json --fields 600
+
+Exit code 0: done. 1: it failed; or no picture was shown behind the first four, so that there is no latency: the report and all files are
+written all the same, with null for what was not measured. 2: the command line or a file is wrong.")]
 pub(crate) struct RunArgs {
     #[command(flatten)]
     settings: SettingArgs,
@@ -52,15 +55,13 @@ pub(crate) struct RunArgs {
 pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     let plan = plan(args.snapshot.experiment(args.settings.gather()?)?)?;
     warn(&plan.warnings(), args.quiet);
-    let folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
+    let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "run")).transpose()?;
     // Files list every picture; the report needs statistics only, however long the run is.
     let keep = if folder.is_some() { Keep::Everything } else { Keep::Statistics };
     let how = How { threads: args.threads, without: &args.without, keep, budget: args.budget, quiet: args.quiet };
     let Simulated { outcome, too_short } = args.snapshot.simulate(&plan, how)?;
     let results = Results::of_run(outcome);
     let Some((_, report)) = &results.run else { return Err(no_events()) };
-    // Of a run that is too short everything is said, but nothing is kept.
-    let folder = folder.filter(|_| too_short.is_none());
     let written = folder.map(|folder| write(folder, &plan, &results)).transpose()?;
     if args.json {
         print(&format!("{}\n", json(report)?))?;

@@ -11,7 +11,7 @@
 //! Time and memory that are asked for follow from estimates of points that lie evenly in the space ([`Resources`]).
 
 use crate::error::{BUSY, CliError};
-use crate::estimate::Work;
+use crate::estimate::Estimate;
 use crate::output::OutputFolder;
 use pxpl5::sweep::Sweep;
 use std::path::{Path, PathBuf};
@@ -79,14 +79,20 @@ impl Sample {
     fn of(sweep: &Sweep) -> Self {
         let points = sweep.space().points();
         let chosen: Vec<u64> = spread(points, SAMPLE).collect();
-        let costs = sweep.costs(&chosen);
-        let bytes = chosen.iter().map(|point| bytes_of(sweep, *point));
+        let estimates = sweep.estimates(&chosen);
+        let seconds = || estimates.iter().map(|estimate| estimate.seconds);
         Self {
             points,
-            mean_s: costs.iter().sum::<f64>() / costs.len().max(1) as f64,
-            most_s: costs.iter().copied().fold(0.0, f64::max),
-            most_bytes: bytes.fold(0.0, f64::max),
+            mean_s: seconds().sum::<f64>() / estimates.len().max(1) as f64,
+            most_s: seconds().fold(0.0, f64::max),
+            most_bytes: estimates.iter().map(|estimate| estimate.bytes).fold(0.0, f64::max),
         }
+    }
+
+    /// The whole sweep on so many threads.
+    fn whole(self, threads: usize) -> Estimate {
+        let threads = threads.max(1) as f64;
+        Estimate { bytes: self.most_bytes * threads, seconds: self.mean_s * self.points as f64 / threads }
     }
 }
 
@@ -102,11 +108,9 @@ const fn common_factor(a: u64, b: u64) -> u64 {
     if b == 0 { a } else { common_factor(b, a % b) }
 }
 
-/// Bytes of a point; 0 of one that cannot be simulated, since it says so and ends.
-fn bytes_of(sweep: &Sweep, point: u64) -> f64 {
-    let Ok(plan) = sweep.plan(point) else { return 0.0 };
-    // A point keeps everything that it observes until it is measured.
-    sweep.scene(&plan).map_or(0.0, |scene| Work::of(&plan, &scene, true).estimate().bytes)
+/// What a sweep is estimated to take on so many threads, by points that lie evenly in its space.
+pub(crate) fn estimate(sweep: &Sweep, threads: usize) -> Estimate {
+    Sample::of(sweep).whole(threads)
 }
 
 impl Resources {
@@ -171,7 +175,7 @@ pub(crate) fn write(sweep: &Sweep, jobs: &Jobs, folder: &Path) -> Result<Written
     let sample = Sample::of(sweep);
     let resources = Resources::of(sample, jobs.tasks, jobs.threads);
     let scripts = Scripts::of(jobs, sample, resources)?;
-    let mut output = OutputFolder::open(folder)?;
+    let mut output = OutputFolder::open(folder, "--slurm")?;
     for (name, text) in [("array.sh", &scripts.array), ("merge.sh", &scripts.merge), ("submit.sh", &scripts.submit)] {
         output.put(name, text.as_bytes())?;
     }

@@ -6,7 +6,8 @@ use crate::estimate::Work;
 use crate::options::registry;
 use crate::output::OutputFile;
 use crate::scenes;
-use crate::terminal::progress;
+use crate::terminal::{progress, warn};
+use crate::too_heavy::too_heavy;
 use clap::Args;
 use pxpl5::{
     ExperimentError, ExperimentFile, Host, Keep, Machine, Outcome, PeriodNumber, Pixels, Plan, Saving, Snapshot,
@@ -50,7 +51,7 @@ pub(crate) struct Simulated {
 
 impl Simulated {
     /// A run that is too short has an outcome all the same.
-    fn of(run: Result<Outcome, ExperimentError>) -> Result<Self, CliError> {
+    pub(crate) fn of(run: Result<Outcome, ExperimentError>) -> Result<Self, CliError> {
         match run {
             Ok(outcome) => Ok(Self { outcome, too_short: None }),
             Err(error) => {
@@ -108,9 +109,12 @@ impl SnapshotArgs {
     ///
     /// When the run fails, is not the one of the snapshot, or the snapshot cannot be written.
     pub(crate) fn simulate(&self, plan: &Plan, how: How<'_>) -> Result<Simulated, CliError> {
-        let mut saving = self.saving(plan)?;
+        let saving = self.saving(plan)?;
+        // Kept until the run has ended, so that a run that is ended in any way leaves nothing.
+        let mut saved = None;
         let scene = scenes::load(plan, how.quiet)?;
         how.budget.admit(&Work::of(plan, &scene, how.keep == Keep::Everything))?;
+        warn(too_heavy(plan, &scene, plan.fields).as_slice(), how.quiet);
         let host = how.threads.map_or_else(Workstation::new, |threads| Workstation::with_threads(threads as usize));
         let experiment = plan.experiment(scene.clone()).host(host).keep(how.keep);
         let mut experiment = how.without.iter().fold(experiment, |experiment, saving| experiment.without(*saving));
@@ -135,15 +139,14 @@ impl SnapshotArgs {
                 snapshot.check_machine(machine, name).map_err(|error| ExperimentError::Stopped(error.to_string()))?;
                 continue_pixels(plan, machine, host);
             }
-            if let (Some(file), true) = (&mut saving, Some(field) == save_at) {
-                let text = Snapshot::of_machine(plan, hash, &scene, field, machine).to_text();
-                file.put(text.as_bytes()).map_err(|error| ExperimentError::Stopped(error.message().to_owned()))?;
+            if Some(field) == save_at {
+                saved = Some(Snapshot::of_machine(plan, hash, &scene, field, machine).to_text());
             }
             Ok(())
         });
         bar.finish_and_clear();
         let simulated = Simulated::of(outcome)?;
-        saving.map(OutputFile::commit).transpose()?;
+        saving.zip(saved).map(|(file, text)| file.write(text.as_bytes())).transpose()?;
         Ok(simulated)
     }
 
@@ -154,7 +157,7 @@ impl SnapshotArgs {
             let last = plan.fields.saturating_sub(1);
             return Err(CliError::usage(format!("--save-at: expected a field from 1 to {last}, found {field}")));
         }
-        OutputFile::open(path).map(Some)
+        OutputFile::open(path, "--save").map(Some)
     }
 
     /// The snapshot to go on from, and its name.

@@ -1,6 +1,8 @@
 //! `pxpl5 sweep`.
 
+use crate::budget::BudgetArgs;
 use crate::error::CliError;
+use crate::estimate::Estimate;
 use crate::options::registry;
 use crate::slurm::{self, Jobs, quoted};
 use crate::terminal::{complain, print, progress, warn};
@@ -45,6 +47,12 @@ pub(crate) struct SweepArgs {
     /// Set any key of the experiment file for all points; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     sets: Vec<String>,
+    /// Refuse a sweep that would take more memory than this, in MB of 10^6 bytes.
+    #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    max_memory: Option<u64>,
+    /// Refuse a sweep that would take longer than this, in seconds; default: any time, since it can be interrupted and resumed.
+    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    max_seconds: Option<u64>,
     /// Print nothing but errors.
     #[arg(long, short)]
     quiet: bool,
@@ -66,20 +74,37 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     if let Some(folder) = &args.slurm {
         return write_jobs(&args, &sweep, folder);
     }
-    let mut store = Store::open(&args.out, sweep.header()?, args.resume)?;
+    let header = sweep.header()?;
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = args.threads.map_or(cores, |threads| threads as usize);
+    args.admit(&sweep, threads)?;
+    let mut store = Store::open(&args.out, header, args.resume)?;
     told_when_interrupted(&args)?;
     let total = args.shard.share_of(sweep.space().points());
     let bar = progress(total, "points", args.quiet);
     bar.set_position(store.finished(args.shard));
     bar.reset_eta();
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let options = RunOptions { shard: args.shard, threads: args.threads.map_or(cores, |threads| threads as usize) };
+    let options = RunOptions { shard: args.shard, threads };
     pxpl5::sweep::run(&sweep, &mut store, options, |_| bar.inc(1))?;
     bar.finish_and_clear();
     let failed = tell_failures(&store, args.shard, total, "simulated")?;
     tell_place(&args.out, total, args.quiet)?;
     store.finish()?;
     if failed >= total { Err(CliError::failure("no point could be simulated")) } else { Ok(()) }
+}
+
+impl SweepArgs {
+    /// Refuses a sweep before it starts, if a limit is given that it would pass.
+    fn admit(&self, sweep: &Sweep, threads: usize) -> Result<(), CliError> {
+        // An estimate of hundreds of points takes seconds.
+        if self.max_memory.is_none() && self.max_seconds.is_none() {
+            return Ok(());
+        }
+        let all = slurm::estimate(sweep, threads);
+        let share = self.shard.share_of(sweep.space().points()) as f64 / sweep.space().points().max(1) as f64;
+        let ours = Estimate { seconds: all.seconds * share, ..all };
+        BudgetArgs::of(self.max_memory, self.max_seconds).admit_estimate(ours, "sweep fewer points")
+    }
 }
 
 /// Writes the jobs of a sweep that could be run.

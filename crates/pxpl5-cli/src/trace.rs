@@ -6,7 +6,9 @@ use crate::estimate::Work;
 use crate::output::OutputFile;
 use crate::scenes;
 use crate::settings::SettingArgs;
+use crate::snapshot::Simulated;
 use crate::terminal::{print, progress, warn};
+use crate::too_heavy::too_heavy;
 use clap::{Args, ValueEnum};
 use pxpl5::trace_export::{Trace, chrome, perfetto};
 use pxpl5::{ExperimentError, PeriodNumber};
@@ -67,18 +69,22 @@ pub(crate) fn run(args: TraceArgs) -> Result<(), CliError> {
     let format = args.format.map_or_else(|| Format::of(&args.out), Ok)?;
     let plan = args.settings.gather()?.resolve()?;
     warn(&plan.warnings(), args.quiet);
-    let file = OutputFile::open(&args.out)?;
+    let file = OutputFile::open(&args.out, "--out")?;
     let bar = progress(plan.fields, "fields", args.quiet);
     let scene = scenes::load(&plan, args.quiet)?;
     args.budget.admit(&Work::of(&plan, &scene, true))?;
+    warn(too_heavy(&plan, &scene, plan.fields).as_slice(), args.quiet);
     let experiment = plan.experiment(scene).record_traffic(true);
     let watch = args.budget.watch(plan.fields);
-    let outcome = experiment.run_stopping(&YOUNG.map(|field| PeriodNumber::FIRST.after(field)), |field, _| {
+    let run = experiment.run_stopping(&YOUNG.map(|field| PeriodNumber::FIRST.after(field)), |field, _| {
         let done = field.since(PeriodNumber::FIRST);
         bar.set_position(done);
         watch.check(done).map_err(ExperimentError::Stopped)
-    })?;
+    });
     bar.finish_and_clear();
+    // A run that is too short for statistics has a trace all the same.
+    let Simulated { outcome, too_short } = Simulated::of(run)?;
+    warn(&too_short.iter().map(|note| note.message().to_owned()).collect::<Vec<_>>(), args.quiet);
     let trace = Trace::of(&outcome);
     let mut bytes = Vec::new();
     let written = match format {

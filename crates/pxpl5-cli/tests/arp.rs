@@ -58,6 +58,7 @@ fn run_prints_one_json_object_and_writes_the_same_with_all_pictures() {
             "faces-3.png",
             "faces-whole.png",
             "frames.csv",
+            "manifest.json",
             "memories.png",
             "objects.png",
             "report.json",
@@ -124,7 +125,7 @@ fn compare_lists_every_policy_and_warp_and_writes_its_files() {
     assert!(row("cells, torn")["draws_per_s"].as_f64() < row("cells, uncut")["draws_per_s"].as_f64());
     assert!(row("cells, warped")["tears"]["max"].as_f64() < row("cells, torn")["tears"]["max"].as_f64());
     assert!(row("objects")["tears"].is_null());
-    assert_eq!(names(&folder.0.join("o")), ["comparison.json", "rows.csv"]);
+    assert_eq!(names(&folder.0.join("o")), ["comparison.json", "manifest.json", "rows.csv"]);
     let text = out(&folder.run(&arp("compare", &[])));
     assert!(text.contains("cells, smoothstep") && text.contains("stretch, texels"), "{text}");
 }

@@ -139,7 +139,16 @@ fn result_files_open_with_preset_configuration_version_level_and_seed_and_tables
     let names: Vec<String> = names(&folder.0.join("a/b")).into_iter().filter(|n| !n.ends_with(".parquet")).collect();
     assert_eq!(
         names,
-        ["experiment.toml", "left.png", "pictures.csv", "report.json", "results.csv", "right.png", "timeline.svg"]
+        [
+            "experiment.toml",
+            "left.png",
+            "manifest.json",
+            "pictures.csv",
+            "report.json",
+            "results.csv",
+            "right.png",
+            "timeline.svg"
+        ]
     );
     let written = folder.0.join("a/b");
     let hash = report["config_hash"].as_str().expect("a hash");

@@ -222,6 +222,69 @@ fn films_comparisons_and_searches_are_estimated_before_the_first_run() {
     }
 }
 
+/// Volumes, walks, sweeps and sessions of the debugger have the same budgets: they are refused before they ask for memory.
+#[test]
+fn every_command_that_computes_is_estimated_before_it_starts() {
+    let folder = Folder::new("all-budgets");
+    let file = "pipeline = \"slats\"\nscene = \"mig\"\nfields = 100000\n[sweep.grid]\nseed = { from = 1, to = 1000 }\n";
+    folder.file("s.toml", file);
+    folder.file("v.toml", "[sweep.grid]\ndisplay.slices = [4096]\ndisplay.height = [4096]\ndisplay.width = [4096]\n");
+    let whole = ["--set", "display.slices=4096", "--set", "display.width=4096", "--set", "display.height=4096"];
+    let volumes: [&[&str]; 6] = [
+        &["volume", "run", "--out", "o"],
+        &["volume", "sheet", "--out", "o.png"],
+        &["volume", "slice", "3", "--out", "o.png"],
+        &["volume", "view", "--out", "o.png"],
+        &["volume", "film", "--out", "o.png"],
+        &["volume", "compare", "--out", "o"],
+    ];
+    // 4096^3 voxels have 2^36 / 2 bytes: 34 GB.
+    let great = volumes.map(|args| ([args, &whole].concat(), "--max-memory"));
+    let others = [
+        (vec!["volume", "run", "--max-memory", "50"], "--max-memory"),
+        (vec!["volume", "compare", "--scene", "head", "--max-seconds", "1", "--threads", "1"], "--max-seconds"),
+        (vec!["arp", "run", "--set", "walk.frames=1000000", "--max-seconds", "10"], "--max-seconds"),
+        (vec!["arp", "compare", "--max-memory", "20"], "--max-memory"),
+        (vec!["sweep", "s.toml", "--out", "o", "--max-seconds", "100"], "--max-seconds"),
+        (vec!["debug", "--do", "quit", "--pipeline", "slats", "--scene", "mig", "--max-memory", "1"], "--max-memory"),
+        (vec!["rig", "--max-seconds", "1", "--passes", "10000"], "--max-seconds"),
+    ];
+    for (args, says) in great.into_iter().chain(others) {
+        let output = folder.run(&args);
+        let text = err(&output);
+        assert_eq!(output.status.code(), Some(1), "{args:?}: {text}");
+        assert!(text.contains("expected to take") && text.contains(says), "{args:?}: {text}");
+        assert_eq!(folder.names(), ["s.toml", "v.toml"], "{args:?}");
+    }
+    // A point of a sweep of volumes that is too great fails alone; here it is the only one.
+    let output = folder.run(&["volume", "sweep", "v.toml", "--out", "o"]);
+    assert_eq!(output.status.code(), Some(1), "{}", err(&output));
+    assert!(err(&output).contains("expected to take 3"), "{}", err(&output));
+}
+
+/// A scene of which nothing can be shown is told before it is run.
+#[test]
+fn a_scene_that_is_too_heavy_to_be_shown_is_told_before_the_run() {
+    let folder = Folder::new("too-heavy");
+    let heavy = |pipeline: &str, scene: &str, fields: &str| {
+        let args = ["run", "--pipeline", pipeline, "--scene", scene, "--fields", fields, "--pixels", "off"];
+        let output = folder.run(&[&args[..], &["--max-seconds", "1000", "--set", "gp.bin_bytes=1000000"]].concat());
+        let said = err(&output);
+        (said.lines().find(|line| line.contains("warning: TOO HEAVY")).map(str::to_owned), output.status.code())
+    };
+    // 20,000 triangles take each of 12 slaves more than two fields for each eye, and a full screen 70 fields a frame.
+    let (said, code) = heavy("rendering-control", "full-screen:20000", "60");
+    let said = said.expect("it is told");
+    assert!(said.contains("20000 primitives on 13 graphics processors") && said.contains("60 fields"), "{said}");
+    assert_eq!(code, Some(1));
+    // Without a closed form: 100,000 triangles of 21.7 us on one processor are 130 fields.
+    let (said, _) = heavy("jitp-field", "typical:100000", "20");
+    assert!(said.is_some_and(|said| said.contains("fields to transform all of it once")));
+    for (pipeline, scene, fields) in [("rendering-control", "full-screen:12", "30"), ("slats", "mig", "30")] {
+        assert_eq!(heavy(pipeline, scene, fields).0, None, "{pipeline} {scene}");
+    }
+}
+
 /// What a screen cannot have is refused; what it can have runs, however odd.
 #[test]
 fn numbers_that_once_hung_or_panicked_are_refused_or_run() {

@@ -217,3 +217,129 @@ fn a_path_that_cannot_be_written_is_told_before_the_work() {
         assert!(err(&output).contains("p.s/below cannot be written"), "{args:?}: {}", err(&output));
     }
 }
+
+/// Runs that follow each other into one folder: of the first nothing is left that the second does not write.
+#[test]
+fn a_run_takes_the_place_of_the_run_before_as_a_whole() {
+    let folder = folder("replaced");
+    let run = |pipeline: &str, more: &[&str]| {
+        let args = ["run", "--pipeline", pipeline, "--scene", "full-screen:2", "--fields", "20", "--quiet"];
+        let output = folder.run(&[&args[..], more, &["--out", "r"]].concat());
+        assert!(output.status.success(), "{}", err(&output));
+    };
+    run("slats", &[]);
+    folder.file("r/notes.txt", "mine");
+    assert!(folder.run(&["report", "r", "--quiet"]).status.success());
+    for name in ["right.png", "timeline.svg", "report.html"] {
+        assert!(folder.0.join("r").join(name).exists(), "{name}");
+    }
+    // One screen for both eyes has one picture; a timeline is not asked for.
+    run("jitp-field", &["--set", "output.timeline=false"]);
+    let alone = folder.0.join("alone");
+    let args = ["run", "--pipeline", "jitp-field", "--scene", "full-screen:2", "--fields", "20", "--quiet"];
+    assert!(folder.run(&[&args[..], &["--set", "output.timeline=false", "--out", "alone"]].concat()).status.success());
+    let mut expected = names(&alone);
+    expected.push("notes.txt".to_owned());
+    expected.sort();
+    assert_eq!(names(&folder.0.join("r")), expected);
+    // A file that its user has changed since is his.
+    run("slats", &[]);
+    folder.file("r/right.png", "mine");
+    run("jitp-field", &[]);
+    assert_eq!(read(&folder, "r/right.png"), b"mine");
+    assert!(folder.run(&["report", "r", "--quiet"]).status.success());
+    let page = String::from_utf8(read(&folder, "r/report.html")).expect("text");
+    assert_eq!(page.matches("data:image/png;base64,").count(), 1, "the changed picture is of no run");
+}
+
+#[test]
+fn rows_of_a_sweep_are_not_replaced_and_a_sweep_replaces_no_run() {
+    let folder = folder("sweep-and-run");
+    folder.file("s.toml", "pipeline = \"slats\"\nscene = \"full-screen:2\"\nfields = 12\n[sweep.grid]\nseed = [1]\n");
+    assert!(folder.run(&["sweep", "s.toml", "--out", "r", "--quiet"]).status.success());
+    for command in [&RUN[..], &["compare", "--fields", "20", "--out", "r"], &["volume", "run", "--out", "r"]] {
+        let output = folder.run(command);
+        assert_eq!(output.status.code(), Some(2), "{command:?}: {}", err(&output));
+        assert!(err(&output).contains("rows of a sweep"), "{}", err(&output));
+    }
+    assert!(folder.run(&[&RUN[..8], &["q"]].concat()).status.success());
+    let output = folder.run(&["sweep", "s.toml", "--out", "q"]);
+    assert_eq!(output.status.code(), Some(2), "{}", err(&output));
+    assert!(err(&output).contains("files of `pxpl5 run`"), "{}", err(&output));
+}
+
+/// Another program's manifest is not ours to replace.
+#[test]
+fn a_manifest_of_another_program_is_left_alone() {
+    let folder = folder("foreign");
+    fs::create_dir(folder.0.join("r")).expect("ours");
+    folder.file("r/manifest.json", "{\"name\": \"page\"}");
+    let output = folder.run(&RUN);
+    assert_eq!(output.status.code(), Some(2), "{}", err(&output));
+    assert!(err(&output).contains("manifest.json: expected a manifest of pxpl5"), "{}", err(&output));
+    assert_eq!(read(&folder, "r/manifest.json"), b"{\"name\": \"page\"}");
+}
+
+/// Files under temporary names: of a process that is dead they go, of one that is alive they stay.
+#[test]
+fn the_next_run_removes_what_dead_processes_have_left() {
+    let folder = folder("left-over");
+    fs::create_dir(folder.0.join("r")).expect("ours");
+    for name in [".pxpl5-999999-0.tmp", ".pxpl5-999999-12.old", ".pxpl5-1-0.tmp", ".pxpl5-notes.tmp", ".pxpl5-1.tmp"] {
+        folder.file(&format!("r/{name}"), "half");
+    }
+    let held = fs::File::open(folder.0.join("r/.pxpl5-1-0.tmp")).expect("ours");
+    held.lock().expect("this file system has locks");
+    assert!(folder.run(&RUN).status.success());
+    let left: Vec<String> = names(&folder.0.join("r")).into_iter().filter(|name| name.starts_with('.')).collect();
+    assert_eq!(left, [".pxpl5-1-0.tmp", ".pxpl5-1.tmp", ".pxpl5-notes.tmp"]);
+    drop(held);
+    succeeds(&folder, &TRACE, "r/t");
+    assert!(!folder.0.join("r/.pxpl5-1-0.tmp").exists());
+}
+
+#[test]
+fn a_run_that_is_interrupted_leaves_no_folder() {
+    let folder = folder("interrupted");
+    for (signal, args) in [
+        (
+            "-INT",
+            &["run", "--pipeline", "slats", "--scene", "full-screen:4", "--fields", "1000000", "--out", "a/b"][..],
+        ),
+        ("-KILL", &["trace", "--pipeline", "slats", "--scene", "full-screen:4", "--fields", "100000", "--out", "a/b"]),
+    ] {
+        let mut child = command(&[args, &["--quiet", "--max-memory", "1000000"]].concat());
+        let mut child = child.current_dir(&folder.0).stderr(Stdio::null()).spawn().expect("it starts");
+        std::thread::sleep(std::time::Duration::from_secs(2));
+        assert!(child.try_wait().expect("ours").is_none(), "it still runs");
+        assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().expect("kill").success());
+        assert!(!child.wait().expect("it ends").success());
+        assert_eq!(folder.names(), ["p.s"], "{args:?}");
+    }
+}
+
+/// What an error names is what its user wrote: the file, and the option that the command has.
+#[test]
+fn an_error_names_the_file_and_the_option_that_were_given() {
+    let folder = folder("named");
+    fs::create_dir(folder.0.join("d")).expect("ours");
+    let read_only =
+        |is: bool| fs::set_permissions(folder.0.join("d"), fs::Permissions::from_mode(if is { 0o555 } else { 0o755 }));
+    for (args, option) in [
+        (&["levels", "--chart"][..], "--chart"),
+        (&SAVE, "--save"),
+        (&["figures", "--write"], "--write"),
+        (&ASSEMBLE, "-o"),
+    ] {
+        let output = folder.run(&[args, &["p.s/below"]].concat());
+        assert!(err(&output).contains("p.s/below cannot be written"), "{args:?}: {}", err(&output));
+        assert!(err(&output).contains(&format!("choose another place with {option}")), "{args:?}: {}", err(&output));
+    }
+    read_only(true).expect("ours");
+    // Who may write everywhere is not told.
+    if fs::write(folder.0.join("d/mine"), "").is_err() {
+        let output = folder.run(&[&SAVE[..], &["d/s.json"]].concat());
+        assert!(err(&output).contains("d/s.json cannot be written"), "{}", err(&output));
+    }
+    read_only(false).expect("ours");
+}

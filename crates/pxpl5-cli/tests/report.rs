@@ -143,3 +143,88 @@ fn a_report_of_a_comparison_has_a_row_for_each_pipeline_and_its_pictures() {
     }
     assert!(page.contains("<h2>Comparison</h2>") && page.contains("pipeline</th>"));
 }
+
+/// What is not listed, or not as it was written, is of another run.
+#[test]
+fn a_report_reads_what_its_manifest_lists_and_nothing_else() {
+    let folder = Folder::new("report-manifest");
+    results(&folder);
+    let pictures = |warned: bool| {
+        let output = folder.run(&["report", "results"]);
+        assert!(output.status.success() && err(&output).contains("left out") == warned, "{}", err(&output));
+        let page = std::fs::read_to_string(folder.0.join("results/report.html")).expect("written");
+        page.matches("data:image/png;base64,").count()
+    };
+    assert_eq!(pictures(false), 2);
+    let right = std::fs::read(folder.0.join("results/right.png")).expect("written");
+    folder.file("results/left-incomplete.png", &right);
+    assert_eq!(pictures(false), 2, "a picture that no run of this folder wrote");
+    folder.file("results/right.png", b"another one");
+    assert_eq!(pictures(true), 1);
+    let manifest = std::fs::read(folder.0.join("results/manifest.json")).expect("written");
+    std::fs::remove_file(folder.0.join("results/manifest.json")).expect("there");
+    assert_eq!(pictures(true), 0, "nobody knows of which run they are");
+    folder.file("results/manifest.json", &manifest);
+    folder.file("results/report.json", "{}");
+    let output = folder.run(&["report", "results"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(err(&output).contains("report.json") && err(&output).contains("other contents"), "{}", err(&output));
+}
+
+/// Three pictures are a trace, a film and files, though they have no latency behind the warm-up.
+#[test]
+fn runs_of_few_pictures_write_all_that_was_computed() {
+    let folder = Folder::new("few-pictures");
+    let few = ["--pipeline", "rendering-control", "--scene", "full-screen:4", "--fields"];
+    let output = folder.run(&[&["run"], &few[..], &["10", "--out", "o"]].concat());
+    assert_eq!(output.status.code(), Some(1), "{}", err(&output));
+    let said = err(&output);
+    assert!(said.contains("only ") && said.contains("the next one is shown after about "), "{said}");
+    let needed: u64 =
+        said.split("about ").nth(1).and_then(|rest| rest.trim().parse().ok()).unwrap_or_else(|| panic!("{said}"));
+    let read = |name: &str| std::fs::read_to_string(folder.0.join("o").join(name)).expect("written");
+    let report: serde_json::Value = serde_json::from_str(&read("report.json")).expect("JSON");
+    let shown = report["shown"].as_u64().expect("a number");
+    assert!((1..=4).contains(&shown), "{shown}");
+    assert!(report["latency_ms"]["mean"].is_null() && report["latency_ms"]["n"] == 0, "{report}");
+    assert!(read("results.csv").contains("latency_ms.mean,,"), "{}", read("results.csv"));
+    assert_eq!(read("pictures.csv").lines().count() as u64, 1 + shown);
+    for name in ["left.png", "right.png", "timeline.svg", "experiment.toml", "manifest.json"] {
+        assert!(folder.0.join("o").join(name).exists(), "{name}");
+    }
+    // The number of fields that was said is enough, and not much too much.
+    for (fields, is_enough) in [(needed + 1, true), (needed - 4, false)] {
+        let output = folder.run(&[&["run"], &few[..], &[&fields.to_string(), "--quiet"]].concat());
+        assert_eq!(output.status.success(), is_enough, "{fields} fields, {needed} were said: {}", err(&output));
+    }
+    for (args, file) in [
+        (&["trace", "--out", "t.pftrace"][..], "t.pftrace"),
+        (&["film", "--from", "2", "--length", "3", "--head", "still", "--raster", "vdrt", "--out", "f.png"], "f.png"),
+    ] {
+        let output = folder.run(&[args, &few[..], &["10"]].concat());
+        assert_eq!(output.status.code(), Some(0), "{args:?}: {}", err(&output));
+        assert!(std::fs::metadata(folder.0.join(file)).is_ok_and(|found| found.len() > 1000), "{file}");
+    }
+    let output = folder.run(&[&["debug", "--do", "run"], &few[..], &["10"]].concat());
+    assert!(output.status.success() && out(&output).contains("the run is over"), "{}", err(&output));
+}
+
+/// A pipeline without a closed form says from its own pictures how long it takes.
+#[test]
+fn fields_that_a_run_needs_are_told_of_every_pipeline() {
+    let folder = Folder::new("fields-needed");
+    for pipeline in ["jitp-field", "frameless", "arp-full", "slats"] {
+        let run = |fields: &str| {
+            folder.run(&["run", "--pipeline", pipeline, "--scene", "full-screen:2", "--fields", fields, "--quiet"])
+        };
+        let output = run("5");
+        let said = err(&output);
+        if output.status.success() {
+            continue;
+        }
+        let needed: Option<u64> = said.split("about ").nth(1).and_then(|rest| rest.trim().parse().ok());
+        let needed = needed.unwrap_or_else(|| panic!("{pipeline}: {said}"));
+        let output = run(&(needed + 1).to_string());
+        assert!(output.status.success(), "{pipeline}, {needed}: {}", err(&output));
+    }
+}

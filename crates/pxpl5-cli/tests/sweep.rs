@@ -178,7 +178,7 @@ fn a_point_that_fails_is_recorded_told_and_no_reason_to_stop() {
     let output = folder.run(&["sweep", "s.toml", "--out", "o"]);
     succeeds(&output);
     assert!(err(&output).contains("1 of 2 points could not be simulated; point 0: "), "{}", err(&output));
-    assert_eq!(names(&folder.0.join("o")), [".lock", "results.csv", "rows.jsonl", "times.jsonl"]);
+    assert_eq!(names(&folder.0.join("o")), [".lock", "manifest.json", "results.csv", "rows.jsonl", "times.jsonl"]);
     let csv = read(&folder, "o/results.csv");
     assert!(csv.contains("\n0,failed,4,") && csv.contains("\n1,done,5,"), "{csv}");
 }

@@ -28,7 +28,10 @@ fn run_prints_one_json_object_and_writes_the_same() {
     let paths: Vec<_> = report["overrides"].as_array().expect("a list").iter().map(|o| o["path"].clone()).collect();
     assert_eq!(paths, ["display.slices", "display.width", "display.height", "clip.bias_px2"]);
     let written = folder.0.join("a/b");
-    assert_eq!(names(&written), ["report.json", "sheet.png", "slice-0.png", "slices.csv", "tiles.png", "view.png"]);
+    assert_eq!(
+        names(&written),
+        ["manifest.json", "report.json", "sheet.png", "slice-0.png", "slices.csv", "tiles.png", "view.png"]
+    );
     let kept: Value =
         serde_json::from_slice(&std::fs::read(written.join("report.json")).expect("written")).expect("JSON");
     assert_eq!(kept["volume_hash"], report["volume_hash"]);
@@ -102,7 +105,7 @@ fn compare_lists_every_variant_and_writes_its_files() {
     assert_eq!(comparison["variants"].as_array().map(Vec::len), Some(21));
     assert_eq!(
         names(&folder.0.join("o")),
-        ["brightness.svg", "comparison.json", "rows.csv", "samples.png", "variants.png"]
+        ["brightness.svg", "comparison.json", "manifest.json", "rows.csv", "samples.png", "variants.png"]
     );
     assert_eq!(picture(&folder, "o/variants.png").dimensions(), (3 * 32, 6 * 32));
     let text = out(&folder.run(&volume("compare", &[])));
@@ -213,7 +216,7 @@ fn a_head_before_the_volume_has_a_report_a_figure_and_a_film() {
         ["--head", "slide:0.2", "--latency", "50", "--seconds", "0.5", "--frames", "3", "--size", "32", "--out", "h"];
     let output = folder.run(&volume("view", &arguments));
     assert!(output.status.success(), "{}", err(&output));
-    assert_eq!(names(&folder.0.join("h")), ["errors.csv", "errors.svg", "eyes.png", "report.json"]);
+    assert_eq!(names(&folder.0.join("h")), ["errors.csv", "errors.svg", "eyes.png", "manifest.json", "report.json"]);
     let report: Value =
         serde_json::from_slice(&std::fs::read(folder.0.join("h/report.json")).expect("written")).expect("JSON");
     assert_eq!(report["schema"], "pxpl5-volume-head/1");

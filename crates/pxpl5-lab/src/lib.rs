@@ -9,7 +9,9 @@
 //! | how many triangles, how fast does cost grow | [`limit`], [`growth`] |
 //! | which way to fight latency wins | [`compare`] |
 //! | what latency does one measure from outside | [`rig`] |
+//! | what does an experiment take of this computer | [`estimate`] |
 //! | the same at many points | [`sweep`] |
+//! | which files of a folder belong together | [`manifest`] |
 //! | an experiment as text, and continued | [`ExperimentFile`], [`Plan`], [`Snapshot`] |
 //!
 //! [`registry`] lists the pipelines and displays of the papers with their closed forms; an experiment file may be read with
@@ -17,6 +19,7 @@
 
 pub mod code_times;
 pub mod compare;
+pub mod estimate;
 mod experiment_file;
 pub mod figures;
 pub mod growth;
@@ -25,6 +28,7 @@ mod host;
 pub mod intervals;
 pub mod levels;
 pub mod limit;
+pub mod manifest;
 mod parallel;
 pub mod pipeline_figures;
 pub mod readings;

@@ -78,14 +78,18 @@ impl Experiment {
         let (keep, sums): (Keep, Sums) = (Keep::Statistics, || Box::<RehearsalSum>::default());
         let plain =
             Self { head: plain, pixels: Pixels::Off, traffic: false, keep, sums: Some(sums), fields, ..self.clone() };
-        let outcome = plain.perform(Preparation::default(), &[], |_, _| Ok(()))?;
+        // A run of few pictures is rehearsed by as few.
+        let outcome = match plain.perform(Preparation::default(), &[], |_, _| Ok(())) {
+            Err(ExperimentError::TooShort { partial, .. }) => *partial,
+            run => run?,
+        };
         Ok(outcome.said().cloned().unwrap_or_else(|| rehearsed(&outcome)))
     }
 
     fn short_rehearsal(&self, head: &Head) -> Result<Rehearsed, ExperimentError> {
         match self.without_prediction(head, self.fields.min(INTERVAL_FIELDS)) {
             Ok(rehearsed) if rehearsed.interval_ps.is_some() => Ok(rehearsed),
-            Ok(_) | Err(ExperimentError::TooShort { .. }) => self.without_prediction(head, self.fields),
+            Ok(_) => self.without_prediction(head, self.fields),
             Err(error) => Err(error),
         }
     }

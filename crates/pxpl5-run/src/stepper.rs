@@ -5,6 +5,7 @@ use crate::error::ExperimentError;
 use crate::experiment::{Experiment, Pixels};
 use crate::ideal::ideal_picture;
 use crate::outcome::Outcome;
+use crate::pipeline::PictureTimes;
 use crate::preparation::Preparation;
 use crate::result_window::WARM_UP_PICTURES;
 use crate::stops::PROGRESS_FIELDS;
@@ -15,7 +16,7 @@ use pxpl5_machine::{Board, DEADLOCK_TICKS, Happening, Machine, Record, RunError}
 use pxpl5_oracle::IdealPicture;
 use pxpl5_renderer::{Lanes, RendererLook};
 use pxpl5_ring::OnChannel;
-use pxpl5_sim::Time;
+use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{PeriodNumber, SurfaceId};
 use std::collections::BTreeSet;
 
@@ -317,9 +318,29 @@ impl Stepper {
 }
 
 fn too_short(experiment: &Experiment, partial: Outcome) -> ExperimentError {
-    let needed = experiment.estimates.and_then(|estimates| (estimates.fields_needed)(experiment));
+    let by_form = experiment.estimates.and_then(|estimates| (estimates.fields_needed)(experiment));
+    let needed = by_form.filter(|fields| *fields > experiment.fields).or_else(|| needed_by_run(&partial));
     let pictures = partial.tally().pictures as usize;
     ExperimentError::TooShort { fields: experiment.fields, pictures, needed, partial: Box::new(partial) }
+}
+
+/// About how many fields it takes until a picture behind the warm-up is shown, if pictures go on coming as they came: by the time
+/// from the first to the last of them, or of one alone by the time that it took.
+fn needed_by_run(partial: &Outcome) -> Option<u64> {
+    let pictures = partial.pictures();
+    if !pictures.iter().any(PictureTimes::is_shown) {
+        return None;
+    }
+    let shown = || pictures.iter().map(|times| times.shown_at);
+    let (first, last) = (shown().min()?, shown().max()?);
+    let each = match pictures.len() {
+        1 => first.since(Time::ZERO),
+        more => Span(last.since(first).0 / (more as u64 - 1)),
+    };
+    let missing = (WARM_UP_PICTURES + 1).saturating_sub(pictures.len()).max(1) as u64;
+    let at = last + Span(each.0.saturating_mul(missing));
+    let field = partial.record().display().period_at(at).since(PeriodNumber::FIRST);
+    Some((field + 1).max(partial.fields() + 1))
 }
 
 /// Pictures of a run, those included for which nothing had to be drawn.

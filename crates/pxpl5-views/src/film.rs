@@ -106,7 +106,11 @@ impl Film {
             return Ok(None);
         }
         let length = self.first_period.after(self.periods).next().since(PeriodNumber::FIRST);
-        Ok(Some(self.experiment.clone().pixels(Pixels::Off).fields(length).run()?))
+        match self.experiment.clone().pixels(Pixels::Off).fields(length).run() {
+            // Too short for statistics is long enough for a film.
+            Err(ExperimentError::TooShort { partial, .. }) => Ok(Some(*partial)),
+            run => Ok(Some(run?)),
+        }
     }
 
     fn surfaces(&self, display: &dyn Display) -> Result<Vec<SurfaceId>, FilmError> {

@@ -37,8 +37,8 @@ pub(super) struct FiguresArgs {
 }
 
 pub(super) fn run(args: FiguresArgs) -> Result<(), CliError> {
-    let document = args.write.as_deref().map(OutputFile::open).transpose()?;
-    let folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
+    let document = args.write.as_deref().map(|path| OutputFile::open(path, "--write")).transpose()?;
+    let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "arp figures")).transpose()?;
     let bar = progress(2, "walks and pictures", args.quiet);
     let (experiments, rows) = figures::all()?;
     bar.inc(1);

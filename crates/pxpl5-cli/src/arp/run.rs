@@ -31,8 +31,9 @@ pub(super) struct RunArgs {
 }
 
 pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
-    let folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
+    let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "arp run")).transpose()?;
     let (scene, plan) = args.walk.gather()?;
+    args.walk.admit(&plan, &scene, 1)?;
     let bar = progress(plan.walk.frames, "frames", args.walk.quiet);
     let outcome = WalkOutcome::of(&scene, &plan, |done, of| advance(&bar, done, of));
     bar.finish_and_clear();

@@ -1,6 +1,8 @@
 //! Options that say what a walk is; each stands for a path of `--set`.
 
+use crate::budget::BudgetArgs;
 use crate::error::CliError;
+use crate::estimate::{Estimate, WalkWork};
 use crate::leaves::{leaves, plain};
 use crate::output::OutputFolder;
 use crate::terminal::warn;
@@ -47,6 +49,8 @@ pub(super) struct WalkArgs {
     /// priority.cascade=off, arp.face_texels=1024, walk.m_per_s=0.5 or walk.frames=3600; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     sets: Vec<String>,
+    #[command(flatten)]
+    pub(super) budget: BudgetArgs,
     /// Print nothing but errors (and the object of --json).
     #[arg(long, short)]
     pub(super) quiet: bool,
@@ -81,6 +85,17 @@ impl WalkArgs {
         plan.settings()?;
         warn(&warnings(&plan), self.quiet);
         Ok((load(self.scene.as_deref().unwrap_or(&scene))?, plan))
+    }
+
+    /// Refuses so many walks before the first, if they would take too much.
+    ///
+    /// # Errors
+    ///
+    /// The estimate, and what to do about it.
+    pub(super) fn admit(&self, plan: &Plan, scene: &Scene, walks: u64) -> Result<(), CliError> {
+        let one = WalkWork::of(plan, scene).estimate();
+        let all = Estimate { seconds: walks as f64 * one.seconds, ..one };
+        self.budget.admit_estimate(all, "walk fewer frames (--set walk.frames)")
     }
 
     /// The file's scene, and all settings: the file's, then those of options, then those of `--set`.

@@ -77,7 +77,7 @@ fn pan(text: &str) -> Result<f64, String> {
 ///
 /// What is wrong with an option, or why a file cannot be written.
 pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
-    let mut folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
+    let mut folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "compare")).transpose()?;
     let shared = with_defaults(args.settings.gather()?)?;
     let first = shared.seed()?;
     let seeds = (first..=first.saturating_add(args.seeds - 1)).collect();
@@ -107,12 +107,11 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     }
 }
 
-/// A tracked head's run is rehearsed to know when its views are seen: twice the fields.
 fn admit(budget: BudgetArgs, query: &CompareQuery) -> Result<(), CliError> {
     let mut runs = Vec::new();
     for plan in query.plans()? {
         let work = Work::of(&plan, &*plan.load_scene()?, true);
-        runs.extend(query.seeds.iter().map(|_| Work { fields: 2 * work.fields, ..work }));
+        runs.extend(query.seeds.iter().map(|_| work));
     }
     budget.admit_all(runs, std::thread::available_parallelism().map_or(1, usize::from))
 }

@@ -9,10 +9,13 @@ mod session;
 mod views;
 mod words;
 
+use crate::budget::BudgetArgs;
 use crate::error::CliError;
+use crate::estimate::Work;
 use crate::scenes;
 use crate::settings::SettingArgs;
 use crate::terminal::{print, warn};
+use crate::too_heavy::too_heavy;
 use clap::Args;
 use command::split;
 use pxpl5::Workstation;
@@ -36,6 +39,8 @@ pub(crate) struct DebugArgs {
     /// The same with the commands of a file, one a line.
     #[arg(long, value_name = "FILE", conflicts_with = "commands")]
     do_file: Option<PathBuf>,
+    #[command(flatten)]
+    budget: BudgetArgs,
     /// Print no warnings.
     #[arg(long, short)]
     quiet: bool,
@@ -45,7 +50,10 @@ pub(crate) fn run(args: DebugArgs) -> Result<(), CliError> {
     let script = script(args.commands, args.do_file)?;
     let plan = args.settings.gather()?.resolve()?;
     warn(&plan.warnings(), args.quiet);
-    let experiment = plan.experiment(scenes::load(&plan, args.quiet)?).host(Workstation::new()).record_traffic(true);
+    let scene = scenes::load(&plan, args.quiet)?;
+    args.budget.admit(&Work::of(&plan, &scene, true))?;
+    warn(too_heavy(&plan, &scene, plan.fields).as_slice(), args.quiet);
+    let experiment = plan.experiment(scene).host(Workstation::new()).record_traffic(true);
     let session = Session::new(experiment.stepper()?);
     match script {
         Some(commands) => scripted(session, &commands),
@@ -88,7 +96,9 @@ fn on_screen(session: Session) -> Result<(), CliError> {
 
 #[cfg(not(feature = "screen"))]
 fn on_screen(_: Session) -> Result<(), CliError> {
-    Err(no_terminal("this command was built without the feature `screen` (cargo build --release -p pxpl5-cli --features screen)"))
+    Err(no_terminal(
+        "this command was built without the feature `screen` (cargo build --release -p pxpl5-cli --features screen)",
+    ))
 }
 
 fn no_terminal(reason: &str) -> CliError {

@@ -159,7 +159,7 @@ fn asm(file: &Path, base: u32, output: Option<&Path>, warnings: &Warnings) -> Re
     let (program, source) = assembled(file, base).map_err(CliError::failure)?;
     warnings.tell(&program);
     match output {
-        Some(path) => OutputFile::open(path)?.write(&program.bytes),
+        Some(path) => OutputFile::open(path, "-o")?.write(&program.bytes),
         None => print(&program.listing(Some(&source))),
     }
 }

@@ -1,16 +1,21 @@
 //! Files that appear together: the one place through which the command writes.
 
-use super::target::{Target, refused};
+use super::target::{Place, Target};
 use crate::error::CliError;
+use std::ffi::OsStr;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Outputs that are ready, but have not yet been given their names.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Batch {
+    /// How an error names what cannot be written.
+    place: Place,
     files: Vec<Staged>,
+    /// Files of the run before that go when all others have their names.
+    gone: Vec<PathBuf>,
     /// What goes into devices, pipes and standard output, which cannot be taken back: written last.
     streams: Vec<(Target, Vec<u8>)>,
 }
@@ -20,36 +25,98 @@ pub(super) struct Batch {
 struct Staged {
     temporary: PathBuf,
     name: PathBuf,
+    /// Held open and locked, so that another process can tell it from what a dead one left; none where it could not be made.
+    lock: Option<File>,
 }
 
-/// A file that has its name, and what had that name before.
+/// A name that has its file, or none any more, and what had that name before.
 struct Placed {
     name: PathBuf,
     before: Option<PathBuf>,
 }
 
+/// What begins every temporary name.
+const TEMPORARY: &str = ".pxpl5-";
+
 /// A name beside a file that no other output of any process has.
 fn beside(path: &Path, end: &str) -> PathBuf {
     static NEXT: AtomicU64 = AtomicU64::new(0);
     let number = NEXT.fetch_add(1, Ordering::Relaxed);
-    path.with_file_name(format!(".pxpl5-{}-{number}.{end}", std::process::id()))
+    path.with_file_name(format!("{TEMPORARY}{}-{number}.{end}", std::process::id()))
+}
+
+/// Returns true for names as [`beside`] makes them.
+fn is_temporary(name: &OsStr) -> bool {
+    let parts = name.to_str().and_then(|name| name.strip_prefix(TEMPORARY)?.rsplit_once('.'));
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    parts.is_some_and(|(numbers, end)| {
+        let both = numbers.split_once('-');
+        ["tmp", "old"].contains(&end) && both.is_some_and(|(process, number)| is_number(process) && is_number(number))
+    })
+}
+
+/// Removes what processes that are dead have left under temporary names: nobody holds its lock. The caller holds the
+/// folder's lock, so that no file is between its birth and its lock, and no process is replacing files.
+pub(super) fn remove_left_over(folder: &Path) {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    for entry in entries.filter(|entry| is_temporary(&entry.file_name())) {
+        let path = entry.path();
+        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
+        let opened = is_file.then(|| File::open(&path).ok()).flatten();
+        if opened.is_some_and(|file| file.try_lock().is_ok()) {
+            let _ = fs::remove_file(path);
+        }
+    }
 }
 
 impl Batch {
+    pub(super) const fn new(place: Place) -> Self {
+        Self { place, files: Vec::new(), gone: Vec::new(), streams: Vec::new() }
+    }
+
     /// Writes a file under a temporary name, or keeps what goes elsewhere.
     ///
     /// # Errors
     ///
     /// When the file cannot be written.
-    pub(super) fn put(&mut self, target: &Target, bytes: &[u8]) -> Result<(), CliError> {
-        let Target::File(name) = target else {
-            self.streams.push((target.clone(), bytes.to_vec()));
-            return Ok(());
-        };
+    pub(super) fn put(&mut self, target: &Target, bytes: &[u8]) -> io::Result<()> {
+        if let Target::File(name) = target {
+            return self.stage(name, bytes);
+        }
+        self.streams.push((target.clone(), bytes.to_vec()));
+        Ok(())
+    }
+
+    /// Tries whether a folder can be written.
+    ///
+    /// # Errors
+    ///
+    /// When it cannot.
+    pub(super) fn try_in(&mut self, folder: &Path) -> io::Result<()> {
+        self.stage(&folder.join("tried"), b"")?;
+        self.discard();
+        Ok(())
+    }
+
+    fn stage(&mut self, name: &Path, bytes: &[u8]) -> io::Result<()> {
         let temporary = beside(name, "tmp");
-        let created = OpenOptions::new().write(true).create_new(true).open(&temporary);
-        self.files.push(Staged { temporary, name: name.clone() });
-        created.and_then(|mut file| file.write_all(bytes)).map_err(|error| refused(name, &error))
+        let mut file = OpenOptions::new().write(true).create_new(true).open(&temporary)?;
+        // A file system without locks: what a dead process leaves there stays.
+        let _ = file.try_lock();
+        let written = file.write_all(bytes);
+        self.files.push(Staged { temporary, name: name.to_path_buf(), lock: Some(file) });
+        written
+    }
+
+    /// The file that was put last is given its name first.
+    pub(super) fn last_first(&mut self) {
+        let last = self.files.pop();
+        self.files.splice(..0, last);
+    }
+
+    /// Takes a file away when all others have their names.
+    pub(super) fn take_away(&mut self, path: PathBuf) {
+        self.gone.push(path);
     }
 
     /// Gives all files their names, then writes the rest. When something fails every name has what it had before.
@@ -59,7 +126,7 @@ impl Batch {
     /// When a name cannot be given or a device, pipe or standard output cannot be written.
     pub(super) fn commit(&mut self) -> Result<(), CliError> {
         let mut placed = Vec::new();
-        let result = self.place_all(&mut placed).and_then(|()| self.streams.iter().try_for_each(write_through));
+        let result = self.place_all(&mut placed).and_then(|()| self.write_streams());
         for Placed { name, before } in placed.into_iter().rev() {
             match (before, result.is_ok()) {
                 (Some(before), true) => drop(fs::remove_file(before)),
@@ -77,18 +144,36 @@ impl Batch {
     }
 
     fn place_all(&mut self, placed: &mut Vec<Placed>) -> Result<(), CliError> {
-        for Staged { temporary, name } in &self.files {
-            let before = kept(name, temporary).map_err(|error| refused(name, &error))?;
+        for Staged { temporary, name, .. } in &self.files {
+            let before = kept(name, temporary).map_err(|error| self.place.refused(name, &error))?;
             placed.push(Placed { name: name.clone(), before });
-            fs::rename(temporary, name).map_err(|error| refused(name, &error))?;
+            fs::rename(temporary, name).map_err(|error| self.place.refused(name, &error))?;
+        }
+        for name in &self.gone {
+            let old = beside(name, "old");
+            fs::rename(name, &old).map_err(|error| self.place.refused(name, &error))?;
+            placed.push(Placed { name: name.clone(), before: Some(old) });
         }
         Ok(())
+    }
+
+    fn write_streams(&self) -> Result<(), CliError> {
+        self.streams.iter().try_for_each(|(target, bytes)| match target {
+            Target::StandardOutput => crate::terminal::print_bytes(bytes),
+            Target::Through(path) | Target::File(path) => {
+                let opened: io::Result<File> = OpenOptions::new().write(true).open(path);
+                opened.and_then(|mut file| file.write_all(bytes)).map_err(|error| self.place.refused(path, &error))
+            }
+        })
     }
 
     /// Removes what has no name yet.
     pub(super) fn discard(&mut self) {
         self.streams.clear();
-        for Staged { temporary, .. } in self.files.drain(..) {
+        self.gone.clear();
+        for Staged { temporary, lock, .. } in self.files.drain(..) {
+            // Some systems remove no file that is open.
+            drop(lock);
             let _ = fs::remove_file(temporary);
         }
     }
@@ -113,14 +198,4 @@ fn kept(name: &Path, next: &Path) -> io::Result<Option<PathBuf>> {
     // Where there are no hard links, the name is empty for a moment.
     fs::hard_link(name, &old).or_else(|_| fs::rename(name, &old))?;
     Ok(Some(old))
-}
-
-fn write_through((target, bytes): &(Target, Vec<u8>)) -> Result<(), CliError> {
-    match target {
-        Target::StandardOutput => crate::terminal::print_bytes(bytes),
-        Target::Through(path) | Target::File(path) => {
-            let opened: io::Result<File> = OpenOptions::new().write(true).open(path);
-            opened.and_then(|mut file| file.write_all(bytes)).map_err(|error| refused(path, &error))
-        }
-    }
 }

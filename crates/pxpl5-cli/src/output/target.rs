@@ -1,6 +1,7 @@
 //! Where the path of an output leads.
 
 use crate::error::CliError;
+use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -24,30 +25,27 @@ impl Target {
     /// # Errors
     ///
     /// When it leads to a folder, or cannot be followed.
-    pub(super) fn of(path: &Path) -> Result<Self, CliError> {
+    pub(super) fn of(path: &Path, place: &Place) -> Result<Self, CliError> {
         match path.metadata() {
-            Ok(found) if found.is_dir() => Err(CliError::failure(format!(
-                "{} cannot be written: it is a folder; choose another name with --out",
-                path.display()
-            ))),
+            Ok(found) if found.is_dir() => Err(place.refused(path, &"it is a folder")),
             Ok(found) if is_standard_output(&found) => Ok(Self::StandardOutput),
-            Ok(found) if found.is_file() => behind_links(path).map(Self::File),
+            Ok(found) if found.is_file() => behind_links(path, place).map(Self::File),
             Ok(_) => Ok(Self::Through(path.to_path_buf())),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => behind_links(path).map(Self::File),
-            Err(error) => Err(refused(path, &error)),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => behind_links(path, place).map(Self::File),
+            Err(error) => Err(place.refused(path, &error)),
         }
     }
 }
 
 /// The file that a path stands for, whether there is one or not: a link is not replaced, but what it names.
-fn behind_links(path: &Path) -> Result<PathBuf, CliError> {
+fn behind_links(path: &Path, place: &Place) -> Result<PathBuf, CliError> {
     let mut path = path.to_path_buf();
     for _ in 0..MOST_LINKS {
         // What is no link ends the way; so does what is not there.
         let Ok(next) = path.read_link() else { return Ok(path) };
         path = path.parent().unwrap_or(Path::new("")).join(next);
     }
-    Err(CliError::failure(format!("{} cannot be written: its links lead in a circle", path.display())))
+    Err(place.refused(&path, &"its links lead in a circle"))
 }
 
 /// Whether standard output is this very file, pipe or device.
@@ -63,6 +61,27 @@ fn is_standard_output(_: &std::fs::Metadata) -> bool {
     false
 }
 
-pub(super) fn refused(path: &Path, error: &io::Error) -> CliError {
-    CliError::failure(format!("{} cannot be written: {error}; choose another place with --out", path.display()))
+/// How an error names an output: as its user did.
+#[derive(Clone, Debug)]
+pub(super) struct Place {
+    /// The option that says where the output goes.
+    option: &'static str,
+    /// The file that the option names; none where it names a folder, whose files are named one by one.
+    file: Option<PathBuf>,
+}
+
+impl Place {
+    pub(super) const fn folder(option: &'static str) -> Self {
+        Self { option, file: None }
+    }
+
+    pub(super) fn file(option: &'static str, path: &Path) -> Self {
+        Self { option, file: Some(path.to_path_buf()) }
+    }
+
+    /// Why a path cannot be written, and what to do about it.
+    pub(super) fn refused(&self, path: &Path, reason: &dyn Display) -> CliError {
+        let path = self.file.as_deref().unwrap_or(path).display();
+        CliError::failure(format!("{path} cannot be written: {reason}; choose another place with {}", self.option))
+    }
 }

@@ -190,7 +190,7 @@ fn write(args: &PlotArgs, results: &ResultRows, (figure, csv): (&[u8], &str)) ->
         "about": results.about,
     });
     let origin = serde_json::to_string_pretty(&origin).map_err(CliError::failure)? + "\n";
-    let mut folder = OutputFolder::open(parent)?;
+    let mut folder = OutputFolder::beside(parent, "--out", rows::folder_of(&args.results))?;
     folder.put(&figure_name, figure)?;
     folder.put(&csv_name, csv.as_bytes())?;
     folder.put(&json_name, origin.as_bytes())?;

@@ -1,73 +1,70 @@
 //! What a results folder holds that `pxpl5 run` or `pxpl5 demo` wrote.
 
+use super::files::Files;
 use crate::error::CliError;
 use crate::run::INCOMPLETE;
 use pxpl5::views::page::{PagePicture, PageRun, latencies_ms};
 use serde_json::Value;
-use std::fs;
 use std::path::Path;
 
 /// The experiments of a folder; files other than `report.json` may be missing.
 ///
 /// # Errors
 ///
-/// When `report.json` is missing or is no report.
-pub(super) fn runs(folder: &Path) -> Result<Vec<PageRun>, CliError> {
-    let path = folder.join("report.json");
-    let text = fs::read_to_string(&path).map_err(|error| no_report(&path, &error.to_string()))?;
-    let all: Value = serde_json::from_str(&text).map_err(|error| no_report(&path, &error.to_string()))?;
+/// When `report.json` is missing, is no report, or is not what its manifest lists.
+pub(super) fn runs(files: &Files<'_>) -> Result<Vec<PageRun>, CliError> {
+    let path = files.folder().join(REPORT);
+    let bytes = files.first(REPORT).map_err(|error| no_report(&path, &error))?;
+    let all: Value = serde_json::from_slice(&bytes).map_err(|error| no_report(&path, &error.to_string()))?;
     match all["schema"].as_str() {
-        Some("pxpl5-report/2") => Ok(vec![run(folder, "", "", &all, &Value::Null)]),
+        Some("pxpl5-report/2") => Ok(vec![run(files, "", "", &all, &Value::Null)]),
         Some("pxpl5-demo/1") => {
             let runs = all["runs"].as_array().map(Vec::as_slice).unwrap_or_default();
-            Ok(runs.iter().map(|entry| demo_run(folder, entry)).collect())
+            Ok(runs.iter().map(|entry| demo_run(files, entry)).collect())
         }
         found => Err(no_report(&path, &format!("schema {}", found.unwrap_or("missing")))),
     }
 }
+
+const REPORT: &str = "report.json";
 
 fn no_report(path: &Path, found: &str) -> CliError {
     let path = path.display();
     CliError::failure(format!("{path}: {found}; expected what `pxpl5 run --out` or `pxpl5 demo` writes"))
 }
 
-fn demo_run(folder: &Path, entry: &Value) -> PageRun {
+fn demo_run(files: &Files<'_>, entry: &Value) -> PageRun {
     let name = entry["name"].as_str().unwrap_or_default();
-    // A name is part of file names, so it must not lead out of the folder.
-    let plain: String = name.chars().filter(|c| c.is_alphanumeric() || "-_".contains(*c)).collect();
-    run(folder, name, &format!("{plain}-"), &entry["report"], &entry["published"])
+    run(files, name, &format!("{name}-"), &entry["report"], &entry["published"])
 }
 
-fn run(folder: &Path, name: &str, prefix: &str, report: &Value, published: &Value) -> PageRun {
-    let pictures = read(folder, prefix, "pictures.csv").and_then(|bytes| String::from_utf8(bytes).ok());
+fn run(files: &Files<'_>, name: &str, prefix: &str, report: &Value, published: &Value) -> PageRun {
+    let read = |file: &str| files.read(&format!("{prefix}{file}"));
+    let pictures = read("pictures.csv").and_then(|bytes| String::from_utf8(bytes).ok());
     let own_name = format!("{}, {}", text(report, "pipeline"), text(report, "scene"));
     let name = if name.is_empty() { own_name } else { name.to_owned() };
     PageRun {
         name,
         report: report.clone(),
         published: published.clone(),
-        pictures: pictures_of(folder, prefix),
-        timeline: read(folder, prefix, "timeline.svg"),
+        pictures: pictures_of(files, prefix),
+        timeline: read("timeline.svg"),
         latencies_ms: pictures.map(|csv| latencies_ms(&csv)).unwrap_or_default(),
     }
 }
 
-/// The last pictures of the surfaces that there can be.
-fn pictures_of(folder: &Path, prefix: &str) -> Vec<PagePicture> {
-    let mut pictures = Vec::new();
-    for label in ["left", "right"] {
-        for (mark, caption) in [("", ""), (INCOMPLETE, ": not complete, it was not there in time")] {
-            if let Some(png) = read(folder, prefix, &format!("{label}{mark}.png")) {
-                pictures.push(PagePicture { label: format!("{label} eye{caption}"), png });
-            }
-        }
-    }
-    pictures
-}
-
-/// A file of a run; `None` where there is none.
-fn read(folder: &Path, prefix: &str, file: &str) -> Option<Vec<u8>> {
-    fs::read(folder.join(format!("{prefix}{file}"))).ok()
+/// The last pictures of all surfaces.
+fn pictures_of(files: &Files<'_>, prefix: &str) -> Vec<PagePicture> {
+    let names = files.names().filter_map(|name| Some((name, name.strip_prefix(prefix)?.strip_suffix(".png")?)));
+    let pictures = names.filter_map(|(name, surface)| {
+        let (surface, caption) = match surface.strip_suffix(INCOMPLETE) {
+            Some(surface) => (surface, ": not complete, it was not there in time"),
+            None => (surface, ""),
+        };
+        let eye = if ["left", "right"].contains(&surface) { " eye" } else { "" };
+        Some(PagePicture { label: format!("{surface}{eye}{caption}"), png: files.read(name)? })
+    });
+    pictures.collect()
 }
 
 fn text<'a>(report: &'a Value, key: &str) -> &'a str {

@@ -1,12 +1,11 @@
 //! Folders of sweeps and comparisons, as tables.
 
+use super::files::Files;
 use crate::error::CliError;
 use crate::rows::{self, ResultRows, Row, RowsKind};
 use pxpl5::sweep::ROWS_FILE;
 use pxpl5::views::page::{PagePicture, PageTable};
 use serde_json::Value;
-use std::fs;
-use std::path::Path;
 
 /// Rows of a sweep that a page holds: more are for a table program.
 const MOST_ROWS: usize = 5_000;
@@ -16,13 +15,13 @@ const MOST_ROWS: usize = 5_000;
 /// # Errors
 ///
 /// When its file cannot be read, or is none of these.
-pub(super) fn of(folder: &Path) -> Result<Option<Vec<PageTable>>, CliError> {
-    let Some(results) = rows::of(folder)? else { return Ok(None) };
+pub(super) fn of(files: &Files<'_>) -> Result<Option<Vec<PageTable>>, CliError> {
+    let Some(results) = rows::of(files.folder())? else { return Ok(None) };
     let table = match results.kind {
         RowsKind::Sweep => sweep(&results),
         RowsKind::Comparison => comparison(&results),
     };
-    Ok(Some(vec![with_pictures(table, folder)]))
+    Ok(Some(vec![with_pictures(table, files)]))
 }
 
 /// A row for each point.
@@ -92,18 +91,16 @@ fn pairs(settings: &Value) -> String {
     all.map(|(key, value)| format!("{key} = {}", shown(value))).collect::<Vec<_>>().join(", ")
 }
 
-/// The charts and pictures of the folder, by name.
-fn with_pictures(table: PageTable, folder: &Path) -> PageTable {
-    let mut names: Vec<_> = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).collect();
-    names.sort();
+/// The charts and pictures that the folder lists, by name.
+fn with_pictures(table: PageTable, files: &Files<'_>) -> PageTable {
+    files.warn_if_unlisted();
+    let mut names: Vec<&str> = files.names().collect();
+    names.sort_unstable();
     let of_kind = |kind: &str| -> Vec<PagePicture> {
-        let files = names.iter().filter(|path| path.extension().is_some_and(|found| found == kind));
-        files.filter_map(|path| picture(path)).collect()
+        let stems = names.iter().filter_map(|name| Some((name, name.strip_suffix(kind)?)));
+        let picture =
+            |(name, stem): (&&str, &str)| Some(PagePicture { label: stem.replace('-', " "), png: files.read(name)? });
+        stems.filter_map(picture).collect()
     };
-    PageTable { charts: of_kind("svg"), pictures: of_kind("png"), ..table }
-}
-
-fn picture(path: &Path) -> Option<PagePicture> {
-    let label = path.file_stem()?.to_string_lossy().replace('-', " ");
-    Some(PagePicture { label, png: fs::read(path).ok()? })
+    PageTable { charts: of_kind(".svg"), pictures: of_kind(".png"), ..table }
 }

@@ -34,10 +34,11 @@ pub(super) struct CompareArgs {
 }
 
 pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
-    let mut folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
+    let mut folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "volume compare")).transpose()?;
     let options = &args.volume.settings;
     let settings = options.gather()?;
     let scene = args.volume.load_scene()?;
+    options.admit(&settings, &scene, variant_count() as usize)?;
     let viewpoint = folder.is_some().then_some(Viewpoint { azimuth_deg: 40.0, elevation_deg: 25.0, side: args.size });
     let bar = progress(variant_count(), "volumes", options.quiet);
     let comparison = compare(&settings, &scene, viewpoint, &options.threads(), |done, of| advance(&bar, done, of));

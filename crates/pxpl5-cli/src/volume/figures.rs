@@ -44,8 +44,8 @@ pub(super) struct FiguresArgs {
 const SCENES: [&str; 3] = ["mig", "head", "molecules"];
 
 pub(super) fn run(args: FiguresArgs) -> Result<(), CliError> {
-    let document = args.write.as_deref().map(OutputFile::open).transpose()?;
-    let mut folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
+    let document = args.write.as_deref().map(|path| OutputFile::open(path, "--write")).transpose()?;
+    let mut folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "volume figures")).transpose()?;
     let scenes = SCENES.iter().map(|name| load(name, None)).collect::<Result<Vec<_>, _>>()?;
     let bar = progress(0, "scenes", args.quiet);
     let figures = all(&scenes, &Threads::all(), |done, of| advance(&bar, done, of));

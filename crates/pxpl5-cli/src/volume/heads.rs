@@ -44,7 +44,7 @@ pub(super) fn run(
         return Err(CliError::usage(format!("--size: expected a multiple of 8 with --head, found {side}")));
     }
     let motion = motion(name).map_err(|error| CliError::usage(format!("--head: {error}")))?;
-    let mut folder = OutputFolder::open(out)?;
+    let mut folder = OutputFolder::of_run(out, "volume view")?;
     let settings = options.settings.gather()?;
     let volume = options.draw(&settings)?;
     let threads = options.settings.threads();

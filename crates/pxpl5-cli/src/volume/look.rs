@@ -112,7 +112,7 @@ pub(super) fn view(args: ViewArgs) -> Result<(), CliError> {
     if let (Some(found), None) = (args.exposure, exposure) {
         return Err(CliError::usage(format!("--exposure: expected a number above 0, found {found}")));
     }
-    let file = OutputFile::open(&args.out)?;
+    let file = OutputFile::open(&args.out, "--out")?;
     let settings = args.volume.settings.gather()?;
     let look = Look { is_undithered: args.undithered, ..args.eye.look(&settings)? };
     let volume = args.volume.draw(&settings)?;
@@ -123,7 +123,7 @@ pub(super) fn view(args: ViewArgs) -> Result<(), CliError> {
 }
 
 pub(super) fn film(args: FilmArgs) -> Result<(), CliError> {
-    let file = OutputFile::open(&args.out)?;
+    let file = OutputFile::open(&args.out, "--out")?;
     let settings = args.volume.settings.gather()?;
     let look = args.eye.look(&settings)?;
     let volume = args.volume.draw(&settings)?;

@@ -32,7 +32,7 @@ pub(super) struct RunArgs {
 }
 
 pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
-    let folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
+    let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "volume run")).transpose()?;
     let volume = args.volume.draw(&args.volume.settings.gather()?)?;
     let report = volume.report();
     let json = serde_json::to_string_pretty(&report).map_err(CliError::failure)? + "\n";

@@ -1,6 +1,8 @@
 //! Options that say what a volume is; each stands for a path of `--set`.
 
+use crate::budget::BudgetArgs;
 use crate::error::CliError;
+use crate::estimate::{Estimate, VolumeWork};
 use crate::terminal::{advance, progress, warn};
 use clap::Args;
 use image::RgbImage;
@@ -59,12 +61,29 @@ pub(super) struct SettingOptions {
     /// Worker threads; default: one a core.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     threads: Option<u64>,
+    #[command(flatten)]
+    pub(super) budget: BudgetArgs,
     /// Print nothing but errors (and the object of --json).
     #[arg(long, short)]
     pub(super) quiet: bool,
 }
 
+/// What makes a volume smaller.
+pub(super) const SMALLER: &str = "draw fewer or smaller slices (--set display.slices, display.width, display.height)";
+
 impl SettingOptions {
+    /// Refuses so many volumes before the first is drawn, if they would take too much.
+    ///
+    /// # Errors
+    ///
+    /// The estimate, and what to do about it.
+    pub(super) fn admit(&self, settings: &VolumeSettings, scene: &Scene, volumes: usize) -> Result<(), CliError> {
+        let threads = self.threads();
+        let one = VolumeWork::of(settings, scene, threads.0.get()).estimate();
+        let seconds = volumes as f64 * one.seconds / threads.0.get() as f64;
+        self.budget.admit_estimate(Estimate { seconds, ..one }, SMALLER)
+    }
+
     /// The paper's settings with the options applied, `--set` last; numbers that no source allows are warned of.
     ///
     /// # Errors
@@ -128,6 +147,7 @@ impl VolumeSettingArgs {
     /// What is wrong with a setting or the scene.
     pub(super) fn draw(&self, settings: &VolumeSettings) -> Result<Volume, CliError> {
         let scene = self.load_scene()?;
+        self.settings.admit(settings, &scene, 1)?;
         let bar = progress(0, "batches of slices", self.settings.quiet);
         let finished = |done, of| advance(&bar, done, of);
         let threads = self.settings.threads();

@@ -56,7 +56,7 @@ enum Part {
 }
 
 pub(super) fn sheet(args: SheetArgs) -> Result<(), CliError> {
-    let file = OutputFile::open(&args.out)?;
+    let file = OutputFile::open(&args.out, "--out")?;
     let volume = args.volume.draw(&args.volume.settings.gather()?)?;
     let slices = volume.frame.planes.slices();
     write(file, &sheet_of(&volume), &volume)?;
@@ -64,7 +64,7 @@ pub(super) fn sheet(args: SheetArgs) -> Result<(), CliError> {
 }
 
 pub(super) fn slice(args: SliceArgs) -> Result<(), CliError> {
-    let file = OutputFile::open(&args.out)?;
+    let file = OutputFile::open(&args.out, "--out")?;
     // Whether there is such a slice is known before it is drawn.
     let settings = args.volume.settings.gather()?;
     let slices = settings.display.slices;

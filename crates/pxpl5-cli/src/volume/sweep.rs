@@ -1,8 +1,10 @@
 //! `pxpl5 volume sweep`: the folder, its rows and how it goes on are those of `pxpl5 sweep`.
 
-use super::settings::load;
+use super::settings::{SMALLER, load};
 use super::space::VolumeSpace;
+use crate::budget::BudgetArgs;
 use crate::error::CliError;
+use crate::estimate::{Estimate, VolumeWork};
 use crate::leaves::plain;
 use crate::sweep::{shard, tell_failures, tell_place};
 use crate::terminal::progress;
@@ -50,6 +52,8 @@ pub(super) struct SweepArgs {
     /// Set any key of the file for all points; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     sets: Vec<String>,
+    #[command(flatten)]
+    budget: BudgetArgs,
     /// Print nothing but errors.
     #[arg(long, short)]
     quiet: bool,
@@ -66,7 +70,7 @@ pub(super) fn run(args: SweepArgs) -> Result<(), CliError> {
     for point in &ours {
         if !store.holds(*point) {
             let begun = Instant::now();
-            let row = row(&space, *point, &mut scenes, &threads);
+            let row = row(&space, *point, &mut scenes, (&threads, args.budget));
             store.append(&row, begun.elapsed().as_secs_f64())?;
         }
         bar.inc(1);
@@ -175,7 +179,7 @@ impl Scenes {
 }
 
 /// Draws a point; what is wrong with it becomes its row.
-fn row(space: &VolumeSpace, point: u64, scenes: &mut Scenes, threads: &Threads) -> SweepRow {
+fn row(space: &VolumeSpace, point: u64, scenes: &mut Scenes, how: (&Threads, BudgetArgs)) -> SweepRow {
     let own = space.of_point(point);
     let parameters: BTreeMap<String, Value> =
         own.iter().map(|(path, value)| (path.clone(), serde_json::to_value(value).unwrap_or_default())).collect();
@@ -190,7 +194,7 @@ fn row(space: &VolumeSpace, point: u64, scenes: &mut Scenes, threads: &Threads) 
         trace_hash: None,
         error: None,
     };
-    match drawn(&all, point, scenes, threads) {
+    match drawn(&all, point, scenes, how) {
         Ok(volume) => {
             let report = serde_json::to_value(volume.report()).unwrap_or_default();
             let of = |name: &String| (name.clone(), value_of(&report, name).and_then(Value::as_f64));
@@ -211,7 +215,7 @@ fn drawn(
     all: &BTreeMap<String, toml::Value>,
     point: u64,
     scenes: &mut Scenes,
-    threads: &Threads,
+    (threads, budget): (&Threads, BudgetArgs),
 ) -> Result<Volume, CliError> {
     let mut settings = VolumeSettings::paper();
     let place = format!("point {point}");
@@ -226,5 +230,9 @@ fn drawn(
         })?),
     };
     let scene = scenes.get(&name, triangles)?;
+    settings.swept_display()?;
+    let one = VolumeWork::of(&settings, &scene, threads.0.get()).estimate();
+    let seconds = one.seconds / threads.0.get() as f64;
+    budget.admit_estimate(Estimate { seconds, ..one }, SMALLER)?;
     Ok(Volume::draw(&settings, &scene, threads)?)
 }

@@ -1,6 +1,7 @@
 //! What can go wrong with the files of a sweep.
 
 use crate::experiment_file::FileError;
+use crate::manifest::ManifestError;
 use thiserror::Error;
 
 /// Why a sweep did not run or shards could not be joined.
@@ -43,6 +44,17 @@ pub enum SweepError {
         /// What the file has.
         found: String,
     },
+    /// The folder holds what another command wrote.
+    #[error("{path}: these are files of `pxpl5 {command}`; choose another folder")]
+    Occupied {
+        /// Path of the folder, as it was given.
+        path: String,
+        /// The command that wrote there.
+        command: String,
+    },
+    /// The manifest of the folder cannot be used.
+    #[error(transparent)]
+    Manifest(#[from] ManifestError),
     /// A line is no row.
     #[error("{path}, line {line}: expected a row of a sweep, found {found}")]
     Damaged {

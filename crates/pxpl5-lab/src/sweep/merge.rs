@@ -2,7 +2,7 @@
 
 use super::joined::Joined;
 use super::replacement::Replacement;
-use super::store::{line_of, write_all};
+use super::store::{check_command, line_of, renew_manifest, write_all};
 use super::{SweepError, TIMES_FILE};
 use std::fs::File;
 use std::io::{BufRead, BufReader};
@@ -39,6 +39,7 @@ pub fn merge(folders: &[PathBuf], out: &Path, allow_missing: bool) -> Result<Mer
 }
 
 fn write(joined: &mut Joined, folders: &[PathBuf], out: &Path) -> Result<(), SweepError> {
+    check_command(out)?;
     std::fs::create_dir_all(out).map_err(SweepError::io(out, "cannot be made"))?;
     let header = joined.header().clone();
     let mut times = Replacement::of(&out.join(TIMES_FILE))?;
@@ -46,7 +47,8 @@ fn write(joined: &mut Joined, folders: &[PathBuf], out: &Path) -> Result<(), Swe
     folders.iter().try_for_each(|folder| put_times(&mut times, &folder.join(TIMES_FILE)))?;
     times.finish()?;
     let rows = (0..header.points).filter_map(|point| joined.row(point).transpose());
-    write_all(out, &header, rows)
+    write_all(out, &header, rows)?;
+    renew_manifest(out)
 }
 
 /// The lines of a folder's times behind the first one, which is the header.

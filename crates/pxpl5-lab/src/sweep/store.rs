@@ -6,6 +6,7 @@ use super::rows::RowFile;
 use super::shard::Shard;
 use super::table::Table;
 use super::{Header, SweepError, SweepRow};
+use crate::manifest::{MANIFEST_FILE, Manifest};
 use serde::Serialize;
 use std::fs::{self, File, OpenOptions};
 use std::io::{BufRead, BufReader, Write};
@@ -29,6 +30,8 @@ pub struct Store {
     end: u64,
     rows_file: File,
     times_file: File,
+    /// True once a row was appended: plots and pages of fewer rows have been taken away.
+    is_renewed: bool,
     /// Held as long as the store lives; the operating system gives it back after a kill.
     _lock: File,
 }
@@ -48,6 +51,7 @@ impl Store {
     /// [`SweepError`] when it cannot be read or written, is in use, holds finished points that nobody wants to
     /// continue, results of another sweep, or a damaged line before the last.
     pub fn open(folder: &Path, header: Header, resume: bool) -> Result<Self, SweepError> {
+        check_command(folder)?;
         fs::create_dir_all(folder).map_err(SweepError::io(folder, "cannot be made"))?;
         let lock = lock(folder)?;
         remove_left_over(folder);
@@ -62,7 +66,12 @@ impl Store {
         let times_path = folder.join(TIMES_FILE);
         let times_end = whole_lines(&times_path);
         let times_file = opened(&times_path, times_end)?;
-        let mut store = Self { folder: folder.to_owned(), header, rows, end, rows_file, times_file, _lock: lock };
+        if Manifest::read(folder)?.is_none() {
+            renew_manifest(folder)?;
+        }
+        let is_renewed = false;
+        let mut store =
+            Self { folder: folder.to_owned(), header, rows, end, rows_file, times_file, is_renewed, _lock: lock };
         let header = line_of(&store.header);
         if end == 0 {
             store.append_line(&header)?;
@@ -110,6 +119,10 @@ impl Store {
     ///
     /// [`SweepError::Io`].
     pub fn append(&mut self, row: &SweepRow, host_seconds: f64) -> Result<(), SweepError> {
+        if !self.is_renewed {
+            renew_manifest(&self.folder)?;
+            self.is_renewed = true;
+        }
         let begin = self.end;
         self.append_line(&line_of(row))?;
         self.append_time(&line_of(&PointTime { point: row.point, host_seconds }))?;
@@ -140,6 +153,29 @@ impl Store {
         let rows = self.rows.points().filter_map(|point| reader.row(point).transpose());
         write_all(&self.folder, &self.header, rows)
     }
+}
+
+/// Refuses a folder that holds what another command wrote.
+pub(super) fn check_command(folder: &Path) -> Result<(), SweepError> {
+    match Manifest::read(folder)? {
+        Some(manifest) if manifest.command() != Manifest::SWEEP => {
+            let (path, command) = (folder.display().to_string(), manifest.command().to_owned());
+            Err(SweepError::Occupied { path, command })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Lists the files of a sweep alone. Plots and pages that were made of fewer rows are taken away.
+pub(super) fn renew_manifest(folder: &Path) -> Result<(), SweepError> {
+    let mut manifest = Manifest::new(Manifest::SWEEP);
+    [ROWS_FILE, TIMES_FILE, RESULTS_FILE].into_iter().for_each(|name| manifest.add_growing(name));
+    let gone = Manifest::read(folder)?.map(|before| manifest.replace(&before, folder)).unwrap_or_default();
+    let mut file = Replacement::of(&folder.join(MANIFEST_FILE))?;
+    file.put(manifest.to_text().as_bytes())?;
+    file.finish()?;
+    gone.into_iter().for_each(|path| drop(fs::remove_file(path)));
+    Ok(())
 }
 
 /// Rows in order, and the table; a row is held at a time.
@@ -173,7 +209,7 @@ fn remove_left_over(folder: &Path) {
                 name.to_str().and_then(|name| name.strip_prefix(stem)?.strip_prefix('.')?.strip_suffix(".tmp"));
             number.is_some_and(|number| !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit()))
         };
-        if [ROWS_FILE, TIMES_FILE, RESULTS_FILE].into_iter().any(is_temporary) {
+        if [ROWS_FILE, TIMES_FILE, RESULTS_FILE, MANIFEST_FILE].into_iter().any(is_temporary) {
             let _ = fs::remove_file(entry.path());
         }
     }

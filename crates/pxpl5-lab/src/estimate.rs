@@ -1,0 +1,275 @@
+//! What an experiment will take of this computer, from what it is: known before it starts. Budgets, sweeps and their jobs all ask here.
+//!
+//! Memory, bytes:
+//! `BASE + GP gps + PRIMITIVE primitives + WAITING batch + kept`, where `kept = fields (FIELD + COPY copies)` of a run that keeps
+//! everything, and `fields STATISTICS + min(fields, WINDOW) BLOCK blocks` of one that keeps statistics and its last pictures; behind a tracker
+//! either has `min(fields, JUDGED) ERRORS` more. `batch` and `blocks` (copied in a field, at
+//! most what the ring takes) are those of frameless rendering. Measured: the peaks of 23 runs of all pipelines, rounded up (docs/hardening.md).
+//!
+//! Time, seconds on one core:
+//! `runs (FIELD_S fields + pictures eyes (PICTURE_S + GP_S gps) + BLOCK_S blocks fields) + LOAD_S eyes primitives + JUDGED_FIELD_S fields`,
+//! where `runs` is [`RUNS_OF_HEAD`] of a tracked head, else 1; `LOAD_S` counts where pictures come from a closed form, `BLOCK_S` where a pipeline draws
+//! blocks, and `JUDGED_FIELD_S` of a tracked head.
+//!
+//! The constants of time are fitted to 606 points of all pipelines (experiments/sweep-costs.toml and sweep-costs-heads.toml, release build) by logarithms, so
+//! that too much and too little count alike. How far single points are off stands in docs/sweeps.md, "What a point costs": what decides besides, above all
+//! how much of a scene is in view and how often a view returns, no closed form knows. An estimate is for telling minutes from weeks; what a run
+//! really takes is looked at while it runs.
+
+use crate::Plan;
+use pxpl5_run::{KeyValue, Level, Pixels};
+use pxpl5_scene::Scene;
+
+/// What decides on memory and time of an experiment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Work {
+    /// Periods of the display.
+    pub fields: u64,
+    /// Graphics processors.
+    pub gps: u64,
+    /// Triangles and spheres.
+    pub primitives: u64,
+    /// Pictures that are drawn at a time, one for each eye.
+    pub eyes: u64,
+    /// Pictures of an eye in a field: at most 1.
+    pub pictures_a_field: f64,
+    /// True if pictures come from a closed form, for which all primitives are transformed first.
+    pub is_by_form: bool,
+    /// Blocks drawn with one view; 0 where a pipeline has none.
+    pub batch: u64,
+    /// Width of a block, pixels; 0 where a pipeline has none.
+    pub block: u64,
+    /// True if processors execute instructions.
+    pub is_cycle_level: bool,
+    /// True if all observations are kept.
+    pub keeps_everything: bool,
+    /// True if a tracker follows a head.
+    pub is_tracked: bool,
+    /// True if all pixels are computed while the run goes on.
+    pub computes_all_pixels: bool,
+}
+
+/// What something is expected to take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Bytes of memory at the peak.
+    pub bytes: f64,
+    /// Seconds on a computer that does other work too.
+    pub seconds: f64,
+}
+
+/// Bytes of the command, of a small machine, and of pictures that are computed in advance.
+const BASE: f64 = 15e6;
+const PICTURES: f64 = 10e6;
+/// Bytes of a graphics processor, of a primitive with its place in all lists, and of a block that waits to be drawn.
+const GP: f64 = 60e3;
+const PRIMITIVE: f64 = 200.0;
+const WAITING: f64 = 5.5e3;
+/// Bytes that a field leaves: where everything is kept, a field and each of its blocks; where statistics are kept.
+const FIELD: f64 = 4e3;
+const COPY: f64 = 350.0;
+const STATISTICS: f64 = 10.0;
+const BLOCK: f64 = 100.0;
+const WINDOW: f64 = 240.0;
+/// Bytes that the pixel errors of a field take, and fields of which they are kept one by one.
+const ERRORS: f64 = 1e3;
+const JUDGED: f64 = 20_971.0;
+
+/// Seconds of a field, with its retrace and the head's samples.
+const FIELD_S: f64 = 3.5e-4;
+/// Seconds of a picture of one eye: its regions, and the messages of each processor for them.
+const PICTURE_S: f64 = 1.8e-4;
+const GP_S: f64 = 1.3e-5;
+/// Seconds of a block of frameless rendering.
+const BLOCK_S: f64 = 5.6e-6;
+/// Seconds of a primitive of an eye: transformed when its view is first drawn.
+const LOAD_S: f64 = 2.8e-5;
+/// Seconds of a primitive of a picture as code of the i860. Assumed, from the speeds of the README.
+const PRIMITIVE_AS_CODE_S: f64 = 2.7e-5;
+/// A tracked head: the run is repeated to know when views are seen, and errors are judged in every field.
+const RUNS_OF_HEAD: f64 = 2.0;
+const JUDGED_FIELD_S: f64 = 6e-4;
+/// How much longer it takes on a computer that does other work too. Assumed.
+const BUSY: f64 = 2.0;
+
+/// A field of NTSC, a word on the ring and the transformation of a primitive on a graphics processor, seconds; words that go along with a block;
+/// processors that fill the ring with blocks. Of other displays and machines the same: an estimate needs no more.
+const NTSC_FIELD_S: f64 = 16.683_333e-3;
+const WORD_S: f64 = 50e-9;
+const TRANSFORM_S: f64 = 21.7e-6;
+const BLOCK_WORDS: f64 = 16.0;
+const BLOCK_GPS: f64 = 20.0;
+/// The shortest time between two blocks, seconds: processors send messages for each. Derived: half of 12 us, of two at a time.
+const LEAST_BLOCK_S: f64 = 6e-6;
+
+impl Estimate {
+    /// Of what follows each other on so many threads: the sum of the times, the largest memory on each.
+    #[must_use]
+    pub fn of_all(all: impl IntoIterator<Item = Self>, threads: usize) -> Self {
+        let threads = threads.max(1) as f64;
+        let (bytes, seconds) = all
+            .into_iter()
+            .fold((0.0, 0.0), |(bytes, seconds): (f64, f64), one| (bytes.max(one.bytes), seconds + one.seconds));
+        Self { bytes: bytes * threads, seconds: seconds / threads }
+    }
+}
+
+impl Work {
+    /// Of a checked experiment with its scene: a picture in every field, or as many as the processors can transform.
+    #[must_use]
+    pub fn of(plan: &Plan, scene: &Scene, keeps_everything: bool) -> Self {
+        let settings = plan.pipeline.settings();
+        let whole = |key: &str| match settings.iter().find(|(name, _)| *name == key) {
+            Some((_, KeyValue::Whole(value))) => *value,
+            _ => 0,
+        };
+        let mut work = Self {
+            fields: plan.fields,
+            gps: plan.machine.n_gps as u64,
+            primitives: (scene.triangles().len() + scene.spheres().len()) as u64,
+            eyes: plan.pipeline.eyes() as u64,
+            pictures_a_field: 1.0,
+            is_by_form: false,
+            batch: whole("batch"),
+            block: whole("block"),
+            is_cycle_level: plan.level == Level::Cycle,
+            keeps_everything: keeps_everything || !plan.pipeline.can_forget(),
+            is_tracked: plan.head.is_some(),
+            computes_all_pixels: plan.pixels == Pixels::All,
+        };
+        work.pictures_a_field = (1.0 / work.fields_of_transform()).min(1.0);
+        work
+    }
+
+    /// Fields of NTSC that the processors take to transform all primitives for all eyes.
+    #[must_use]
+    pub fn fields_of_transform(&self) -> f64 {
+        let primitives = (self.primitives * self.eyes).max(1) as f64;
+        TRANSFORM_S * primitives / (NTSC_FIELD_S * self.gps.max(1) as f64)
+    }
+
+    /// Blocks of a field at most: what the ring takes, and what processors send messages for.
+    fn most_blocks(&self) -> f64 {
+        if self.block == 0 { 0.0 } else { NTSC_FIELD_S / self.block_s().max(LEAST_BLOCK_S) }
+    }
+
+    /// Blocks of a field that these processors send.
+    fn blocks(&self) -> f64 {
+        if self.block == 0 { 0.0 } else { NTSC_FIELD_S / self.block_s() * (self.gps as f64 / BLOCK_GPS).min(1.0) }
+    }
+
+    fn block_s(&self) -> f64 {
+        WORD_S * ((self.block * self.block) as f64 + BLOCK_WORDS)
+    }
+
+    /// What it takes, by the formulas above.
+    #[must_use]
+    pub fn estimate(&self) -> Estimate {
+        Estimate { bytes: self.bytes(), seconds: BUSY * self.core_seconds() }
+    }
+
+    /// Bytes of memory at the peak.
+    #[must_use]
+    pub fn bytes(&self) -> f64 {
+        let fields = self.fields as f64;
+        let kept = if self.keeps_everything {
+            fields * (FIELD + COPY * self.most_blocks())
+        } else {
+            fields * STATISTICS + fields.min(WINDOW) * BLOCK * self.most_blocks()
+        };
+        let errors = if self.is_tracked { fields.min(JUDGED) * ERRORS } else { 0.0 };
+        let pictures = if self.computes_all_pixels { PICTURES } else { 0.0 };
+        let lists = PRIMITIVE * self.primitives as f64 + WAITING * self.batch as f64;
+        BASE + pictures + GP * self.gps as f64 + lists + kept + errors
+    }
+
+    /// Seconds on one core that does nothing else.
+    #[must_use]
+    pub fn core_seconds(&self) -> f64 {
+        let (fields, eyes, primitives) = (self.fields as f64, self.eyes as f64, self.primitives as f64);
+        let as_code = if self.is_cycle_level { PRIMITIVE_AS_CODE_S * primitives } else { 0.0 };
+        let picture = eyes * (PICTURE_S + GP_S * self.gps as f64 + as_code);
+        let run = fields * FIELD_S + fields * self.pictures_a_field * picture + fields * self.blocks() * BLOCK_S;
+        let load = if self.is_by_form { LOAD_S * eyes * primitives } else { 0.0 };
+        let (runs, judged) = if self.is_tracked { (RUNS_OF_HEAD, fields * JUDGED_FIELD_S) } else { (1.0, 0.0) };
+        runs * run + load + judged
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SMALL: Work = Work {
+        fields: 1_200,
+        gps: 11,
+        primitives: 417,
+        eyes: 2,
+        pictures_a_field: 1.0,
+        is_by_form: false,
+        batch: 0,
+        block: 0,
+        is_cycle_level: false,
+        keeps_everything: false,
+        is_tracked: false,
+        computes_all_pixels: false,
+    };
+
+    /// Of runs under `/usr/bin/time`: what it was, and MB that the process had at its peak.
+    const MEASURED: [(Work, f64); 12] = [
+        (SMALL, 13.8),
+        (Work { fields: 12_000, keeps_everything: true, ..SMALL }, 61.4),
+        (Work { fields: 120, primitives: 1_000_000, ..SMALL }, 195.2),
+        (Work { fields: 1_200, gps: 1_000, ..SMALL }, 50.6),
+        (Work { fields: 120, block: 16, ..SMALL }, 25.3),
+        (Work { fields: 120, block: 16, batch: 65_535, ..SMALL }, 421.0),
+        (Work { fields: 120, block: 16, gps: 1_000, ..SMALL }, 130.9),
+        (Work { fields: 480, block: 16, primitives: 8, keeps_everything: true, ..SMALL }, 228.9),
+        (Work { is_cycle_level: true, ..SMALL }, 18.6),
+        (Work { fields: 4_000, gps: 1, primitives: 140, is_tracked: true, ..SMALL }, 20.1),
+        (Work { fields: 100_000, gps: 1, primitives: 140, is_tracked: true, ..SMALL }, 42.7),
+        (Work { fields: 215_784, gps: 1, primitives: 140, is_tracked: true, ..SMALL }, 47.1),
+    ];
+
+    #[test]
+    fn many_runs_take_the_sum_of_their_times_and_the_largest_memory_of_each_thread() {
+        let runs = [(3e9, 10.0), (5e9, 20.0), (4e9, 30.0)].map(|(bytes, seconds)| Estimate { bytes, seconds });
+        assert_eq!(Estimate::of_all(runs.into_iter(), 2), Estimate { bytes: 10e9, seconds: 30.0 });
+        assert_eq!(Estimate::of_all(std::iter::empty(), 0), Estimate { bytes: 0.0, seconds: 0.0 });
+    }
+
+    #[test]
+    fn memory_is_estimated_to_a_factor_of_two() {
+        for (work, megabytes) in MEASURED {
+            let ratio = work.estimate().bytes / 1e6 / megabytes;
+            assert!((0.5..2.0).contains(&ratio), "{work:?}: {ratio} times {megabytes} MB");
+        }
+    }
+
+    /// Bounds of the same runs on two cores that others used too: the least is a tenth of what they took, the most what they took.
+    #[test]
+    fn time_is_estimated_between_a_tenth_and_the_double_of_a_busy_computer() {
+        for (work, seconds) in [
+            (Work { fields: 12_000, ..SMALL }, 47.5),
+            (Work { fields: 120, block: 16, ..SMALL }, 7.5),
+            (Work { fields: 1_200, gps: 1_000, ..SMALL }, 41.2),
+            (Work { is_cycle_level: true, ..SMALL }, 74.8),
+        ] {
+            let ratio = work.estimate().seconds / seconds;
+            assert!((0.1..2.0).contains(&ratio), "{work:?}: {ratio} times {seconds} s");
+        }
+    }
+
+    #[test]
+    fn more_of_anything_takes_more() {
+        let least = Work { block: 16, batch: 4, ..SMALL }.estimate();
+        for more in [
+            Work { fields: 1_201, block: 16, batch: 4, ..SMALL },
+            Work { gps: 12, block: 16, batch: 4, ..SMALL },
+            Work { block: 8, batch: 4, ..SMALL },
+        ] {
+            assert!(more.estimate().bytes >= least.bytes && more.estimate().seconds > least.seconds, "{more:?}");
+        }
+        assert!(Work { block: 16, batch: 5, ..SMALL }.estimate().bytes > least.bytes);
+    }
+}
