@@ -92,12 +92,14 @@ def figures(
 class Limit:
     """The most triangles that a pipeline draws in time, and how sure that is."""
 
-    #: Most triangles for which the goal was reached; 0 if it was not reached with one.
+    #: One less than the first miss; 0 if the goal was missed with one triangle.
     triangles: int
-    #: Fewest triangles above them that were tried and missed it; None if none was.
+    #: The least size that was tried and missed the goal; None if all that were tried reached it.
     first_miss: int | None
-    #: Whether no smaller size that was tried missed it.
-    monotone: bool
+    #: The greatest size above the first miss that was tried and reaches the goal all the same; None if there is none.
+    island: int | None
+    #: All sizes from here to ``triangles`` were tried; below it only some were.
+    unbroken_from: int
     #: Sizes that were simulated.
     tried: int
     #: What had to hold.

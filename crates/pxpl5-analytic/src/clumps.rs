@@ -1,10 +1,10 @@
-//! TRANSFORM and RENDER of Slats: clumps on their way to the renderers, on some machines at once.
+//! TRANSFORM and RENDER of Slats on one GP: clumps on their way to the renderers, on some machines at once.
 
 use super::model::{MOST_CHANNELS, PerTriangle, REGIONS, SlatsModel};
 use super::renderer::{Array, Commands, Costs, Fifos, Times};
 use slats::CLUMP;
 
-/// Clumps of all GPs by turns; when the last one was accepted.
+/// All clumps; returns when the last one was accepted.
 #[inline(always)]
 pub(super) fn render<const N: usize>(
     models: &[SlatsModel; N],
@@ -12,9 +12,8 @@ pub(super) fn render<const N: usize>(
     triangles: f64,
     each: PerTriangle,
 ) -> Times<N> {
-    let share = triangles / models[0].gps as f64;
-    let clumps = (share / CLUMP as f64).ceil().max(1.0) as usize;
-    let size = |clump: usize| (share - (clump * CLUMP) as f64).min(CLUMP as f64);
+    let clumps = (triangles / CLUMP as f64).ceil().max(1.0) as usize;
+    let size = |clump: usize| (triangles - (clump * CLUMP) as f64).min(CLUMP as f64);
     let sending = Sending::of(models);
     let message = Times::each(|i| models[i].message_ns);
     let mut clump = Clump::first(models, &sending, size(0), each);
@@ -28,14 +27,13 @@ pub(super) fn render<const N: usize>(
         let transformed = chain.cpu.later(chain.draining) + clump.transform;
         chain.cpu = transformed.later(chain.accepted) + message;
         chain.send(arrays, &sending, &clump);
-        clump.behind_last = clump.others_behind_others;
+        clump.behind_last = clump.behind_itself;
     }
     chain.accepted
 }
 
 /// What messages cost that does not depend on what they hold.
 struct Sending<const N: usize> {
-    gps: usize,
     source_channels: usize,
     overhead: Times<N>,
     hop: Times<N>,
@@ -49,7 +47,6 @@ impl<const N: usize> Sending<N> {
     #[inline(always)]
     fn of(models: &[SlatsModel; N]) -> Self {
         Self {
-            gps: models[0].gps,
             source_channels: models[0].source_channels,
             overhead: Times::each(|i| models[i].overhead_ns),
             hop: Times::each(|i| models[i].hop_ns),
@@ -70,55 +67,38 @@ impl<const N: usize> Sending<N> {
     }
 }
 
-/// A clump of every GP: select, and clear in the first message of a field, then its triangles.
+/// A clump: select, and clear in the first messages of a field, then its triangles.
 struct Clump<const N: usize> {
     transform: Times<N>,
-    /// The first GP's messages, and those of the others.
-    first: Commands<N>,
-    others: Commands<N>,
-    /// [Room](Commands::room_behind) of a first message behind the clump before and behind the others of this one, and of the others
-    /// behind the first one and behind each other.
+    message: Commands<N>,
+    /// [Room](Commands::room_behind) of a message behind the clump before and behind others of this one.
     behind_last: Times<N>,
-    first_behind_others: Times<N>,
-    others_behind_first: Times<N>,
-    others_behind_others: Times<N>,
+    behind_itself: Times<N>,
 }
 
 impl<const N: usize> Clump<N> {
     /// The first one of a field.
     #[inline(always)]
     fn first(models: &[SlatsModel; N], sending: &Sending<N>, triangles: f64, each: PerTriangle) -> Self {
-        let first = sending.commands(sending.select + sending.clear, triangles, each);
-        let others = if sending.gps > 1 { sending.commands(sending.select, triangles, each) } else { first };
+        let message = sending.commands(sending.select + sending.clear, triangles, each);
         let transform = Times::each(|i| models[i].clump_ns(triangles, each));
-        Self::of(transform, first, others, Times::all(f64::NEG_INFINITY))
+        let behind_itself = message.room_behind(&message);
+        Self { transform, message, behind_last: Times::all(f64::NEG_INFINITY), behind_itself }
     }
 
     /// A later one, behind this one.
     #[inline(always)]
     fn next(&self, models: &[SlatsModel; N], sending: &Sending<N>, triangles: f64, each: PerTriangle) -> Self {
-        let commands = sending.commands(sending.select, triangles, each);
+        let message = sending.commands(sending.select, triangles, each);
         let transform = Times::each(|i| models[i].clump_ns(triangles, each));
-        Self::of(transform, commands, commands, commands.room_behind(&self.others))
-    }
-
-    #[inline(always)]
-    fn of(transform: Times<N>, first: Commands<N>, others: Commands<N>, behind_last: Times<N>) -> Self {
-        Self {
-            transform,
-            first_behind_others: first.room_behind(&others),
-            others_behind_first: others.room_behind(&first),
-            others_behind_others: others.room_behind(&others),
-            first,
-            others,
-            behind_last,
-        }
+        let behind_last = message.room_behind(&self.message);
+        Self { transform, message, behind_last, behind_itself: message.room_behind(&message) }
     }
 }
 
 /// Clumps on their way.
 struct Chain<const N: usize> {
-    /// When the processors are done with what they did last.
+    /// When the processor is done with what it did last.
     cpu: Times<N>,
     /// When the last message of the last clump was accepted.
     accepted: Times<N>,
@@ -131,7 +111,7 @@ impl<const N: usize> Chain<N> {
         Self { cpu, accepted: Times::all(0.0), draining: Times::all(0.0) }
     }
 
-    /// The messages of one clump of every GP, as many at a time as a port drives channels.
+    /// The messages of one clump, as many at a time as a port drives channels.
     #[inline(always)]
     fn send(&mut self, arrays: &mut [Array<N>], sending: &Sending<N>, clump: &Clump<N>) {
         let mut channels = Channels::new(sending.source_channels);
@@ -141,26 +121,17 @@ impl<const N: usize> Chain<N> {
         // A round is a region of every renderer.
         for round in (0..REGIONS).step_by(arrays.len()) {
             for (renderer, array) in arrays.iter_mut().enumerate().take(REGIONS - round) {
-                let latency = sending.hop * Times::all((renderer + sending.gps) as f64);
+                let latency = sending.hop * Times::all((renderer + 1) as f64);
                 granted = granted.later(array.released).later(channels.soonest);
-                let first = array.take(granted + sending.overhead + latency, &clump.first, behind);
+                let first = array.take(granted + sending.overhead + latency, &clump.message, behind);
                 array.released = first - latency;
                 channels.give_back(array.released);
                 accepted = accepted.later(first);
-                // Several GPs share the ports of the renderers: their messages follow each other.
-                let mut behind = clump.others_behind_first;
-                for _ in 1..sending.gps {
-                    let begin = granted.later(array.released);
-                    let other = array.take(begin + sending.overhead + latency, &clump.others, behind);
-                    array.released = other - latency;
-                    accepted = accepted.later(other);
-                    behind = clump.others_behind_others;
-                }
             }
             if round == 0 {
                 self.draining = accepted;
             }
-            behind = clump.first_behind_others;
+            behind = clump.behind_itself;
         }
         self.accepted = accepted;
     }

@@ -24,6 +24,7 @@ mod load;
 mod model;
 mod renderer;
 mod rendering_control;
+mod senders;
 mod slats;
 
 pub use load::Load;

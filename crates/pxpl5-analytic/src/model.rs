@@ -39,6 +39,7 @@ pub struct SlatsModel {
     pub(super) begin_ns: f64,
     pub(super) message_ns: f64,
     pub(super) command: Cost,
+    pub(super) sphere: Cost,
     pub(super) select: Cost,
     pub(super) clear: Cost,
     pub(super) region_ns: f64,
@@ -48,6 +49,8 @@ pub struct SlatsModel {
     pub(super) renderers: usize,
     pub(super) gps: usize,
     pub(super) source_channels: usize,
+    /// Channels that messages to renderers may occupy.
+    pub(super) fifo_channels: usize,
     pub(super) split: bool,
 }
 
@@ -106,6 +109,7 @@ impl SlatsModel {
             begin_ns: begin_ns(&config.gp, 1, 0),
             message_ns: config.gp.message_ns as f64,
             command: Cost::of_command(&config.renderer, CommandKind::Triangle),
+            sphere: Cost::of_command(&config.renderer, CommandKind::Sphere),
             select: Cost::of_command(&config.renderer, CommandKind::SelectRegion),
             clear: Cost::of_command(&config.renderer, CommandKind::Clear),
             region_ns: 15_360.0 * word_ns + messages * config.ring.overhead_words as f64 * word_ns,
@@ -116,6 +120,7 @@ impl SlatsModel {
             source_channels: (config.ring.source_channels.min(config.ring.fifo_channels).min(config.ring.channels)
                 as usize)
                 .clamp(1, MOST_CHANNELS),
+            fifo_channels: (config.ring.fifo_channels.min(config.ring.channels) as usize).max(1),
             split: program.copy.is_split(),
         })
     }

@@ -2,23 +2,35 @@
 
 use super::clumps;
 use super::copies::{self, CopyTimes, MOST_RENDERERS, Queue};
-use super::load::Load;
 use super::model::{FieldTimes, PerTriangle, REGIONS, SlatsModel};
 use super::renderer::{Array, Times};
+use super::senders::{self, Clumps};
 use crate::pipeline_of;
 use multiversion::multiversion;
 use pphigs::RegionBinning;
-use pxpl5_geometry::Viewport;
 use pxpl5_run::{
     ClosedForm, Estimates, Experiment, ExperimentError, Samples, Slats, Summary, WARM_UP_PERIODS, WARM_UP_PICTURES,
 };
-use pxpl5_wire::FieldParity;
 
 impl SlatsModel {
     /// A field in the steady state: renderers begin with the bottom regions of the field before.
     #[must_use]
     pub fn field(&self, triangles: f64, each: PerTriangle) -> FieldTimes {
+        if self.gps > 1 {
+            return self.field_of(&Clumps::uniform(self, triangles, each));
+        }
         let [times] = fields_at_once(std::array::from_ref(self), triangles, each);
+        times
+    }
+
+    /// A field in the steady state with each clump as it is.
+    fn field_of(&self, clumps: &Clumps) -> FieldTimes {
+        let models = std::array::from_ref(self);
+        let mut arrays = [Array::idle(); MOST_RENDERERS];
+        let arrays = &mut arrays[..self.renderers];
+        begin(models, arrays);
+        let rendered = senders::render(self, arrays, clumps);
+        let [times] = end(models, arrays, Times::all(rendered));
         times
     }
 
@@ -29,7 +41,7 @@ impl SlatsModel {
         let mut all = Vec::with_capacity(models.len());
         for some in models.chunks(TOGETHER) {
             match <&[Self; TOGETHER]>::try_from(some) {
-                Ok(some) if some.iter().all(|model| model.structure() == some[0].structure()) => {
+                Ok(some) if some.iter().all(|model| model.gps == 1 && model.structure() == some[0].structure()) => {
                     all.extend(fields_together(some, triangles, each));
                 }
                 _ => all.extend(some.iter().map(|model| model.field(triangles, each))),
@@ -49,20 +61,32 @@ fn fields_together(models: &[SlatsModel; TOGETHER], triangles: f64, each: PerTri
     fields_at_once(models, triangles, each)
 }
 
-/// Fields of machines of the same structure.
+/// Fields of machines of the same structure with one GP.
 #[inline(always)]
 fn fields_at_once<const N: usize>(models: &[SlatsModel; N], triangles: f64, each: PerTriangle) -> [FieldTimes; N] {
+    let mut arrays = [Array::idle(); MOST_RENDERERS];
+    let arrays = &mut arrays[..models[0].renderers];
+    begin(models, arrays);
+    let rendered = clumps::render(models, arrays, triangles, each);
+    end(models, arrays, rendered)
+}
+
+/// Renderers begin with the bottom regions of the field before, where copies are split.
+#[inline(always)]
+fn begin<const N: usize>(models: &[SlatsModel; N], arrays: &mut [Array<N>]) {
+    if models[0].split {
+        let of_bottom = models[0].layout(|region| region >= REGIONS / 2);
+        copy(models, arrays, Times::all(0.0), &of_bottom);
+    }
+}
+
+/// The copies of a field whose last clump was accepted at an instant.
+#[inline(always)]
+fn end<const N: usize>(models: &[SlatsModel; N], arrays: &mut [Array<N>], rendered: Times<N>) -> [FieldTimes; N] {
     let is_split = models[0].split;
     let of_top = models[0].layout(|region| !is_split || region < REGIONS / 2);
     let of_bottom = models[0].layout(|region| is_split && region >= REGIONS / 2);
-    let mut arrays = [Array::idle(); MOST_RENDERERS];
-    let arrays = &mut arrays[..models[0].renderers];
     let message = Times::each(|i| models[i].message_ns);
-    if is_split {
-        // Of the field before.
-        copy(models, arrays, Times::all(0.0), &of_bottom);
-    }
-    let rendered = clumps::render(models, arrays, triangles, each);
     let top = copy(models, arrays, rendered + message, &of_top);
     // No closure around lanes: what is not inlined is compiled for any processor.
     let bottom = if is_split {
@@ -114,22 +138,17 @@ fn fields_needed(experiment: &Experiment) -> Option<u64> {
     times.in_time.then_some(FIELDS_BEFORE + 1)
 }
 
+/// Where all clumps of one GP are alike their mean is exact; else each is taken as the first view sees it.
 fn steady_field(experiment: &Experiment) -> Result<(SlatsModel, FieldTimes), ExperimentError> {
     let pipeline: Slats = pipeline_of(experiment)?;
     let scene = experiment.scene();
     let model = SlatsModel::new(experiment.config(), pipeline)?.over(scene);
-    let triangles = (scene.triangles().len() + scene.spheres().len()) as f64;
-    let binned = pipeline.binning == RegionBinning::Touched;
-    let mut each = PerTriangle { entries: 10.0, clipped: 0.0 };
-    if binned || model.gp.guard_ns > 0 {
-        let loads = Load::of_views(experiment, Viewport::field(FieldParity::Even), pipeline.binning, &[0])?;
-        let all = triangles.max(1.0) * loads.len() as f64;
-        each.clipped = loads.iter().map(|load| load.clipped).sum::<f64>() / all;
-        if binned {
-            each.entries = loads.iter().map(Load::entries).sum::<f64>() / all;
-        }
-    }
-    let times = model.field(triangles, each);
+    let alike = pipeline.binning == RegionBinning::All && model.gp.guard_ns == 0 && scene.spheres().is_empty();
+    let times = if alike {
+        model.field(scene.triangles().len() as f64, PerTriangle { entries: 10.0, clipped: 0.0 })
+    } else {
+        model.field_of(&Clumps::of_scene(&model, experiment, pipeline.binning)?)
+    };
     Ok((model, times))
 }
 

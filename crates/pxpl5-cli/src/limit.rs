@@ -143,10 +143,11 @@ impl LimitArgs {
 
 fn json_text(query: &LimitQuery, limit: Limit) -> String {
     let object = json!({
-        "schema": "pxpl5-limit/1",
+        "schema": "pxpl5-limit/2",
         "triangles": limit.triangles,
         "first_miss": limit.first_miss,
-        "monotone": limit.monotone,
+        "island": limit.island,
+        "unbroken_from": limit.unbroken_from,
         "sizes_tried": limit.tried,
         "pipeline": query.pipeline.name(),
         "goal": query.criterion.goal,
@@ -168,8 +169,16 @@ fn scene(query: &LimitQuery) -> String {
 
 fn text(query: &LimitQuery, limit: Limit) -> String {
     let first_miss = limit.first_miss.map_or("none was missed".to_owned(), |n| format!("the first miss is {n}"));
+    let island = limit.island.map_or(String::new(), |n| {
+        format!("An island above the first miss: {n} triangles reach the goal all the same.\n")
+    });
+    let row = if limit.unbroken_from < limit.triangles {
+        format!("All sizes from {} to {} were tried, smaller ones in part.\n", limit.unbroken_from, limit.triangles)
+    } else {
+        String::new()
+    };
     format!(
-        "{} on {} GPs and {} renderers: at most {} triangles of {} ({first_miss}; {} sizes were simulated for {} fields)\n",
+        "{} on {} GPs and {} renderers: at most {} triangles of {} ({first_miss}; {} sizes were simulated for {} fields)\n{row}{island}",
         query.pipeline.name(),
         query.config.n_gps,
         query.config.n_renderers,

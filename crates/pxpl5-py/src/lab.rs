@@ -92,7 +92,7 @@ pub(crate) fn compare<'py>(
     python(py, &comparison.map_err(wrong_setting)?)
 }
 
-/// The most triangles that a pipeline draws in time: a dictionary with triangles, first_miss, monotone, tried, goal and scene.
+/// The most triangles that a pipeline draws in time: a dictionary with triangles, first_miss, island, unbroken_from, tried, goal and scene.
 ///
 /// ``scene`` is full-screen, typical, or None for the settings' own one thinned out; ``rate_hz`` or ``latency_fields`` replace the
 /// pipeline's own goal, ``fields`` the length of each run.
@@ -127,13 +127,14 @@ pub(crate) fn limit<'py>(
         query.model.as_ref().map_or(query.criterion.scene.name().to_owned(), |model| model.whole.name().to_owned());
     let criterion = query.criterion;
     let found = attended(py, None, false, move |_| query.search().map_err(|error| error.to_string()))?;
-    let Limit { triangles, first_miss, monotone, tried } = found.map_err(wrong_setting)?;
+    let Limit { triangles, first_miss, island, unbroken_from, tried } = found.map_err(wrong_setting)?;
     python(
         py,
         &json!({
             "triangles": triangles,
             "first_miss": first_miss,
-            "monotone": monotone,
+            "island": island,
+            "unbroken_from": unbroken_from,
             "tried": tried,
             "goal": criterion.goal,
             "fields": criterion.fields,

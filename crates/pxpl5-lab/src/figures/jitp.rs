@@ -164,8 +164,10 @@ fn slant(picture: &RgbImage) -> f64 {
 /// J5: what is counted in [`COUNTED`] fields after a start that both runs share.
 fn transforms(bench: &Bench) -> Result<FigureValue> {
     let [line, field] = [Viewpoint::Strip, Viewpoint::Field].map(|viewpoint| {
-        let [short, long] = [FIELD.0, FIELD.0 + COUNTED]
-            .map(|fields| Ok(run(free_slave(bench)?, viewpoint, Aim::Middle, fields)?.record().vertex_transforms()));
+        let counted = |fields| -> Result<u64> {
+            Ok(run(free_slave(bench)?, viewpoint, Aim::Middle, fields)?.record().vertex_transforms())
+        };
+        let [short, long] = [FIELD.0, FIELD.0 + COUNTED].map(counted);
         Ok::<f64, ExperimentError>((long? - short?) as f64 / COUNTED as f64)
     });
     let (line, field) = (line?, field?);

@@ -1,12 +1,19 @@
 //! Limits: the most triangles that a pipeline can draw in time.
 //!
-//! A limit is found by simulation, not by a formula: the scene grows until the goal is missed. The answer need not be
-//! monotone (a clump that is nearly empty costs as many messages as a full one), so after a bisection the next two
-//! clumps' worth of sizes above the answer are tried as well.
+//! A limit is found by simulation, not by a formula. A formula says where to begin and which sizes to doubt: the closed form of the
+//! analytic level, where the pipeline has one.
+//!
+//! ```text
+//!   analytic level --about this many; least margin at these--> Hints
+//!   Hints --near: bracket, bisect--> first miss --sizes below it, doubtful sizes--> least size that misses
+//! ```
+//!
+//! The answer need not be monotone (a clump that is nearly empty costs as many messages as a full one). So the sizes below the bisection's
+//! answer are tried as well, and of two answers the smaller one counts; [`most`] says what that guarantees.
 
 mod search;
 
-pub use search::{Limit, most};
+pub use search::{Hints, Limit, about, most};
 
 use crate::experiment_file::{FileError, Plan, SceneChoice};
 use crate::levels::summarise;
@@ -68,6 +75,10 @@ const NTSC: f64 = 0.999;
 /// Most triangles that are tried.
 pub const CEILING: u32 = 1_000_000;
 
+/// Sizes at most of which the analytic level tells the margin, and those of them that are tried.
+const MARGINS: u32 = 1_000;
+const DOUBTFUL: usize = 8;
+
 /// Pictures after the warm-up without which nothing can be said of a rate: the goal counts as missed.
 const PICTURES: usize = 4;
 
@@ -104,7 +115,7 @@ impl LimitQuery {
     /// [`ExperimentError`] when the machine cannot be built or the pipeline cannot run on it. A scene that does not
     /// fit into a board's memory, or that is too slow to be shown at all, misses the goal.
     pub fn search(&self) -> Result<Limit, ExperimentError> {
-        let limit = most(self.ceiling(), |triangles| self.reached(triangles))?;
+        let limit = most(self.ceiling(), &self.hints(), |triangles| self.reached(triangles))?;
         if limit.triangles == 0 {
             self.check_rate()?;
         }
@@ -124,6 +135,53 @@ impl LimitQuery {
             "goal: expected a scene whose updates have a rate, to reach {hz} Hz; found one that is drawn and stays right: {shown} updates \
              in {fields} fields, fewer than two of them behind start-up"
         )))
+    }
+
+    /// The same search without the analytic level's help, which takes longer.
+    ///
+    /// # Errors
+    ///
+    /// As [`search`](Self::search).
+    pub fn search_without_hints(&self) -> Result<Limit, ExperimentError> {
+        most(self.ceiling(), &Hints::default(), |triangles| self.reached(triangles))
+    }
+
+    /// What the analytic level says of the sizes; nothing where the pipeline has no closed form, or where that is what is searched.
+    fn hints(&self) -> Hints {
+        if self.level == Level::Analytic {
+            return Hints::default();
+        }
+        let analytic = Self { level: Level::Analytic, ..self.clone() };
+        let near = about(self.ceiling(), |triangles| analytic.reached(triangles)).ok();
+        let doubtful = near.filter(|_| self.model.is_none()).map(|near| analytic.doubtful(near));
+        Hints { near, doubtful: doubtful.unwrap_or_default() }
+    }
+
+    /// Sizes up to a little above one with less margin than their neighbours, those with the least margin first.
+    fn doubtful(&self, near: u32) -> Vec<u32> {
+        let most = near + near / 20;
+        let step = most.div_ceil(MARGINS).max(1) as usize;
+        let margin = |triangles: u32| Some((self.margin(triangles)?, triangles));
+        let margins: Vec<(f64, u32)> = (1..=most).step_by(step).filter_map(margin).collect();
+        let mut least: Vec<(f64, u32)> = margins
+            .windows(3)
+            .filter_map(|of| match of {
+                [before, here, after] if here.0 < before.0 && here.0 <= after.0 => Some(*here),
+                _ => None,
+            })
+            .collect();
+        least.sort_by(|a, b| a.0.total_cmp(&b.0));
+        least.into_iter().take(DOUBTFUL).map(|(_, triangles)| triangles).collect()
+    }
+
+    /// How far a size is from missing the goal, in units of the goal's own: more is better.
+    fn margin(&self, triangles: u32) -> Option<f64> {
+        let summary = self.summary(triangles).ok()?;
+        match self.criterion.goal {
+            Goal::NoMissedRetrace => Some(-summary.copy_begins_ms),
+            Goal::RateHz(_) => summary.updates_hz,
+            Goal::LatencyFields(_) => Some(-summary.latency_fields().mean),
+        }
     }
 
     /// Most triangles that are tried.
@@ -147,9 +205,17 @@ impl LimitQuery {
             .level(self.level))
     }
 
-    fn reached(&self, triangles: u32) -> Result<bool, ExperimentError> {
-        let experiment = self.experiment(triangles)?;
-        match summarise(&self.registry, &experiment) {
+    fn summary(&self, triangles: u32) -> Result<Summary, ExperimentError> {
+        summarise(&self.registry, &self.experiment(triangles)?)
+    }
+
+    /// Returns true if a size reaches the goal.
+    ///
+    /// # Errors
+    ///
+    /// As [`search`](Self::search).
+    pub fn reached(&self, triangles: u32) -> Result<bool, ExperimentError> {
+        match self.summary(triangles) {
             Ok(summary) => Ok(is_reached(self.criterion.goal, &summary)),
             Err(ExperimentError::TooShort { .. } | ExperimentError::Run { .. }) => Ok(false),
             Err(error) => Err(error),

@@ -1,0 +1,395 @@
+//! TRANSFORM and RENDER of Slats on any number of GPs: each message by itself, in the order in which the ring grants channels.
+//!
+//! ```text
+//!   clumps of GP 0 --chain--+
+//!   clumps of GP 1 --chain--+--> heads --grant: port, channel to a FIFO--> FIFO of a renderer --> its array
+//!   ...                     |
+//! ```
+//!
+//! One GP alone is limited by its own code, so the mean of a clump is enough ([`super::clumps`]). Many GPs are limited by what they share:
+//! a renderer's port takes one message at a time, and a message that waits for room in a full FIFO keeps its channel, of which there are
+//! [`fifo_channels`](pxpl5_ring::RingTiming::fifo_channels) for all renderers. Which renderers work at the same time is decided by the order of
+//! grants, so the model goes through all messages in that order. It computes times with the rules of ring, FIFO and firmware, without their code.
+
+use super::copies::MOST_RENDERERS;
+use super::model::{PerTriangle, REGIONS, SlatsModel};
+use super::renderer::{Array, Cost, Times, later};
+use pphigs::{Picture, RegionBinning, Shading, Share, Transforming};
+use pxpl5_geometry::Viewport;
+use pxpl5_gp::Work;
+use pxpl5_renderer::Layout;
+use pxpl5_run::{Experiment, ExperimentError, display_list, views};
+use pxpl5_scene::{Hmd, HmdConfig};
+use pxpl5_sim::Time;
+use pxpl5_wire::{FieldParity, MAX_MESSAGE_WORDS, RegionId, ViewNumber};
+use slats::CLUMP;
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+/// A clump of one GP.
+#[derive(Clone, Debug, PartialEq)]
+struct Clump {
+    /// TRANSFORM for both eyes.
+    transform_ns: f64,
+    /// Triangles and spheres that each region gets, in the order of sending.
+    bins: [[f64; 2]; REGIONS],
+}
+
+/// The clumps of every GP, and the words of the view that the first one sends to the others.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Clumps {
+    of_gps: Vec<Vec<Clump>>,
+    view_words: f64,
+}
+
+/// Words of a view of two eyes without edits: number, counts and three matrices an eye.
+const VIEW_WORDS: f64 = 4.0 + 2.0 * 3.0 * 16.0;
+
+impl Clumps {
+    /// So many equal triangles, dealt to the GPs in turn, of which every region gets the same part.
+    pub(super) fn uniform(model: &SlatsModel, triangles: f64, each: PerTriangle) -> Self {
+        let all = triangles.round() as usize;
+        let of_gp = |gp: usize| {
+            let share = (all + model.gps - 1 - gp) / model.gps;
+            let clumps = share.div_ceil(CLUMP).max(1);
+            let clump = |n: usize| {
+                let size = (share - n * CLUMP).min(CLUMP) as f64;
+                let begin_ns = if n == 0 { model.begin_ns } else { 0.0 };
+                let bins = [[size * each.entries / 10.0, 0.0]; REGIONS];
+                Clump { transform_ns: begin_ns + model.clump_ns(size, each), bins }
+            };
+            (0..clumps).map(clump).collect()
+        };
+        Self { of_gps: (0..model.gps).map(of_gp).collect(), view_words: VIEW_WORDS }
+    }
+
+    /// The primitives of an experiment's scene as its first view sees them.
+    ///
+    /// # Errors
+    ///
+    /// [`ExperimentError::Scene`] for a scene without primitives.
+    ///
+    /// # Panics
+    ///
+    /// Never: the papers' head-mounted display is in range.
+    pub(super) fn of_scene(
+        model: &SlatsModel,
+        experiment: &Experiment,
+        binning: RegionBinning,
+    ) -> Result<Self, ExperimentError> {
+        let list = Arc::new(display_list(experiment.scene()).map_err(ExperimentError::Scene)?);
+        let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is valid");
+        let (views, _) = views(experiment.scene(), experiment.seed_of_motion(), hmd, 2);
+        let view = views(ViewNumber::FIRST, Time(0));
+        let viewport = Viewport::field(FieldParity::Even);
+        let picture = Picture { viewport, shading: Shading::Gouraud, binning, layout: Layout::slats(), pixels: false };
+        let of_gp = |gp: usize| {
+            let share = Share::new(Arc::clone(&list), gp, model.gps);
+            let mut clumps: Vec<Share> = share.clumps(CLUMP).collect();
+            if clumps.is_empty() {
+                clumps.push(share);
+            }
+            let clump = |(n, share): (usize, &Share)| {
+                let passes = [0, 1].map(|eye| share.transform(&view, eye, picture));
+                let work = Transforming { passes: &passes, context: 0, begins: n == 0 };
+                // All columns of a half of one eye, then of the other eye, then the same of the other half.
+                let bins = std::array::from_fn(|region| {
+                    let (kind, column) = (region / COLUMNS, region % COLUMNS);
+                    let counts = passes[kind % 2].counts(RegionId((kind / 2 * COLUMNS + column) as u16));
+                    [f64::from(counts.triangles), f64::from(counts.spheres)]
+                });
+                Clump { transform_ns: work.by_table(&model.gp).as_ms() * 1e6, bins }
+            };
+            clumps.iter().enumerate().map(clump).collect()
+        };
+        Ok(Self { of_gps: (0..model.gps).map(of_gp).collect(), view_words: view.to_words().len() as f64 })
+    }
+}
+
+/// Field regions of an eye beside each other.
+const COLUMNS: usize = REGIONS / 4;
+
+/// Sends all clumps to renderers that are free as `arrays` says; returns when the first GP may order the copies.
+pub(super) fn render(model: &SlatsModel, arrays: &mut [Array<1>], clumps: &Clumps) -> f64 {
+    let mut ring = Ring::new(model, arrays);
+    let mut senders = ring.begin(clumps);
+    while let Some(place) = ring.first_head(&senders) {
+        ring.grant(&mut senders[place]);
+    }
+    for (array, renderer) in arrays.iter_mut().zip(&ring.renderers) {
+        array.free = Times::all(renderer.free_ns);
+        array.released = Times::all(renderer.released_ns);
+    }
+    ring.all_done_ns(&senders)
+}
+
+/// Commands in a FIFO's past: their words made room for the words a FIFO's depth behind them.
+#[derive(Clone, Copy, Debug)]
+struct Departure {
+    first_word: f64,
+    words: f64,
+    at_ns: f64,
+}
+
+/// A renderer: port, input FIFO and array.
+#[derive(Clone, Debug, Default)]
+struct Renderer {
+    free_ns: f64,
+    released_ns: f64,
+    words_in: f64,
+    departures: VecDeque<Departure>,
+}
+
+impl Renderer {
+    /// Takes a command whose words come one after the other from an instant on; returns when the last one has entered.
+    ///
+    /// A word enters when the word a FIFO's depth before it has left; the words of a command leave when it starts; it starts when its words
+    /// are there and the command before it has ended.
+    fn take(&mut self, from_ns: f64, command: Cost, depth_words: f64, word_ns: f64) -> f64 {
+        let first = self.words_in;
+        let last = first + command.words - 1.0;
+        let mut complete = from_ns + command.words * word_ns;
+        while let Some(room) = self.departures.front() {
+            let made_room_for = room.first_word + depth_words;
+            if made_room_for > last {
+                break;
+            }
+            complete = later(complete, room.at_ns + word_ns * (last - later(made_room_for, first) + 1.0));
+            if made_room_for + room.words > last + 1.0 {
+                break;
+            }
+            self.departures.pop_front();
+        }
+        let start = later(complete, self.free_ns);
+        self.free_ns = start + command.ns;
+        self.words_in += command.words;
+        self.departures.push_back(Departure { first_word: first, words: command.words, at_ns: start });
+        complete
+    }
+}
+
+/// A GP that sends its clumps, one chain of messages after the other.
+#[derive(Debug)]
+struct Sender<'a> {
+    gp: usize,
+    clumps: &'a [Clump],
+    /// Clumps that are sent or being sent.
+    begun: usize,
+    /// The region that the next message goes to; all are served at the end of a chain.
+    region: usize,
+    /// When that message came to the head of the queue.
+    since_ns: f64,
+    /// When each channel of its port is free.
+    channels_ns: Vec<f64>,
+    cpu_ns: f64,
+    /// Acceptance of the last message of the chain, and of the latest of the first messages to each renderer.
+    accepted_ns: f64,
+    draining_ns: f64,
+    served: [bool; MOST_RENDERERS],
+}
+
+impl Sender<'_> {
+    const fn is_done(&self) -> bool {
+        self.region >= REGIONS
+    }
+}
+
+/// What all senders share.
+struct Ring<'a> {
+    model: &'a SlatsModel,
+    renderers: Vec<Renderer>,
+    /// When each channel is free that messages to renderers may use.
+    channels_ns: Vec<f64>,
+    /// Whether the first message to a region clears it.
+    clears: bool,
+}
+
+impl<'a> Ring<'a> {
+    fn new(model: &'a SlatsModel, arrays: &[Array<1>]) -> Self {
+        let renderer = |array: &Array<1>| Renderer { free_ns: array.free.0[0], ..Renderer::default() };
+        Self {
+            model,
+            renderers: arrays.iter().map(renderer).collect(),
+            channels_ns: vec![f64::MIN; model.fifo_channels],
+            clears: model.gps == 1,
+        }
+    }
+
+    /// The senders with their first clumps. One GP alone clears in its first clump. Of several the first one clears all regions by a chain
+    /// of its own, then sends the view to the others.
+    fn begin<'c>(&mut self, clumps: &'c Clumps) -> Vec<Sender<'c>> {
+        let model = self.model;
+        let mut begin_ns = vec![0.0; model.gps];
+        let mut accepted_ns = 0.0;
+        if !self.clears {
+            accepted_ns = self.clear_all();
+            let words_ns = model.overhead_ns + (clumps.view_words + 3.0) * model.word_ns;
+            for gp in 1..model.gps {
+                let round = (gp - 1) / model.source_channels + 1;
+                let arrives = later(accepted_ns, 2.0 * model.message_ns) + round as f64 * words_ns;
+                begin_ns[gp] = arrives + gp as f64 * model.hop_ns + model.message_ns;
+            }
+            // The first GP goes on when it has paid for both chains, and sends when both have been accepted.
+            accepted_ns = begin_ns[1..].iter().fold(accepted_ns, |last, begin| later(last, begin - model.message_ns));
+            begin_ns[0] = 2.0 * model.message_ns;
+        }
+        let sender = |(gp, clumps): (usize, &'c Vec<Clump>)| {
+            let mut sender = Sender {
+                gp,
+                clumps,
+                begun: 0,
+                region: REGIONS,
+                since_ns: 0.0,
+                channels_ns: vec![f64::MIN; model.source_channels],
+                cpu_ns: begin_ns[gp],
+                accepted_ns: if gp == 0 { accepted_ns } else { 0.0 },
+                draining_ns: 0.0,
+                served: [false; MOST_RENDERERS],
+            };
+            self.next_clump(&mut sender);
+            sender
+        };
+        clumps.of_gps.iter().enumerate().map(sender).collect()
+    }
+
+    /// Sends the messages that clear all regions; returns when the last one has been accepted.
+    fn clear_all(&mut self) -> f64 {
+        let nothing = Clump { transform_ns: 0.0, bins: [[0.0; 2]; REGIONS] };
+        let mut sender = Sender {
+            gp: 0,
+            clumps: std::slice::from_ref(&nothing),
+            begun: 0,
+            region: REGIONS,
+            since_ns: 0.0,
+            channels_ns: vec![f64::MIN; self.model.source_channels],
+            cpu_ns: 0.0,
+            accepted_ns: 0.0,
+            draining_ns: 0.0,
+            served: [false; MOST_RENDERERS],
+        };
+        self.clears = true;
+        self.next_clump(&mut sender);
+        while !sender.is_done() {
+            self.grant(&mut sender);
+        }
+        self.clears = false;
+        sender.accepted_ns
+    }
+
+    /// Transforms clumps until there is one that goes to a region, or none is left.
+    fn next_clump(&self, sender: &mut Sender<'_>) {
+        while let Some(clump) = sender.clumps.get(sender.begun) {
+            // The one clump buffer is written again when all renderers have begun with what was in it.
+            let transformed = later(sender.cpu_ns, sender.draining_ns) + clump.transform_ns;
+            sender.cpu_ns = later(transformed, sender.accepted_ns);
+            sender.begun += 1;
+            sender.region = self.next_region(sender, 0);
+            if !sender.is_done() {
+                sender.cpu_ns += self.model.message_ns;
+                sender.since_ns = sender.cpu_ns;
+                sender.draining_ns = 0.0;
+                sender.served = [false; MOST_RENDERERS];
+                return;
+            }
+        }
+    }
+
+    /// The first region from one on that gets a message of the clump that is being sent.
+    fn next_region(&self, sender: &Sender<'_>, from: usize) -> usize {
+        let clears = self.clears && sender.begun == 1;
+        let bins = &sender.clumps[sender.begun - 1].bins;
+        (from..REGIONS).find(|region| clears || bins[*region] != [0.0; 2]).unwrap_or(REGIONS)
+    }
+
+    /// When the next message of a sender can be granted, and since when it waits.
+    fn head(&self, sender: &Sender<'_>) -> (f64, f64) {
+        let port = &self.renderers[sender.region % self.renderers.len()];
+        let since = later(sender.since_ns, soonest(&sender.channels_ns).1);
+        (later(later(since, port.released_ns), soonest(&self.channels_ns).1), since)
+    }
+
+    /// The sender whose message is granted next: of several at one instant the one that waits longest, then the first one.
+    fn first_head(&self, senders: &[Sender<'_>]) -> Option<usize> {
+        let waiting = senders.iter().enumerate().filter(|(_, sender)| !sender.is_done());
+        let heads = waiting.map(|(place, sender)| (self.head(sender), place));
+        heads.reduce(|first, head| if head.0 < first.0 { head } else { first }).map(|(_, place)| place)
+    }
+
+    /// Grants the next message of a sender: it holds port and channels until its last word is in the FIFO.
+    fn grant(&mut self, sender: &mut Sender<'_>) {
+        let model = self.model;
+        let (granted, _) = self.head(sender);
+        let number = sender.region % self.renderers.len();
+        let latency = model.hop_ns * (model.gps - sender.gp + number) as f64;
+        let accepted = self.message(sender, number, granted + model.overhead_ns + latency);
+        let released = accepted - latency;
+        self.renderers[number].released_ns = released;
+        for channels in [&mut sender.channels_ns, &mut self.channels_ns] {
+            let (place, _) = soonest(channels);
+            channels[place] = released;
+        }
+        sender.accepted_ns = later(sender.accepted_ns, accepted);
+        if !std::mem::replace(&mut sender.served[number], true) {
+            sender.draining_ns = later(sender.draining_ns, accepted);
+        }
+        sender.since_ns = granted;
+        sender.region = self.next_region(sender, sender.region + 1);
+        if sender.is_done() {
+            self.next_clump(sender);
+        }
+    }
+
+    /// The words of a message enter a FIFO from an instant on: selection, clearing in the first message of a field, primitives.
+    fn message(&mut self, sender: &Sender<'_>, number: usize, from_ns: f64) -> f64 {
+        let model = self.model;
+        let (depth, word) = (model.fifo_words, model.word_ns);
+        let [triangles, spheres] = sender.clumps[sender.begun - 1].bins[sender.region];
+        let clear = if self.clears && sender.begun == 1 { 1.0 } else { 0.0 };
+        let runs = [(model.select, 1.0), (model.clear, clear), (model.command, triangles), (model.sphere, spheres)];
+        let renderer = &mut self.renderers[number];
+        let mut entered = from_ns;
+        let mut words = 0.0;
+        for (command, count) in runs {
+            let mut left = count;
+            while left > 0.0 {
+                // Means need not be whole numbers.
+                let part = left.min(1.0);
+                let some = Cost { words: command.words * part, ns: command.ns * part };
+                // What a message cannot hold goes into another one behind it.
+                if words + some.words > f64::from(MAX_MESSAGE_WORDS) {
+                    entered += model.overhead_ns;
+                    words = 0.0;
+                }
+                entered = renderer.take(entered, some, depth, word);
+                words += some.words;
+                left -= part;
+            }
+        }
+        entered
+    }
+
+    /// When the first GP knows that all clumps have been accepted: each other one tells it by a message, which its software takes.
+    fn all_done_ns(&self, senders: &[Sender<'_>]) -> f64 {
+        let model = self.model;
+        let (Some(first), others) = (senders.first(), senders.get(1..).unwrap_or_default()) else { return 0.0 };
+        let message_ns = model.overhead_ns + 3.0 * model.word_ns;
+        let ports = 1 + model.gps + self.renderers.len() + FRAME_BUFFERS;
+        let arrival = |sender: &Sender<'_>| {
+            let sent = later(sender.cpu_ns + model.message_ns, sender.accepted_ns);
+            sent + message_ns + model.hop_ns * (ports - sender.gp) as f64
+        };
+        let mut arrivals: Vec<f64> = others.iter().map(arrival).collect();
+        arrivals.sort_by(f64::total_cmp);
+        let told = arrivals.into_iter().fold(0.0, |done, arrival| later(done, arrival) + model.message_ns);
+        later(later(first.accepted_ns, first.cpu_ns), told)
+    }
+}
+
+/// Ports of the two frame buffers.
+const FRAME_BUFFERS: usize = 2;
+
+/// The soonest of some times, and its place.
+fn soonest(times: &[f64]) -> (usize, f64) {
+    let all = times.iter().copied().enumerate();
+    all.reduce(|first, time| if time.1 < first.1 { time } else { first }).unwrap_or((0, f64::MIN))
+}

@@ -1,0 +1,128 @@
+//! Limits by simulation, and what the analytic level says of them on machines that nobody built.
+//!
+//! Each case follows from a number, so that a failure names it; `PXPL5_FUZZ=10` tries ten times as many, `PXPL5_FUZZ_FROM` begins elsewhere.
+
+use pxpl5_lab::ExperimentFile;
+use pxpl5_lab::limit::LimitQuery;
+use pxpl5_run::{Level, TestScene};
+
+/// SplitMix64: a stream of numbers that follows from its begin.
+struct Dice(u64);
+
+impl Dice {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let z = (self.0 ^ self.0 >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let z = (z ^ z >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ z >> 31
+    }
+
+    fn between(&mut self, least: u64, most: u64) -> u64 {
+        least + self.next() % (most - least + 1)
+    }
+
+    fn of<T: Copy>(&mut self, list: &[T]) -> T {
+        list[self.between(0, list.len() as u64 - 1) as usize]
+    }
+}
+
+fn setting(name: &str, default: u64) -> u64 {
+    std::env::var(name).map_or(default, |text| text.parse().unwrap_or_else(|_| panic!("{name}={text}")))
+}
+
+fn query(settings: &[String], scene: TestScene) -> LimitQuery {
+    let mut file = ExperimentFile::new();
+    for text in settings {
+        file.set_text(text, "case").unwrap_or_else(|error| panic!("{text}: {error}"));
+    }
+    let mut query = LimitQuery::of_plan(&file.resolve().expect("a plan"));
+    query.criterion.scene = scene;
+    query
+}
+
+/// A machine with Slats whose numbers lie in the ranges of their sources.
+fn machine(round: u64) -> (Vec<String>, TestScene) {
+    let mut dice = Dice(round << 8 | 7);
+    let mut settings = vec!["pipeline=slats".to_owned(), "scene=mig".to_owned()];
+    settings.push(format!("machine.n_gps={}", dice.between(1, 50)));
+    settings.push(format!("machine.n_renderers={}", dice.between(5, 24)));
+    settings.push(format!("copy={}", dice.of(&["whole", "split"])));
+    settings.push(format!("binning={}", dice.of(&["all", "touched"])));
+    settings.push(format!("code={}", dice.of(&["1994", "1995", "optimised"])));
+    settings.push(format!("machine.ring.source_channels={}", dice.between(1, 2)));
+    settings.push(format!("machine.ring.fifo_channels={}", dice.between(5, 7)));
+    settings.push(format!("machine.renderer.fifo_words={}", dice.between(400, 512)));
+    settings.push(format!("machine.gp.message_ns={}", dice.between(10_000, 25_000)));
+    (settings, dice.of(&TestScene::ALL))
+}
+
+/// Greatest difference that the analytic level's documents promise, percent, and in triangles where that is less.
+const BOUND_PERCENT: f64 = 5.0;
+const BOUND_TRIANGLES: u32 = 3;
+
+#[test]
+fn the_analytic_limit_of_slats_is_the_simulated_one_within_its_bound() {
+    let from = setting("PXPL5_FUZZ_FROM", 0);
+    let mut off = Vec::new();
+    let cases = 12 * setting("PXPL5_FUZZ", 1);
+    for round in from..from + cases {
+        let (settings, scene) = machine(round);
+        let simulated = query(&settings, scene);
+        let analytic = LimitQuery { level: Level::Analytic, ..simulated.clone() };
+        let [simulated, analytic] = [simulated, analytic].map(|query| query.search().expect("it runs").triangles);
+        let percent = 100.0 * (f64::from(analytic) / f64::from(simulated.max(1)) - 1.0);
+        if setting("PXPL5_SHOW", 0) == 1 {
+            println!("{round}: {simulated} {analytic} {percent:+.1} {scene:?} {}", settings.join(" "));
+        }
+        if percent.abs() > BOUND_PERCENT && simulated.abs_diff(analytic) > BOUND_TRIANGLES {
+            off.push(format!(
+                "{round}: simulated {simulated}, analytic {analytic} ({percent:+.1} %): {settings:?} {scene:?}"
+            ));
+        }
+    }
+    assert!(off.is_empty(), "{} of {cases}:\n{}", off.len(), off.join("\n"));
+}
+
+fn boards(gps: u32, renderers: u32) -> Vec<String> {
+    vec![
+        "pipeline=slats".to_owned(),
+        "scene=mig".to_owned(),
+        format!("machine.n_gps={gps}"),
+        format!("machine.n_renderers={renderers}"),
+    ]
+}
+
+/// 34 GPs share six channels to 20 renderers: the analytic level said 1,299 where 850 are drawn.
+#[test]
+fn many_senders_are_limited_by_the_channels_that_they_share() {
+    let simulated = query(&boards(34, 20), TestScene::Typical);
+    let analytic = LimitQuery { level: Level::Analytic, ..simulated.clone() };
+    let [simulated, analytic] =
+        [simulated, analytic].map(|query| f64::from(query.search().expect("it runs").triangles));
+    assert!((analytic / simulated - 1.0).abs() < BOUND_PERCENT / 100.0, "{analytic} for {simulated}");
+}
+
+/// 807 triangles are in time on 13 GPs and 20 renderers, 796 to 806 are not.
+#[test]
+fn the_answer_lies_below_an_island() {
+    let query = query(&boards(13, 20), TestScene::Typical);
+    let reached = |triangles: u32| query.reached(triangles).expect("it runs");
+    assert_eq!([795, 796, 806, 807, 808].map(reached), [true, false, false, true, false]);
+    let found = query.search().expect("it runs");
+    assert_eq!((found.triangles, found.first_miss, found.island), (795, Some(796), Some(807)));
+}
+
+/// Every size up to the answer is tried; the search must have found the least that misses.
+#[test]
+fn the_first_miss_is_the_least_size_that_misses() {
+    for (gps, renderers, copy) in [(2, 5, "split"), (3, 9, "whole"), (7, 20, "split")] {
+        let settings = [boards(gps, renderers), vec![format!("copy={copy}")]].concat();
+        let query = query(&settings, TestScene::FullScreen);
+        let found = query.search().expect("it runs");
+        let least = (1..=found.triangles + 1).find(|size| !query.reached(*size).expect("it runs"));
+        assert_eq!(found.first_miss, least, "{settings:?}");
+        let without = query.search_without_hints().expect("it runs");
+        assert_eq!((without.triangles, without.first_miss), (found.triangles, found.first_miss), "{settings:?}");
+        assert!(found.tried <= without.tried, "{found:?} {without:?}");
+    }
+}
