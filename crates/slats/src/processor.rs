@@ -6,7 +6,7 @@ use crate::schedule::CopySchedule;
 use pphigs::{
     FrameView, PROGRAM_BYTES, Pass, RegionEnvelope, Share, Transforming, ViewWordsError, copy_message, region_messages,
 };
-use pxpl5_gp::{Account, Fault, Gp, Priority, Stage, Ticket};
+use pxpl5_gp::{Account, Chain, Fault, Gp, Priority, Stage, Ticket};
 use pxpl5_wire::{
     Body, COPY_ACKNOWLEDGEMENT, CommandList, CopyContent, CopyOrder, CopyWay, Eye, FieldParity, NodeId, PeriodNumber,
     PictureNumber, Word, swap_request,
@@ -31,12 +31,24 @@ struct ProcessorState {
     newest: Option<FrameView>,
     /// Fields that the leading GP has begun, on the others.
     begun: VecDeque<(PeriodNumber, FrameView)>,
-    /// Renderers that have said that their last region of a field is copied, since switching on.
-    copied: u64,
+    /// Renderers that have acknowledged the last region which they were told to copy, since they were told so.
+    copied: usize,
+    /// The copies of the bottom regions, which wait for those of the top ones.
+    bottom: Option<Bottom>,
     /// Buffer that holds the last complete field of even and of odd lines.
     complete: [u8; 2],
     /// How many other GPs have finished each of the fields being drawn: (field, GPs).
     finished: Vec<(PeriodNumber, usize)>,
+}
+
+/// The chain that has the bottom regions of a field copied, ready to be started.
+#[derive(Debug)]
+struct Bottom {
+    chain: Chain,
+    /// The period that must have begun: the beam scans the lines until then.
+    not_before: PeriodNumber,
+    /// Renderers that copy top regions: all must have acknowledged them.
+    copiers: usize,
 }
 
 type SharedState = Rc<RefCell<ProcessorState>>;
@@ -78,6 +90,22 @@ async fn listen(gp: Gp, state: SharedState) -> Result<(), Fault> {
         };
         let note = state.borrow_mut().note(words);
         note.map_err(|error| Fault::Protocol { node: gp.node(), found: error.to_string() })?;
+        start_bottom_when_due(&gp, &state);
+    }
+}
+
+/// Starts the copies of the bottom regions when all top regions are copied and the beam has left the lines.
+fn start_bottom_when_due(gp: &Gp, state: &SharedState) {
+    let is_due = |state: &ProcessorState, bottom: &Bottom| {
+        state.copied >= bottom.copiers && gp.field() >= bottom.not_before
+    };
+    let due = {
+        let state = &mut *state.borrow_mut();
+        let is_due = state.bottom.as_ref().is_some_and(|bottom| is_due(state, bottom));
+        if is_due { state.bottom.take() } else { None }
+    };
+    if let Some(bottom) = due {
+        gp.start(bottom.chain);
     }
 }
 
@@ -130,9 +158,11 @@ impl SlatsProcessor {
         let mut begin_at = self.gp.field().next();
         loop {
             let now = self.gp.field_from(begin_at).await;
+            start_bottom_when_due(&self.gp, &self.state);
             let field = now.next();
             let view = self.gp.until("a view", || self.state.borrow().newest.clone()).await;
             if !self.is_alone() {
+                self.bottom_started().await;
                 self.clear(field, &view).await;
                 self.tell_others(field, &view).await;
             }
@@ -145,19 +175,24 @@ impl SlatsProcessor {
                 })
                 .await;
             self.gp.end(Stage::Render, PictureNumber::drawn_for(field), None);
-            self.gp.send_batch(self.copies(field, true)).await;
-            self.show_if_complete(field).await;
-            // The chain for the bottom regions is ready before the retrace and starts with it.
-            let bottom = match self.config.copy.is_split() {
-                true => Some(self.gp.prepare(self.copies(field, false)).await),
-                false => None,
-            };
-            begin_at = if self.gp.field() < field { field } else { self.gp.field().next() };
-            if let Some(bottom) = bottom {
-                self.gp.field_from(field).await;
-                self.gp.start(bottom);
+            let copies = self.copies(field, true);
+            let copiers = copies.len();
+            self.state.borrow_mut().copied = 0;
+            self.gp.send_batch(copies).await;
+            self.show_if_complete(field, copiers).await;
+            if self.config.copy.is_split() {
+                // The chain for the bottom regions is ready before it is due.
+                let chain = self.gp.prepare(self.copies(field, false)).await;
+                self.state.borrow_mut().bottom = Some(Bottom { chain, not_before: field, copiers });
+                start_bottom_when_due(&self.gp, &self.state);
             }
+            begin_at = if self.gp.field() < field { field } else { self.gp.field().next() };
         }
+    }
+
+    /// Waits until the bottom regions of the field before are being copied: what is sent afterwards clears them.
+    async fn bottom_started(&self) {
+        self.gp.until("the copies of the top regions", || self.state.borrow().bottom.is_none().then_some(())).await;
     }
 
     /// Asks for the last complete field of these lines; a later request for the new one takes its place.
@@ -169,13 +204,11 @@ impl SlatsProcessor {
     }
 
     /// Waits for the copies, and has the field shown if they were in time.
-    async fn show_if_complete(&self, field: PeriodNumber) {
+    async fn show_if_complete(&self, field: PeriodNumber, copiers: usize) {
         if self.config.copy != CopySchedule::Backup {
             return;
         }
-        let renderers = (0..self.binding.renderers()).filter(|r| !self.binding.copies(*r, true).is_empty()).count();
-        self.gp.until("the copies of a field", || (self.state.borrow().copied >= renderers as u64).then_some(())).await;
-        self.state.borrow_mut().copied = 0;
+        self.gp.until("the copies of a field", || (self.state.borrow().copied >= copiers).then_some(())).await;
         let buffer = self.buffer(field);
         let request = self.gp.prepare(self.swap(buffer)).await;
         if self.gp.field() < field {
@@ -248,6 +281,7 @@ impl SlatsProcessor {
             self.gp.work(&Transforming { passes: &passes, context: 0, begins: i == 0 }).await?;
             self.gp.clump_buffer_free().await;
             if i == 0 {
+                self.bottom_started().await;
                 self.gp.begin(Stage::Render, number, None);
             }
             let sent = self.send(&passes, i == 0 && self.is_alone()).await;
@@ -280,7 +314,12 @@ impl SlatsProcessor {
         let batch = (0..self.binding.renderers()).filter_map(|renderer| {
             let regions = self.binding.copies(renderer, top);
             let mut orders: Vec<_> = regions.iter().map(|bound| self.order(bound, field)).collect();
-            if let Some(last) = orders.last_mut().filter(|_| self.config.copy == CopySchedule::Backup) {
+            let acknowledges = match self.config.copy {
+                CopySchedule::Whole => false,
+                CopySchedule::Split => top,
+                CopySchedule::Backup => true,
+            };
+            if let Some(last) = orders.last_mut().filter(|_| acknowledges) {
                 last.acknowledge = Some(self.gp.node());
             }
             let list = copy_message(self.config.layout, orders, self.config.pixels);

@@ -154,3 +154,56 @@ fn the_next_clump_is_made_while_the_one_before_is_drained() {
     let work = Span::from_ns(2 * SECOND as u64 * 30_000);
     assert_eq!(time, Some(us(accepting) + work + Span::from_ns(GpTiming::SLATS_1994.message_ns) + CYCLE));
 }
+
+/// Times at which regions of the lower half are ordered to be copied.
+fn bottom_orders(rig: &Rig) -> Vec<Time> {
+    let is_bottom = |message: &Message| match &message.body {
+        Body::Commands(list) => list.copies.first().is_some_and(|order| u32::from(order.target.region.0) >= 5),
+        _ => false,
+    };
+    rig.bench.sent().filter(|(_, message)| is_bottom(message)).map(|(time, _)| time).collect()
+}
+
+/// All ten top regions lie on renderers of their own. Each acknowledgement is a message that the processor must take.
+#[test]
+fn bottom_regions_are_copied_when_the_last_top_region_is_acknowledged_and_the_retrace_has_been() {
+    let acknowledge = |rig: &mut Rig, count| {
+        (0..count).for_each(|_| rig.deliver(Body::Words([COPY_ACKNOWLEDGEMENT, 0, 0, 0].into())));
+    };
+    let message = GpTiming::SLATS_1994.message_ns / 1_000;
+    // Late: the last acknowledgement comes 3 ms after the retrace at 40 ms.
+    let mut rig = Rig::new(CopySchedule::Split, 3);
+    rig.run_to(30_000, 0);
+    acknowledge(&mut rig, 9);
+    rig.run_to(43_000, 0);
+    assert_eq!(bottom_orders(&rig), [], "one top region is not copied");
+    acknowledge(&mut rig, 1);
+    rig.run_to(45_000, 0);
+    let begins = us(43_000 + message) + CYCLE;
+    assert_eq!(bottom_orders(&rig), [begins; 10], "after the software of one message");
+    // Early: all have been acknowledged when the retrace comes.
+    let mut rig = Rig::new(CopySchedule::Split, 3);
+    rig.run_to(30_000, 0);
+    acknowledge(&mut rig, 10);
+    rig.run_to(39_990, 0);
+    assert_eq!(bottom_orders(&rig), [], "the beam scans the lines");
+    rig.run_to(41_000, 0);
+    assert_eq!(bottom_orders(&rig), [us(40_000) + CYCLE; 10]);
+}
+
+/// What clears the bottom regions for the next field waits until they are being copied.
+#[test]
+fn the_next_field_is_not_drawn_over_regions_that_are_not_copied() {
+    let mut rig = Rig::new(CopySchedule::Split, 3);
+    rig.run_to(59_000, 0);
+    let clumps = |rig: &Rig, from: Time| {
+        let clumps = rig.bench.sent().filter(|(time, message)| {
+            *time > from && matches!(&message.body, Body::Commands(list) if list.copies.is_empty())
+        });
+        clumps.count() as u64
+    };
+    assert_eq!(clumps(&rig, us(40_000)), 0, "no top region has been acknowledged");
+    (0..10).for_each(|_| rig.deliver(Body::Words([COPY_ACKNOWLEDGEMENT, 0, 0, 0].into())));
+    rig.run_to(59_990, 0);
+    assert_eq!((bottom_orders(&rig).len() as u64, clumps(&rig, us(59_000))), (10, REGIONS));
+}
