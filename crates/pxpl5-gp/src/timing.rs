@@ -119,7 +119,7 @@ parameters::parameter_table! {
         /// Time between two poses of the scene's own motion that the host sends unasked; with a tracker it sends what that delivers.
         view_period_ns: 16_683_333, "ns", Assumed, 8333333..=50000000 in 1_000..=MAX, "a tracker at about the field rate; TR94 gives 20 to 120 Hz";
         /// Mean time that the application takes from EDIT of a frame to the next frame, where the host waits for EDIT.
-        application_ns: 0, "ns", Assumed, 0..=20000000 in 0..=MAX, "0: it asks at once; at 30 frames/s at most two fields are left for it";
+        application_ns: 0, "ns", Assumed, 0..=20000000 in 0..=MAX, "0: it asks at once; with the jitter it leaves a trivial scene its printed 30 frames/s";
         /// Half width of the even spread of that time, never more than its mean.
         application_jitter_ns: 0, "ns", Assumed, 0..=10000000 in 0..=MAX, "a tick of a Unix clock of 100 Hz";
     }

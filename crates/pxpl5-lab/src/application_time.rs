@@ -1,8 +1,12 @@
 //! The time that a viewer's application takes for a frame, which no paper prints, and what it does to the latencies of fly-throughs.
 //!
 //! The host of a real viewer ran a loop on Unix: it read input, changed its model, and asked for the next frame. Here it asks at once,
-//! unless `host.application_ns` and `host.application_jitter_ns` say otherwise. This module moves both over their ranges and
-//! reports mean and deviation of each figure. Nothing is fitted.
+//! unless `host.application_ns` and `host.application_jitter_ns` say otherwise. This module moves both and reports mean and
+//! deviation of each figure. Nothing is fitted.
+//!
+//! The ranges of the two parameters end where a trivial scene still runs at the printed 30 frames/s. Of the fly-throughs no rate is
+//! printed, so their application may have taken longer: here up to 40 ms, spread by up to the 30 ms in which a Unix host polls its
+//! serial lines (TR94). Both ends are assumed.
 
 use crate::figures::{Bench, FIGURES};
 use crate::parallel;
@@ -13,11 +17,11 @@ use serde::Serialize;
 const MEAN: &str = "host.application_ns";
 const JITTER: &str = "host.application_jitter_ns";
 
-/// Means that are tried, milliseconds: from nothing to the end of the parameter's range.
-const MEANS_MS: [u64; 5] = [0, 5, 10, 15, 20];
+/// Means that are tried, milliseconds. Assumed: from nothing to a loop of 25 frames a second.
+const MEANS_MS: [u64; 5] = [0, 10, 20, 30, 40];
 
-/// Jitters that are tried beside a mean that is at least as long, milliseconds.
-const JITTERS_MS: [u64; 3] = [0, 5, 10];
+/// Jitters that are tried beside a mean that is at least as long, milliseconds. Assumed: up to the period of a poll (TR94).
+const JITTERS_MS: [u64; 4] = [0, 10, 20, 30];
 
 /// The fly-throughs of TR94.
 const FLY_THROUGHS: [&str; 3] = ["7", "7b", "7c"];
@@ -44,7 +48,7 @@ pub struct ApplicationTime {
     pub figures: Vec<Spread>,
 }
 
-/// Moves the application's time over its range, with the reading, seeds and frames of a bench, at the analytic level.
+/// Moves the application's time, with the reading, seeds and frames of a bench, at the analytic level.
 ///
 /// # Errors
 ///
@@ -91,13 +95,12 @@ mod tests {
     }
 
     #[test]
-    fn every_time_lies_within_the_ranges_of_its_parameters() {
+    fn the_ranges_of_the_parameters_are_covered() {
         let parameters = pxpl5_machine::MachineConfig::small_hmd().parameters();
         let last_ms = |path: &str| {
             let parameter = parameters.iter().find(|parameter| parameter.path == path).expect("a parameter");
             parameter.info.whole_range().expect("whole").1 / 1_000_000
         };
-        assert_eq!(MEANS_MS.iter().max(), Some(&last_ms(MEAN)));
-        assert_eq!(JITTERS_MS.iter().max(), Some(&last_ms(JITTER)));
+        assert!(MEANS_MS.contains(&last_ms(MEAN)) && JITTERS_MS.contains(&last_ms(JITTER)));
     }
 }

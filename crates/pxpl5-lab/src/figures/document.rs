@@ -94,12 +94,12 @@ fn of_readings(text: &mut String, readings: &Readings) {
     fits.iter().take(BEST).for_each(|fit| text.push_str(&fitted(fit)));
     let _ = write!(
         text,
-        "\nChosen: **{}**, number {} of them. The likeliest of all is {:.0} times as likely, which is too little to decide;\n\
+        "\nChosen: **{}**, number {} of them. The likeliest of all is {:.1} times as likely;\n\
          {} readings are as good as the first one within the digits that the papers print ({:.2} % of a mean error). What decides:\n\n\
          - *each eye, whole fields*: the application figures are printed in fields, and a mean of 4.47 with a deviation of 0.502 is\n  \
            what samples of 4 and 5 give, half and half (4.61 with 0.589 needs a few of 6). The first eyes alone deviate by 0.1.\n\
          - *room for all*: 4,096 bits a pixel hold 128 regions of 32 bits; a smaller number would have to be a rule of the software.\n\
-         - *wait*: with room for all, `store` makes figure 4 8 % late and `wait` 3 %; the text reads either way.\n\
+         - *wait*: with room for all, `store` makes figure 4 6 % late and `wait` 1 to 2 %; the text reads either way.\n\
          - *large, culled*: on the small machine, or with all faces, the head takes twice the printed time.\n\
          - *bins of one eye*: else 7,700 triangles take 454 ms for the printed 293. No text says so; it is chosen for figures 16b\n  \
            and 16c and counts for no other.\n\n\
@@ -139,8 +139,9 @@ fn of_application(text: &mut String, times: &[ApplicationTime]) {
     text.push_str(
         "\n## The application's time a frame\n\n\
          The host of a viewer ran an application, which took its time before it asked for the next frame. No paper prints that time. The\n\
-         presets ask at once. Here it moves over its range (`host.application_ns`, `host.application_jitter_ns`): mean latency in fields,\n\
-         with the deviation in brackets, at the analytic level. Nothing is fitted.\n\n\
+         presets ask at once. Here it moves (`host.application_ns`, `host.application_jitter_ns`) up to 40 ms, spread by up to the 30 ms in which\n\
+         a Unix host polls its serial lines (TR94); both ends are assumed. Mean latency in fields, with the deviation in brackets, at the\n\
+         analytic level. Nothing is fitted. What fits between two frames of 33.4 ms changes nothing, since the host is a frame ahead.\n\n\
          | mean of the application | evenly spread by | 7 | 7b | 7c |\n|---|---|---|---|---|\n",
     );
     let cells = |figures: &[Spread]| {
