@@ -411,10 +411,8 @@ fn board() -> Result<(), Box<dyn std::error::Error>> {
     }
     println!(
         "\nThe compiled kernel was written by rules (kernels/compiled_rules.md) before its figures were looked at; they are reported as \
-         they came. Most of the triangles that cover the screen, by which the figures are measured, reach beyond the guard band: each goes \
-         to the clipper, which cuts it and sets every piece up as a triangle of its own; that is what their column shows. Where the \
-         published limits lie far above it, the papers' triangles were hardly cut, of which nothing is printed, or their clipper was \
-         several times as quick."
+         they came. No triangle of either scene is clipped, and Slats sends each to all regions: so the limit does not depend on the triangles' \
+         size."
     );
     Ok(())
 }

@@ -5,14 +5,14 @@ use super::renderer::Cost;
 use crate::{pipeline_of, video_of};
 use pphigs::{BIN_ENTRY_BYTES, RegionBinning, Shading, TransformCost};
 use pxpl5_geometry::Viewport;
-use pxpl5_gp::GpTiming;
+use pxpl5_gp::{GpTiming, HostTiming};
 use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_renderer::CommandKind;
 use pxpl5_run::{
     ClosedForm, DuePictures, Estimates, Experiment, ExperimentError, PictureEnd, Pipeline, RenderingControl, Samples,
     Summary, WARM_UP_PICTURES, retraces,
 };
-use pxpl5_sim::Time;
+use pxpl5_sim::{Time, mix};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, PeriodNumber, RegionGrid, RegionId};
 
 /// Words of a token, and of the other messages between master and slaves.
@@ -27,6 +27,7 @@ pub struct StereoModel {
     gp: GpTiming,
     message_ns: f64,
     host_ns: f64,
+    host: HostTiming,
     word_ns: f64,
     overhead_ns: f64,
     hop_ns: f64,
@@ -138,6 +139,7 @@ impl StereoModel {
             renderers: config.n_renderers,
             gp: config.gp,
             message_ns: config.gp.message_ns as f64,
+            host: config.host,
             host_ns: config.host.message_ns as f64 * 2.0 + config.host.link_span(100).as_ms() * 1e6,
             word_ns,
             overhead_ns,
@@ -182,8 +184,9 @@ impl StereoModel {
     fn frame(&self, history: &mut History, frame: usize, eyes: &[Load]) -> StereoTimes {
         let mut times = StereoTimes::default();
         let first = frame * self.eyes;
-        // SEND begins when the host knows of the EDIT before.
-        let sent_ns = history.edited_ns + self.order_ns() + self.host_ns;
+        // SEND begins when the host knows of the EDIT before, and its application has taken its time.
+        let application_ns = self.host.application_span(mix(frame as u64)).as_ms() * 1e6;
+        let sent_ns = history.edited_ns + self.order_ns() + application_ns + self.host_ns;
         let ready =
             [back(&history.transformed, first, 1), back(&history.rendered, first, 2), back(&history.copied, first, 3)];
         let mut begin_ns = ready.into_iter().fold(sent_ns, f64::max) + self.order_ns();

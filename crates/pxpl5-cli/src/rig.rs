@@ -108,10 +108,11 @@ fn text(plan: &Plan, rig: &Rig, measured: &Measurement) -> String {
 }
 
 const DEFINITIONS: &str = "
-Outside, tracking: from the bob's low point to the step of the D/A line, which is switched when the frame's TRANSFORM begins.
+Outside, tracking: from the bob's low point to the step of the D/A line, which the program that starts the frame switches
+(Rendering Control: the host, at SEND; Slats: the graphics processor, with its field).
 Outside, rendering: from that step to the light of the frame under the photodiode.
 Inside, tracking: from the time stamp of the report that shows the low point to the start of the frame.
-Inside, rendering: from the start of TRANSFORM to where the pipeline says that the frame is shown.
+Inside, rendering: from the start of the frame to where the pipeline says that the frame is shown.
 ";
 
 fn cell(latency: &Latency) -> String {

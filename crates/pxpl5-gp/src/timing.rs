@@ -118,6 +118,10 @@ parameters::parameter_table! {
         message_ns: 20_000, "ns", Assumed, 10000..=100000 in 0..=MAX, "a system call";
         /// Time between two poses of the scene's own motion that the host sends unasked; with a tracker it sends what that delivers.
         view_period_ns: 16_683_333, "ns", Assumed, 8333333..=50000000 in 1_000..=MAX, "a tracker at about the field rate; TR94 gives 20 to 120 Hz";
+        /// Mean time that the application takes from EDIT of a frame to the next frame, where the host waits for EDIT.
+        application_ns: 0, "ns", Assumed, 0..=20000000 in 0..=MAX, "0: it asks at once; with the jitter it leaves a trivial scene its printed 30 frames/s";
+        /// Half width of the even spread of that time, never more than its mean.
+        application_jitter_ns: 0, "ns", Assumed, 0..=10000000 in 0..=MAX, "a tick of a Unix clock of 100 Hz";
     }
 }
 
@@ -126,6 +130,18 @@ impl HostTiming {
     #[must_use]
     pub const fn link_span(&self, words: u32) -> Span {
         Span((words as u128 * 4 * 1_000_000_000_000 / self.link_bytes_per_s as u128) as u64)
+    }
+
+    /// Time of the application for one frame: evenly spread around its mean, by a number drawn from all 64-bit numbers.
+    #[must_use]
+    pub const fn application_span(&self, drawn: u64) -> Span {
+        let jitter = if self.application_jitter_ns < self.application_ns {
+            self.application_jitter_ns
+        } else {
+            self.application_ns
+        };
+        let spread = (drawn as u128 * (2 * jitter as u128 + 1)) >> 64;
+        Span::from_ns(self.application_ns - jitter + spread as u64)
     }
 
     /// The host as a board: only its software costs and the size of its memory matter.
@@ -187,6 +203,20 @@ mod tests {
         }
         assert!(tables[0].bin_entry_ns > 100 && tables[0].token_entry_ns > 100);
         assert_eq!([tables[1].bin_entry_ns, tables[2].bin_entry_ns], [0, 0], "Slats has no bins");
+    }
+
+    #[test]
+    fn the_applications_time_is_spread_around_its_mean_and_never_below_nothing() {
+        let host = |application_ns, application_jitter_ns| HostTiming {
+            application_ns,
+            application_jitter_ns,
+            ..HostTiming::PAPERS
+        };
+        let ends = |host: HostTiming| [0, 1 << 63, u64::MAX].map(|drawn| host.application_span(drawn));
+        assert_eq!(ends(HostTiming::PAPERS), [Span::ZERO; 3], "it asks at once");
+        assert_eq!(ends(host(5_000, 0)), [Span::from_ns(5_000); 3]);
+        assert_eq!(ends(host(5_000, 2_000)), [3_000, 5_000, 7_000].map(Span::from_ns));
+        assert_eq!(ends(host(5_000, 9_000)), [0, 5_000, 10_000].map(Span::from_ns), "the spread ends at the mean");
     }
 
     #[test]

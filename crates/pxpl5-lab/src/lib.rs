@@ -4,6 +4,7 @@
 //! |---|---|
 //! | what do the published figures come out as, and how sure is that | [`figures`], [`intervals`], [`pipeline_figures`] |
 //! | which reading of the papers explains them | [`readings`] |
+//! | what the host's application, of which nothing is printed, does to them | [`application_time`] |
 //! | how do the levels of modelling differ | [`levels`] |
 //! | what times of primitives follow from code | [`code_times`] |
 //! | how many triangles, how fast does cost grow | [`limit`], [`growth`] |
@@ -17,6 +18,7 @@
 //! [`registry`] lists the pipelines and displays of the papers with their closed forms; an experiment file may be read with
 //! another one.
 
+pub mod application_time;
 pub mod code_times;
 pub mod compare;
 pub mod estimate;

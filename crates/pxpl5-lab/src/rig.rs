@@ -1,12 +1,13 @@
 //! The pendulum rig in front of the emulated machine: latency measured from outside, beside the system's own time stamps.
 //!
 //! As in I3D95, the host starts a frame when it sees the pendulum's low point, frames alternate dark and light, and a D/A line
-//! goes up or down when such a frame is started. So frames come on demand, the pipeline is not full, and no wait for the stages
-//! of an earlier frame is in the latency.
+//! goes up or down when the program starts such a frame. So frames come on demand, the pipeline is not full, and no wait for the
+//! stages of an earlier frame is in the latency. The host drives the line: SEND and EDIT belong to the rendering part. Firmware
+//! that starts frames by itself, such as Slats, switches it when it takes the pose of a frame.
 //!
 //! Nothing that the oscilloscope shows comes from what the pipeline says of its pictures: the low points are the pendulum's, the
 //! light is that of the pixels that the display scans at the photodiode's place, and the D/A line is switched by the board
-//! that begins TRANSFORM of the frame. What the pipeline says is the other side.
+//! that starts the frame. What the pipeline says is the other side.
 
 use crate::Workstation;
 use core::f64::consts::FRAC_PI_2;
@@ -113,7 +114,7 @@ impl Rig {
         let oscilloscope = Oscilloscope::of(&self.rig, dac, screen);
         let inside = sightings.iter().zip(&frames).map(|(sighting, frame)| InsidePass {
             sighting: *sighting,
-            started_ps: frame.transform_at.0,
+            started_ps: frame.sampled_at.unwrap_or(frame.transform_at).0,
             shown_ps: frame.shown_at.0,
         });
         let measured = self.rig.compare(&tracker, photodiode.place_ps, &oscilloscope, inside.collect())?;
@@ -294,11 +295,11 @@ fn frames_asked_for(outcome: &Outcome, sightings: &[Sighting]) -> Result<Vec<Pic
     if found.len() == expected { Ok(found) } else { Err(RigRunError::NotShown { expected, found: found.len() }) }
 }
 
-/// When the first board began TRANSFORM of a frame: it switches the D/A line.
+/// When a program started a frame, by taking the pose for it: it switches the D/A line. Under Rendering Control this is the host, which
+/// begins SEND; under Slats the graphics processor, which begins a field.
 fn started(record: &Record, frame: &PictureTimes) -> Time {
     let marks = record.observation().marks.iter();
-    let begun = marks.filter(|mark| {
-        mark.stage == Stage::Transform && mark.edge == StageEdge::Begin && mark.picture == frame.picture
-    });
+    let begun = marks
+        .filter(|mark| mark.stage == Stage::Sample && mark.edge == StageEdge::Begin && mark.picture == frame.picture);
     begun.map(|mark| mark.time).min().unwrap_or(frame.transform_at)
 }

@@ -12,8 +12,9 @@ use crate::level::{Level, with_clocks_of_instructions};
 use crate::pipeline::{Pipeline, Setup};
 use crate::preparation::Preparation;
 use crate::views::{FrameStarts, ReportTimes};
+use pxpl5_gp::HostTiming;
 use pxpl5_machine::{ConfigError, Machine, MachineConfig};
-use pxpl5_sim::Time;
+use pxpl5_sim::{Time, mix};
 use std::sync::Arc;
 
 impl Experiment {
@@ -68,7 +69,7 @@ impl Experiment {
         let list = Arc::new(display_list_for(scene, self.pipeline.shading()).map_err(ExperimentError::Scene)?);
         let (views, wanted) = views(scene, self.seed, hmd, eyes);
         let reports: ReportTimes = Arc::new(move |after: Time| Some(Time((after.0 / period + 1) * period)));
-        let starts: FrameStarts = Arc::new(Some);
+        let starts = frame_starts(config.host, self.seed);
         let aim = self.aim();
         let pixels = self.pixels != Pixels::Off;
         let poses = poses(scene, self.seed);
@@ -87,8 +88,14 @@ impl Experiment {
             return Ok((setup, Some(head)));
         }
         let asked = Arc::clone(&head);
-        Ok((Setup { starts: Arc::new(move |ready| asked.report_from(ready)), ..setup }, Some(head)))
+        let free = Arc::clone(&setup.starts);
+        Ok((Setup { starts: Arc::new(move |ready| asked.report_from(free(ready)?)), ..setup }, Some(head)))
     }
+}
+
+/// A host that is ready for a frame begins it when its application has taken its time.
+fn frame_starts(host: HostTiming, seed: u64) -> FrameStarts {
+    Arc::new(move |ready| Some(ready + host.application_span(mix(seed ^ mix(ready.0)))))
 }
 
 /// A display that shows faces needs a pipeline that draws them, and the other way round.

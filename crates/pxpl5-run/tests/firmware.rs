@@ -158,6 +158,30 @@ fn copy_of_an_eye_begins_after_copy_of_the_eye_before_has_ended() {
     }
 }
 
+/// COPY of both eyes takes 31.2 ms of the 33.4 ms of two fields, so a light scene is shown every second field however many renderers there
+/// are. TRANSFORM of a frame begins at the earliest when COPY of the third previous eye has ended: 31.2 ms after a swap, three
+/// frames before its own. Renderers beyond that only let frames wait longer.
+#[test]
+fn a_scene_bound_by_copy_keeps_its_rate_and_its_latency_with_any_number_of_renderers() {
+    let scene = builtin("typical:2000").map(Arc::new).expect("built in");
+    for n_renderers in [18, 19, 20, 21, 30] {
+        let config = machine("small-hmd", 13, n_renderers);
+        let outcome = run(Arc::new(RenderingControl::stereo()), config, &scene, 60);
+        let field_ps = outcome.field_ms() * 1e9;
+        let most_ps = 6.0 * field_ps - 31.2e9;
+        let pictures = outcome.steady_pictures();
+        assert!(pictures.len() >= 20, "{n_renderers}: {}", pictures.len());
+        for pair in pictures.windows(2) {
+            let fields = (pair[1].shown_at.0 - pair[0].shown_at.0) as f64 / field_ps;
+            assert!((fields - 2.0).abs() < 1e-6, "{n_renderers}: {fields} fields from swap to swap");
+        }
+        for picture in pictures {
+            let latency_ps = (picture.shown_at.0 - picture.transform_at.0) as f64;
+            assert!(latency_ps < most_ps && latency_ps > 3.0 * field_ps, "{n_renderers}: {latency_ps} ps");
+        }
+    }
+}
+
 /// Triangles of `full-screen:12` in one eye's picture: those on the screen, and those that were clipped.
 fn on_screen_and_clipped(hmd: HmdConfig, grid: RegionGrid, lines: Lines) -> [(u64, u64); 2] {
     let scene = builtin("full-screen:12").map(Arc::new).expect("built in");

@@ -1,5 +1,6 @@
 //! Experiments with a head: the pendulum rig, and what passes from head to light.
 
+use super::measure::PHOTODIODE_LINE;
 use super::measured::{FigureValue, Result, detail, scene_named};
 use super::reading::Reading;
 use crate::rig::Rig;
@@ -9,13 +10,35 @@ use pxpl5_run::{Experiment, ExperimentError, Head, Pipeline, Pixels, RenderingCo
 use std::sync::Arc;
 use tracking::motion::Synthetic;
 use tracking::predict::PredictorKind;
-use tracking::rig::Latency;
+use tracking::rig::{Latency, PendulumRig};
 use tracking::tracker::TrackerConfig;
 
-/// Figure 17: the mean that is seen from outside, with the photodiode on a line that was said.
+/// Figure 17: the mean that is seen from outside, with the photodiode on a line that was said, or else on the line that is assumed,
+/// beside what is seen under the first and the last line of the screen. The paper does not print the photodiode's place.
 pub(super) fn rig(machine: &MachineConfig, pipeline: RenderingControl, line: Option<u64>) -> Result<FigureValue> {
+    if let Some(line) = line {
+        return under_line(machine, pipeline, line as u32);
+    }
+    let [first, assumed, last] = photodiode_lines();
+    let [first, last] = [first, last].map(|line| under_line(machine, pipeline, line).map(|measured| measured.value));
+    let [first, last] = [first?, last?];
+    let measured = under_line(machine, pipeline, assumed)?;
+    let lines = [detail("under the first line", first, "ms"), detail("under the last line", last, "ms")];
+    let details = [lines.to_vec(), measured.details].concat();
+    Ok(FigureValue { details, unprinted: Some([first.min(last), first.max(last)]), ..measured })
+}
+
+/// The line under the photodiode that is assumed, between the least and the greatest that it may be.
+fn photodiode_lines() -> [u32; 3] {
+    let assumed = PendulumRig::assumed().photodiode_line;
+    let table = crate::tracking_parameters().into_iter().find(|parameter| parameter.path == PHOTODIODE_LINE);
+    let range = table.and_then(|parameter| parameter.info.whole_range());
+    range.map_or([assumed; 3], |(first, last)| [first as u32, assumed, last as u32])
+}
+
+fn under_line(machine: &MachineConfig, pipeline: RenderingControl, line: u32) -> Result<FigureValue> {
     let mut rig = Rig::assumed(TrackerConfig::optical_ceiling());
-    rig.rig.photodiode_line = line.map_or(rig.rig.photodiode_line, |line| line as u32);
+    rig.rig.photodiode_line = line;
     let measured = rig.measure(machine, Arc::new(pipeline));
     let measured = measured.map_err(|error| ExperimentError::Scene(error.to_string()))?;
     let Latency { mean_s, least_s, greatest_s, .. } = measured.outside.rendering;
@@ -24,7 +47,7 @@ pub(super) fn rig(machine: &MachineConfig, pipeline: RenderingControl, line: Opt
         detail("greatest", greatest_s * 1e3, "ms"),
         detail("inside, to the swap", measured.inside.rendering.mean_s * 1e3, "ms"),
     ];
-    Ok(FigureValue { value: mean_s * 1e3, details })
+    Ok(FigureValue::with(mean_s * 1e3, details))
 }
 
 /// Seeds and length of figure 18's motion.
@@ -39,7 +62,7 @@ pub(super) fn ratio_of_errors() -> FigureValue {
         slow / fast
     };
     let Statistics { mean, min, max, .. } = Statistics::of((1..=SEEDS).map(ratio));
-    FigureValue { value: mean, details: vec![detail("least", min, ""), detail("greatest", max, "")] }
+    FigureValue::with(mean, vec![detail("least", min, ""), detail("greatest", max, "")])
 }
 
 /// Fields of figure 19's runs: ten seconds.
@@ -72,5 +95,5 @@ pub(super) fn tracker_and_rendering(
         detail("scan to the middle", scanning_ms, "ms"),
         detail("all from head to light", total_ms, "ms"),
     ];
-    Ok(FigureValue { value: tracking_ms + rendering_ms, details })
+    Ok(FigureValue::with(tracking_ms + rendering_ms, details))
 }

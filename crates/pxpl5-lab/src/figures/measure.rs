@@ -12,7 +12,7 @@ use pphigs::{BIN_ENTRY_BYTES, Picture, RegionBinning, Shading, Share, TransformC
 use pxpl5_analytic::{StereoModel, stereo_loads};
 use pxpl5_geometry::Viewport;
 use pxpl5_machine::{ConfigError, MachineConfig, PRESETS};
-use pxpl5_renderer::Layout;
+use pxpl5_renderer::{CommandKind, Layout};
 use pxpl5_run::{
     Experiment, ExperimentError, Level, Pipeline, Pixels, Slats, Statistics, Summary, WARM_UP_PICTURES, display_list,
     views,
@@ -207,7 +207,7 @@ impl Bench {
         Ok(((of_slave * slaves) as f64).into())
     }
 
-    /// Figure 17. Its events do not depend on the level, nor on how samples are taken.
+    /// Figure 17, over all lines where no line was said. Its events do not depend on the level, nor on how samples are taken.
     fn rig(&self) -> Result<FigureValue> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
         let key = (self.reading.kept, self.reading.finished, self.changes.clone());
@@ -215,31 +215,42 @@ impl Bench {
         self.applications.rig(key, || heads::rig(&machine, self.reading.pipeline(), line))
     }
 
-    /// A triangle that takes `ms` of TRANSFORM on its GP, and twelve of which take `ms` of RENDER.
-    fn stages_of(&self, ms: f64) -> Result<MachineConfig> {
+    /// A machine and a scene that each take `ms` for TRANSFORM and for RENDER of an eye.
+    ///
+    /// RENDER is as long as that by its load: so many triangles cover the screen. Slow renderers would not do, because what comes behind a
+    /// full input FIFO would wait as many times longer: a copy command, for a whole region's time. TRANSFORM is that long by slow
+    /// code, which keeps nothing else waiting.
+    fn stages_of(&self, ms: f64) -> Result<(MachineConfig, String)> {
         let mut machine = self.machine("small-hmd")?;
-        let regions = 20_u64.div_ceil(machine.n_renderers as u64) as f64;
-        let rest_ns = TransformCost { structures: 1, entries: 20, ..TransformCost::PASS }.ns(&machine.gp);
-        machine.set("gp.triangle_ns", (ms * 1e6) as u64 - rest_ns)?;
+        let slaves = machine.n_gps as u64 - 1;
+        let regions = u64::from(Viewport::FRAME.grid().regions());
+        let of_renderer = regions.div_ceil(machine.n_renderers as u64) as f64;
+        // A region's time on a renderer: triangles, and what each region takes besides.
+        let ns = |kind| machine.renderer.span(kind).unwrap_or_default().as_ms() * 1e6;
+        let besides_ns =
+            ns(CommandKind::Clear) + ns(CommandKind::Shade) + machine.renderer.backing_block().as_ms() * 1e6;
+        let triangles = (ms * 1e6 / of_renderer - besides_ns) / ns(CommandKind::PhongTriangle);
+        // As many triangles on each slave.
+        let of_slave = ((triangles / slaves as f64).round() as u64).max(1);
+        let rest = TransformCost { structures: 1, entries: regions * of_slave, ..TransformCost::PASS };
+        machine.set("gp.triangle_ns", ((ms * 1e6) as u64).saturating_sub(rest.ns(&machine.gp)) / of_slave)?;
         machine.code = None;
-        let clocks = ms * 1e-3 / regions / 12.0 * machine.renderer.clock_hz as f64;
-        machine.set("renderer.phong_triangle_clocks", clocks as u64)?;
-        Ok(machine)
+        Ok((machine, format!("full-screen:{}", of_slave * slaves)))
     }
 
     fn equal_stages(&self) -> Result<FigureValue> {
-        let machine = self.reading.on(self.stages_of(15.6)?)?;
-        let summary = self.run(machine, self.reading.pipeline(), "full-screen:12", 160)?;
+        let (machine, scene) = self.stages_of(15.6)?;
+        let summary = self.run(self.reading.on(machine)?, self.reading.pipeline(), &scene, 160)?;
         let latency = Statistics::of(summary.latencies_ms.iter().copied());
         let details = vec![detail("mean", latency.mean, "ms"), detail("frames a second", rate_hz(&summary), "Hz")];
-        Ok(FigureValue { value: latency.max, details })
+        Ok(FigureValue::with(latency.max, details))
     }
 
     fn long_stages(&self) -> Result<FigureValue> {
         let mut means = Vec::new();
         for ms in LONG_STAGES_MS {
-            let machine = self.reading.on(self.stages_of(ms as f64)?)?;
-            let summary = self.run(machine, self.reading.pipeline(), "full-screen:12", 160)?;
+            let (machine, scene) = self.stages_of(ms as f64)?;
+            let summary = self.run(self.reading.on(machine)?, self.reading.pipeline(), &scene, 160)?;
             // Three times TRANSFORM: that of the first eye, and RENDER of both.
             means.push(Statistics::of(summary.latencies_ms.iter().copied()).mean);
         }
@@ -264,7 +275,7 @@ impl Bench {
             detail("greatest", all.max, "fields"),
             detail("samples", samples, ""),
         ];
-        Ok(FigureValue { value: all.mean, details })
+        Ok(FigureValue::with(all.mean, details))
     }
 
     fn fly_through(&self, scene: &'static str, seed: u64, seeds: u64) -> Result<Summary> {
@@ -293,14 +304,14 @@ impl Bench {
     fn slats_latency(&self) -> Result<FigureValue> {
         let fields = self.slats(100, Slats::split())?.latency_fields();
         let details = vec![detail("least", fields.min, "fields"), detail("greatest", fields.max, "fields")];
-        Ok(FigureValue { value: fields.mean, details })
+        Ok(FigureValue::with(fields.mean, details))
     }
 
     fn limit(&self, preset: &str, pipeline: Slats) -> Result<FigureValue> {
         let limit = self.limit_query(preset, pipeline)?.search()?;
         let triangles = f64::from(limit.triangles);
         let details = vec![detail("both eyes, 60 fields a second", triangles * 120.0, "triangles/s")];
-        Ok(FigureValue { value: triangles, details })
+        Ok(FigureValue::with(triangles, details))
     }
 
     fn limit_query(&self, preset: &str, pipeline: Slats) -> Result<LimitQuery> {
@@ -310,7 +321,7 @@ impl Bench {
     fn time_before_copy(&self) -> Result<FigureValue> {
         let most = self.limit_query("slats", Slats::split())?.search()?.triangles;
         let summary = self.slats(most, Slats::split())?;
-        Ok(FigureValue { value: summary.copy_begins_ms, details: vec![detail("triangles", most.into(), "triangles")] })
+        Ok(FigureValue::with(summary.copy_begins_ms, vec![detail("triangles", most.into(), "triangles")]))
     }
 }
 
@@ -321,7 +332,7 @@ fn regions_touched() -> Result<FigureValue> {
         details.push(detail(name, touched(&scene_named(name)?, VIEWS)?, "regions"));
     }
     let value = details.iter().map(|d| d.value).sum::<f64>() / details.len() as f64;
-    Ok(FigureValue { value, details })
+    Ok(FigureValue::with(value, details))
 }
 
 /// Bin entries per triangle that touches any region, over both eyes and so many views.
@@ -362,7 +373,7 @@ fn spread_ms(statistics: Statistics) -> FigureValue {
     let Statistics { mean, sd, min, max, .. } = statistics;
     let details =
         vec![detail("standard deviation", sd, "ms"), detail("least", min, "ms"), detail("greatest", max, "ms")];
-    FigureValue { value: mean, details }
+    FigureValue::with(mean, details)
 }
 
 #[cfg(test)]

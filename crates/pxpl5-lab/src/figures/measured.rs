@@ -25,11 +25,20 @@ pub struct FigureValue {
     pub value: f64,
     /// Further numbers of the same experiment, each with a unit of its own.
     pub details: Vec<Detail>,
+    /// Least and greatest value over a condition of the experiment that the paper does not print; `None` where it prints all.
+    pub unprinted: Option<[f64; 2]>,
+}
+
+impl FigureValue {
+    /// The figure's own number with further numbers of the same experiment.
+    pub(super) const fn with(value: f64, details: Vec<Detail>) -> Self {
+        Self { value, details, unprinted: None }
+    }
 }
 
 impl From<f64> for FigureValue {
     fn from(value: f64) -> Self {
-        Self { value, details: Vec::new() }
+        Self::with(value, Vec::new())
     }
 }
 

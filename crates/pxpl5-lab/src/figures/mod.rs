@@ -34,6 +34,7 @@ pub use reading::{FieldCount, ROOM, Reading, Samples};
 pub use row::{FigureRow, MISS_PERCENT, mean_error_percent};
 pub use table::{Basis, FIGURES, Figure, WITHOUT_CLOSED_FORM};
 
+use crate::application_time::{ApplicationTime, application_times};
 use crate::intervals::{Interval, fill, intervals};
 use crate::parallel;
 use crate::readings::{self, Readings};
@@ -66,6 +67,8 @@ pub struct Figures {
     pub groups: Vec<FigureGroup>,
     /// What all readings make of the figures of Rendering Control, at the analytic level.
     pub readings: Readings,
+    /// The fly-throughs with the times that the host's application may take, at the analytic level.
+    pub application_times: Vec<ApplicationTime>,
 }
 
 /// Seeds and frames of the application scenes by which readings are ranked.
@@ -82,13 +85,13 @@ pub fn run_all(bench: &Bench) -> Result<Figures, FigureError> {
 }
 
 /// The same; `finished` hears how many of all steps are done: one for each figure, and one each for the
-/// intervals, the readings, the families and the groups.
+/// intervals, the readings, the application's time, the families and the groups.
 ///
 /// # Errors
 ///
 /// As [`run_all`].
 pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result<Figures, FigureError> {
-    let steps = FIGURES.len() as u64 + 5;
+    let steps = FIGURES.len() as u64 + 6;
     let done = AtomicU64::new(0);
     let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
     let with_step = |figure: &Figure| {
@@ -123,12 +126,19 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
         step();
         groups
     };
+    let of_application = || {
+        let times = application_times(&bench.clone().with_mig(SEEDS, FRAMES));
+        step();
+        times.map_err(|error| FigureError { id: "7".to_owned(), reason: error.to_string() })
+    };
     let of_machine = || parallel::both(|| parallel::both(rows, groups), of_code);
-    let of_models = || parallel::both(|| parallel::both(readings, intervals), families);
-    let (((rows, groups), of_code), ((readings, intervals), families)) = parallel::both(of_machine, of_models);
+    let of_models =
+        || parallel::both(|| parallel::both(readings, intervals), || parallel::both(families, of_application));
+    let (((rows, groups), of_code), ((readings, intervals), (families, application_times))) =
+        parallel::both(of_machine, of_models);
     let (mut rows, groups, of_code, readings, families) = (rows?, groups?, of_code?, readings?, vec![families?]);
     fill(&mut rows, &intervals);
-    Ok(Figures { rows, of_code, intervals, families, groups, readings })
+    Ok(Figures { rows, of_code, intervals, families, groups, readings, application_times: application_times? })
 }
 
 /// A figure with what the bench gives for it.

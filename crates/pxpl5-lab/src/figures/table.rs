@@ -109,8 +109,8 @@ pub const FIGURES: [Figure; 26] = [
         ("TR94", RC),
         "TRANSFORM, RENDER and COPY of equal length at 30 Hz: up to",
         (4004.0 / 60.0, "ms", None),
-        "full-screen:12 on small-hmd; a triangle takes 15.6 ms on a GP and 325 us on a renderer, so that each stage \
-         needs the 15.6 ms of COPY; the rules alone, as for figure 3; longest latency of a frame",
+        "full-screen:516 on small-hmd: as many triangles as take 15.6 ms of RENDER, and so slow on a GP that they take 15.6 ms of \
+         TRANSFORM, the time of COPY; the rules alone, as for figure 3; longest latency of a frame",
         FREE,
     ),
     figure(
@@ -118,8 +118,8 @@ pub const FIGURES: [Figure; 26] = [
         ("TR94", RC),
         "TRANSFORM = RENDER, both longer than COPY: 3 x TRANSFORM + 1 to 2 x COPY",
         (98.4, "ms", Some(7.8)),
-        "full-screen:12 on small-hmd; TRANSFORM and RENDER of 22 to 28 ms (mean 25 ms), COPY 15.6 ms: 75 + 15.6 to 31.2; of a frame: \
-         TRANSFORM of its first eye and RENDER of both",
+        "full-screen:732 to 936 on small-hmd, as in figure 5: TRANSFORM and RENDER of 22 to 28 ms (mean 25 ms), COPY 15.6 ms: 75 + 15.6 to \
+         31.2; of a frame: TRANSFORM of its first eye and RENDER of both",
         FREE,
     ),
     figure(
@@ -261,15 +261,14 @@ pub const FIGURES: [Figure; 26] = [
         ("I3D95", RC),
         "measured from outside with pendulum and photodiode, a minimal data set, rendering alone",
         (55.5, "ms", Some(1.5)),
-        "full-screen:2 on small-hmd, a frame for each of 24 low points of the bob: mean from the start of TRANSFORM to the light under \
-         the photodiode",
+        "full-screen:2 on small-hmd, a frame for each of 24 low points of the bob: mean from SEND, at which the host starts the frame, to \
+         the light under a photodiode in the middle of the screen; in brackets under the first and the last line",
         FREE,
     )
     .because(
-        "frames on demand find every stage idle. TRANSFORM and RENDER of two triangles are short, COPY of both eyes takes 31 ms, the \
-         retrace is waited for half a field and the beam reaches the photodiode half a field later. The printed range is that of \
-         figure 4, where the pipeline is full; what else a frame of the pendulum's program did is not published, nor where on the screen the \
-         photodiode was: here it is in the middle, and under the last line the time would be within the printed range",
+        "frames on demand find every stage idle. SEND, EDIT, TRANSFORM and RENDER of two triangles are short, COPY of both eyes takes \
+         31.2 ms, the retrace is waited for half a field, and the beam reaches the photodiode up to a field later. Where on the screen the \
+         photodiode was is not published, nor what else a frame of the pendulum's program did",
     ),
     figure(
         "18",

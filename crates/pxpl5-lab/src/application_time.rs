@@ -1,0 +1,106 @@
+//! The time that a viewer's application takes for a frame, which no paper prints, and what it does to the latencies of fly-throughs.
+//!
+//! The host of a real viewer ran a loop on Unix: it read input, changed its model, and asked for the next frame. Here it asks at once,
+//! unless `host.application_ns` and `host.application_jitter_ns` say otherwise. This module moves both and reports mean and
+//! deviation of each figure. Nothing is fitted.
+//!
+//! The ranges of the two parameters end where a trivial scene still runs at the printed 30 frames/s. Of the fly-throughs no rate is
+//! printed, so their application may have taken longer: here up to 40 ms, spread by up to the 30 ms in which a Unix host polls its
+//! serial lines (TR94). Both ends are assumed.
+
+use crate::figures::{Bench, FIGURES};
+use crate::parallel;
+use pxpl5_run::{ExperimentError, Level};
+use serde::Serialize;
+
+/// Paths of the two parameters.
+const MEAN: &str = "host.application_ns";
+const JITTER: &str = "host.application_jitter_ns";
+
+/// Means that are tried, milliseconds. Assumed: from nothing to a loop of 25 frames a second.
+const MEANS_MS: [u64; 5] = [0, 10, 20, 30, 40];
+
+/// Jitters that are tried beside a mean that is at least as long, milliseconds. Assumed: up to the period of a poll (TR94).
+const JITTERS_MS: [u64; 4] = [0, 10, 20, 30];
+
+/// The fly-throughs of TR94.
+const FLY_THROUGHS: [&str; 3] = ["7", "7b", "7c"];
+
+/// Mean and deviation of a latency.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Spread {
+    /// Number of the figure, as in [`FIGURES`].
+    pub id: &'static str,
+    /// Mean over all samples, in the figure's unit.
+    pub mean: f64,
+    /// Standard deviation of the samples, in the same unit.
+    pub sd: f64,
+}
+
+/// The latencies of all fly-throughs with one time of the application.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ApplicationTime {
+    /// Mean time of the application for a frame, milliseconds.
+    pub mean_ms: u64,
+    /// Half width of its even spread, milliseconds.
+    pub jitter_ms: u64,
+    /// Figures 7, 7b and 7c.
+    pub figures: Vec<Spread>,
+}
+
+/// Moves the application's time, with the reading, seeds and frames of a bench, at the analytic level.
+///
+/// # Errors
+///
+/// As [`Bench::measure`].
+pub fn application_times(bench: &Bench) -> Result<Vec<ApplicationTime>, ExperimentError> {
+    let times = MEANS_MS.iter().flat_map(|mean| JITTERS_MS.iter().map(|jitter| (*mean, *jitter)));
+    let times: Vec<_> = times.filter(|(mean, jitter)| jitter <= mean).collect();
+    parallel::map(&times, |(mean_ms, jitter_ms)| measure(bench, *mean_ms, *jitter_ms)).into_iter().collect()
+}
+
+fn measure(bench: &Bench, mean_ms: u64, jitter_ms: u64) -> Result<ApplicationTime, ExperimentError> {
+    let changes = [(MEAN, mean_ms), (JITTER, jitter_ms)].map(|(path, ms)| (path.to_owned(), ms * 1_000_000));
+    let changes = bench.changes.iter().cloned().chain(changes).collect();
+    let bench = Bench { level: Level::Analytic, changes, ..bench.clone() };
+    let spread = |id: &'static str| {
+        let measured = bench.measure(id)?;
+        let sd = measured.details.iter().find(|detail| detail.name == "standard deviation");
+        Ok(Spread { id, mean: measured.value, sd: sd.map_or(f64::NAN, |detail| detail.value) })
+    };
+    let figures = FLY_THROUGHS.into_iter().map(spread).collect::<Result<_, ExperimentError>>()?;
+    Ok(ApplicationTime { mean_ms, jitter_ms, figures })
+}
+
+/// The printed mean and deviation of each fly-through.
+#[must_use]
+pub fn published() -> Vec<Spread> {
+    let of_fly_throughs = FIGURES.iter().filter(|figure| FLY_THROUGHS.contains(&figure.id));
+    of_fly_throughs
+        .map(|figure| Spread { id: figure.id, mean: figure.value, sd: figure.spread.unwrap_or(f64::NAN) })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_host_that_asks_at_once_gives_the_figures_as_they_are() {
+        let bench = Bench::new(Level::Analytic).with_mig(2, 60);
+        let as_it_is = bench.measure("7").expect("the mig").value;
+        let at_once = measure(&bench, 0, 0).expect("the scenes are there");
+        assert_eq!(at_once.figures.iter().map(|spread| spread.id).collect::<Vec<_>>(), FLY_THROUGHS);
+        assert_eq!(at_once.figures[0].mean, as_it_is);
+    }
+
+    #[test]
+    fn the_ranges_of_the_parameters_are_covered() {
+        let parameters = pxpl5_machine::MachineConfig::small_hmd().parameters();
+        let last_ms = |path: &str| {
+            let parameter = parameters.iter().find(|parameter| parameter.path == path).expect("a parameter");
+            parameter.info.whole_range().expect("whole").1 / 1_000_000
+        };
+        assert!(MEANS_MS.contains(&last_ms(MEAN)) && JITTERS_MS.contains(&last_ms(JITTER)));
+    }
+}
