@@ -166,8 +166,12 @@ fn what_is_simulated_lies_in_the_interval_of_the_analytic_level_or_within_3_perc
         assert_eq!(row.analytic, None, "figure {}", row.id);
         match row.interval {
             // The rig is measured with its photodiode on the first and on the last line of the screen too.
-            Some([low, high]) => assert!(row.id == "17" && low < row.simulated && row.simulated < high),
-            None => assert_ne!(row.id, "17", "nothing was varied"),
+            Some([low, high]) if row.id == "17" => assert!(low < row.simulated && row.simulated < high),
+            // With a tracker before the machine, the FIFO and the channels of a sender are moved, with events.
+            Some([low, high]) => {
+                assert!(["19", "19b"].contains(&row.id) && low <= row.simulated && row.simulated <= high)
+            }
+            None => assert!(["8", "18"].contains(&row.id), "{}: nothing was varied", row.id),
         }
     }
 }

@@ -195,7 +195,7 @@ fn of_rig(bench: &Bench) -> Option<Interval> {
 }
 
 /// The line of the screen under the photodiode: assumed.
-fn photodiode_line() -> Option<Variation> {
+pub(crate) fn photodiode_line() -> Option<Variation> {
     let line = crate::tracking_parameters().into_iter().find(|parameter| parameter.path == PHOTODIODE_LINE)?;
     let (value, range) = (line.value.whole()?, line.info.whole_range()?);
     Some(Variation { path: line.path, value, range, standing: line.info.standing })

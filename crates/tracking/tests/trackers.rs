@@ -80,18 +80,22 @@ fn a_polled_variant_is_later_by_the_wait_for_the_kernel_and_by_nothing_else() {
     slow.host.poll = 60.0;
     for by in [TrackerConfig::fastrak_by, TrackerConfig::flock_of_birds_by, TrackerConfig::polhemus_3space_by] {
         let patched = by(&Tables::PAPERS).without_polling();
+        // The Flock's 10 ms divide the kernel's 30, so that one seed has three waits alone.
         let greatest_wait_ms = |tables: &Tables| {
-            let polled = reports(by(tables).with_polling_by(tables), &HEAD, 3, 600);
-            let at_once = reports(patched.clone(), &HEAD, 3, 600);
-            let waits = polled.iter().zip(&at_once).map(|(late, early)| {
-                assert_eq!((late.solution, late.measured_ps), (early.solution, early.measured_ps));
-                (late.arrives_ps - early.arrives_ps) as f64 / PS_PER_MS as f64
+            let waits = (0..60).flat_map(|seed| {
+                let polled = reports(by(tables).with_polling_by(tables), &HEAD, seed, 40);
+                let at_once = reports(patched.clone(), &HEAD, seed, 40);
+                let pairs = polled.into_iter().zip(at_once);
+                pairs.map(|(late, early)| {
+                    assert_eq!((late.solution, late.measured_ps), (early.solution, early.measured_ps));
+                    (late.arrives_ps - early.arrives_ps) as f64 / PS_PER_MS as f64
+                })
             });
             waits.fold(0.0, f64::max)
         };
         let [usual, longer] = [&Tables::PAPERS, &slow].map(greatest_wait_ms);
-        assert!(usual > 27.0 && usual < 30.0, "{}: {usual} ms of 30", patched.name);
-        assert!(longer > 54.0 && longer < 60.0, "{}: {longer} ms of 60", patched.name);
+        assert!(usual > 28.5 && usual < 30.0, "{}: {usual} ms of 30", patched.name);
+        assert!(longer > 57.0 && longer < 60.0, "{}: {longer} ms of 60", patched.name);
     }
 }
 

@@ -3,7 +3,7 @@
 
 use super::measured::{FigureValue, Result};
 use super::{Basis, Bench, Figure, FigureError, FigureRow, jitp, rates, trackers};
-use crate::intervals::variations;
+use crate::intervals::{photodiode_line, variations};
 use crate::parallel;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -137,7 +137,8 @@ impl Measurement {
     /// Least and greatest value over both ends of each range, around the one with the presets' numbers. An end that leaves the
     /// experiment without a value counts as not moved.
     fn interval(&self, bench: &Bench, nominal: f64) -> Option<[f64; 2]> {
-        let moved = variations().into_iter().filter(|variation| self.moved_by.contains(&variation.path.as_str()));
+        let all = variations().into_iter().chain(photodiode_line());
+        let moved = all.filter(|variation| self.moved_by.contains(&variation.path.as_str()));
         let ends: Vec<_> = moved.flat_map(|v| [(v.path.clone(), v.range.0), (v.path, v.range.1)]).collect();
         let values = parallel::map(&ends, |end| {
             let changes = bench.changes.iter().cloned().chain([end.clone()]).collect();

@@ -163,14 +163,14 @@ fn slant(picture: &RgbImage) -> f64 {
 
 /// J5: what is counted in [`COUNTED`] fields after a start that both runs share.
 fn transforms(bench: &Bench) -> Result<FigureValue> {
-    let [line, field] = [Viewpoint::Strip, Viewpoint::Field].map(|viewpoint| {
-        let counted = |fields| -> Result<u64> {
-            Ok(run(free_slave(bench)?, viewpoint, Aim::Middle, fields)?.record().vertex_transforms())
-        };
-        let [short, long] = [FIELD.0, FIELD.0 + COUNTED].map(counted);
-        Ok::<f64, ExperimentError>((long? - short?) as f64 / COUNTED as f64)
-    });
-    let (line, field) = (line?, field?);
+    let counted = |viewpoint, fields| -> Result<u64> {
+        Ok(run(free_slave(bench)?, viewpoint, Aim::Middle, fields)?.record().vertex_transforms())
+    };
+    let a_field = |viewpoint| -> Result<f64> {
+        let before = counted(viewpoint, FIELD.0)?;
+        Ok((counted(viewpoint, FIELD.0 + COUNTED)? - before) as f64 / COUNTED as f64)
+    };
+    let (line, field) = (a_field(Viewpoint::Strip)?, a_field(Viewpoint::Field)?);
     let details = vec![
         detail("line by line", line, "vertices a field"),
         detail("one transform a field", field, "vertices a field"),
