@@ -83,9 +83,9 @@ pub use pxpl5_run::{
     Aim, BareHost, Cause, Code, DefinedStatistics, DuePictures, Estimates, Estimator, Experiment, ExperimentError,
     FIELDS_RANGE, Fingerprint, FinishedRegions, Frameless, Goal, Head, HeadError, HeadViews, Host, Interpolation, Jitp,
     Keep, Key, KeyValue, KeyValues, Level, LimitCriterion, Outcome, Pause, PictureEnd, PictureTimes, Pipeline,
-    PipelineEntry, PipelineSettings, Pixels, Raster, Registry, RenderingControl, Sampled, Samples, Settled, Setup,
-    Slats, SlatsLighting, Source, Statistics, Stepper, Summary, Summing, Sums, TestScene, Viewpoint, WARM_UP_PERIODS,
-    WARM_UP_PICTURES, WINDOW_DEFINITION, out_of_range,
+    PipelineEntry, PipelineSettings, Pixels, Raster, Registry, RenderingControl, ResultWindow, Sampled, Samples,
+    Settled, Setup, Slats, SlatsLighting, Source, Statistics, Stepper, Summary, Summing, Sums, TestScene, Viewpoint,
+    WARM_UP_PERIODS, WARM_UP_PICTURES, WINDOW_DEFINITION, out_of_range,
 };
 pub use pxpl5_sim::{Span, Time, TraceHash};
 pub use pxpl5_views::{FILM_PERIODS, Film, FilmError, FilmOf, results, timeline, trace_export};

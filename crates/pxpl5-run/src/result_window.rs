@@ -1,8 +1,10 @@
 //! The one window of a run over which its results are computed: latencies, pictures due, errors and rates.
 //!
 //! Start-up is over when [`WARM_UP_PERIODS`] have passed and [`WARM_UP_PICTURES`] pictures were begun, whichever comes later. The
-//! window begins then, with the turn of the next picture: the periods up to and with the one in which it is due. If a picture due in the first half of the run was not shown, the window begins with the first such picture:
-//! those before it may owe their time to queues that were still empty. The window ends with the last period that was over.
+//! window begins then, with the turn of the next picture: the periods up to and with the one in which it is due. No failure behind the
+//! first periods is left out: if a picture due in the first half of the run was not shown, the window begins with the first such picture.
+//! Those before it may owe their time to queues that were still empty. The pictures of start-up have no latency and no error in any case.
+//! The window ends with the last period that was over.
 
 use crate::due::{PictureEnd, PictureEnds};
 use pxpl5_wire::PeriodNumber;
@@ -18,7 +20,8 @@ pub const WARM_UP_PICTURES: usize = 4;
 /// The rule by which the window of a run is found, for readers of a report.
 pub const WINDOW_DEFINITION: &str = "latencies, pictures due, errors and rates are over one window: from the 9th period of the display, or \
     from the turn of the fifth picture if that is later, to the last period that was over; where a picture due in the first half of the \
-    run was not shown, from the first such picture, since those before it may owe their time to queues that were still empty";
+    run was not shown, from the first such picture, since those before it may owe their time to queues that were still empty; the first \
+    four pictures have no latency and no error";
 
 /// The periods of the first display over which all results of a run are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -55,10 +58,15 @@ impl ResultWindow {
     /// The window of a run that goes on, all of whose pictures are known in the periods before `known`. Its end is that of the run.
     pub(crate) fn begun(ends: &PictureEnds, every: Option<u64>, known: PeriodNumber, planned: PeriodNumber) -> Self {
         let steady_from = ends.steady_from();
-        let steady = steady_from.map_or(0, |period| period.0);
+        let middle = WARM_UP_PERIODS + planned.0.saturating_sub(WARM_UP_PERIODS) / 2;
+        let start = ends.first_from(0).unwrap_or_default().min(middle);
+        // Where start-up takes more than half of the run, what is due is counted from the first picture on.
+        let steady = steady_from.map(|period| period.0).filter(|period| *period < middle).unwrap_or(start);
         let first = every.map_or(steady.max(WARM_UP_PERIODS), |every| {
             let every = every.max(1);
-            first_due(ends, every, steady.max(WARM_UP_PERIODS + every - 1), known.0, planned.0) + 1 - every
+            let start = start.max(WARM_UP_PERIODS + every - 1);
+            let of_first_half = known.0.min(middle);
+            first_due(ends, every, [start, steady], of_first_half) + 1 - every
         });
         let last_period = PeriodNumber(planned.0.saturating_sub(1));
         Self { first_period: PeriodNumber(first), last_period, steady_from }
@@ -83,13 +91,12 @@ impl ResultWindow {
     }
 }
 
-/// The period in which the first picture that is counted is due: at `start` or later.
-fn first_due(ends: &PictureEnds, every: u64, start: u64, known: u64, planned: u64) -> u64 {
-    let middle = WARM_UP_PERIODS + planned.saturating_sub(WARM_UP_PERIODS) / 2;
+/// The period in which the first picture that is counted is due: the first that was not shown, from `start` on and before `end`; else the
+/// first at or behind `steady`.
+fn first_due(ends: &PictureEnds, every: u64, [start, steady]: [u64; 2], end: u64) -> u64 {
     // The first picture there says in which periods pictures are due.
-    let anchor = ends.first_from(start).filter(|period| *period < known).unwrap_or(start);
+    let anchor = ends.first_from(start).unwrap_or(start);
     let first = start + (anchor - start) % every;
-    let mut of_first_half = (first..known.min(middle)).step_by(every as usize);
-    let failed = of_first_half.find(|period| ends.best(*period, every) != Some(PictureEnd::Shown));
-    failed.unwrap_or(first)
+    let failed = (first..end).step_by(every as usize).find(|due| ends.best(*due, every) != Some(PictureEnd::Shown));
+    failed.unwrap_or(first + steady.saturating_sub(first).div_ceil(every) * every)
 }

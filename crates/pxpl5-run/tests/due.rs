@@ -90,6 +90,13 @@ fn the_window_begins_with_the_ninth_period_or_the_fifth_picture_whichever_is_lat
     }
 }
 
+/// A pipeline that begins a picture every seventh period, none of them in time, was late from the ninth period on.
+#[test]
+fn start_up_hides_no_failure_behind_the_first_periods() {
+    let due = count(&regular(2, 7, 60, Late), 1, 60);
+    assert_eq!((due.first_period.0, due.due, due.shown), (WARM_UP_PERIODS, 52, 0));
+}
+
 /// The second half of a run does not move its window.
 #[test]
 fn a_failure_in_the_second_half_is_counted_over_the_whole_window() {

@@ -96,9 +96,8 @@ async fn listen(gp: Gp, state: SharedState) -> Result<(), Fault> {
 
 /// Starts the copies of the bottom regions when all top regions are copied and the beam has left the lines.
 fn start_bottom_when_due(gp: &Gp, state: &SharedState) {
-    let is_due = |state: &ProcessorState, bottom: &Bottom| {
-        state.copied >= bottom.copiers && gp.field() >= bottom.not_before
-    };
+    let is_due =
+        |state: &ProcessorState, bottom: &Bottom| state.copied >= bottom.copiers && gp.field() >= bottom.not_before;
     let due = {
         let state = &mut *state.borrow_mut();
         let is_due = state.bottom.as_ref().is_some_and(|bottom| is_due(state, bottom));
