@@ -3,6 +3,7 @@
 use crate::error::CliError;
 use crate::leaves::{leaves, plain};
 use crate::output::OutputFolder;
+use crate::scenes;
 use crate::terminal::warn;
 use clap::Args;
 use pxpl5::arp::Plan;
@@ -80,7 +81,9 @@ impl WalkArgs {
         }
         plan.settings()?;
         warn(&warnings(&plan), self.quiet);
-        Ok((load(self.scene.as_deref().unwrap_or(&scene))?, plan))
+        let scene = load(self.scene.as_deref().unwrap_or(&scene))?;
+        scenes::tell(&scene, self.quiet);
+        Ok((scene, plan))
     }
 
     /// The file's scene, and all settings: the file's, then those of options, then those of `--set`.

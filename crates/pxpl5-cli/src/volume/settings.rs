@@ -1,6 +1,7 @@
 //! Options that say what a volume is; each stands for a path of `--set`.
 
 use crate::error::CliError;
+use crate::scenes;
 use crate::terminal::{advance, progress, warn};
 use clap::Args;
 use image::RgbImage;
@@ -118,7 +119,9 @@ impl VolumeSettingArgs {
     ///
     /// When there is no such scene, or its file cannot be used.
     pub(super) fn load_scene(&self) -> Result<Arc<Scene>, CliError> {
-        load(&self.scene, self.triangles)
+        let scene = load(&self.scene, self.triangles)?;
+        scenes::tell(&scene, self.settings.quiet);
+        Ok(scene)
     }
 
     /// Draws the volume under a progress bar.
