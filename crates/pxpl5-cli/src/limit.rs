@@ -4,6 +4,7 @@ use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::Work;
 use crate::options::{PipelineOptions, option_of, registry};
+use crate::scenes;
 use crate::terminal::{print, warn};
 use clap::Args;
 use pxpl5::limit::{Limit, LimitQuery, Model};
@@ -93,7 +94,7 @@ impl LimitArgs {
             None
         };
         if query.level != Level::Analytic {
-            let size = Work { fields, ..Work::of(&plan, &*plan.load_scene()?, false) };
+            let size = Work { fields, ..Work::of(&plan, &*scenes::load(&plan, false)?, false) };
             self.budget.admit_all([size; SIZES], 1)?;
         }
         Ok(LimitQuery { criterion: LimitCriterion { goal, scene, fields }, model, ..query })

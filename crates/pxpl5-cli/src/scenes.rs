@@ -23,9 +23,14 @@ pub(crate) struct ScenesArgs {
 /// For a scene that cannot be had.
 pub(crate) fn load(plan: &Plan, quiet: bool) -> Result<Arc<Scene>, CliError> {
     let scene = plan.load_scene()?;
+    tell(&scene, quiet);
+    Ok(scene)
+}
+
+/// Warns of what a scene's file holds and the reader makes something else of.
+pub(crate) fn tell(scene: &Scene, quiet: bool) {
     let named: Vec<String> = scene.warnings().iter().map(|warning| format!("{}: {warning}", scene.name())).collect();
     warn(&named, quiet);
-    Ok(scene)
 }
 
 pub(crate) fn run(args: ScenesArgs) -> Result<(), CliError> {

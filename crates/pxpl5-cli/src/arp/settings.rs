@@ -5,6 +5,7 @@ use crate::error::CliError;
 use crate::estimate::{Estimate, WalkWork};
 use crate::leaves::{leaves, plain};
 use crate::output::OutputFolder;
+use crate::scenes;
 use crate::terminal::warn;
 use clap::Args;
 use pxpl5::arp::Plan;
@@ -84,7 +85,9 @@ impl WalkArgs {
         }
         plan.settings()?;
         warn(&warnings(&plan), self.quiet);
-        Ok((load(self.scene.as_deref().unwrap_or(&scene))?, plan))
+        let scene = load(self.scene.as_deref().unwrap_or(&scene))?;
+        scenes::tell(&scene, self.quiet);
+        Ok((scene, plan))
     }
 
     /// Refuses so many walks before the first, if they would take too much.

@@ -8,6 +8,7 @@ use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::Work;
 use crate::output::OutputFolder;
+use crate::scenes;
 use crate::settings::SettingArgs;
 use crate::terminal;
 use pxpl5::compare::{CompareQuery, LEAST_SEEDS, edge_pictures};
@@ -82,7 +83,7 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     let first = shared.seed()?;
     let seeds = (first..=first.saturating_add(args.seeds - 1)).collect();
     let query = CompareQuery { shared, only: args.only, seeds, limits: !args.no_limits, pictures: folder.is_some() };
-    admit(args.budget, &query)?;
+    admit(args.budget, &query, args.quiet)?;
     let bar = terminal::progress(0, "runs", args.quiet);
     let comparison = query.run(|done, of| {
         bar.set_length(of);
@@ -107,10 +108,12 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     }
 }
 
-fn admit(budget: BudgetArgs, query: &CompareQuery) -> Result<(), CliError> {
+fn admit(budget: BudgetArgs, query: &CompareQuery, quiet: bool) -> Result<(), CliError> {
     let mut runs = Vec::new();
-    for plan in query.plans()? {
-        let work = Work::of(&plan, &*plan.load_scene()?, true);
+    for (row, plan) in query.plans()?.into_iter().enumerate() {
+        // All rows have the same scene: its warnings are told once.
+        let scene = scenes::load(&plan, quiet || row > 0)?;
+        let work = Work::of(&plan, &scene, true);
         runs.extend(query.seeds.iter().map(|_| work));
     }
     budget.admit_all(runs, std::thread::available_parallelism().map_or(1, usize::from))

@@ -3,6 +3,7 @@
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::{Estimate, VolumeWork};
+use crate::scenes;
 use crate::terminal::{advance, progress, warn};
 use clap::Args;
 use image::RgbImage;
@@ -137,7 +138,9 @@ impl VolumeSettingArgs {
     ///
     /// When there is no such scene, or its file cannot be used.
     pub(super) fn load_scene(&self) -> Result<Arc<Scene>, CliError> {
-        load(&self.scene, self.triangles)
+        let scene = load(&self.scene, self.triangles)?;
+        scenes::tell(&scene, self.settings.quiet);
+        Ok(scene)
     }
 
     /// Draws the volume under a progress bar.
