@@ -12,8 +12,8 @@
 //!
 //! The constants are measured: memory at the peak and time of the processor of the runs in the tests, rounded up.
 
-pub(crate) use pxpl5::lab::estimate::{Estimate, Work};
 use pxpl5::arp::Plan as WalkPlan;
+pub(crate) use pxpl5::lab::estimate::{Estimate, Work};
 use pxpl5::scene::Scene;
 use pxpl5::volume::{RendererKind, VolumeSettings};
 
@@ -98,16 +98,19 @@ impl VolumeWork {
         let drawn = ROWS * slices * width + AREAS * area;
         // A batch is drawn by one thread; more threads than batches have nothing to do.
         let targets = (self.threads * self.batch).min(self.slices) as f64;
-        let bytes = BASE + slices * area / 2.0 + SAMPLE * drawn + targets * area * TARGET * samples + PRIMITIVE * primitives;
+        let bytes =
+            BASE + slices * area / 2.0 + SAMPLE * drawn + targets * area * TARGET * samples + PRIMITIVE * primitives;
         let (bytes, times) = if self.is_pixel_planes { (bytes + PLANES_BYTES, PLANES) } else { (bytes, 1.0) };
-        let seconds = times * samples * (SLICE_S * slices * primitives + DRAWN_S * drawn) + WORD_S * slices * area / 8.0;
+        let seconds =
+            times * samples * (SLICE_S * slices * primitives + DRAWN_S * drawn) + WORD_S * slices * area / 8.0;
         Estimate { bytes, seconds: BUSY * seconds }
     }
 }
 
 impl WalkWork {
     pub(crate) fn of(plan: &WalkPlan, scene: &Scene) -> Self {
-        let texels = plan.numbers().into_iter().find(|(path, _)| path == "arp.face_texels").map(|(_, entry)| entry.value);
+        let texels =
+            plan.numbers().into_iter().find(|(path, _)| path == "arp.face_texels").map(|(_, entry)| entry.value);
         let face_texels = texels.and_then(|texels| texels.to_string().parse().ok()).unwrap_or(0);
         Self { frames: plan.walk.frames, primitives: primitives(scene), face_texels }
     }
@@ -160,7 +163,8 @@ mod tests {
     /// Bits of slices that nothing lights are asked for and never touched: an estimate may be greater than what was taken, and never much less.
     #[test]
     fn memory_of_volumes_and_walks_is_not_underestimated() {
-        let volumes = VOLUMES.iter().map(|(work, megabytes, _)| (format!("{work:?}"), work.estimate().bytes, *megabytes));
+        let volumes =
+            VOLUMES.iter().map(|(work, megabytes, _)| (format!("{work:?}"), work.estimate().bytes, *megabytes));
         let walks = WALKS.iter().map(|(work, megabytes, _)| (format!("{work:?}"), work.estimate().bytes, *megabytes));
         for (work, bytes, megabytes) in volumes.chain(walks) {
             let ratio = bytes / 1e6 / megabytes;

@@ -1,6 +1,7 @@
 //! What is known of a scene before it is run: that it is too heavy to be shown.
 
 use crate::estimate::Work;
+use crate::numbers::count_of;
 use pxpl5::Plan;
 use pxpl5::scene::Scene;
 use std::sync::Arc;
@@ -32,8 +33,9 @@ pub(crate) fn too_heavy(plan: &Plan, scene: &Arc<Scene>, fields: u64) -> Option<
         None => return None,
     };
     Some(format!(
-        "TOO HEAVY: {} primitives on {} graphics processors, and the run has {fields} fields: {expected}; draw fewer primitives \
-         (--triangles), or simulate more fields",
-        work.primitives, work.gps
+        "TOO HEAVY: {} on {}, and the run has {}: {expected}; draw fewer primitives (--triangles), or simulate more fields",
+        count_of(work.primitives, "primitive"),
+        count_of(work.gps, "graphics processor"),
+        count_of(fields, "field")
     ))
 }

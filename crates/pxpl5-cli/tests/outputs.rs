@@ -301,7 +301,10 @@ fn the_next_run_removes_what_dead_processes_have_left() {
 fn a_run_that_is_interrupted_leaves_no_folder() {
     let folder = folder("interrupted");
     for (signal, args) in [
-        ("-INT", &["run", "--pipeline", "slats", "--scene", "full-screen:4", "--fields", "1000000", "--out", "a/b"][..]),
+        (
+            "-INT",
+            &["run", "--pipeline", "slats", "--scene", "full-screen:4", "--fields", "1000000", "--out", "a/b"][..],
+        ),
         ("-KILL", &["trace", "--pipeline", "slats", "--scene", "full-screen:4", "--fields", "100000", "--out", "a/b"]),
     ] {
         let mut child = command(&[args, &["--quiet", "--max-memory", "1000000"]].concat());
@@ -319,10 +322,14 @@ fn a_run_that_is_interrupted_leaves_no_folder() {
 fn an_error_names_the_file_and_the_option_that_were_given() {
     let folder = folder("named");
     fs::create_dir(folder.0.join("d")).expect("ours");
-    let read_only = |is: bool| fs::set_permissions(folder.0.join("d"), fs::Permissions::from_mode(if is { 0o555 } else { 0o755 }));
-    for (args, option) in
-        [(&["levels", "--chart"][..], "--chart"), (&SAVE, "--save"), (&["figures", "--write"], "--write"), (&ASSEMBLE, "-o")]
-    {
+    let read_only =
+        |is: bool| fs::set_permissions(folder.0.join("d"), fs::Permissions::from_mode(if is { 0o555 } else { 0o755 }));
+    for (args, option) in [
+        (&["levels", "--chart"][..], "--chart"),
+        (&SAVE, "--save"),
+        (&["figures", "--write"], "--write"),
+        (&ASSEMBLE, "-o"),
+    ] {
         let output = folder.run(&[args, &["p.s/below"]].concat());
         assert!(err(&output).contains("p.s/below cannot be written"), "{args:?}: {}", err(&output));
         assert!(err(&output).contains(&format!("choose another place with {option}")), "{args:?}: {}", err(&output));

@@ -28,7 +28,10 @@ fn run_prints_one_json_object_and_writes_the_same() {
     let paths: Vec<_> = report["overrides"].as_array().expect("a list").iter().map(|o| o["path"].clone()).collect();
     assert_eq!(paths, ["display.slices", "display.width", "display.height", "clip.bias_px2"]);
     let written = folder.0.join("a/b");
-    assert_eq!(names(&written), ["manifest.json", "report.json", "sheet.png", "slice-0.png", "slices.csv", "tiles.png", "view.png"]);
+    assert_eq!(
+        names(&written),
+        ["manifest.json", "report.json", "sheet.png", "slice-0.png", "slices.csv", "tiles.png", "view.png"]
+    );
     let kept: Value =
         serde_json::from_slice(&std::fs::read(written.join("report.json")).expect("written")).expect("JSON");
     assert_eq!(kept["volume_hash"], report["volume_hash"]);

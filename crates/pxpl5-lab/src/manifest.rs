@@ -113,7 +113,8 @@ impl Manifest {
             Ok(there) if !there.is_file() => return Err(no_manifest("something else than a file".to_owned())),
             Ok(_) => {}
         }
-        let bytes = fs::read(&path).map_err(|error| ManifestError::Io { path: found.clone(), reason: error.to_string() })?;
+        let bytes =
+            fs::read(&path).map_err(|error| ManifestError::Io { path: found.clone(), reason: error.to_string() })?;
         let manifest: Self = serde_json::from_slice(&bytes).map_err(|error| no_manifest(error.to_string()))?;
         if manifest.schema != Self::SCHEMA {
             return Err(no_manifest(format!("schema {}", manifest.schema)));
@@ -265,7 +266,10 @@ mod tests {
     fn a_name_that_leads_out_of_the_folder_is_refused() {
         let folder = folder("out");
         for name in ["../a", "/etc/passwd", "a/b", "..", "", "manifest.json"] {
-            let text = format!("{{\"schema\":\"{}\",\"version\":\"0\",\"command\":\"run\",\"files\":[{{\"name\":\"{name}\",\"contents\":null}}]}}", Manifest::SCHEMA);
+            let text = format!(
+                "{{\"schema\":\"{}\",\"version\":\"0\",\"command\":\"run\",\"files\":[{{\"name\":\"{name}\",\"contents\":null}}]}}",
+                Manifest::SCHEMA
+            );
             fs::write(folder.join(MANIFEST_FILE), text).expect("ours");
             assert!(matches!(Manifest::read(&folder), Err(ManifestError::NoManifest { .. })), "{name}");
         }

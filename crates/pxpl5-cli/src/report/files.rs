@@ -40,7 +40,9 @@ impl<'a> Files<'a> {
             return Ok(bytes);
         };
         let read = manifest.read_file(self.folder, name).map_err(|error| error.to_string())?;
-        read.ok_or_else(|| format!("{MANIFEST_FILE} does not list it; it lists files of `pxpl5 {}`", manifest.command()))
+        read.ok_or_else(|| {
+            format!("{MANIFEST_FILE} does not list it; it lists files of `pxpl5 {}`", manifest.command())
+        })
     }
 
     /// Says that files are left out where no manifest lists them.

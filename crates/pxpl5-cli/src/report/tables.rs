@@ -98,7 +98,8 @@ fn with_pictures(table: PageTable, files: &Files<'_>) -> PageTable {
     names.sort_unstable();
     let of_kind = |kind: &str| -> Vec<PagePicture> {
         let stems = names.iter().filter_map(|name| Some((name, name.strip_suffix(kind)?)));
-        let picture = |(name, stem): (&&str, &str)| Some(PagePicture { label: stem.replace('-', " "), png: files.read(name)? });
+        let picture =
+            |(name, stem): (&&str, &str)| Some(PagePicture { label: stem.replace('-', " "), png: files.read(name)? });
         stems.filter_map(picture).collect()
     };
     PageTable { charts: of_kind(".svg"), pictures: of_kind(".png"), ..table }

@@ -98,10 +98,11 @@ impl Recording {
     ///
     /// As [`Self::read`].
     pub fn read_as(mut input: impl Read, format: &RecordingFormat) -> Result<Self, RecordingError> {
-        let mut text = String::new();
+        let mut bytes = Vec::new();
         let unreadable = |error: std::io::Error| RecordingError::Unreadable { why: error.to_string() };
-        input.read_to_string(&mut text).map_err(unreadable)?;
-        Ok(Self { samples: read::samples(&text, &format.columns, format.axes)?, end: End::default() })
+        input.read_to_end(&mut bytes).map_err(unreadable)?;
+        let text = parameters::text_of(&bytes).map_err(|why| RecordingError::Unreadable { why })?;
+        Ok(Self { samples: read::samples(text, &format.columns, format.axes)?, end: End::default() })
     }
 
     /// The same recording with another end.
