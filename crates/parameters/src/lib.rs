@@ -38,6 +38,7 @@ mod macros;
 mod nearest;
 mod number;
 mod table;
+mod text;
 mod value;
 
 pub use error::ParameterError;
@@ -45,4 +46,5 @@ pub use info::{ParameterInfo, Standing};
 pub use nearest::nearest;
 pub use number::{Number, check, check_value};
 pub use table::{Entry, ParameterTable};
+pub use text::text_of;
 pub use value::{MAX, Value};

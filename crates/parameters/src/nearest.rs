@@ -1,7 +1,22 @@
-//! What a misspelt name was probably meant to be.
+//! The nearest of some names, for error messages.
 
-/// The candidate with the fewest single-letter changes to `name`; `None` of no candidates.
+/// The candidate that begins with `name`, such as a number of the table of that name; or else the one with the fewest single-letter changes to it.
+/// `None` of no candidates.
 #[must_use]
 pub fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    candidates.min_by_key(|candidate| strsim::levenshtein(name, candidate))
+    candidates.min_by_key(|candidate| (!candidate.starts_with(name), strsim::levenshtein(name, candidate)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::nearest;
+
+    #[test]
+    fn a_table_is_nearer_than_a_word_of_its_length() {
+        let keys = ["fit", "on", "n_gps", "gp.triangle_ns", "gp.pass_ns", "title"];
+        for (name, expected) in [("gp", "gp.pass_ns"), ("gp.tri", "gp.triangle_ns"), ("fi", "fit"), ("tilte", "title")]
+        {
+            assert_eq!(nearest(name, keys.into_iter()), Some(expected), "{name}");
+        }
+    }
 }

@@ -2,6 +2,7 @@
 
 use crate::error::CliError;
 use crate::estimate::{Estimate, Work};
+use crate::numbers::{count_of, whole};
 use clap::Args;
 use std::cell::OnceCell;
 use std::time::Instant;
@@ -10,10 +11,10 @@ use std::time::Instant;
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct BudgetArgs {
     /// Refuse what would take more memory than this, in MB of 10^6 bytes.
-    #[arg(long, value_name = "MB", default_value_t = MOST_MEGABYTES, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    #[arg(long, value_name = "MB", default_value_t = MOST_MEGABYTES, value_parser = whole::<u64>(1, 1_000_000_000))]
     max_memory: u64,
     /// Refuse what would take longer than this, in seconds.
-    #[arg(long, value_name = "S", default_value_t = MOST_SECONDS, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    #[arg(long, value_name = "S", default_value_t = MOST_SECONDS, value_parser = whole::<u64>(1, 1_000_000_000))]
     max_seconds: u64,
 }
 
@@ -107,7 +108,9 @@ impl Watch {
         let (first, before) = *self.first.get_or_init(|| (done, taken));
         let part = (done.min(self.fields) - first.min(done)) as f64 / self.fields as f64;
         match self.budget.refusal(before, taken.since(before), part) {
-            Some(reason) => Err(format!("after {done} of {} fields {reason}; nothing was written", self.fields)),
+            Some(reason) => {
+                Err(format!("after {done} of {} {reason}; nothing was written", count_of(self.fields, "field")))
+            }
             None => Ok(()),
         }
     }

@@ -3,6 +3,7 @@
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::Work;
+use crate::numbers::{count_of, whole};
 use crate::output::OutputFile;
 use crate::scenes;
 use crate::settings::SettingArgs;
@@ -29,10 +30,10 @@ pub(crate) struct FilmArgs {
     #[arg(long, value_enum, default_value_t = Whose::Left)]
     eye: Whose,
     /// The first field of the film.
-    #[arg(long, value_name = "FIELD", default_value_t = 12, value_parser = clap::value_parser!(u64).range(..=10_000_000))]
+    #[arg(long, value_name = "FIELD", default_value_t = 12, value_parser = whole::<u64>(0, 10_000_000))]
     from: u64,
     /// How many fields it has.
-    #[arg(long, value_name = "FIELDS", default_value_t = 60, value_parser = clap::value_parser!(u64).range(1..=10_000))]
+    #[arg(long, value_name = "FIELDS", default_value_t = 60, value_parser = whole::<u64>(1, 10_000))]
     length: u64,
     #[command(flatten)]
     budget: BudgetArgs,
@@ -74,5 +75,5 @@ pub(crate) fn run(args: FilmArgs) -> Result<(), CliError> {
     if silent {
         return Ok(());
     }
-    print(&format!("{}: {} fields from field {} on.\n", args.out.display(), args.length, args.from))
+    print(&format!("{}: {} from field {} on.\n", args.out.display(), count_of(args.length, "field"), args.from))
 }

@@ -24,6 +24,7 @@ mod levels;
 mod limit;
 mod machines;
 mod merge;
+mod numbers;
 mod options;
 mod output;
 mod plot;

@@ -3,6 +3,7 @@
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::Work;
+use crate::numbers::{count_of, were, whole};
 use crate::options::{PipelineOptions, option_of, registry};
 use crate::scenes;
 use crate::terminal::{print, warn};
@@ -28,10 +29,10 @@ pub(crate) struct LimitArgs {
     #[command(flatten)]
     pipeline: PipelineOptions,
     /// Graphics processors.
-    #[arg(long)]
+    #[arg(long, value_name = "N", value_parser = whole::<u64>(0, i64::MAX as u64))]
     gps: Option<u64>,
     /// Renderers.
-    #[arg(long)]
+    #[arg(long, value_name = "N", value_parser = whole::<u64>(0, i64::MAX as u64))]
     renderers: Option<u64>,
     /// Preset of the machine; default: the one on which the pipeline was measured.
     #[arg(long, value_name = "PRESET")]
@@ -50,7 +51,7 @@ pub(crate) struct LimitArgs {
     #[arg(long, value_name = "FIELDS")]
     latency: Option<f64>,
     /// Fields that each size is simulated for; default: enough for a steady state of the pipeline.
-    #[arg(long)]
+    #[arg(long, value_name = "N", value_parser = whole::<u64>(0, 10_000_000))]
     fields: Option<u64>,
     /// Level of modelling: analytic, transaction or cycle; default transaction.
     #[arg(long)]
@@ -179,14 +180,14 @@ fn text(query: &LimitQuery, limit: Limit) -> String {
         String::new()
     };
     format!(
-        "{} on {} GPs and {} renderers: at most {} triangles of {} ({first_miss}; {} sizes were simulated for {} fields)\n{row}{island}",
+        "{} on {} and {}: at most {} of {} ({first_miss}; {} simulated for {})\n{row}{island}",
         query.pipeline.name(),
-        query.config.n_gps,
-        query.config.n_renderers,
-        limit.triangles,
+        count_of(query.config.n_gps as u64, "GP"),
+        count_of(query.config.n_renderers as u64, "renderer"),
+        count_of(limit.triangles as u64, "triangle"),
         scene(query),
-        limit.tried,
-        query.criterion.fields,
+        were(limit.tried as u64, "size"),
+        count_of(query.criterion.fields, "field"),
     )
 }
 

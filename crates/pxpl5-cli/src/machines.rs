@@ -1,6 +1,7 @@
 //! `pxpl5 machines`.
 
 use crate::error::CliError;
+use crate::numbers::count_of;
 use crate::options::registry;
 use crate::terminal::{print, progress};
 use clap::Args;
@@ -110,7 +111,12 @@ fn one_json(machine: &MachineConfig) -> String {
 }
 
 fn one_text(machine: &MachineConfig) -> String {
-    let mut text = format!("{}: {} GPs, {} renderers\n\n", machine.preset, machine.n_gps, machine.n_renderers);
+    let mut text = format!(
+        "{}: {}, {}\n\n",
+        machine.preset,
+        count_of(machine.n_gps as u64, "GP"),
+        count_of(machine.n_renderers as u64, "renderer")
+    );
     for Suitability { pipeline, lacks } in suitability(&registry(), machine) {
         let said = lacks.map_or_else(|| "runs".to_owned(), |lacks| format!("cannot run: {lacks}"));
         let _ = writeln!(text, "{pipeline:<42} {said}");

@@ -1,6 +1,7 @@
 //! `pxpl5 merge`.
 
 use crate::error::CliError;
+use crate::numbers::{are, count_of};
 use crate::terminal::{complain, print};
 use clap::Args;
 use pxpl5::sweep::{Merged, ROWS_FILE, merge};
@@ -30,14 +31,16 @@ pub(crate) struct MergeArgs {
 
 pub(crate) fn run(args: MergeArgs) -> Result<(), CliError> {
     let Merged { points, failed, duplicates, missing } = merge(&args.folders, &args.out, args.partial)?;
-    for (points, what) in [(&duplicates, "were there more than once"), (&missing, "are missing")] {
+    for (points, what) in [(&duplicates, "there more than once"), (&missing, "missing")] {
         if let Some(first) = points.first() {
-            complain(&format!("pxpl5: {} points {what}, the first of them point {first}\n", points.len()));
+            let points = are(points.len() as u64, "point");
+            complain(&format!("pxpl5: {points} {what}, the first of them point {first}\n"));
         }
     }
     if args.quiet {
         return Ok(());
     }
     let path = args.out.join(ROWS_FILE);
-    print(&format!("{} points, {failed} of them failed, are in {}.\n", points - missing.len() as u64, path.display()))
+    let there = count_of(points - missing.len() as u64, "point");
+    print(&format!("{there} in {}; {failed} failed.\n", path.display()))
 }

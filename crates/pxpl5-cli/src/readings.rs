@@ -1,6 +1,7 @@
 //! `pxpl5 readings`: what the papers leave open about Rendering Control, and which answers explain their figures.
 
 use crate::error::CliError;
+use crate::numbers::whole;
 use crate::terminal::{advance, print, progress};
 use clap::Args;
 use pxpl5::Level;
@@ -19,16 +20,16 @@ use std::fmt::Write;
   pxpl5 readings --json > readings.json")]
 pub(crate) struct ReadingsArgs {
     /// Readings that are measured with events as well.
-    #[arg(long, default_value_t = 20, value_name = "N", value_parser = clap::value_parser!(u64).range(0..=256))]
+    #[arg(long, default_value_t = 20, value_name = "N", value_parser = whole::<u64>(0, 256))]
     best: u64,
     /// Readings of each level that are printed.
     #[arg(long, default_value_t = 20, value_name = "N")]
     rows: usize,
     /// Seeds of figure 7's fly-through; a third of them for the molecules, a fifth for the head.
-    #[arg(long, default_value_t = 6, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100))]
+    #[arg(long, default_value_t = 6, value_name = "N", value_parser = whole::<u64>(1, 100))]
     seeds: u64,
     /// Frames of each fly-through.
-    #[arg(long, default_value_t = 150, value_name = "N", value_parser = clap::value_parser!(u64).range(10..=1_000))]
+    #[arg(long, default_value_t = 150, value_name = "N", value_parser = whole::<u64>(10, 1_000))]
     frames: u64,
     /// Print one JSON object.
     #[arg(long)]

@@ -3,6 +3,7 @@
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::Work;
+use crate::numbers::whole;
 use crate::settings::SettingArgs;
 use crate::terminal::print;
 use clap::Args;
@@ -29,7 +30,7 @@ pub(crate) struct RigArgs {
     #[command(flatten)]
     settings: SettingArgs,
     /// Low points to measure, 2 to 10,000.
-    #[arg(long, default_value_t = PASSES as u64, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=10_000))]
+    #[arg(long, default_value_t = PASSES as u64, value_name = "N", value_parser = whole::<u64>(2, 10_000))]
     passes: u64,
     /// Line of a field under the photodiode on the screen, 0 at the top; default 120, the middle of NTSC's 240.
     #[arg(long, value_name = "N")]

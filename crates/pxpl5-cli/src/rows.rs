@@ -1,6 +1,7 @@
 //! Rows of a results folder: what `pxpl5 sweep` and `pxpl5 compare` wrote.
 
 use crate::error::CliError;
+use parameters::text_of;
 use pxpl5::lab::manifest::Manifest;
 use pxpl5::sweep::ROWS_FILE;
 use serde_json::{Map, Value};
@@ -46,8 +47,8 @@ pub(crate) fn of(folder: &Path) -> Result<Option<ResultRows>, CliError> {
             let problem = |what: String| CliError::failure(format!("{}: {what}", path.display()));
             let listed = manifest.as_ref().map(|manifest| manifest.read_file(folder, name)).transpose()?.flatten();
             let bytes = listed.map_or_else(|| fs::read(&path), Ok).map_err(|error| problem(error.to_string()))?;
-            let text = String::from_utf8(bytes).map_err(|error| problem(error.to_string()))?;
-            return read(&text).map(Some).map_err(problem);
+            let text = text_of(&bytes).map_err(problem)?;
+            return read(text).map(Some).map_err(problem);
         }
     }
     Ok(None)

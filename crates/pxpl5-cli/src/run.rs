@@ -2,6 +2,7 @@
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
+use crate::numbers::{count_of, whole};
 use crate::output::{OutputFolder, png, timeline};
 use crate::settings::SettingArgs;
 use crate::snapshot::{How, Simulated, SnapshotArgs};
@@ -32,7 +33,7 @@ pub(crate) struct RunArgs {
     #[command(flatten)]
     settings: SettingArgs,
     /// Worker threads for --pixels all; default: one a core; 0: the thread that simulates computes the pixels.
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(0..=1024))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64>(0, 1024))]
     threads: Option<u64>,
     /// Do without a saving, to see what it is worth: idle-boards, transfers, empty-regions or repeated-code; may be repeated.
     #[arg(long, value_name = "SAVING")]
@@ -79,8 +80,9 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
 fn nothing_shown(report: &Report) -> CliError {
     let advice = report.too_heavy.as_ref().map_or("draw fewer primitives (--triangles)", |heavy| &heavy.advice);
     CliError::failure(format!(
-        "no complete picture was shown in {} fields: {} regions came after their deadline; {advice}",
-        report.fields, report.late_regions
+        "no complete picture was shown in {}: {} came after their deadline; {advice}",
+        count_of(report.fields, "field"),
+        count_of(report.late_regions as u64, "region")
     ))
 }
 

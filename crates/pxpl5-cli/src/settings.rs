@@ -1,6 +1,7 @@
 //! Options that say what an experiment is; each stands for a key of an experiment file.
 
 use crate::error::CliError;
+use crate::numbers::signed;
 use crate::options::{PipelineOptions, option_of, registry};
 use clap::Args;
 use pxpl5::{ExperimentFile, Raster};
@@ -21,7 +22,7 @@ pub(crate) struct SettingArgs {
     #[arg(long, value_name = "NAME|FILE")]
     scene: Option<String>,
     /// Decimate the scene to at most N primitives, keeping its shape.
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = signed)]
     triangles: Option<i64>,
     /// Leave a model file where its coordinates say, in metres, instead of fitting it into the view of both eyes.
     #[arg(long)]
@@ -33,10 +34,10 @@ pub(crate) struct SettingArgs {
     #[arg(long, value_name = "PRESET")]
     machine: Option<String>,
     /// Graphics processors, the master included.
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = signed)]
     gps: Option<i64>,
     /// Renderers.
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = signed)]
     renderers: Option<i64>,
     /// Motion of a head with a tracker: still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED, walk:M_PER_S
     /// along the scene's path (walk:M_PER_S:SEED looks around as synthetic:SEED) or a recording (FILE.csv, .txt, .tum: time_s,x,y,z,qw,qx,qy,qz, EuRoC, TUM, or any with --columns).
@@ -66,7 +67,7 @@ pub(crate) struct SettingArgs {
     #[arg(long)]
     raster: Option<String>,
     /// Periods of the display to simulate: NTSC fields of 1/60 s; default 120.
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = signed)]
     fields: Option<i64>,
     /// Level of modelling: transaction, cycle or (for sweeps) analytic; default transaction.
     #[arg(long)]
@@ -75,7 +76,7 @@ pub(crate) struct SettingArgs {
     #[arg(long)]
     pixels: Option<String>,
     /// Seed of the head motion's sway, or of the tracker's noise; default 1.
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = signed)]
     seed: Option<i64>,
     /// Set any key of an experiment file, such as machine.gp.triangle_ns=30000 or tracking.optical.latency=20; `pxpl5 machines
     /// small-hmd` lists all numbers; may be repeated.

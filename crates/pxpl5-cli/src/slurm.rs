@@ -12,6 +12,7 @@
 
 use crate::error::{BUSY, CliError};
 use crate::estimate::Estimate;
+use crate::numbers::count_of;
 use crate::output::OutputFolder;
 use pxpl5::sweep::Sweep;
 use std::path::{Path, PathBuf};
@@ -160,7 +161,9 @@ impl Written {
     pub(crate) fn text(&self) -> String {
         let Resources { tasks, threads, minutes, megabytes, .. } = self.resources;
         format!(
-            "{tasks} tasks of {threads} threads, each at most {minutes} min and {megabytes} MB. To submit them:\n  bash {}\n",
+            "{} of {}, each at most {minutes} min and {megabytes} MB. To submit them:\n  bash {}\n",
+            count_of(tasks, "task"),
+            count_of(threads, "thread"),
             quoted(&self.submit.display().to_string())
         )
     }

@@ -3,12 +3,14 @@
 use crate::budget::{BudgetArgs, YOUNG};
 use crate::error::CliError;
 use crate::estimate::Work;
+use crate::numbers::whole;
 use crate::options::registry;
 use crate::output::OutputFile;
 use crate::scenes;
 use crate::terminal::{progress, warn};
 use crate::too_heavy::too_heavy;
 use clap::Args;
+use parameters::text_of;
 use pxpl5::{
     ExperimentError, ExperimentFile, Host, Keep, Machine, Outcome, PeriodNumber, Pixels, Plan, Saving, Snapshot,
     Workstation,
@@ -19,7 +21,7 @@ use std::path::{Path, PathBuf};
 #[derive(Args, Debug, Default)]
 pub(crate) struct SnapshotArgs {
     /// Save a snapshot at the first retrace of this field (see --save), and go on.
-    #[arg(long, value_name = "FIELD", requires = "save")]
+    #[arg(long, value_name = "FIELD", requires = "save", value_parser = whole::<u64>(0, 10_000_000))]
     save_at: Option<u64>,
     /// Where the snapshot goes.
     #[arg(long, value_name = "FILE", requires = "save_at")]
@@ -100,7 +102,8 @@ impl SnapshotArgs {
     fn read(&self, path: &Path) -> Result<Snapshot, CliError> {
         let name = path.display().to_string();
         let bytes = std::fs::read(path).map_err(|error| CliError::failure(format!("{name}: {error}")))?;
-        Ok(Snapshot::read(&String::from_utf8_lossy(&bytes), &name)?)
+        let text = text_of(&bytes).map_err(|error| CliError::failure(format!("{name}: {error}")))?;
+        Ok(Snapshot::read(text, &name)?)
     }
 
     /// Runs it.

@@ -3,6 +3,7 @@
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::Estimate;
+use crate::numbers::{are, count_of, whole};
 use crate::options::registry;
 use crate::slurm::{self, Jobs, quoted};
 use crate::terminal::{complain, print, progress, warn};
@@ -39,19 +40,19 @@ pub(crate) struct SweepArgs {
     #[arg(long, value_name = "DIR", conflicts_with_all = ["resume", "shard"])]
     slurm: Option<PathBuf>,
     /// Tasks of that array; default: by estimate, about a quarter of an hour each.
-    #[arg(long, value_name = "N", requires = "slurm", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", requires = "slurm", value_parser = whole::<u64>(1, 1_000_000))]
     tasks: Option<u64>,
     /// Points at a time; default: one a core, and one in a task of Slurm.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = whole::<u64>(1, 1024))]
     threads: Option<u64>,
     /// Set any key of the experiment file for all points; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     sets: Vec<String>,
     /// Refuse a sweep that would take more memory than this, in MB of 10^6 bytes.
-    #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    #[arg(long, value_name = "MB", value_parser = whole::<u64>(1, 1_000_000_000))]
     max_memory: Option<u64>,
     /// Refuse a sweep that would take longer than this, in seconds; default: any time, since it can be interrupted and resumed.
-    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    #[arg(long, value_name = "S", value_parser = whole::<u64>(1, 1_000_000_000))]
     max_seconds: Option<u64>,
     /// Print nothing but errors.
     #[arg(long, short)]
@@ -157,12 +158,13 @@ pub(crate) fn tell_failures(store: &Store, shard: Shard, total: u64, done: &str)
     let failed = store.failed(shard).count() as u64;
     if let Some(point) = store.failed(shard).next() {
         let error = store.row(point)?.and_then(|row| row.error).unwrap_or_default();
-        complain(&format!("pxpl5: {failed} of {total} points could not be {done}; point {point}: {error}\n"));
+        let all = count_of(total, "point");
+        complain(&format!("pxpl5: {failed} of {all} could not be {done}; point {point}: {error}\n"));
     }
     Ok(failed)
 }
 
 /// Says where the rows are.
 pub(crate) fn tell_place(out: &Path, total: u64, quiet: bool) -> Result<(), CliError> {
-    if quiet { Ok(()) } else { print(&format!("{total} points are in {}.\n", out.join(ROWS_FILE).display())) }
+    if quiet { Ok(()) } else { print(&format!("{} in {}.\n", are(total, "point"), out.join(ROWS_FILE).display())) }
 }

@@ -1,5 +1,6 @@
 //! A table of runs: a column each, a row per quantity.
 
+use crate::numbers::count_of;
 use pxpl5::{DuePictures, Report, Statistics};
 
 /// What a run is compared with.
@@ -66,7 +67,7 @@ fn comparison_cells(runs: &[(&Report, Option<&Comparison>)], cell: impl Fn(&Comp
 
 /// Pictures that were due and not shown, and of how many.
 fn not_shown(report: &Report) -> String {
-    of_due(report, |due| format!("{} of {} pictures due", due.not_shown(), due.due))
+    of_due(report, |due| format!("{} of {} due", due.not_shown(), count_of(due.due, "picture")))
 }
 
 fn ends(report: &Report) -> String {
@@ -85,9 +86,9 @@ fn of_due(report: &Report, cell: impl Fn(&DuePictures) -> String) -> String {
 
 fn primitives(report: &Report) -> String {
     match (report.triangles, report.spheres) {
-        (triangles, 0) => format!("{triangles} triangles"),
-        (0, spheres) => format!("{spheres} spheres"),
-        (triangles, spheres) => format!("{triangles} triangles, {spheres} spheres"),
+        (triangles, 0) => count_of(triangles, "triangle"),
+        (0, spheres) => count_of(spheres, "sphere"),
+        (triangles, spheres) => format!("{}, {}", count_of(triangles, "triangle"), count_of(spheres, "sphere")),
     }
 }
 
@@ -126,9 +127,5 @@ fn width(rows: &[(&str, Vec<String>)], column: usize) -> usize {
 }
 
 fn boards(report: &Report) -> String {
-    format!("{} ({}, {})", report.machine, plural(report.n_gps, "GP"), plural(report.n_renderers, "renderer"))
-}
-
-fn plural(n: usize, name: &str) -> String {
-    format!("{n} {name}{}", if n == 1 { "" } else { "s" })
+    format!("{} ({}, {})", report.machine, count_of(report.n_gps, "GP"), count_of(report.n_renderers, "renderer"))
 }

@@ -3,6 +3,7 @@
 use crate::budget::{BudgetArgs, YOUNG};
 use crate::error::CliError;
 use crate::estimate::Work;
+use crate::numbers::count_of;
 use crate::output::OutputFile;
 use crate::scenes;
 use crate::settings::SettingArgs;
@@ -98,6 +99,6 @@ pub(crate) fn run(args: TraceArgs) -> Result<(), CliError> {
         return Ok(());
     }
     let path = args.out.display();
-    let tracks = trace.tracks.len();
-    print(&format!("{path}: {} fields, {tracks} tracks; open it with ui.perfetto.dev.\n", plan.fields))
+    let (fields, tracks) = (count_of(plan.fields, "field"), count_of(trace.tracks.len() as u64, "track"));
+    print(&format!("{path}: {fields}, {tracks}; open it with ui.perfetto.dev.\n"))
 }

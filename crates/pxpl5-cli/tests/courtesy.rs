@@ -247,7 +247,7 @@ fn every_command_that_computes_is_estimated_before_it_starts() {
         (vec!["arp", "compare", "--max-memory", "20"], "--max-memory"),
         (vec!["sweep", "s.toml", "--out", "o", "--max-seconds", "100"], "--max-seconds"),
         (vec!["debug", "--do", "quit", "--pipeline", "slats", "--scene", "mig", "--max-memory", "1"], "--max-memory"),
-        (vec!["rig", "--max-seconds", "1", "--passes", "10000"], "--max-seconds"),
+        (vec!["rig", "--pipeline", "slats", "--max-seconds", "1", "--passes", "10000"], "--max-seconds"),
     ];
     for (args, says) in great.into_iter().chain(others) {
         let output = folder.run(&args);
@@ -272,16 +272,128 @@ fn a_scene_that_is_too_heavy_to_be_shown_is_told_before_the_run() {
         let said = err(&output);
         (said.lines().find(|line| line.contains("warning: TOO HEAVY")).map(str::to_owned), output.status.code())
     };
-    // 20,000 triangles take each of 12 slaves more than two fields for each eye, and a full screen 70 fields a frame.
+    // A frame of 20,000 triangles that cover the screen takes 70 fields and more.
     let (said, code) = heavy("rendering-control", "full-screen:20000", "60");
     let said = said.expect("it is told");
     assert!(said.contains("20000 primitives on 13 graphics processors") && said.contains("60 fields"), "{said}");
     assert_eq!(code, Some(1));
     // Without a closed form: 100,000 triangles of 21.7 us on one processor are 130 fields.
     let (said, _) = heavy("jitp-field", "typical:100000", "20");
-    assert!(said.is_some_and(|said| said.contains("fields to transform all of it once")));
-    for (pipeline, scene, fields) in [("rendering-control", "full-screen:12", "30"), ("slats", "mig", "30")] {
+    assert!(said.is_some_and(|said| said.contains("to transform all of it once")));
+    for (pipeline, scene, fields) in [("rendering-control", "full-screen:12", "30"), ("slats", "full-screen:12", "30")]
+    {
         assert_eq!(heavy(pipeline, scene, fields).0, None, "{pipeline} {scene}");
+    }
+}
+
+/// A number that is too great says how great it may be, and a byte that is no text where it stands.
+#[test]
+fn what_is_wrong_with_an_input_is_told_with_its_limits_and_its_place() {
+    let folder = Folder::new("told");
+    folder.file("e.toml", b"pipeline = \"slats\"\nscene = \"mig\"\n# caf\xe9\n");
+    folder.file("w.toml", b"scene = \"caf\xe9\"\n");
+    folder.file("p.s", b"nop\n// \xe9\n");
+    folder.file("nop.s", "nop\nnop 5\n");
+    folder.file("h.csv", b"time_s,x,y,z\n\xe9");
+    folder.file("c.txt", b"show time\n\xe9\n");
+    let mig = ["run", "--pipeline", "slats", "--scene", "mig"];
+    let debug = ["debug", "--pipeline", "slats", "--scene", "mig", "--do-file", "c.txt"];
+    let cases: [(&[&str], &[&str]); 21] = [
+        (&["--fields", "99999999999999999999"], &["--fields", "at most 9223372036854775807"]),
+        (&["--seed", "9223372036854775808"], &["--seed", "at most 9223372036854775807"]),
+        (&["--set", "gp.triangle_ns=9223372036854775808"], &["from 0 to 9223372036854775807"]),
+        (&["--threads", "99999999999999999999"], &["from 0 to 1024"]),
+        (&["--max-memory", "0"], &["from 1 to 1000000000"]),
+        (&["--set", "gp=3"], &["did you mean `gp."]),
+        (&["--set", "gp.tri=3"], &["did you mean `gp.triangle_ns`"]),
+        (&["--set", "machine.gp=3"], &["did you mean `machine.gp."]),
+        (&["--head", "h.csv"], &["h.csv", "line 2, byte 1", "0xe9"]),
+        (&["--restore", "h.csv"], &["line 2, byte 1", "0xe9"]),
+        (&["limit", "--fields", "99999999999999999999"], &["from 0 to 10000000"]),
+        (&["compare", "--seeds", "99999999999999999999"], &["from 1 to 1000"]),
+        (&["run", "e.toml"], &["e.toml", "line 3, byte 6", "0xe9"]),
+        (&["check", "e.toml"], &["e.toml", "line 3, byte 6"]),
+        (&["sweep", "e.toml", "--out", "o"], &["e.toml", "line 3, byte 6"]),
+        (&["volume", "sweep", "w.toml", "--out", "o"], &["w.toml", "line 1, byte 13"]),
+        (&["arp", "run", "w.toml"], &["w.toml", "line 1, byte 13"]),
+        (&["volume", "run", "--set", "gp=3"], &["did you mean `gpu."]),
+        (&["i860", "asm", "p.s", "-o", "x"], &["p.s", "line 2, byte 4"]),
+        (&["i860", "asm", "nop.s", "-o", "x"], &["nop.s:2", "`nop` takes no operand"]),
+        (&debug, &["c.txt", "line 2, byte 1"]),
+    ];
+    for (args, says) in cases {
+        let is_option = args[0].starts_with("--");
+        let args = if args[0] == "--restore" {
+            [&["run"], args].concat()
+        } else if is_option {
+            [&mig, args].concat()
+        } else {
+            args.to_vec()
+        };
+        let output = folder.run(&args);
+        let text = err(&output);
+        assert!(matches!(output.status.code(), Some(1 | 2)), "{args:?}: {text}");
+        says.iter().for_each(|part| assert!(text.contains(part), "{args:?} should say {part}: {text}"));
+    }
+}
+
+/// A scene that has fewer triangles than are asked for is drawn whole.
+#[test]
+fn more_triangles_than_a_scene_has_are_all_of_them() {
+    let folder = Folder::new("all-triangles");
+    let report = |more: &[&str]| json(&folder.run(&[&RUN[..], &["--json"], more].concat()));
+    let (whole, more) = (report(&[]), report(&["--triangles", "60"]));
+    assert_eq!((&more["triangles"], &more["trace_hash"]), (&4.into(), &whole["trace_hash"]));
+    assert_eq!(
+        json(&folder.run(&["volume", "run", "--scene", "full-screen:4", "--triangles", "60", "--json"]))["triangles"],
+        4
+    );
+}
+
+/// One of anything is told as one, and what does not vary has no deviation, in JSON as in CSV.
+#[test]
+fn one_is_told_as_one_and_a_constant_without_deviation() {
+    let folder = Folder::new("plurals");
+    let output =
+        folder.run(&["run", "--pipeline", "slats", "--scene", "full-screen:1", "--fields", "20", "--out", "o"]);
+    assert!(out(&output).contains("1 triangle\n") && out(&output).contains("(1 GP, "), "{}", out(&output));
+    let read = |name: &str| std::fs::read_to_string(folder.0.join("o").join(name)).expect("written");
+    let report: serde_json::Value = serde_json::from_str(&read("report.json")).expect("JSON");
+    for latency in ["latency_fields", "latency_ms"] {
+        assert_eq!(report[latency]["sd"], 0.0, "Slats takes one field, always: {report}");
+        assert!(read("results.csv").contains(&format!("\n{latency}.sd,0,")), "{}", read("results.csv"));
+        let [least, mean, greatest] =
+            ["min", "mean", "max"].map(|key| report[latency][key].as_f64().expect("a number"));
+        assert!(least <= mean && mean <= greatest);
+    }
+    let output = folder.run(&["run", "--pipeline", "rendering-control", "--scene", "full-screen:1", "--fields", "1"]);
+    assert!(err(&output).contains(" shown in 1 field and "), "{}", err(&output));
+    folder.file("s.toml", "pipeline = \"slats\"\nscene = \"full-screen:2\"\nfields = 12\n[sweep.grid]\nseed = [1]\n");
+    let output = folder.run(&["sweep", "s.toml", "--out", "p"]);
+    assert!(out(&output).contains("1 point is in p/rows.jsonl"), "{}", out(&output));
+}
+
+/// No XML document may hold control characters, wherever a user's text comes to stand in it.
+#[cfg(unix)]
+#[test]
+fn labels_with_control_characters_give_valid_drawings() {
+    let folder = Folder::new("control");
+    folder.file("m\u{1}\u{7f}\u{85}.obj", "v -1 -1 -5\nv 1 -1 -5\nv 0 1 -5\nf 1 2 3\n");
+    let run =
+        ["run", "--pipeline", "slats", "--scene", "m\u{1}\u{7f}\u{85}.obj", "--fields", "12", "--quiet", "--out", "o"];
+    assert!(folder.run(&run).status.success());
+    folder.file(
+        "s.toml",
+        "title = \"a\\u0001b\"\npipeline = \"slats\"\nscene = \"full-screen:2\"\nfields = 12\n[sweep.grid]\nseed = [1, 2]\n",
+    );
+    assert!(folder.run(&["sweep", "s.toml", "--out", "p", "--quiet"]).status.success());
+    let plot = ["plot", "p", "--x", "seed", "--y", "latency_ms.mean", "--out", "p/f.svg", "--title", "a\u{1}b\u{b}"];
+    let output = folder.run(&[&plot[..], &["--x-label", "\u{1b}[1m", "--y-label", "\u{7f}\u{9f}"]].concat());
+    assert!(output.status.success(), "{}", err(&output));
+    for name in ["o/timeline.svg", "p/f.svg"] {
+        let svg = std::fs::read_to_string(folder.0.join(name)).expect("written");
+        let bad = svg.chars().find(|c| c.is_control() && !"\n\t".contains(*c));
+        assert_eq!(bad, None, "{name}");
     }
 }
 

@@ -54,18 +54,18 @@ const ERROR_PX: &str = "distance of a pixel's content from where it should be wh
 
 /// All quantities. Those that need events have no value at the analytic level.
 pub static QUANTITIES: [Quantity; 40] = [
-    of_summary("latency_fields.mean", LATENCY, |s| s.latency_fields().mean),
-    of_summary("latency_fields.sd", LATENCY, |s| s.latency_fields().sd),
+    of_summary("latency_fields.mean", LATENCY, |s| s.latency_fields().told().mean),
+    of_summary("latency_fields.sd", LATENCY, |s| s.latency_fields().told().sd),
     of_summary("latency_fields.min", LATENCY, |s| s.latency_fields().min),
     of_summary("latency_fields.max", LATENCY, |s| s.latency_fields().max),
-    of_summary("latency_ms.mean", LATENCY, |s| s.latency_ms().mean),
-    of_summary("latency_ms.sd", LATENCY, |s| s.latency_ms().sd),
+    of_summary("latency_ms.mean", LATENCY, |s| s.latency_ms().told().mean),
+    of_summary("latency_ms.sd", LATENCY, |s| s.latency_ms().told().sd),
     of_summary("latency_ms.min", LATENCY, |s| s.latency_ms().min),
     of_summary("latency_ms.max", LATENCY, |s| s.latency_ms().max),
-    of_summary("eye_latency_ms.mean", EYE_LATENCY, |s| s.eye_latency_ms().mean),
-    of_summary("eye_latency_ms.sd", EYE_LATENCY, |s| s.eye_latency_ms().sd),
-    of_summary("eye_retraces.mean", EYE_RETRACES, |s| s.eye_retraces().mean),
-    of_summary("eye_retraces.sd", EYE_RETRACES, |s| s.eye_retraces().sd),
+    of_summary("eye_latency_ms.mean", EYE_LATENCY, |s| s.eye_latency_ms().told().mean),
+    of_summary("eye_latency_ms.sd", EYE_LATENCY, |s| s.eye_latency_ms().told().sd),
+    of_summary("eye_retraces.mean", EYE_RETRACES, |s| s.eye_retraces().told().mean),
+    of_summary("eye_retraces.sd", EYE_RETRACES, |s| s.eye_retraces().told().sd),
     // What is not a number is no value: see `Measure::of`.
     of_summary("updates_hz", "whole pictures shown a second, over the window; none where fewer than two were", |s| {
         s.updates_hz.unwrap_or(f64::NAN)

@@ -43,13 +43,21 @@ fn advice(pipeline: &str, triangles_in_time: Option<u64>) -> String {
     }
 }
 
+/// The ending of a noun behind a number.
+const fn ending(count: u64) -> &'static str {
+    if count == 1 { "" } else { "s" }
+}
+
 /// In a line.
 impl fmt::Display for TooHeavy {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { due, not_shown, triangles, advice, .. } = self;
         write!(
             f,
-            "TOO HEAVY: with {triangles} triangles {not_shown} of {due} pictures due were not shown in time; {advice}."
+            "TOO HEAVY: with {triangles} triangle{} {not_shown} of {due} picture{} due {} not shown in time; {advice}.",
+            ending(*triangles),
+            ending(*due),
+            if *not_shown == 1 { "was" } else { "were" }
         )
     }
 }

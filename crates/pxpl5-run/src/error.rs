@@ -23,7 +23,9 @@ pub enum ExperimentError {
     },
     /// Nothing but pictures of the warm-up was shown in the time given; what was observed is kept.
     #[error(
-        "only {pictures} pictures were shown in {fields} fields and the first {WARM_UP_PICTURES} are discarded; {}",
+        "only {} shown in {} and the first {WARM_UP_PICTURES} are discarded; {}",
+        were(*pictures as u64, "picture"),
+        count_of(*fields, "field"),
         advice(*needed)
     )]
     TooShort {
@@ -76,7 +78,7 @@ pub enum ExperimentError {
     #[error("{0}")]
     Stopped(String),
     /// The run ended early; what was observed until then is kept.
-    #[error("{error} ({} pictures had been shown)", partial.tally().pictures)]
+    #[error("{error} ({} had been shown)", count_of(partial.tally().pictures, "picture"))]
     Run {
         /// What the machine could not do.
         error: RunError,
@@ -87,6 +89,15 @@ pub enum ExperimentError {
 
 fn seconds(at: Time) -> f64 {
     at.since(Time::ZERO).as_ms() * 1e-3
+}
+
+/// A number of things with their name in the right form.
+fn count_of(count: u64, name: &str) -> String {
+    format!("{count} {name}{}", if count == 1 { "" } else { "s" })
+}
+
+fn were(count: u64, name: &str) -> String {
+    format!("{} {}", count_of(count, name), if count == 1 { "was" } else { "were" })
 }
 
 /// How long a run must be.

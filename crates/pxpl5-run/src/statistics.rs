@@ -1,10 +1,11 @@
 //! Mean and spread of some numbers.
 
-use serde::Serialize;
+use serde::ser::SerializeStruct;
+use serde::{Serialize, Serializer};
 
 /// How many numbers there are, their mean, sample standard deviation, least and greatest. Of none there is none of these, and
 /// of one no deviation (NaN; null in JSON).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Statistics {
     /// How many numbers there are.
     pub n: u64,
@@ -18,7 +19,37 @@ pub struct Statistics {
     pub max: f64,
 }
 
+/// A picosecond in milliseconds, and a little more: what times that are the same differ by, since they are whole picoseconds.
+const PICOSECOND_MS: f64 = 1.001e-9;
+
+/// As it is told: see [`Statistics::told`].
+impl Serialize for Statistics {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Self { n, mean, sd, min, max } = self.told();
+        let mut fields = serializer.serialize_struct("Statistics", 5)?;
+        fields.serialize_field("n", &n)?;
+        fields.serialize_field("mean", &mean)?;
+        fields.serialize_field("sd", &sd)?;
+        fields.serialize_field("min", &min)?;
+        fields.serialize_field("max", &max)?;
+        fields.end()
+    }
+}
+
 impl Statistics {
+    /// The same as reports and tables tell it: of numbers that differ by no more than a picosecond the deviation is 0, and a mean lies
+    /// between the least and the greatest, whatever the last digits of a sum are.
+    #[must_use]
+    pub fn told(self) -> Self {
+        if self.n == 0 {
+            return self;
+        }
+        let is_constant = self.max - self.min <= PICOSECOND_MS;
+        let sd = if is_constant && !self.sd.is_nan() { 0.0 } else { self.sd };
+        // Not `clamp`, which panics where a number is none.
+        Self { sd, mean: self.mean.max(self.min).min(self.max), ..self }
+    }
+
     /// Of some numbers, in any order, none of them NaN.
     #[must_use]
     pub fn of(values: impl Iterator<Item = f64>) -> Self {
@@ -71,6 +102,22 @@ mod tests {
         let Statistics { n, mean, sd, min, max } = Statistics::of(std::iter::empty());
         assert_eq!(n, 0);
         assert!([mean, sd, min, max].iter().all(|number| number.is_nan()));
+    }
+
+    /// 0.1 three times has a mean of 0.10000000000000002 and a deviation of 1.7e-17 by the formula.
+    #[test]
+    fn what_does_not_vary_is_told_without_deviation() {
+        for values in [[0.1; 3], [30.949_033_339, 30.949_033_340, 30.949_033_340]] {
+            let all = Statistics::of(values.into_iter());
+            let told = all.told();
+            assert_eq!((told.sd, told.n, told.min, told.max), (0.0, 3, all.min, all.max));
+            assert!(told.min <= told.mean && told.mean <= told.max, "{told:?}");
+            let json = serde_json::to_value(all).expect("numbers");
+            assert_eq!((&json["sd"], &json["n"]), (&0.0.into(), &3.into()));
+        }
+        let varies = Statistics::of([1.0, 1.000_001].into_iter());
+        assert_eq!(varies.told(), varies);
+        assert!(Statistics::of(std::iter::once(1.0)).told().sd.is_nan());
     }
 
     #[test]

@@ -87,7 +87,8 @@ fn escape(text: &str) -> String {
     escaped
 }
 
-const fn is_allowed(c: char) -> bool {
+/// Returns true for characters that an XML document may hold.
+pub(crate) const fn is_allowed(c: char) -> bool {
     matches!(c, '\n' | '\t') || !(c.is_ascii_control() || matches!(c, '\u{80}'..='\u{9f}' | '\u{fffe}' | '\u{ffff}'))
 }
 

@@ -263,6 +263,9 @@ fn pseudo(word: &str, operands: &str) -> Option<Instructions> {
     let parts = operand::split(operands);
     match (name, parts.as_slice()) {
         ("nop", []) if prefix.is_empty() => Some(one("shl", "r0, r0, r0")),
+        ("nop", found) if prefix.is_empty() => {
+            Some(Err(format!("`nop` takes no operand, found {} (`{operands}`)", found.len())))
+        }
         ("mov", [from, to]) if prefix.is_empty() => Some(mov(from, to)),
         ("fmov.ss" | "fmov.dd", [from, to]) => {
             Some(one(&format!("{prefix}{pipe}fiadd{}", &name[4..]), &format!("{from}, f0, {to}")))

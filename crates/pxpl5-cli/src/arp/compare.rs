@@ -3,6 +3,7 @@
 use super::run::widths;
 use super::settings::WalkArgs;
 use crate::error::CliError;
+use crate::numbers::count_of;
 use crate::output::OutputFolder;
 use crate::terminal::{advance, complain, print, progress};
 use clap::Args;
@@ -75,7 +76,12 @@ const COLUMNS: [Column; 10] = [
 ];
 
 fn text(comparison: &ArpComparison) -> String {
-    let mut text = format!("{}: {} frames at {} m/s\n\n", comparison.scene, comparison.frames, comparison.m_per_s);
+    let mut text = format!(
+        "{}: {} at {} m/s\n\n",
+        comparison.scene,
+        count_of(comparison.frames as u64, "frame"),
+        comparison.m_per_s
+    );
     let heads = COLUMNS.map(|(name, _)| name.to_owned());
     let rows = comparison.rows.iter().map(|row| COLUMNS.map(|(_, cell)| cell(row)));
     let lines: Vec<[String; COLUMNS.len()]> = std::iter::once(heads).chain(rows).collect();

@@ -2,6 +2,7 @@
 
 use super::settings::{WalkArgs, put};
 use crate::error::CliError;
+use crate::numbers::count_of;
 use crate::output::OutputFolder;
 use crate::terminal::{advance, print, progress};
 use clap::Args;
@@ -87,11 +88,11 @@ fn text(outcome: &WalkOutcome, out: Option<&Path>) -> String {
     let walk = &outcome.report;
     let report = &walk.report;
     let mut text = format!(
-        "{} ({} triangles in {} segments): {} frames at {} m/s, policy {}\n\n{:>6} {:>10} {:>10} {:>10} {:>8} {:>12}\n",
+        "{} ({} in {}): {} at {} m/s, policy {}\n\n{:>6} {:>10} {:>10} {:>10} {:>8} {:>12}\n",
         walk.scene,
-        walk.triangles,
-        walk.segments,
-        walk.frames,
+        count_of(walk.triangles as u64, "triangle"),
+        count_of(walk.segments as u64, "segment"),
+        count_of(walk.frames as u64, "frame"),
         walk.m_per_s,
         report.priority.policy,
         "memory",

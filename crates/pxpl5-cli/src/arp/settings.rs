@@ -8,6 +8,7 @@ use crate::output::OutputFolder;
 use crate::scenes;
 use crate::terminal::warn;
 use clap::Args;
+use parameters::text_of;
 use pxpl5::arp::Plan;
 use pxpl5::arp::address_recalculation::Lens;
 use pxpl5::arp::pictures::Picture;
@@ -107,9 +108,10 @@ impl WalkArgs {
         let mut scene = "gallery".to_owned();
         if let Some(path) = &self.file {
             let place = path.display().to_string();
-            let text = std::fs::read_to_string(path)
-                .map_err(|error| CliError::failure(format!("{place}: cannot be read: {error}")))?;
-            let file = toml::from_str(&text).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
+            let bytes =
+                std::fs::read(path).map_err(|error| CliError::failure(format!("{place}: cannot be read: {error}")))?;
+            let text = text_of(&bytes).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
+            let file = toml::from_str(text).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
             for (path, value) in leaves(file) {
                 match path.as_str() {
                     "scene" => scene = plain(&value),

@@ -1,6 +1,7 @@
 //! The pictures of all pipelines beside each other.
 
 use crate::error::CliError;
+use crate::numbers::count_of;
 use crate::output::OutputFolder;
 use crate::run::INCOMPLETE;
 use image::RgbImage;
@@ -91,7 +92,8 @@ fn caption(row: &ComparisonRow, last: &LastPicture) -> String {
 fn about(comparison: &Comparison) -> Vec<String> {
     let Comparison { triangles, machine, fields, seeds, pipelines, .. } = comparison;
     let seed = seeds.first().copied().unwrap_or_default();
-    let mut about = vec![format!("{triangles} triangles on {machine}, {fields} fields, seed {seed}")];
+    let (triangles, fields) = (count_of(*triangles as u64, "triangle"), count_of(*fields, "field"));
+    let mut about = vec![format!("{triangles} on {machine}, {fields}, seed {seed}")];
     let failed = pipelines.iter().filter(|row| row.picture.is_none());
     about.extend(failed.filter_map(|row| Some(format!("{}: {}", row.pipeline, row.failure.as_ref()?))));
     about

@@ -7,6 +7,7 @@ mod table;
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::Work;
+use crate::numbers::whole;
 use crate::output::OutputFolder;
 use crate::scenes;
 use crate::settings::SettingArgs;
@@ -35,7 +36,7 @@ pub(crate) struct CompareArgs {
     only: Vec<String>,
     /// Seeds of tracker, host and synthetic motion: so many runs of each pipeline, from --seed on. The interval of a mean needs two
     /// or more.
-    #[arg(long, default_value_t = LEAST_SEEDS as u64, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000))]
+    #[arg(long, default_value_t = LEAST_SEEDS as u64, value_name = "N", value_parser = whole::<u64>(1, 1_000))]
     seeds: u64,
     /// Do not search for the most triangles that each pipeline can draw in time.
     #[arg(long, alias = "no-triangles")]

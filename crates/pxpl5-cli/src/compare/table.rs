@@ -1,5 +1,6 @@
 //! The table on the terminal.
 
+use crate::numbers::count_of;
 use pxpl5::Cause;
 use pxpl5::compare::{Comparison, ComparisonRow, MeanInterval};
 use std::fmt::Write as _;
@@ -32,7 +33,7 @@ pub(super) fn text(comparison: &Comparison) -> String {
     text.push_str(&causes(comparison));
     text.push_str(
         "\nto light: from the head's pose to the light of the picture's middle; predicts: from the newest measurement to the instant that a\n\
-         picture is drawn for; 95 %: where the mean lies, by the seeds; n: judged pixels; best with: the predictor\n\
+         picture is drawn for; updates: new pictures a second, of frameless rendering passes over all blocks of the screen (docs/results.md); 95 %: where the mean lies, by the seeds; n: judged pixels; best with: the predictor\n\
          with the least error of the first seed; - : nothing to judge.\n",
     );
     text
@@ -42,11 +43,13 @@ fn heading(comparison: &Comparison) -> String {
     let Comparison { scene, triangles, machine, boards, fields, seeds, head, .. } = comparison;
     let head: Vec<String> = head.iter().map(|(key, value)| format!("{key} {value}")).collect();
     format!(
-        "{scene} ({triangles} triangles) on {machine} ({} GPs, {} renderers); {}; {fields} fields, {} seeds\n",
-        boards[0],
-        boards[1],
+        "{scene} ({}) on {machine} ({}, {}); {}; {}, {}\n",
+        count_of(*triangles as u64, "triangle"),
+        count_of(boards[0] as u64, "GP"),
+        count_of(boards[1] as u64, "renderer"),
         head.join(", "),
-        seeds.len()
+        count_of(*fields, "field"),
+        count_of(seeds.len() as u64, "seed")
     )
 }
 

@@ -18,8 +18,10 @@ use crate::terminal::{print, warn};
 use crate::too_heavy::too_heavy;
 use clap::Args;
 use command::split;
+use parameters::text_of;
 use pxpl5::Workstation;
 use session::Session;
+use std::fmt::Display;
 use std::path::PathBuf;
 
 /// Run one experiment in pieces and look at its boards between them.
@@ -66,8 +68,9 @@ fn script(commands: Option<String>, file: Option<PathBuf>) -> Result<Option<Vec<
     let text = match file {
         None => commands,
         Some(path) => {
-            let text = std::fs::read_to_string(&path);
-            Some(text.map_err(|error| CliError::failure(format!("{}: {error}", path.display())))?)
+            let failed = |error: &dyn Display| CliError::failure(format!("{}: {error}", path.display()));
+            let bytes = std::fs::read(&path).map_err(|error| failed(&error))?;
+            Some(text_of(&bytes).map_err(|error| failed(&error))?.to_owned())
         }
     };
     Ok(text.map(|text| split(&text)))

@@ -145,7 +145,8 @@ fn read(file: &Path) -> Result<Vec<u8>, String> {
 }
 
 fn text_of(file: &Path, bytes: Vec<u8>) -> Result<String, String> {
-    String::from_utf8(bytes).map_err(|e| format!("{}: not UTF-8 text: {e}", file.display()))
+    let text = parameters::text_of(&bytes).map_err(|error| format!("{}: {error}", file.display()))?;
+    Ok(text.to_owned())
 }
 
 /// A program and its source, whose comments may be in any encoding.

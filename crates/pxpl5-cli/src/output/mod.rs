@@ -292,10 +292,16 @@ fn folder_of(file: &Path) -> &Path {
 /// A timeline as SVG, with its origin as a comment behind the XML declaration, if it has one.
 pub(crate) fn timeline(outcome: &Outcome, report: &Report) -> String {
     let svg = pxpl5::timeline::svg(outcome, &TimelineOptions::default());
+    let origin: String = origin_lines(report, "").chars().filter(|c| *c == '\n' || !is_forbidden(*c)).collect();
     // Two hyphens would end the comment.
-    let comment = format!("<!--\n{}-->\n", origin_lines(report, "").replace("--", "- -"));
+    let comment = format!("<!--\n{}-->\n", origin.replace("--", "- -"));
     let at = if svg.starts_with("<?xml") { svg.find('\n').map_or(0, |end| end + 1) } else { 0 };
     format!("{}{comment}{}", &svg[..at], &svg[at..])
+}
+
+/// Returns true for characters that no XML document may hold, or only as references.
+fn is_forbidden(c: char) -> bool {
+    c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}')
 }
 
 /// A picture as PNG, with its origin, and whether it is complete, as text chunks.

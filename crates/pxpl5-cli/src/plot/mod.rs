@@ -5,6 +5,7 @@ mod formats;
 mod question;
 
 use crate::error::CliError;
+use crate::numbers::{are, count_of};
 use crate::output::OutputFolder;
 use crate::rows::{self, ResultRows, RowsKind};
 use crate::terminal::{complain, print, warn};
@@ -121,19 +122,23 @@ pub(crate) fn run(args: PlotArgs) -> Result<(), CliError> {
     let missing: usize = groups.iter().map(|group| group.missing).sum();
     if groups.iter().all(|group| group.n == 0) {
         let y = &args.y;
-        return Err(CliError::failure(format!("none of {missing} rows has a number under {y}: nothing was drawn")));
+        return Err(CliError::failure(format!(
+            "none of {} has a number under {y}: nothing was drawn",
+            count_of(missing as u64, "row")
+        )));
     }
     let svg = drawing::chart(&args, &groups).svg();
     let figure = formats::bytes(&svg, format)?;
     write(&args, &results, (&figure, &csv(&question, &groups)))?;
     if missing > 0 {
-        complain(&format!("pxpl5: {missing} rows have no number under {} and are left out of the means\n", args.y));
+        let rows = count_of(missing as u64, "row");
+        complain(&format!("pxpl5: {rows} without a number under {}: left out of the means\n", args.y));
     }
     if args.quiet {
         return Ok(());
     }
     let places = groups.iter().filter(|group| group.n > 0).count();
-    print(&format!("{places} places are drawn in {}, the numbers are beside it.\n", args.out.display()))
+    print(&format!("{} drawn in {}; the numbers are beside it.\n", are(places as u64, "place"), args.out.display()))
 }
 
 /// The question with the names of today in place of those that columns of comparisons once had; says so.

@@ -2,6 +2,7 @@
 
 use super::settings::VolumeSettingArgs;
 use crate::error::CliError;
+use crate::numbers::{count_of, whole};
 use crate::output::OutputFolder;
 use crate::terminal::{advance, print, progress};
 use clap::Args;
@@ -26,7 +27,7 @@ pub(super) struct CompareArgs {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Width and height of each picture, pixels.
-    #[arg(long, value_name = "PX", default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    #[arg(long, value_name = "PX", default_value_t = 256, value_parser = whole::<u32>(1, 4096))]
     size: u32,
     /// Print JSON: an object whose `variants` lists a row each.
     #[arg(long)]
@@ -106,7 +107,12 @@ fn rows_csv(comparison: &VolumeComparison) -> String {
 }
 
 fn text(comparison: &VolumeComparison) -> String {
-    let mut text = format!("{} ({} primitives), seed {}\n\n", comparison.scene, comparison.triangles, comparison.seed);
+    let mut text = format!(
+        "{} ({}), seed {}\n\n",
+        comparison.scene,
+        count_of(comparison.triangles as u64, "primitive"),
+        comparison.seed
+    );
     let rows: Vec<[String; COLUMNS.len()]> =
         comparison.variants.iter().map(|row| COLUMNS.map(|(_, cell)| cell(row))).collect();
     let widths: Vec<usize> = (0..COLUMNS.len())

@@ -2,6 +2,7 @@
 
 use super::settings::{VolumeSettingArgs, origin};
 use crate::error::CliError;
+use crate::numbers::{count_of, whole};
 use crate::output::OutputFolder;
 use crate::terminal::{print, progress};
 use clap::Args;
@@ -26,7 +27,7 @@ pub(super) struct HeadArgs {
     #[arg(long, value_name = "S", requires = "head", default_value_t = 2.0, allow_negative_numbers = true)]
     seconds: f64,
     /// Pictures of the film; errors are taken at eight times as many instants.
-    #[arg(long, value_name = "N", requires = "head", default_value_t = 24, value_parser = clap::value_parser!(u32).range(2..=2000))]
+    #[arg(long, value_name = "N", requires = "head", default_value_t = 24, value_parser = whole::<u32>(2, 2000))]
     frames: u32,
 }
 
@@ -132,12 +133,12 @@ fn mean(study: &HeadStudy, value: impl Fn(&HeadSample) -> Option<f64>) -> f64 {
 fn text(study: &HeadStudy, motion: &str, out: &Path) -> String {
     let own = study.volume_latency_ms.map_or_else(|| "unknown".to_owned(), |ms| format!("{ms:.1} ms"));
     format!(
-        "{} before a head that moves as {motion}, {} instants\n\
+        "{} before a head that moves as {motion}, {}\n\
          head-mounted display, {:.1} ms late ({}): {:.3} degrees on the mean, {:.1} of its pixels, {:.1} mm\n\
          volume: voxels {:.4} degrees off on the mean, {:.3} mm; a dither cell {:.3} degrees; what changes in it shows {own} later\n\
          {}: report.json, errors.csv, errors.svg, eyes.png.\n",
         study.scene,
-        study.samples.len(),
+        count_of(study.samples.len() as u64, "instant"),
         study.latency_ms,
         study.latency_is,
         mean(study, |sample| sample.hmd_mean_deg),

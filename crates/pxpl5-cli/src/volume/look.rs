@@ -4,6 +4,7 @@ use super::heads::{self, HeadArgs};
 use super::settings::{VolumeSettingArgs, origin};
 use super::slices::{say, write};
 use crate::error::CliError;
+use crate::numbers::{count_of, whole};
 use crate::output::OutputFile;
 use crate::terminal::progress;
 use clap::Args;
@@ -25,7 +26,7 @@ struct EyeArgs {
     #[arg(long, value_name = "RADII", default_value_t = 4.0, allow_negative_numbers = true)]
     distance: f64,
     /// Width and height of the picture, pixels.
-    #[arg(long, value_name = "PX", default_value_t = 512, value_parser = clap::value_parser!(u32).range(1..=8192))]
+    #[arg(long, value_name = "PX", default_value_t = 512, value_parser = whole::<u32>(1, 8192))]
     size: u32,
     /// Leave out what lies between two angles around the axis from +x to +z, degrees: a cutaway.
     #[arg(long, value_name = "FROM:TO", allow_hyphen_values = true, value_parser = cut)]
@@ -75,10 +76,10 @@ pub(super) struct FilmArgs {
     #[command(flatten)]
     eye: EyeArgs,
     /// Pictures of a turn.
-    #[arg(long, value_name = "N", default_value_t = 72, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(long, value_name = "N", default_value_t = 72, value_parser = whole::<u32>(1, 10_000))]
     frames: u32,
     /// Pictures a second.
-    #[arg(long, value_name = "HZ", default_value_t = 24, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    #[arg(long, value_name = "HZ", default_value_t = 24, value_parser = whole::<u16>(1, 1000))]
     rate: u16,
     /// The file to write (PNG).
     #[arg(long, value_name = "FILE")]
@@ -140,5 +141,9 @@ pub(super) fn film(args: FilmArgs) -> Result<(), CliError> {
     bar.finish_and_clear();
     animation.finish().map_err(CliError::failure)?;
     file.write(&bytes)?;
-    say(args.volume.settings.quiet, &args.out, &format!("{} pictures of a turn around {}", args.frames, volume.scene))
+    say(
+        args.volume.settings.quiet,
+        &args.out,
+        &format!("{} of a turn around {}", count_of(u64::from(args.frames), "picture"), volume.scene),
+    )
 }

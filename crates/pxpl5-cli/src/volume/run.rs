@@ -2,6 +2,7 @@
 
 use super::settings::{VolumeSettingArgs, png};
 use crate::error::CliError;
+use crate::numbers::count_of;
 use crate::output::OutputFolder;
 use crate::terminal::print;
 use clap::Args;
@@ -156,11 +157,11 @@ fn volumes_a_second(report: &VolumeReport) -> String {
 fn text(report: &VolumeReport, out: Option<&std::path::Path>) -> String {
     let display = &report.display;
     let mut text = format!(
-        "{} ({} primitives) on {}: {} slices of {} x {}, {} rpm\nclip {}, projection {}, seed {}\n\n",
+        "{} ({}) on {}: {} of {} x {}, {} rpm\nclip {}, projection {}, seed {}\n\n",
         report.scene,
-        report.triangles,
+        count_of(report.triangles as u64, "primitive"),
         display.name,
-        display.slices,
+        count_of(display.slices as u64, "slice"),
         display.width,
         display.height,
         display.spin_rpm,
@@ -189,7 +190,7 @@ fn text(report: &VolumeReport, out: Option<&std::path::Path>) -> String {
         ),
         ("lit voxels", report.lit_voxels.to_string()),
         ("connected", format!("{:.1} %", report.connected_percent)),
-        ("outside the volume", format!("{} primitives with a corner there", report.outside_volume)),
+        ("outside the volume", format!("{} with a corner there", count_of(report.outside_volume as u64, "primitive"))),
         ("model of time", model_of_time(report)),
         ("volumes a second", volumes_a_second(report)),
         ("volume hash", report.volume_hash.clone()),

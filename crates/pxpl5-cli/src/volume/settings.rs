@@ -3,6 +3,7 @@
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::{Estimate, VolumeWork};
+use crate::numbers::whole;
 use crate::scenes;
 use crate::terminal::{advance, progress, warn};
 use clap::Args;
@@ -24,7 +25,7 @@ pub(super) struct VolumeSettingArgs {
     #[arg(long, value_name = "NAME|FILE", default_value = "mig")]
     scene: String,
     /// Decimate the scene to at most N primitives, keeping its shape.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=4_294_967_295))]
+    #[arg(long, value_name = "N", value_parser = whole::<u64>(1, 4_294_967_295))]
     triangles: Option<u64>,
     #[command(flatten)]
     pub(super) settings: SettingOptions,
@@ -60,7 +61,7 @@ pub(super) struct SettingOptions {
     #[arg(long = "set", value_name = "PATH=VALUE")]
     sets: Vec<String>,
     /// Worker threads; default: one a core.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = whole::<u64>(1, 1024))]
     threads: Option<u64>,
     #[command(flatten)]
     pub(super) budget: BudgetArgs,

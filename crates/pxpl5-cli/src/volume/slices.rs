@@ -2,6 +2,7 @@
 
 use super::settings::{VolumeSettingArgs, png};
 use crate::error::CliError;
+use crate::numbers::count_of;
 use crate::output::OutputFile;
 use crate::terminal::print;
 use clap::{Args, ValueEnum};
@@ -60,7 +61,7 @@ pub(super) fn sheet(args: SheetArgs) -> Result<(), CliError> {
     let volume = args.volume.draw(&args.volume.settings.gather()?)?;
     let slices = volume.frame.planes.slices();
     write(file, &sheet_of(&volume), &volume)?;
-    say(args.volume.settings.quiet, &args.out, &format!("{slices} slices of {}", volume.scene))
+    say(args.volume.settings.quiet, &args.out, &format!("{} of {}", count_of(u64::from(slices), "slice"), volume.scene))
 }
 
 pub(super) fn slice(args: SliceArgs) -> Result<(), CliError> {

@@ -2,6 +2,7 @@
 
 use crate::error::CliError;
 use crate::leaves::{leaves, plain};
+use parameters::text_of;
 use pxpl5::sweep::{Axis, MAX_POINTS, Values};
 use pxpl5::volume::VolumeSettings;
 use std::collections::BTreeMap;
@@ -38,9 +39,10 @@ impl VolumeSpace {
     /// Reads a file; `sets` are settings of the command line, which take the place of the file's.
     pub(super) fn load(path: &Path, sets: &[String]) -> Result<Self, CliError> {
         let place = path.display().to_string();
-        let text = std::fs::read_to_string(path)
-            .map_err(|error| CliError::failure(format!("{place}: cannot be read: {error}")))?;
-        let file: Table = toml::from_str(&text).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
+        let bytes =
+            std::fs::read(path).map_err(|error| CliError::failure(format!("{place}: cannot be read: {error}")))?;
+        let text = text_of(&bytes).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
+        let file: Table = toml::from_str(text).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
         Self::read(file, sets, &place)
     }
 

@@ -6,6 +6,7 @@ use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::{Estimate, VolumeWork};
 use crate::leaves::plain;
+use crate::numbers::whole;
 use crate::sweep::{shard, tell_failures, tell_place};
 use crate::terminal::progress;
 use clap::Args;
@@ -47,7 +48,7 @@ pub(super) struct SweepArgs {
     #[arg(long, value_name = "I/N", value_parser = shard, default_value = "1/1")]
     shard: Shard,
     /// Worker threads of each volume; default: one a core. Volumes follow each other.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = whole::<u64>(1, 1024))]
     threads: Option<u64>,
     /// Set any key of the file for all points; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]

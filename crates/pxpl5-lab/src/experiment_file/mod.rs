@@ -120,10 +120,11 @@ impl ExperimentFile {
     pub fn and_load(self, path: impl AsRef<Path>) -> Result<Self, FileError> {
         let path = path.as_ref();
         let file = path.display().to_string();
-        let text = std::fs::read_to_string(path)
-            .map_err(|error| FileError::Io { file: file.clone(), reason: error.to_string() })?;
+        let bytes =
+            std::fs::read(path).map_err(|error| FileError::Io { file: file.clone(), reason: error.to_string() })?;
+        let text = parameters::text_of(&bytes).map_err(|reason| FileError::Syntax { place: file.clone(), reason })?;
         let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
-        self.parse_in(&text, &file, &folder)
+        self.parse_in(text, &file, &folder)
     }
 
     /// Reads text; `name` stands for it in errors.

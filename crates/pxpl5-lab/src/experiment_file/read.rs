@@ -34,7 +34,8 @@ impl ExperimentFile {
     pub(super) fn parameter_value(&self, path: &str, setting: &Setting) -> Result<Number, FileError> {
         match &setting.value {
             Value::Float(number) if number.is_finite() => Ok(Number::Real(*number)),
-            _ => Ok(Number::Whole(self.integer(path, 0..=u64::MAX)?.unwrap_or_default())),
+            // Whole numbers of TOML go so far.
+            _ => Ok(Number::Whole(self.integer(path, 0..=i64::MAX as u64)?.unwrap_or_default())),
         }
     }
 

@@ -44,7 +44,7 @@ impl SceneChoice {
     ///
     /// # Errors
     ///
-    /// [`FileError`] for an unknown scene, an unusable file, or more primitives to keep than there are.
+    /// [`FileError`] for an unknown scene or an unusable file.
     pub fn load(&self) -> Result<Arc<Scene>, FileError> {
         self.prepared(Arc::new(self.load_whole()?))
     }
@@ -65,9 +65,10 @@ impl SceneChoice {
 
     /// The whole scene decimated and moved as chosen.
     pub(crate) fn prepared(&self, whole: Arc<Scene>) -> Result<Arc<Scene>, FileError> {
+        // Of a scene that has no more than so many, all are drawn.
         let scene = match self.triangles {
-            Some(n) => Arc::new(whole.decimated(n)?),
-            None => whole,
+            Some(n) if n < whole.triangles().len() + whole.spheres().len() => Arc::new(whole.decimated(n)?),
+            _ => whole,
         };
         if self.motion == MotionChoice::default() {
             return Ok(scene);

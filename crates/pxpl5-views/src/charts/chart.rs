@@ -2,6 +2,7 @@
 
 use super::look::Look;
 use super::scale::{Axis, AxisScale};
+use crate::markup::is_allowed;
 use plotters::backend::SVGBackend;
 use plotters::chart::{ChartBuilder, ChartContext};
 use plotters::coord::Shift;
@@ -142,6 +143,8 @@ impl Chart {
         }
         let inner = format!("width=\"{}\" height=\"{}\"", measures.width, measures.height);
         let (width, height, unit) = measures.outer;
+        // plotters takes every character of a label.
+        let text: String = text.chars().filter(|c| is_allowed(*c)).collect();
         text.replacen(&inner, &format!("width=\"{width}{unit}\" height=\"{height}{unit}\""), 1)
     }
 

@@ -1,0 +1,31 @@
+//! Whole numbers of the command line: what is wrong with one says which there can be.
+
+/// Returns a parser of whole numbers from `low` to `high`.
+pub(crate) fn whole<T: TryFrom<u64>>(low: u64, high: u64) -> impl Fn(&str) -> Result<T, String> + Clone {
+    move |text| {
+        let number = text.parse().ok().filter(|number: &u64| (low..=high).contains(number));
+        let number = number.and_then(|number| T::try_from(number).ok());
+        number.ok_or_else(|| format!("expected a whole number from {low} to {high}, found {text}"))
+    }
+}
+
+/// Reads a whole number that an experiment file could have; which ones make sense is known there.
+pub(crate) fn signed(text: &str) -> Result<i64, String> {
+    text.parse().map_err(|_| format!("expected a whole number of at most {}, found {text}", i64::MAX))
+}
+
+/// A number of things with their name in the right form: `1 triangle`, `2 triangles`.
+pub(crate) fn count_of(count: impl TryInto<u64>, name: &str) -> String {
+    let count = count.try_into().unwrap_or(u64::MAX);
+    format!("{count} {name}{}", if count == 1 { "" } else { "s" })
+}
+
+/// The same with its verb: `1 point is`, `2 points are`.
+pub(crate) fn are(count: u64, name: &str) -> String {
+    format!("{} {}", count_of(count, name), if count == 1 { "is" } else { "are" })
+}
+
+/// The same of what is over: `1 size was`, `2 sizes were`.
+pub(crate) fn were(count: u64, name: &str) -> String {
+    format!("{} {}", count_of(count, name), if count == 1 { "was" } else { "were" })
+}
