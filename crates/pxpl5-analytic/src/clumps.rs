@@ -4,20 +4,21 @@ use super::model::{MOST_CHANNELS, PerTriangle, REGIONS, SlatsModel};
 use super::renderer::{Array, Commands, Costs, Fifos, Times};
 use slats::CLUMP;
 
-/// All clumps; returns when the last one was accepted.
+/// All clumps; returns when the last one was accepted, and when the processor had handed it over.
 #[inline(always)]
 pub(super) fn render<const N: usize>(
     models: &[SlatsModel; N],
     arrays: &mut [Array<N>],
     triangles: f64,
     each: PerTriangle,
-) -> Times<N> {
+) -> [Times<N>; 2] {
     let clumps = (triangles / CLUMP as f64).ceil().max(1.0) as usize;
     let size = |clump: usize| (triangles - (clump * CLUMP) as f64).min(CLUMP as f64);
     let sending = Sending::of(models);
     let message = Times::each(|i| models[i].message_ns);
     let mut clump = Clump::first(models, &sending, size(0), each);
-    let mut chain = Chain::begin(Times::each(|i| models[i].begin_ns));
+    // Once a field the host's next view comes, which the processor receives while it transforms.
+    let mut chain = Chain::begin(Times::each(|i| models[i].begin_ns + models[i].message_ns));
     for n in 0..clumps {
         // All between the first and the last are alike.
         if n == 1 || n > 1 && size(n) != size(n - 1) {
@@ -29,7 +30,7 @@ pub(super) fn render<const N: usize>(
         chain.send(arrays, &sending, &clump);
         clump.behind_last = clump.behind_itself;
     }
-    chain.accepted
+    [chain.accepted, chain.cpu]
 }
 
 /// What messages cost that does not depend on what they hold.

@@ -35,13 +35,21 @@ impl Queue {
         self.0 |= (Self::ONE | board) << (Self::BITS * self.len());
     }
 
-    /// The last one first.
-    pub(super) fn reversed(self) -> Self {
-        let copies = (0..self.len()).rev().map(|n| self.0 >> (Self::BITS * n) & Self::RIGHT != 0);
-        copies.fold(Self::default(), |mut all, to_right| {
-            all.push(to_right);
-            all
-        })
+    /// The same copies to left and right by turns, as long as there are both: the first one's board first, or the right one.
+    pub(super) fn by_turns(self, begins_right: bool) -> Self {
+        let copies = (0..self.len()).map(|n| self.0 >> (Self::BITS * n) & Self::RIGHT != 0);
+        let mut left = [0; 2];
+        copies.for_each(|to_right| left[usize::from(to_right)] += 1);
+        let mut next = if begins_right { left[1] > 0 } else { self.0 & Self::RIGHT != 0 };
+        let mut all = Self::default();
+        while left != [0; 2] {
+            if left[usize::from(next)] > 0 {
+                left[usize::from(next)] -= 1;
+                all.push(next);
+            }
+            next = !next;
+        }
+        all
     }
 }
 
@@ -228,10 +236,13 @@ mod tests {
     }
 
     #[test]
-    fn a_queue_has_its_copies_in_order_and_turned_round() {
+    fn a_queue_has_its_copies_in_order_and_by_turns() {
         let mut queue = Queue::default();
-        [true, false, false].into_iter().for_each(|right| queue.push(right));
-        assert_eq!((queue, queue.len()), (Queue(0b01_01_11), 3));
-        assert_eq!(queue.reversed(), Queue(0b11_01_01));
+        [false, false, true].into_iter().for_each(|right| queue.push(right));
+        assert_eq!((queue, queue.len()), (Queue(0b11_01_01), 3));
+        assert_eq!([queue.by_turns(false), queue.by_turns(true)], [Queue(0b01_11_01), Queue(0b01_01_11)]);
+        let mut one_side = Queue::default();
+        one_side.push(false);
+        assert_eq!(one_side.by_turns(true), one_side);
     }
 }

@@ -153,14 +153,14 @@ impl SlatsModel {
     pub(super) fn layout(&self, wanted: impl Fn(usize) -> bool) -> [Queue; MOST_RENDERERS] {
         let mut queues = [Queue::default(); MOST_RENDERERS];
         let per_half = REGIONS / 4;
-        // Left and right eye by turns; the odd renderers of a split copy begin right.
+        // Left and right eye by turns; the odd renderers of a split copy begin right if they can.
         let regions = (0..REGIONS).zip((0..self.renderers).cycle());
         for (region, renderer) in regions.filter(|(region, _)| wanted(*region)) {
             let right = (region / per_half) % 2 == 1;
             queues[renderer].push(right);
         }
-        for queue in queues.iter_mut().take(self.renderers).skip(1).step_by(2).filter(|_| self.split) {
-            *queue = queue.reversed();
+        for (renderer, queue) in queues.iter_mut().enumerate().take(self.renderers) {
+            *queue = queue.by_turns(self.split && renderer % 2 == 1);
         }
         queues
     }

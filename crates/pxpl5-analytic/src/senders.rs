@@ -109,8 +109,9 @@ impl Clumps {
 /// Field regions of an eye beside each other.
 const COLUMNS: usize = REGIONS / 4;
 
-/// Sends all clumps to renderers that are free as `arrays` says; returns when the first GP may order the copies.
-pub(super) fn render(model: &SlatsModel, arrays: &mut [Array<1>], clumps: &Clumps) -> f64 {
+/// Sends all clumps to renderers that are free as `arrays` says; returns when the last one was accepted, and when
+/// the first GP has nothing else to do and knows it.
+pub(super) fn render(model: &SlatsModel, arrays: &mut [Array<1>], clumps: &Clumps) -> [f64; 2] {
     let mut ring = Ring::new(model, arrays);
     let mut senders = ring.begin(clumps);
     while let Some(place) = ring.first_head(&senders) {
@@ -120,7 +121,8 @@ pub(super) fn render(model: &SlatsModel, arrays: &mut [Array<1>], clumps: &Clump
         array.free = Times::all(renderer.free_ns);
         array.released = Times::all(renderer.released_ns);
     }
-    ring.all_done_ns(&senders)
+    let accepted_ns = senders.iter().fold(0.0, |last, sender| later(last, sender.accepted_ns));
+    [accepted_ns, ring.all_done_ns(&senders)]
 }
 
 /// Commands in a FIFO's past: their words made room for the words a FIFO's depth behind them.
@@ -220,6 +222,8 @@ impl<'a> Ring<'a> {
     fn begin<'c>(&mut self, clumps: &'c Clumps) -> Vec<Sender<'c>> {
         let model = self.model;
         let mut begin_ns = vec![0.0; model.gps];
+        // The host's next view, which the first GP receives while it transforms.
+        begin_ns[0] = model.message_ns;
         let mut accepted_ns = 0.0;
         if !self.clears {
             accepted_ns = self.clear_all();
@@ -231,7 +235,7 @@ impl<'a> Ring<'a> {
             }
             // The first GP goes on when it has paid for both chains, and sends when both have been accepted.
             accepted_ns = begin_ns[1..].iter().fold(accepted_ns, |last, begin| later(last, begin - model.message_ns));
-            begin_ns[0] = 2.0 * model.message_ns;
+            begin_ns[0] += 2.0 * model.message_ns;
         }
         let sender = |(gp, clumps): (usize, &'c Vec<Clump>)| {
             let mut sender = Sender {
@@ -381,7 +385,7 @@ impl<'a> Ring<'a> {
         let mut arrivals: Vec<f64> = others.iter().map(arrival).collect();
         arrivals.sort_by(f64::total_cmp);
         let told = arrivals.into_iter().fold(0.0, |done, arrival| later(done, arrival) + model.message_ns);
-        later(later(first.accepted_ns, first.cpu_ns), told)
+        later(first.cpu_ns, told)
     }
 }
 

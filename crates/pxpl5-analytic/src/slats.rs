@@ -29,8 +29,8 @@ impl SlatsModel {
         let mut arrays = [Array::idle(); MOST_RENDERERS];
         let arrays = &mut arrays[..self.renderers];
         begin(models, arrays);
-        let rendered = senders::render(self, arrays, clumps);
-        let [times] = end(models, arrays, Times::all(rendered));
+        let done = senders::render(self, arrays, clumps).map(Times::all);
+        let [times] = end(models, arrays, done);
         times
     }
 
@@ -67,8 +67,8 @@ fn fields_at_once<const N: usize>(models: &[SlatsModel; N], triangles: f64, each
     let mut arrays = [Array::idle(); MOST_RENDERERS];
     let arrays = &mut arrays[..models[0].renderers];
     begin(models, arrays);
-    let rendered = clumps::render(models, arrays, triangles, each);
-    end(models, arrays, rendered)
+    let done = clumps::render(models, arrays, triangles, each);
+    end(models, arrays, done)
 }
 
 /// Renderers begin with the bottom regions of the field before, where copies are split.
@@ -80,18 +80,24 @@ fn begin<const N: usize>(models: &[SlatsModel; N], arrays: &mut [Array<N>]) {
     }
 }
 
-/// The copies of a field whose last clump was accepted at an instant.
+/// The copies of a field whose last clump was accepted at an instant, and whose first GP had nothing else to do from another one on.
 #[inline(always)]
-fn end<const N: usize>(models: &[SlatsModel; N], arrays: &mut [Array<N>], rendered: Times<N>) -> [FieldTimes; N] {
+fn end<const N: usize>(
+    models: &[SlatsModel; N],
+    arrays: &mut [Array<N>],
+    [rendered, cpu]: [Times<N>; 2],
+) -> [FieldTimes; N] {
     let is_split = models[0].split;
     let of_top = models[0].layout(|region| !is_split || region < REGIONS / 2);
     let of_bottom = models[0].layout(|region| is_split && region >= REGIONS / 2);
     let message = Times::each(|i| models[i].message_ns);
-    let top = copy(models, arrays, rendered + message, &of_top);
+    // The chain of orders is made while the clumps go out, and follows them.
+    let ordered = rendered.later(cpu + message);
+    let top = copy(models, arrays, ordered, &of_top);
     // No closure around lanes: what is not inlined is compiled for any processor.
     let bottom = if is_split {
         let retrace = Times::each(|i| models[i].field_ns);
-        Some(copy(models, arrays, retrace.later(rendered + message + message), &of_bottom))
+        Some(copy(models, arrays, retrace.later(ordered + message), &of_bottom))
     } else {
         None
     };

@@ -5,23 +5,38 @@ use crate::output::OutputFile;
 use crate::terminal::{advance, print, progress};
 use clap::Args;
 use pxpl5::growth;
-use pxpl5::levels::{LevelReport, compare_with};
+use pxpl5::levels::{LevelQuery, LevelRecord, LevelReport, compare_with};
 use pxpl5::views::charts::{SpeedAndError, level_chart};
-use serde_json::json;
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-/// Run the same experiments at every level of modelling: speed against error.
+/// Compare the levels of modelling: speed against error, and what each level is for.
+///
+/// Prints what was measured last, with its date. --measure measures all again on this machine.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 levels
   pxpl5 levels --json
-  pxpl5 levels --chart docs/levels.svg
+  pxpl5 levels --measure                                            all again, on this machine
+  pxpl5 levels --measure --write docs/levels.json --chart docs/levels.svg
+  pxpl5 levels --measure --errors-only --experiments 1000           no speeds: they need a quiet machine
   pxpl5 levels --scaling docs/scaling.md")]
 pub(crate) struct LevelsArgs {
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
+    /// Measure errors and speeds now, instead of printing those that were measured last.
+    #[arg(long)]
+    measure: bool,
+    /// Measure no speeds.
+    #[arg(long, requires = "measure")]
+    errors_only: bool,
+    /// Random experiments for the error against the cycle level.
+    #[arg(long, default_value_t = 200, value_name = "N", requires = "measure", value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    experiments: u64,
+    /// Write what was measured to this file (JSON).
+    #[arg(long, value_name = "FILE", requires = "measure")]
+    write: Option<PathBuf>,
     /// Write a chart of speed against error (SVG) to this file.
     #[arg(long, value_name = "FILE")]
     chart: Option<PathBuf>,
@@ -29,6 +44,9 @@ pub(crate) struct LevelsArgs {
     #[arg(long, value_name = "FILE")]
     scaling: Option<PathBuf>,
 }
+
+/// What was measured last.
+const RECORD: &str = include_str!("../../../docs/levels.json");
 
 pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
     if let Some(path) = &args.scaling {
@@ -42,49 +60,127 @@ pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
         bar.finish_and_clear();
         return file.write(growth::markdown(&by_triangles, &by_machine, &applications).as_bytes());
     }
-    let chart = args.chart.as_deref().map(|path| OutputFile::open(path, "--chart")).transpose()?;
-    let bar = progress(0, "figures at all levels", false);
-    let reports = compare_with(|done, of| advance(&bar, done, of));
-    bar.finish_and_clear();
-    let reports = reports?;
-    let published = || reports.iter().filter(|report| !report.times_of_code);
+    let open = |path: Option<&Path>, option| path.map(|path| OutputFile::open(path, option)).transpose();
+    let chart = open(args.chart.as_deref(), "--chart")?;
+    let written = open(args.write.as_deref(), "--write")?;
+    let record = if args.measure { measured(&args)? } else { LevelRecord::read(RECORD).map_err(CliError::failure)? };
+    if let Some(file) = written {
+        file.write(json_text(&record)?.as_bytes())?;
+    }
     if let Some(file) = chart {
-        let levels: Vec<SpeedAndError> = published().map(speed_and_error).collect();
-        file.write(level_chart(&levels).as_bytes())?;
+        let points: Vec<SpeedAndError> = record.levels.iter().flat_map(points).collect();
+        file.write(level_chart(&points).as_bytes())?;
     }
-    print(&if args.json { json_text(&reports) } else { text(&reports) })
+    print(&if args.json { json_text(&record)? } else { text(&record) })
 }
 
-fn speed_and_error(report: &LevelReport) -> SpeedAndError {
-    SpeedAndError {
-        name: report.level.name().to_owned(),
-        fields_per_host_second: report.fields_per_host_second,
-        mean_error_percent: report.mean_error_percent,
+/// Measures all levels now.
+fn measured(args: &LevelsArgs) -> Result<LevelRecord, CliError> {
+    let bar = progress(0, "experiments and figures at all levels", false);
+    let query = LevelQuery { experiments: args.experiments, speeds: !args.errors_only };
+    let record = compare_with(query, |done, of| advance(&bar, done, of));
+    bar.finish_and_clear();
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let host = format!("{}, {threads} threads", std::env::consts::ARCH);
+    let seconds = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).ok();
+    let date = seconds.map(|since| date_of(since.as_secs() / 86_400));
+    Ok(LevelRecord { date, host: Some(host), ..record? })
+}
+
+/// The day of so many days after 1 January 1970, in the Gregorian calendar, which repeats every 146,097 days.
+fn date_of(days: u64) -> String {
+    // Years begin in March here, so that the day that not all have is the last one.
+    let days = days + 719_468;
+    let (era, day) = (days / 146_097, days % 146_097);
+    let year = (day - day / 1_460 + day / 36_524 - day / 146_096) / 365;
+    let day = day - (365 * year + year / 4 - year / 100);
+    let month = (5 * day + 2) / 153;
+    let day = day - (153 * month + 2) / 5 + 1;
+    let (year, month) = (400 * era + year, if month < 10 { month + 3 } else { month - 9 });
+    format!("{:04}-{month:02}-{day:02}", year + u64::from(month <= 2))
+}
+
+/// A point for each choice of pixels of which a speed is known.
+fn points(report: &LevelReport) -> Vec<SpeedAndError> {
+    let Some(mean_error_percent) = report.published_error_percent else { return Vec::new() };
+    let speeds = report.speeds.iter().filter_map(|speed| {
+        Some(SpeedAndError {
+            name: format!("{}, pixels {}", report.name(), pixels(speed.pixels)),
+            fields_per_host_second: speed.simulated_seconds_per_second? * NTSC_FIELDS,
+            mean_error_percent,
+        })
+    });
+    speeds.collect()
+}
+
+/// NTSC fields a second.
+const NTSC_FIELDS: f64 = 60_000.0 / 1_001.0;
+
+const fn pixels(pixels: pxpl5::Pixels) -> &'static str {
+    match pixels {
+        pxpl5::Pixels::Off => "off",
+        pxpl5::Pixels::Lazy => "lazy",
+        pxpl5::Pixels::All => "all",
     }
 }
 
-fn json_text(reports: &[LevelReport]) -> String {
-    format!("{:#}\n", json!({"schema": "pxpl5-levels/1", "levels": reports}))
+fn json_text(record: &LevelRecord) -> Result<String, CliError> {
+    Ok(serde_json::to_string_pretty(record).map_err(CliError::failure)? + "\n")
 }
 
-fn text(reports: &[LevelReport]) -> String {
+fn text(record: &LevelRecord) -> String {
+    let unknown = || "-".to_owned();
     let mut text = format!(
-        "{:<24} {:>10} {:>16} {:>10} {:>22}\n",
-        "level", "fields/s", "configurations/s", "error", "deviation from cycle"
+        "{:<28} {:>9}  {:<26} simulated seconds a second\n{:<28} {:>9}  {:<26} {:>10} {:>10} {:>10}\n",
+        "", "", "against the cycle level", "level", "published", "median (5 to 95 %)", "pixels off", "lazy", "all"
     );
-    for report in reports {
-        let [mean, worst] = report.deviation_percent;
-        let times = if report.times_of_code { ", times of code" } else { "" };
-        let name = format!("{}{times}", report.level.name());
-        let _ = writeln!(
-            text,
-            "{name:<24} {:>10.0} {:>16.0} {:>8.1} % {mean:>8.1} %, most {worst:>4.1} %",
-            report.fields_per_host_second, report.configurations_per_host_second, report.mean_error_percent
-        );
+    for report in &record.levels {
+        let published = report.published_error_percent.map_or_else(unknown, |error| format!("{error:.1} %"));
+        let from_cycle = report.from_cycle_percent.map_or_else(unknown, |spread| {
+            format!("{:.2} % ({:.2} to {:.2})", spread.median, spread.low_5, spread.high_95)
+        });
+        let _ = write!(text, "{:<28} {published:>9}  {from_cycle:<26}", report.name());
+        for choice in [pxpl5::Pixels::Off, pxpl5::Pixels::Lazy, pxpl5::Pixels::All] {
+            let speed = report.speeds.iter().find(|speed| speed.pixels == choice);
+            let speed = speed.and_then(|speed| speed.simulated_seconds_per_second);
+            let _ = write!(text, " {:>10}", speed.map_or_else(unknown, |speed| format!("{speed:.1}")));
+        }
+        text.push('\n');
     }
-    text.push_str(
-        "\nfields/s: simulated NTSC fields per second of this host, without pixels; error: mean of the free checks;\ndeviation: all figures from those of \
-         the cycle level with the same times in the table (published or fitted, or those of the i860 code)\n",
+    text.push('\n');
+    for report in &record.levels {
+        let _ = writeln!(text, "{}: {}.", report.name(), report.advice());
+    }
+    let when = record.date.as_deref().unwrap_or("on an unknown day");
+    let host = record.host.as_deref().unwrap_or("an unknown machine");
+    let _ = write!(
+        text,
+        "\npublished: mean error of the free checks. Against the cycle level: {} random experiments with Rendering Control (latency)\n\
+         and Slats (time to the first copy). Pixels change no time. Measured {when} on {host}.\n",
+        record.experiments
     );
+    if let Some(note) = &record.note {
+        let _ = writeln!(text, "{note}");
+    }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_record_can_be_read_and_printed() {
+        let record = LevelRecord::read(RECORD).expect("docs/levels.json");
+        assert!(record.experiments >= 200 && record.levels.len() == 5);
+        let text = text(&record);
+        assert!(record.levels.iter().all(|report| text.contains(report.advice())), "{text}");
+    }
+
+    #[test]
+    fn days_are_counted_from_1970() {
+        let days = [0, 59, 11_016, 11_017, 19_782, 20_783];
+        let expected = ["1970-01-01", "1970-03-01", "2000-02-29", "2000-03-01", "2024-02-29", "2026-11-26"];
+        assert_eq!(days.map(date_of), expected);
+    }
 }

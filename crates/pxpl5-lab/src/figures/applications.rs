@@ -1,9 +1,10 @@
-//! The application scenes of the papers, the loads of their fly-throughs, and what the rig measures: made once for all benches that
-//! share them.
+//! The application scenes of the papers, the loads of their fly-throughs, what the rig measures, and the results of experiments: made once
+//! for all benches that share them.
 
 use super::measured::{FigureValue, Result, scene_named};
+use crate::limit::Limit;
 use pxpl5_analytic::Load;
-use pxpl5_run::FinishedRegions;
+use pxpl5_run::{Experiment, FinishedRegions, Summary};
 use pxpl5_scene::Scene;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -32,6 +33,20 @@ pub(crate) struct Applications {
     scenes: Places<Key, Scene>,
     loads: Places<LoadsKey, Vec<Vec<Load>>>,
     rigs: Places<RigKey, FigureValue>,
+    summaries: Places<String, Summary>,
+    limits: Places<String, Limit>,
+}
+
+/// All that decides what comes of an experiment with a built-in scene: machine, pipeline, scene, length, seed and level.
+pub(super) fn key_of(experiment: &Experiment, scene: &str) -> String {
+    format!(
+        "{scene} {} {} {:?} {:?} {:?}",
+        experiment.length(),
+        experiment.seed_of_motion(),
+        experiment.level_of_modelling(),
+        experiment.pipeline(),
+        experiment.config(),
+    )
 }
 
 impl Applications {
@@ -52,6 +67,18 @@ impl Applications {
     /// What the pendulum rig measures with these rules, from `make` where it is asked for the first time.
     pub(super) fn rig(&self, key: RigKey, make: impl FnOnce() -> Result<FigureValue>) -> Result<FigureValue> {
         find_or_make(&self.rigs, key, || make().map(Arc::new)).map(Arc::unwrap_or_clone)
+    }
+}
+
+impl Applications {
+    /// What comes of an experiment, from `make` where it is asked for the first time.
+    pub(super) fn summary(&self, key: String, make: impl FnOnce() -> Result<Summary>) -> Result<Arc<Summary>> {
+        find_or_make(&self.summaries, key, || make().map(Arc::new))
+    }
+
+    /// The answer of a search, from `make` where it is asked for the first time.
+    pub(super) fn limit(&self, key: String, make: impl FnOnce() -> Result<Limit>) -> Result<Limit> {
+        find_or_make(&self.limits, key, || make().map(Arc::new)).map(|limit| *limit)
     }
 }
 

@@ -1,6 +1,6 @@
 //! The experiments behind the figures.
 
-use super::applications::Applications;
+use super::applications::{Applications, key_of};
 use super::heads;
 use super::measured::{FigureValue, Result, detail, scene_named};
 use super::reading::{Reading, Samples};
@@ -105,7 +105,7 @@ impl Bench {
                 let summary = self.trivial()?;
                 Ok(spread_ms(Statistics::of(self.reading.latencies_ms(&summary).iter().copied())))
             }
-            "4b" => Ok(rate_hz(&self.trivial()?).into()),
+            "4b" => self.trivial().map(|summary| rate_hz(&summary).into()),
             "5" => self.with(Reading::THEORY).equal_stages(),
             "6" => self.long_stages(),
             "7" => self.application("mig", 1),
@@ -113,10 +113,10 @@ impl Bench {
             "7c" => self.application("head", 5),
             "8" => regions_touched(),
             "16" => self.most_in_bins(),
-            "16b" => Ok(rate_hz(&self.full_bins()?).into()),
-            "16c" => Ok(spread_ms(Statistics::of(self.full_bins()?.eye_latencies_ms.into_iter()))),
+            "16b" => self.full_bins().map(|summary| rate_hz(&summary).into()),
+            "16c" => Ok(spread_ms(Statistics::of(self.full_bins()?.eye_latencies_ms.iter().copied()))),
             "9" => self.slats_latency(),
-            "9b" => Ok(rate_hz(&self.slats(100, Slats::split())?).into()),
+            "9b" => self.slats(100, Slats::split()).map(|summary| rate_hz(&summary).into()),
             "10" => self.slats(60, Slats::whole()).map(|s| (s.first_copy_ms * 1e3 / s.region_copy_us).into()),
             "11" => Ok(self.slats(100, Slats::split())?.last_copy_ms.into()),
             "12" => self.limit("slats", Slats::whole()),
@@ -159,27 +159,29 @@ impl Bench {
         Self { reading, ..self.clone() }
     }
 
-    fn run(&self, machine: MachineConfig, pipeline: impl Pipeline, scene: &str, fields: u64) -> Result<Summary> {
-        let experiment = Experiment::new(machine, pipeline, scene_named(scene)?).fields(fields);
-        self.summarise(&experiment)
+    /// An experiment with a built-in scene at the bench's level, without pixels; several figures and readings share it.
+    fn run(&self, machine: MachineConfig, pipeline: impl Pipeline, scene: &str, fields: u64) -> Result<Arc<Summary>> {
+        let empty = self.applications.scene("full-screen:1", false)?;
+        let experiment = Experiment::new(machine, pipeline, empty).fields(fields).level(self.level);
+        let make = || self.summarise(&experiment.clone().with_scene(scene_named(scene)?));
+        self.applications.summary(key_of(&experiment, scene), make)
     }
 
-    /// An experiment at the bench's level, without pixels.
     fn summarise(&self, experiment: &Experiment) -> Result<Summary> {
         summarise(&crate::registry(), &experiment.clone().pixels(Pixels::Off).level(self.level))
     }
 
-    fn stereo(&self, machine: MachineConfig) -> Result<Summary> {
+    fn stereo(&self, machine: MachineConfig) -> Result<Arc<Summary>> {
         self.run(self.reading.on(machine)?, self.reading.pipeline(), "full-screen:12", 80)
     }
 
     /// Figures 1, 2, 4: twelve triangles that cover the screen.
-    fn trivial(&self) -> Result<Summary> {
+    fn trivial(&self) -> Result<Arc<Summary>> {
         self.stereo(self.machine("small-hmd")?)
     }
 
     /// Figures 16b and 16c: as many triangles that cover the screen as the bins were said to hold.
-    fn full_bins(&self) -> Result<Summary> {
+    fn full_bins(&self) -> Result<Arc<Summary>> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
         self.run(machine, self.reading.pipeline(), "full-screen:7700", FIELDS_OF_FULL_BINS)
     }
@@ -195,7 +197,7 @@ impl Bench {
         for path in gp.iter().chain(&array) {
             machine.set(path, 0)?;
         }
-        Ok(spread_ms(Statistics::of(self.stereo(machine)?.eye_latencies_ms.into_iter())))
+        Ok(spread_ms(Statistics::of(self.stereo(machine)?.eye_latencies_ms.iter().copied())))
     }
 
     /// Figure 16: triangles that cover the screen, as many as the slaves' bins hold for one eye, or for both.
@@ -278,10 +280,16 @@ impl Bench {
         Ok(FigureValue::with(all.mean, details))
     }
 
-    fn fly_through(&self, scene: &'static str, seed: u64, seeds: u64) -> Result<Summary> {
+    fn fly_through(&self, scene: &'static str, seed: u64, seeds: u64) -> Result<Arc<Summary>> {
         let experiment = self.application_experiment(scene, seed)?;
+        let drawn = format!("{scene} {} {seeds}", self.reading.culled);
+        let key = key_of(&experiment.clone().level(self.level), &drawn);
+        self.applications.summary(key, || self.fly_through_once(&experiment, scene, seed, seeds))
+    }
+
+    fn fly_through_once(&self, experiment: &Experiment, scene: &'static str, seed: u64, seeds: u64) -> Result<Summary> {
         if self.level != Level::Analytic {
-            return self.summarise(&experiment);
+            return self.summarise(experiment);
         }
         let of_seeds = || (1..=seeds).map(|seed| stereo_loads(&self.application_experiment(scene, seed)?)).collect();
         let loads = self.applications.loads((scene, self.reading.culled, seeds, self.frames), of_seeds)?;
@@ -297,7 +305,7 @@ impl Bench {
         Ok(Experiment::with(machine, Arc::new(self.reading.pipeline()), drawn).fields(fields).seed(seed))
     }
 
-    fn slats(&self, triangles: u32, pipeline: Slats) -> Result<Summary> {
+    fn slats(&self, triangles: u32, pipeline: Slats) -> Result<Arc<Summary>> {
         self.run(self.machine("slats")?, pipeline, &format!("full-screen:{triangles}"), 40)
     }
 
@@ -308,8 +316,7 @@ impl Bench {
     }
 
     fn limit(&self, preset: &str, pipeline: Slats) -> Result<FigureValue> {
-        let limit = self.limit_query(preset, pipeline)?.search()?;
-        let triangles = f64::from(limit.triangles);
+        let triangles = f64::from(self.most(preset, pipeline)?);
         let details = vec![detail("both eyes, 60 fields a second", triangles * 120.0, "triangles/s")];
         Ok(FigureValue::with(triangles, details))
     }
@@ -318,8 +325,15 @@ impl Bench {
         Ok(LimitQuery { level: self.level, ..LimitQuery::of_papers(self.machine(preset)?, pipeline)? })
     }
 
+    /// The most triangles of Slats; two figures ask for the same.
+    fn most(&self, preset: &str, pipeline: Slats) -> Result<u32> {
+        let query = self.limit_query(preset, pipeline)?;
+        let key = format!("{:?} {pipeline:?} {:?}", query.level, query.config);
+        self.applications.limit(key, || query.search()).map(|limit| limit.triangles)
+    }
+
     fn time_before_copy(&self) -> Result<FigureValue> {
-        let most = self.limit_query("slats", Slats::split())?.search()?.triangles;
+        let most = self.most("slats", Slats::split())?;
         let summary = self.slats(most, Slats::split())?;
         Ok(FigureValue::with(summary.copy_begins_ms, vec![detail("triangles", most.into(), "triangles")]))
     }

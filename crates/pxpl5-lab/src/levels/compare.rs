@@ -1,115 +1,119 @@
 //! Speed against error: the same experiments at every level.
 
+use super::random::{compared_ms, experiment};
+use super::record::{LevelRecord, LevelReport, LevelSpeed, SCHEMA, Spread};
 use super::{deviation_percent, summarise};
 use crate::figures::{Bench, FIGURES, Figure, FigureRow, mean_error_percent};
-use pxpl5_analytic::{PerTriangle, SlatsModel};
-use pxpl5_machine::MachineConfig;
-use pxpl5_run::{Experiment, ExperimentError, Level, Pixels, RenderingControl, Slats};
-use pxpl5_scene::{Scene, builtin};
-use serde::Serialize;
-use std::cell::Cell;
+use crate::parallel;
+use pxpl5_run::{Experiment, ExperimentError, Level, Pixels};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-/// A level's speed and error.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct LevelReport {
-    /// The level that was timed and judged.
-    pub level: Level,
-    /// Whether the times of primitives in the table are those of the code, instead of published or fitted ones.
-    pub times_of_code: bool,
-    /// Simulated fields per second of this host's time, over the experiments of [`cases`], without pixels.
-    pub fields_per_host_second: f64,
-    /// Machine configurations per second: for the analytic level the field of Slats alone, for the others whole
-    /// experiments of 16 fields.
-    pub configurations_per_host_second: f64,
-    /// Mean absolute error over the figures that are free checks, percent.
-    pub mean_error_percent: f64,
-    /// Mean and greatest absolute deviation of all figures from those of the cycle level with the same table, percent. At the cycle
-    /// level the table's times are those of what has no code.
-    pub deviation_percent: [f64; 2],
-    /// Every figure at this level.
-    pub figures: Vec<(&'static str, f64)>,
-}
+/// A level, and whether the times of primitives in the table are those of the code, instead of published or fitted ones. At the cycle level
+/// no time of the table is used, so it stands once.
+const VARIANTS: [(Level, bool); 5] = [
+    (Level::Analytic, false),
+    (Level::Analytic, true),
+    (Level::Transaction, false),
+    (Level::Transaction, true),
+    (Level::Cycle, true),
+];
+
+/// Pixels that are computed; the analytic level has none.
+const PIXELS: [Pixels; 3] = [Pixels::Off, Pixels::Lazy, Pixels::All];
 
 /// Seeds and frames of the Mig here: the levels are compared, not the Mig.
 const MIG: (u64, u64) = (2, 60);
 
-/// The experiments whose speed is measured.
-///
-/// # Errors
-///
-/// [`ExperimentError::Scene`] never, as the scenes are built in.
-pub fn cases() -> Result<Vec<Experiment>, ExperimentError> {
-    let slats = MachineConfig::slats();
-    let stereo = MachineConfig::small_hmd();
-    let all = [
-        Experiment::new(slats, Slats::split(), scene("full-screen:140")?).fields(240),
-        Experiment::new(stereo.clone(), RenderingControl::stereo(), scene("full-screen:12")?),
-        Experiment::new(stereo, RenderingControl::stereo(), scene("mig")?),
-    ];
-    Ok(all.into_iter().map(|experiment| experiment.pixels(Pixels::Off)).collect())
+/// Experiments of which speeds are measured: one after the other, so that nothing else runs meanwhile.
+const TIMED: u64 = 16;
+
+/// What is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LevelQuery {
+    /// Random experiments for the error against the cycle level.
+    pub experiments: u64,
+    /// Whether speeds are measured too; they mean something on a quiet machine alone.
+    pub speeds: bool,
 }
 
-fn scene(name: &str) -> Result<Arc<Scene>, ExperimentError> {
-    builtin(name).map(Arc::new).map_err(|error| ExperimentError::Scene(error.to_string()))
+impl Default for LevelQuery {
+    fn default() -> Self {
+        Self { experiments: 200, speeds: true }
+    }
 }
 
-/// Compares all levels on this host, now.
+/// Compares all levels on this host, now; `finished` hears how many of all steps are done.
 ///
 /// # Errors
 ///
 /// The first [`ExperimentError`].
-pub fn compare() -> Result<Vec<LevelReport>, ExperimentError> {
-    compare_with(|_, _| {})
-}
-
-/// The same; `finished` hears how many of all steps are done: every figure at every level, and the speed of each.
-///
-/// # Errors
-///
-/// As [`compare`].
-pub fn compare_with(finished: impl Fn(u64, u64)) -> Result<Vec<LevelReport>, ExperimentError> {
-    let steps = (2 * Level::ALL.len() * (FIGURES.len() + 1)) as u64;
-    let done = Cell::new(0);
-    let step = || {
-        done.set(done.get() + 1);
-        finished(done.get(), steps);
-    };
-    let mut reports = Vec::new();
-    for times_of_code in [false, true] {
-        let rows: Vec<Vec<FigureRow>> =
-            Level::ALL.into_iter().map(|level| rows_of(level, times_of_code, &step)).collect::<Result<_, _>>()?;
-        let cycle = rows.last().cloned().unwrap_or_default();
-        for (level, rows) in Level::ALL.into_iter().zip(&rows) {
-            reports.push(report((level, times_of_code), rows, &cycle)?);
+pub fn compare_with(query: LevelQuery, finished: impl Fn(u64, u64) + Sync) -> Result<LevelRecord, ExperimentError> {
+    let of_variant = FIGURES.len() as u64 + query.experiments;
+    let steps = VARIANTS.len() as u64 * of_variant;
+    let done = AtomicU64::new(0);
+    let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
+    let numbers: Vec<u64> = (0..query.experiments).collect();
+    let mut of_experiments = Vec::new();
+    for variant in VARIANTS {
+        let values = parallel::map(&numbers, |number| {
+            let value = value(variant, *number);
             step();
-        }
+            value
+        });
+        of_experiments.push(values.into_iter().collect::<Result<Vec<f64>, _>>()?);
     }
-    Ok(reports)
-}
-
-/// A level's figures beside those of the cycle level, and its speed on this host, now.
-fn report(
-    (level, times_of_code): (Level, bool),
-    rows: &[FigureRow],
-    cycle: &[FigureRow],
-) -> Result<LevelReport, ExperimentError> {
-    let deviations = rows.iter().zip(cycle).map(|(a, b)| deviation_percent(a.simulated, b.simulated));
-    let worst = deviations.clone().fold(0.0, f64::max);
-    let (fields_per_host_second, configurations_per_host_second) = speed(level)?;
-    Ok(LevelReport {
-        level,
-        times_of_code,
-        fields_per_host_second,
-        configurations_per_host_second,
-        mean_error_percent: mean_error_percent(rows),
-        deviation_percent: [deviations.sum::<f64>() / rows.len().max(1) as f64, worst],
-        figures: rows.iter().map(|row| (row.id, row.simulated)).collect(),
+    let of_cycle = of_experiments.last().cloned().unwrap_or_default();
+    let mut levels = Vec::new();
+    for (variant, values) in VARIANTS.into_iter().zip(&of_experiments) {
+        let rows = rows_of(variant, &step)?;
+        let deviations = values.iter().zip(&of_cycle).map(|(value, of_cycle)| deviation_percent(*value, *of_cycle));
+        let is_cycle = variant.0 == Level::Cycle;
+        levels.push(LevelReport {
+            level: variant.0,
+            times_of_code: variant.1,
+            published_error_percent: Some(mean_error_percent(&rows)),
+            from_cycle_percent: if is_cycle { None } else { Spread::of(deviations.collect()) },
+            speeds: speeds(variant, query.speeds)?,
+        });
+    }
+    Ok(LevelRecord {
+        schema: SCHEMA.to_owned(),
+        experiments: query.experiments,
+        note: None,
+        date: None,
+        host: None,
+        levels,
     })
 }
 
-fn rows_of(level: Level, times_of_code: bool, step: &impl Fn()) -> Result<Vec<FigureRow>, ExperimentError> {
+/// An experiment of a variant.
+fn of_variant((level, times_of_code): (Level, bool), number: u64) -> Result<Experiment, ExperimentError> {
+    let experiment = experiment(number)?.level(level);
+    if !times_of_code || level == Level::Cycle {
+        return Ok(experiment);
+    }
+    let machine = experiment.config().clone().with_times_of_code();
+    let other = Experiment::with(machine, Arc::clone(experiment.pipeline()), Arc::clone(experiment.scene()));
+    Ok(other.fields(experiment.length()).seed(experiment.seed_of_motion()).pixels(Pixels::Off).level(level))
+}
+
+/// What the levels are compared in; not a number where no picture is shown.
+fn value(variant: (Level, bool), number: u64) -> Result<f64, ExperimentError> {
+    let experiment = of_variant(variant, number)?;
+    match summarise(&crate::registry(), &experiment) {
+        Ok(summary) => Ok(compared_ms(&experiment, &summary)),
+        Err(ExperimentError::TooShort { .. } | ExperimentError::Run { .. }) => Ok(f64::NAN),
+        Err(error) => Err(error),
+    }
+}
+
+/// All figures of a variant.
+fn rows_of(
+    (level, times_of_code): (Level, bool),
+    step: &(impl Fn() + Sync),
+) -> Result<Vec<FigureRow>, ExperimentError> {
     let bench = Bench::new(level).with_mig(MIG.0, MIG.1);
     let bench = if times_of_code { bench.with_times_of_code() } else { bench };
     let row = |figure: &Figure| {
@@ -117,36 +121,37 @@ fn rows_of(level: Level, times_of_code: bool, step: &impl Fn()) -> Result<Vec<Fi
         step();
         Ok(FigureRow::new(figure, measured))
     };
-    FIGURES.iter().map(row).collect()
+    parallel::map(&FIGURES, row).into_iter().collect()
 }
 
-fn speed(level: Level) -> Result<(f64, f64), ExperimentError> {
-    let mut fields = 0;
-    let mut seconds = 0.0;
+/// Speeds for each choice of pixels.
+fn speeds(variant: (Level, bool), measures: bool) -> Result<Vec<LevelSpeed>, ExperimentError> {
+    let choices = if variant.0 == Level::Analytic { &PIXELS[..1] } else { &PIXELS[..] };
+    let speed = |pixels: &Pixels| {
+        let simulated_seconds_per_second = if measures { Some(speed(variant, *pixels)?) } else { None };
+        Ok(LevelSpeed { pixels: *pixels, simulated_seconds_per_second })
+    };
+    choices.iter().map(speed).collect()
+}
+
+/// Simulated seconds for each second of the host, over all timed experiments.
+fn speed(variant: (Level, bool), pixels: Pixels) -> Result<f64, ExperimentError> {
     let registry = crate::registry();
-    for experiment in cases()? {
-        let host_time = Instant::now();
-        summarise(&registry, &experiment.clone().level(level))?;
-        seconds += host_time.elapsed().as_secs_f64();
-        fields += experiment.length();
+    let (mut simulated, mut taken) = (0.0, 0.0);
+    for number in 0..TIMED {
+        let experiment = of_variant(variant, number)?.pixels(pixels);
+        simulated += experiment.length() as f64 * experiment.config().period()?.as_ms() * 1e-3;
+        let begin = Instant::now();
+        let result = if variant.0 == Level::Analytic {
+            summarise(&registry, &experiment).map(|_| ())
+        } else {
+            experiment.run().map(|_| ())
+        };
+        taken += begin.elapsed().as_secs_f64();
+        match result {
+            Ok(()) | Err(ExperimentError::TooShort { .. } | ExperimentError::Run { .. }) => {}
+            Err(error) => return Err(error),
+        }
     }
-    let fields_per_second = fields as f64 / seconds;
-    let configurations = if level == Level::Analytic { analytic_speed()? } else { fields_per_second / 16.0 };
-    Ok((fields_per_second, configurations))
-}
-
-/// Times per triangle that are tried, one configuration each.
-const CONFIGURATIONS: u64 = 20_000;
-
-fn analytic_speed() -> Result<f64, ExperimentError> {
-    let mut machine = MachineConfig::slats();
-    let every_region = PerTriangle { entries: 10.0, clipped: 0.0 };
-    let host_time = Instant::now();
-    let mut in_time = 0;
-    for i in 0..CONFIGURATIONS {
-        machine.gp.triangle_ns = 20_000 + i;
-        in_time += u64::from(SlatsModel::new(&machine, Slats::split())?.field(140.0, every_region).in_time);
-    }
-    std::hint::black_box(in_time);
-    Ok(CONFIGURATIONS as f64 / host_time.elapsed().as_secs_f64())
+    Ok(simulated / taken)
 }

@@ -1,8 +1,12 @@
 //! The levels of modelling behind one interface, and how they differ: speed against error.
 
 mod compare;
+mod random;
+mod record;
 
-pub use compare::{LevelReport, cases, compare, compare_with};
+pub use compare::{LevelQuery, compare_with};
+pub use random::{compared_ms, experiment as random_experiment};
+pub use record::{LevelRecord, LevelReport, LevelSpeed, SCHEMA, Spread};
 
 use pxpl5_measure::summary;
 use pxpl5_run::{Experiment, ExperimentError, Level, Registry, Summary};

@@ -157,19 +157,14 @@ impl LimitQuery {
         Hints { near, doubtful: doubtful.unwrap_or_default() }
     }
 
-    /// Sizes up to a little above one with less margin than their neighbours, those with the least margin first.
+    /// Returns sizes up to a little above one that have less margin than their neighbours, the least margin first.
     fn doubtful(&self, near: u32) -> Vec<u32> {
         let most = near + near / 20;
         let step = most.div_ceil(MARGINS).max(1) as usize;
         let margin = |triangles: u32| Some((self.margin(triangles)?, triangles));
         let margins: Vec<(f64, u32)> = (1..=most).step_by(step).filter_map(margin).collect();
-        let mut least: Vec<(f64, u32)> = margins
-            .windows(3)
-            .filter_map(|of| match of {
-                [before, here, after] if here.0 < before.0 && here.0 <= after.0 => Some(*here),
-                _ => None,
-            })
-            .collect();
+        let dips = margins.windows(3).filter(|of| of[1].0 < of[0].0 && of[1].0 <= of[2].0);
+        let mut least: Vec<(f64, u32)> = dips.map(|of| of[1]).collect();
         least.sort_by(|a, b| a.0.total_cmp(&b.0));
         least.into_iter().take(DOUBTFUL).map(|(_, triangles)| triangles).collect()
     }

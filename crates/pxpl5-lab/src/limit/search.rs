@@ -30,14 +30,11 @@ pub struct Hints {
 /// Sizes below the answer that are all tried, and distance above it up to which islands are looked for: those of two clumps.
 const LOOK: u32 = 60;
 
-/// Sizes that are looked at above the answer.
-const LOOKS_ABOVE: u32 = 12;
+/// Triangles of all sizes together that are tried in a row on either side of the answer: fewer sizes where each takes longer.
+const TRIANGLES_IN_A_ROW: u32 = 60_000;
 
-/// Triangles of all sizes below the answer that are tried in a row, together: fewer sizes where each takes longer.
-const TRIANGLES_BELOW: u32 = 60_000;
-
-/// The least number of sizes below the answer that are tried in a row.
-const LEAST_BELOW: u32 = 4;
+/// The least number of sizes that are tried in a row.
+const LEAST_IN_A_ROW: u32 = 4;
 
 /// Sizes that were asked for, and what came of each.
 struct Tried<F> {
@@ -176,16 +173,15 @@ fn below(limit: u32, doubtful: &[u32]) -> impl Iterator<Item = u32> {
     near.chain(doubtful.iter().copied().filter(move |size| *size < limit)).chain(far).filter(|size| *size > 0)
 }
 
-/// How many sizes below an answer are tried one after the other.
+/// How many sizes on either side of an answer are tried.
 fn in_a_row(limit: u32) -> u32 {
-    (TRIANGLES_BELOW / limit.max(1)).clamp(LEAST_BELOW, LOOK)
+    (TRIANGLES_IN_A_ROW / limit.max(1)).clamp(LEAST_IN_A_ROW, LOOK)
 }
 
-/// Sizes that are tried above the first miss.
+/// Sizes that are tried above the first miss, as many as below the answer.
 fn above(limit: u32, ceiling: u32) -> impl Iterator<Item = u32> {
     let farthest = limit.saturating_add(1 + LOOK.min(limit / 2)).min(ceiling);
-    let looks = in_a_row(limit).min(LOOKS_ABOVE);
-    let step = ((farthest.saturating_sub(limit)) / looks).max(1) as usize;
+    let step = (farthest.saturating_sub(limit) / in_a_row(limit)).max(1) as usize;
     (limit + 2..=farthest).rev().step_by(step)
 }
 
@@ -219,11 +215,9 @@ mod tests {
         for near in [None, Some(700), Some(807), Some(900)] {
             let hints = Hints { near, ..Hints::default() };
             let found = with(CEILING, &hints, |size| size <= 795 || size == 807);
-            assert_eq!((found.triangles, found.first_miss), (795, Some(796)), "{near:?}");
+            assert_eq!((found.triangles, found.first_miss, found.island), (795, Some(796), Some(807)), "{near:?}");
             assert_eq!(found.unbroken_from, 795 - LOOK);
         }
-        let hints = Hints { near: Some(807), ..Hints::default() };
-        assert_eq!(with(CEILING, &hints, |size| size <= 795 || size == 807).island, Some(807));
         assert_eq!(of(CEILING, |size| size <= 120 || (124..=150).contains(&size)).triangles, 120);
     }
 
@@ -261,8 +255,10 @@ mod tests {
         fn all_sizes_of_the_unbroken_row_reach_the_goal(misses in proptest::collection::btree_set(1u32..400, 1..20)) {
             let found = of(400, |size| !misses.contains(&size));
             prop_assert!((found.unbroken_from..=found.triangles).all(|size| !misses.contains(&size)));
-            let first = found.first_miss.expect("some miss");
-            prop_assert!(misses.contains(&first) && first == found.triangles + 1);
+            match found.first_miss {
+                Some(first) => prop_assert!(misses.contains(&first) && first == found.triangles + 1),
+                None => prop_assert_eq!(found.triangles, 400),
+            }
             let long = found.triangles.min(LOOK);
             prop_assert!(found.triangles - found.unbroken_from + 1 >= long);
         }

@@ -85,3 +85,19 @@ fn rounding_percent(fits: &[Fit]) -> f64 {
     let halves: Vec<f64> = published.map(|value| 100.0 * half_a_digit(value) / value).collect();
     halves.iter().sum::<f64>() / halves.len().max(1) as f64
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each reading by itself, with a bench that shares nothing, gives what the bench gives that all share.
+    #[test]
+    fn runs_that_readings_share_change_no_fit() {
+        let shared = Bench::new(Level::Analytic).with_mig(1, 12);
+        for reading in Reading::all().into_iter().step_by(67) {
+            let alone = Bench::new(Level::Analytic).with_mig(1, 12);
+            let [one, other] = [&shared, &alone].map(|bench| Fit::of(bench, reading).expect("it runs"));
+            assert_eq!(serde_json::to_string(&one).ok(), serde_json::to_string(&other).ok(), "{}", one.words);
+        }
+    }
+}

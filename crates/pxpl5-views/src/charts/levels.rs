@@ -14,7 +14,8 @@ pub struct SpeedAndError {
     pub mean_error_percent: f64,
 }
 
-/// An SVG: simulated fields per host second (in powers of ten) against the mean error of the free checks.
+/// An SVG: simulated fields per host second (in powers of ten) against the mean error of the free checks. A line joins the best: those than
+/// which none is both faster and less wrong.
 #[must_use]
 pub fn level_chart(levels: &[SpeedAndError]) -> String {
     let axes = ChartAxes {
@@ -22,15 +23,36 @@ pub fn level_chart(levels: &[SpeedAndError]) -> String {
         across: "simulated fields per host second".to_owned(),
         up: "mean error of the free checks, %".to_owned(),
     };
-    let series = levels.iter().map(series_of).collect();
+    let series = levels.iter().map(series_of).chain(front(levels)).collect();
     Chart { axes, across: AxisScale::Decades, up: AxisScale::FromZero, series, size: ChartSize::Screen }.svg()
 }
 
-/// Speeds below one field a second stand at one.
 fn series_of(level: &SpeedAndError) -> ChartSeries {
-    let at = (level.fields_per_host_second.max(1.0), level.mean_error_percent);
     let name = format!("{}, {:.1} %", level.name, level.mean_error_percent);
-    ChartSeries { name, points: vec![ChartPoint { at, interval: (f64::NAN, f64::NAN) }], look: SeriesLook::Points }
+    ChartSeries { name, points: vec![point_of(level)], look: SeriesLook::Points }
+}
+
+/// Speeds below one field a second stand at one.
+const fn point_of(level: &SpeedAndError) -> ChartPoint {
+    let at = (level.fields_per_host_second.max(1.0), level.mean_error_percent);
+    ChartPoint { at, interval: (f64::NAN, f64::NAN) }
+}
+
+/// The best, from the fastest on; none of fewer than two.
+fn front(levels: &[SpeedAndError]) -> Option<ChartSeries> {
+    let mut sorted: Vec<&SpeedAndError> = levels.iter().collect();
+    sorted.sort_by(|a, b| {
+        let slower = b.fields_per_host_second.total_cmp(&a.fields_per_host_second);
+        slower.then(a.mean_error_percent.total_cmp(&b.mean_error_percent))
+    });
+    let mut best: Vec<&SpeedAndError> = Vec::new();
+    for level in sorted {
+        if best.last().is_none_or(|last| level.mean_error_percent < last.mean_error_percent) {
+            best.push(level);
+        }
+    }
+    let points = best.iter().map(|level| point_of(level)).collect();
+    (best.len() > 1).then(|| ChartSeries { name: "front of the best".to_owned(), points, look: SeriesLook::Line })
 }
 
 #[cfg(test)]
@@ -39,6 +61,19 @@ mod tests {
 
     fn level(name: &str, speed: f64) -> SpeedAndError {
         SpeedAndError { name: name.to_owned(), fields_per_host_second: speed, mean_error_percent: 2.0 }
+    }
+
+    #[test]
+    fn the_front_joins_what_nothing_beats() {
+        let at = |speed, error| SpeedAndError {
+            name: String::new(),
+            fields_per_host_second: speed,
+            mean_error_percent: error,
+        };
+        let front = front(&[at(10.0, 1.0), at(1e4, 5.0), at(5e3, 6.0), at(100.0, 2.0), at(50.0, 2.0)]).expect("three");
+        let places: Vec<(f64, f64)> = front.points.iter().map(|point| point.at).collect();
+        assert_eq!(places, [(1e4, 5.0), (100.0, 2.0), (10.0, 1.0)]);
+        assert_eq!(super::front(&[at(10.0, 1.0)]), None);
     }
 
     /// Marks of the first series are discs, of which the second is its sample; a fifth series has discs again.

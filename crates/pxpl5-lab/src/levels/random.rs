@@ -1,0 +1,126 @@
+//! Experiments that nobody chose, within the range for which all levels are meant.
+//!
+//! Rendering Control and Slats on NTSC displays, without a tracker; boards and scenes that the cycle level runs in a moment; parameters
+//! anywhere in the ranges of their sources. Each experiment follows from its number.
+
+use crate::limit::test_scene;
+use pphigs::RegionBinning;
+use pxpl5_machine::MachineConfig;
+use pxpl5_run::{Experiment, ExperimentError, Pixels, RenderingControl, Slats, Summary, TestScene};
+use pxpl5_scene::{Scene, builtin};
+use std::sync::Arc;
+
+/// SplitMix64: a stream of numbers that follows from its begin.
+struct Dice(u64);
+
+impl Dice {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let z = (self.0 ^ self.0 >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let z = (z ^ z >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ z >> 31
+    }
+
+    fn between(&mut self, least: u64, most: u64) -> u64 {
+        least + self.next() % (most - least + 1)
+    }
+
+    fn of<T: Copy>(&mut self, list: &[T]) -> T {
+        list[self.between(0, list.len() as u64 - 1) as usize]
+    }
+}
+
+/// Fields of a run: a dozen frames of Rendering Control at 20 Hz behind the warm-up, some fields of Slats.
+const FIELDS: (u64, u64) = (48, 14);
+
+/// The experiment of a number, without pixels: even numbers have Rendering Control, odd ones Slats.
+///
+/// # Errors
+///
+/// [`ExperimentError::Scene`] never, as the scenes are built in; [`ExperimentError::Config`] never, as the parameters exist.
+pub fn experiment(number: u64) -> Result<Experiment, ExperimentError> {
+    let mut dice = Dice(number << 8 | 0x1e);
+    let experiment = if number.is_multiple_of(2) { stereo(&mut dice)? } else { slats(&mut dice)? };
+    Ok(experiment.pixels(Pixels::Off))
+}
+
+fn stereo(dice: &mut Dice) -> Result<Experiment, ExperimentError> {
+    let machine = machine("small-hmd", dice, (4, 24))?;
+    let scene = match dice.between(0, 2) {
+        0 => {
+            let mig = builtin("mig").map_err(|error| ExperimentError::Scene(error.to_string()))?;
+            mig.decimated(dice.between(100, 417) as usize).map_err(|error| ExperimentError::Scene(error.to_string()))?
+        }
+        1 => test_scene(TestScene::FullScreen, dice.between(1, 30) as u32),
+        _ => test_scene(TestScene::Typical, dice.between(20, 600) as u32),
+    };
+    let seed = dice.between(1, 99);
+    Ok(Experiment::new(machine, RenderingControl::stereo(), scene).fields(FIELDS.0).seed(seed))
+}
+
+fn slats(dice: &mut Dice) -> Result<Experiment, ExperimentError> {
+    let preset = dice.of(&["slats", "slats-1995"]);
+    let machine = machine(preset, dice, (1, 12))?;
+    let binning = dice.of(&[RegionBinning::All, RegionBinning::Touched]);
+    let program = Slats { binning, ..dice.of(&[Slats::whole(), Slats::split()]) };
+    let triangles = dice.between(5, 50 + 10 * machine.n_gps as u64) as u32;
+    let scene: Scene = test_scene(TestScene::Typical, triangles);
+    Ok(Experiment::new(machine, program, Arc::new(scene)).fields(FIELDS.1))
+}
+
+/// A preset with other boards, and with ring and FIFOs anywhere in the ranges of their sources.
+fn machine(preset: &str, dice: &mut Dice, gps: (u64, u64)) -> Result<MachineConfig, ExperimentError> {
+    let mut machine = MachineConfig::preset(preset)?;
+    machine.n_gps = dice.between(gps.0, gps.1) as usize;
+    machine.n_renderers = dice.between(5, 20) as usize;
+    for (path, least, most) in
+        [("ring.source_channels", 1, 2), ("ring.fifo_channels", 5, 7), ("renderer.fifo_words", 400, 512)]
+    {
+        machine.set(path, dice.between(least, most))?;
+    }
+    Ok(machine)
+}
+
+/// What the levels are compared in, milliseconds: the mean latency of Rendering Control, and of Slats, whose latency is always a field, the
+/// time from a field's begin to its first copy. Not a number where no picture was shown, or none in time.
+#[must_use]
+pub fn compared_ms(experiment: &Experiment, summary: &Summary) -> f64 {
+    if summary.latencies_ms.is_empty() {
+        return f64::NAN;
+    }
+    if experiment.pipeline().name() == "slats" { summary.copy_begins_ms } else { summary.latency_ms().mean }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::levels::{deviation_percent, summarise};
+    use pxpl5_run::Level;
+
+    #[test]
+    fn every_experiment_can_be_run_and_follows_from_its_number() {
+        for number in 0..400 {
+            let [one, other] = [experiment(number), experiment(number)].map(|made| made.expect("in range"));
+            assert_eq!(one.config_hash(), other.config_hash());
+            assert!(one.config().check().is_ok(), "{number}");
+        }
+    }
+
+    /// The analytic level beside the transaction level, with the same table: of 40, nine of ten within 10 %.
+    #[test]
+    fn the_analytic_level_is_near_the_transaction_level() {
+        let registry = crate::registry();
+        let mut deviations: Vec<f64> = (0..40)
+            .map(|number| {
+                let experiment = experiment(number).expect("in range");
+                let of = |level| match summarise(&registry, &experiment.clone().level(level)) {
+                    Ok(summary) => compared_ms(&experiment, &summary),
+                    Err(_) => f64::NAN,
+                };
+                deviation_percent(of(Level::Analytic), of(Level::Transaction))
+            })
+            .collect();
+        deviations.sort_by(f64::total_cmp);
+        assert!(deviations[20] < 2.0 && deviations[36] < 10.0, "{deviations:?}");
+    }
+}
