@@ -38,6 +38,8 @@ pub struct Swap {
     pub number: u64,
     /// The period from whose begin on it does.
     pub tick: PeriodNumber,
+    /// The buffer that is shown from then on; it may be the same as before.
+    pub buffer: u8,
 }
 
 /// A picture, or a part of it, that a double-buffered port has shown.
@@ -214,7 +216,7 @@ mod tests {
         let swap = |number: u64| {
             EYES.map(|surface| {
                 let tick = PeriodNumber(2 * number + u64::from(surface.0));
-                Swap { surface, port: NodeId(10 + surface.0), number, tick }
+                Swap { surface, port: NodeId(10 + surface.0), number, tick, buffer: number as u8 % 2 }
             })
         };
         Observation { swaps: (0..20).flat_map(swap).collect(), ..Observation::default() }

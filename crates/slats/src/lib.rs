@@ -16,8 +16,10 @@
 //!   region contexts in its 208 bits, hence Gouraud shading.
 //! - COPY: whole ([`CopySchedule::Whole`]): all regions before the retrace. Split ([`CopySchedule::Split`]): the top regions before the
 //!   retrace, the bottom ones right after it.
-//!   Backup ([`CopySchedule::Backup`], beyond the prototype): whole, into the other buffer; a field that is not complete at
-//!   its retrace is not shown, the last complete one of the same lines is shown again.
+//!   Each renderer acknowledges its last top region, and the bottom ones are ordered when all have (TR94: the GP makes sure that all top
+//!   regions go before any bottom one). An acknowledgement is a message, whose software takes time.
+//!   Backup ([`CopySchedule::Backup`], beyond the prototype): as split, into the other buffer; of a field whose top regions are not there at
+//!   its retrace the last complete one of the same lines is shown again, and the late one at the next retrace of its lines.
 //! - Without a backup a field that misses its retrace is shown as far as it has come; the GPs go on with the next whole field.
 //!
 //! Several GPs: each holds every n-th primitive; the first one sends the copy commands when the others have told it

@@ -6,7 +6,7 @@ use crate::schedule::CopySchedule;
 use pphigs::{
     FrameView, PROGRAM_BYTES, Pass, RegionEnvelope, Share, Transforming, ViewWordsError, copy_message, region_messages,
 };
-use pxpl5_gp::{Account, Chain, Fault, Gp, Priority, Stage, Ticket};
+use pxpl5_gp::{Account, Chain, Fault, Gp, Priority, Received, Stage, Ticket};
 use pxpl5_wire::{
     Body, COPY_ACKNOWLEDGEMENT, CommandList, CopyContent, CopyOrder, CopyWay, Eye, FieldParity, NodeId, PeriodNumber,
     PictureNumber, Word, swap_request,
@@ -45,7 +45,9 @@ struct ProcessorState {
 #[derive(Debug)]
 struct Bottom {
     chain: Chain,
-    /// The period that must have begun: the beam scans the lines until then.
+    /// The field that they belong to.
+    field: PeriodNumber,
+    /// The period that must have begun, if the beam scans the lines until then.
     not_before: PeriodNumber,
     /// Renderers that copy top regions: all must have acknowledged them.
     copiers: usize,
@@ -65,6 +67,8 @@ pub fn processor(
     index: usize,
 ) -> [(Priority, impl Future<Output = Result<(), Fault>> + use<>); 2] {
     let state = SharedState::default();
+    let is_shown = index == 0 && config.copy == CopySchedule::Backup;
+    let backup = is_shown.then_some(Backup { frame_buffers: config.frame_buffers });
     [Priority::Interrupt, Priority::Foreground].map(|level| {
         let gp = gp.at_priority(level);
         let config = config.clone();
@@ -73,29 +77,91 @@ pub fn processor(
         let state = Rc::clone(&state);
         let program = async move {
             match level {
-                Priority::Foreground => SlatsProcessor { gp, config, binding, share, state, index }.fields().await,
-                Priority::Interrupt => listen(gp, state).await,
+                Priority::Foreground => {
+                    SlatsProcessor { gp, config, binding, share, state, index, backup }.fields().await
+                }
+                Priority::Interrupt => listen(gp, state, backup).await,
             }
         };
         (level, program)
     })
 }
 
-/// Keeps the newest view and counts finished GPs.
-async fn listen(gp: Gp, state: SharedState) -> Result<(), Fault> {
+/// The frame buffers and the buffers of which they show the last complete fields, under [`CopySchedule::Backup`].
+#[derive(Clone, Copy, Debug)]
+struct Backup {
+    frame_buffers: [NodeId; 2],
+}
+
+/// What the interrupt program wakes up for.
+enum Event {
+    Message(Received),
+    Retrace(PeriodNumber),
+}
+
+/// Keeps the newest view, counts finished GPs, has the bottom regions copied after the top ones, and with a backup asks for the field that
+/// the next retrace begins with.
+async fn listen(gp: Gp, state: SharedState, backup: Option<Backup>) -> Result<(), Fault> {
+    let mut present = gp.field();
     loop {
-        let received = gp.receive().await;
-        let Body::Words(words) = &received.body else {
-            return Err(Fault::Protocol { node: gp.node(), found: "of commands or pixels at a processor".to_owned() });
-        };
-        let note = state.borrow_mut().note(words);
-        note.map_err(|error| Fault::Protocol { node: gp.node(), found: error.to_string() })?;
-        start_bottom_when_due(&gp, &state);
+        let event = gp
+            .until("a message", || {
+                let retrace = || Some(gp.field()).filter(|field| backup.is_some() && *field > present);
+                gp.take_message().map(Event::Message).or_else(|| retrace().map(Event::Retrace))
+            })
+            .await;
+        match event {
+            Event::Message(received) => {
+                gp.pay_for(&received).await;
+                let Body::Words(words) = &received.body else {
+                    let found = "of commands or pixels at a processor".to_owned();
+                    return Err(Fault::Protocol { node: gp.node(), found });
+                };
+                let note = state.borrow_mut().note(words);
+                note.map_err(|error| Fault::Protocol { node: gp.node(), found: error.to_string() })?;
+                let copied = start_bottom_when_due(&gp, &state);
+                if let (Some(backup), Some(field)) = (backup, copied) {
+                    backup.show_next(&gp, &state, field).await;
+                }
+            }
+            Event::Retrace(field) => {
+                present = field;
+                if let Some(backup) = backup {
+                    backup.ask(&gp, &state, field.next()).await;
+                }
+            }
+        }
     }
 }
 
-/// Starts the copies of the bottom regions when all top regions are copied and the beam has left the lines.
-fn start_bottom_when_due(gp: &Gp, state: &SharedState) {
+impl Backup {
+    /// Notes that all top regions of a field are copied, and asks for it if the next retrace is its own. Its bottom regions follow at once,
+    /// faster than the beam.
+    async fn show_next(self, gp: &Gp, state: &SharedState, field: PeriodNumber) {
+        {
+            let state = &mut *state.borrow_mut();
+            let complete = &mut state.complete[FieldParity::of_field(field) as usize];
+            *complete = 1 - *complete;
+        }
+        if gp.field().next() == field {
+            self.ask(gp, state, field).await;
+        }
+    }
+
+    /// Asks for the last complete field of the lines that a period scans, unless it has begun meanwhile. A later request takes the place of
+    /// an earlier one.
+    async fn ask(self, gp: &Gp, state: &SharedState, period: PeriodNumber) {
+        let buffer = state.borrow().complete[FieldParity::of_field(period) as usize];
+        let requests = self.frame_buffers.map(|node| (node, 2, Body::Words(swap_request(buffer))));
+        let chain = gp.prepare(requests.to_vec()).await;
+        if gp.field() < period {
+            gp.start(chain);
+        }
+    }
+}
+
+/// Starts the copies of the bottom regions of a field when all its top regions are copied and the beam has left the lines; gives the field.
+fn start_bottom_when_due(gp: &Gp, state: &SharedState) -> Option<PeriodNumber> {
     let is_due =
         |state: &ProcessorState, bottom: &Bottom| state.copied >= bottom.copiers && gp.field() >= bottom.not_before;
     let due = {
@@ -103,9 +169,10 @@ fn start_bottom_when_due(gp: &Gp, state: &SharedState) {
         let is_due = state.bottom.as_ref().is_some_and(|bottom| is_due(state, bottom));
         if is_due { state.bottom.take() } else { None }
     };
-    if let Some(bottom) = due {
+    due.map(|bottom| {
         gp.start(bottom.chain);
-    }
+        bottom.field
+    })
 }
 
 impl ProcessorState {
@@ -141,6 +208,7 @@ struct SlatsProcessor {
     share: Share,
     state: SharedState,
     index: usize,
+    backup: Option<Backup>,
 }
 
 impl SlatsProcessor {
@@ -155,17 +223,18 @@ impl SlatsProcessor {
     async fn lead(self) -> Result<(), Fault> {
         self.gp.until("the first view from the host", || self.state.borrow().newest.as_ref().map(|_| ())).await;
         let mut begin_at = self.gp.field().next();
+        let mut last = None;
         loop {
             let now = self.gp.field_from(begin_at).await;
             start_bottom_when_due(&self.gp, &self.state);
-            let field = now.next();
+            let field = self.next_field(now, last);
+            last = Some(field);
             let view = self.gp.until("a view", || self.state.borrow().newest.clone()).await;
             if !self.is_alone() {
                 self.bottom_started().await;
                 self.clear(field, &view).await;
                 self.tell_others(field, &view).await;
             }
-            self.show_backup(field).await;
             self.field(field, &view).await?;
             let others = self.config.processors.len() - 1;
             self.gp
@@ -178,12 +247,16 @@ impl SlatsProcessor {
             let copiers = copies.len();
             self.state.borrow_mut().copied = 0;
             self.gp.send_batch(copies).await;
-            self.show_if_complete(field, copiers).await;
             if self.config.copy.is_split() {
                 // The chain for the bottom regions is ready before it is due.
                 let chain = self.gp.prepare(self.copies(field, false)).await;
-                self.state.borrow_mut().bottom = Some(Bottom { chain, not_before: field, copiers });
-                start_bottom_when_due(&self.gp, &self.state);
+                // With a backup the beam is in the other buffer.
+                let not_before = if self.config.copy == CopySchedule::Backup { PeriodNumber::FIRST } else { field };
+                self.state.borrow_mut().bottom = Some(Bottom { chain, field, not_before, copiers });
+                let copied = start_bottom_when_due(&self.gp, &self.state);
+                if let (Some(backup), Some(field)) = (self.backup, copied) {
+                    backup.show_next(&self.gp, &self.state, field).await;
+                }
             }
             begin_at = if self.gp.field() < field { field } else { self.gp.field().next() };
         }
@@ -194,32 +267,12 @@ impl SlatsProcessor {
         self.gp.until("the copies of the top regions", || self.state.borrow().bottom.is_none().then_some(())).await;
     }
 
-    /// Asks for the last complete field of these lines; a later request for the new one takes its place.
-    async fn show_backup(&self, field: PeriodNumber) {
-        if self.config.copy == CopySchedule::Backup {
-            let complete = self.state.borrow().complete[FieldParity::of_field(field) as usize];
-            self.gp.send_batch(self.swap(complete)).await;
-        }
-    }
-
-    /// Waits for the copies, and has the field shown if they were in time.
-    async fn show_if_complete(&self, field: PeriodNumber, copiers: usize) {
-        if self.config.copy != CopySchedule::Backup {
-            return;
-        }
-        self.gp.until("the copies of a field", || (self.state.borrow().copied >= copiers).then_some(())).await;
-        let buffer = self.buffer(field);
-        let request = self.gp.prepare(self.swap(buffer)).await;
-        if self.gp.field() < field {
-            self.state.borrow_mut().complete[FieldParity::of_field(field) as usize] = buffer;
-            self.gp.start(request);
-        }
-    }
-
-    /// Requests to show a buffer.
-    fn swap(&self, buffer: u8) -> Vec<(NodeId, u32, Body)> {
-        let requests = self.config.frame_buffers.iter().map(|node| (*node, 2, Body::Words(swap_request(buffer))));
-        requests.collect()
+    /// The period for which the next field is drawn: the coming one. With a backup it is one of the other lines than the last field's, so
+    /// that neither lines stay without a new field when fields are late.
+    fn next_field(&self, now: PeriodNumber, last: Option<PeriodNumber>) -> PeriodNumber {
+        let field = now.next();
+        let same_lines = last.is_some_and(|last| FieldParity::of_field(last) == FieldParity::of_field(field));
+        if self.config.copy == CopySchedule::Backup && same_lines { field.next() } else { field }
     }
 
     /// Where a field is written.
@@ -313,12 +366,7 @@ impl SlatsProcessor {
         let batch = (0..self.binding.renderers()).filter_map(|renderer| {
             let regions = self.binding.copies(renderer, top);
             let mut orders: Vec<_> = regions.iter().map(|bound| self.order(bound, field)).collect();
-            let acknowledges = match self.config.copy {
-                CopySchedule::Whole => false,
-                CopySchedule::Split => top,
-                CopySchedule::Backup => true,
-            };
-            if let Some(last) = orders.last_mut().filter(|_| acknowledges) {
+            if let Some(last) = orders.last_mut().filter(|_| self.config.copy.is_split() && top) {
                 last.acknowledge = Some(self.gp.node());
             }
             let list = copy_message(self.config.layout, orders, self.config.pixels);

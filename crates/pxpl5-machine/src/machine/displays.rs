@@ -28,12 +28,12 @@ impl Machine {
                     let port = record.ports.displays[display][surface];
                     let surface = SurfaceId((first_surface + surface) as u16);
                     record.hash.record(time, &[6, u64::from(surface.0), u64::from(buffer), tick.0]);
-                    note_swap(&mut record.observation, queue, swaps, (time, surface, port, tick));
+                    note_swap(&mut record.observation, queue, swaps, (time, surface, port, tick, buffer));
                 }
                 DisplayOutput::Updated { surface, port, buffer, tick } => {
                     let surface = SurfaceId((first_surface + surface) as u16);
                     record.hash.record(time, &[7, u64::from(port.0), u64::from(buffer), tick.0]);
-                    note_swap(&mut record.observation, queue, swaps, (time, surface, port, tick));
+                    note_swap(&mut record.observation, queue, swaps, (time, surface, port, tick, buffer));
                 }
             }
         }
@@ -45,10 +45,10 @@ fn note_swap(
     observation: &mut Observation,
     queue: &mut EventQueue<Event>,
     swaps: &mut BTreeMap<NodeId, u64>,
-    (time, surface, port, tick): (Time, SurfaceId, NodeId, PeriodNumber),
+    (time, surface, port, tick, buffer): (Time, SurfaceId, NodeId, PeriodNumber, u8),
 ) {
     let so_far = swaps.entry(port).or_default();
-    observation.swaps.push(Swap { surface, port, number: *so_far, tick });
+    observation.swaps.push(Swap { surface, port, number: *so_far, tick, buffer });
     *so_far += 1;
     let status = GpEvent::Status { from: port, value: *so_far };
     queue.schedule(time, Phase::Arrive, Event::Gp(1, status));

@@ -12,7 +12,7 @@ use pxpl5_gp::{CodeVersion, GpTiming, Priority};
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
-use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, RegionGrid, ViewNumber};
+use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, RegionGrid, SurfaceId, ViewNumber};
 use slats::{CopySchedule, SlatsConfig, host, processor};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -95,7 +95,7 @@ impl Slats {
         Self { copy: CopySchedule::Whole, ..Self::split() }
     }
 
-    /// Whole copies into the other buffer, so that the last complete field stands in for one that is late.
+    /// Split copies into the other buffer, so that the last complete field stands in for one that is late.
     #[must_use]
     pub const fn backup() -> Self {
         Self { copy: CopySchedule::Backup, ..Self::split() }
@@ -185,30 +185,42 @@ impl Pipeline for Slats {
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         let observation = record.observation();
         let late: BTreeSet<PeriodNumber> = self.late_regions(record, end).iter().map(|region| region.field).collect();
-        let mut arrivals: BTreeMap<PictureNumber, (usize, Time)> = BTreeMap::new();
+        let mut arrivals: BTreeMap<PictureNumber, Copied> = BTreeMap::new();
         for arrival in &observation.arrivals {
-            let entry = arrivals.entry(arrival.target.picture).or_default();
-            *entry = (entry.0 + 1, entry.1.max(arrival.last_part_at));
+            arrivals.entry(arrival.target.picture).or_default().note(arrival);
         }
+        let backup = (self.copy == CopySchedule::Backup).then(|| Backup::new(record));
         let leader = record.ports().gps[0];
         let begun = samples(record).filter(|mark| mark.node == leader);
         let times = begun.map(|mark| {
-            let (regions, copied_at) = arrivals.get(&mark.picture).copied().unwrap_or_default();
-            let whole = regions == 2 * RegionGrid::FIELD.regions() as usize;
+            let copied = arrivals.get(&mark.picture).copied().unwrap_or_default();
+            let whole = copied.regions == 2 * RegionGrid::FIELD.regions() as usize;
             let field = mark.picture.period_drawn_for();
-            let in_its_period = whole && copied_at <= record.tick(field.next());
+            let in_its_period = whole && copied.at <= record.tick(field.next());
+            let shown = backup.as_ref().filter(|_| whole).and_then(|backup| backup.shown(record, field, &copied));
+            let picture_end = match (&backup, shown) {
+                (None, _) => PictureEnd::of(in_its_period, !late.contains(&field)),
+                (Some(_), Some(_)) => PictureEnd::Shown,
+                (Some(_), None) => PictureEnd::of(in_its_period, false),
+            };
             PictureTimes {
                 picture: mark.picture,
                 view: mark.view.unwrap_or(ViewNumber::taken_for(mark.picture)),
                 sampled_at: Some(mark.time),
                 transform_at: mark.time,
-                copied_at: whole.then_some(copied_at),
-                shown_at: record.tick(field),
-                end: PictureEnd::of(in_its_period, !late.contains(&field)),
+                copied_at: whole.then_some(copied.at),
+                shown_at: record.tick(shown.unwrap_or(field)),
+                end: picture_end,
             }
         });
-        // A field whose bottom half is still being scanned is judged by the next run.
-        let judged = |times: &PictureTimes| record.tick(times.picture.period_drawn_for().next()) <= end;
+        // A field whose bottom half is still being scanned is judged by the next run; so is one that a later retrace of its lines may show.
+        let judged = |times: &PictureTimes| {
+            let field = times.picture.period_drawn_for();
+            let shown = record.display().period_at(times.shown_at);
+            let last =
+                if backup.is_some() && times.end != PictureEnd::Shown { field.0 + LATER_RETRACES } else { shown.0 };
+            record.tick(PeriodNumber(last).next()) <= end
+        };
         times.filter(judged).collect()
     }
 
@@ -230,7 +242,7 @@ impl Pipeline for Slats {
 
     /// A field is scanned once: the next one is of the other lines.
     fn shown(&self, record: &Record, times: &PictureTimes, _: Option<&PictureTimes>) -> LightSpan {
-        light_span(record, times.picture.period_drawn_for(), 1)
+        light_span(record, record.display().period_at(times.shown_at), 1)
     }
 
     fn latency_definition(&self) -> &'static str {
@@ -238,13 +250,63 @@ impl Pipeline for Slats {
     }
 
     fn due_definition(&self) -> &'static str {
-        "a picture is due every field, and in time if every region is there at its deadline: the retrace, or for the bottom regions of a split copy the scan of their first line"
+        "a picture is due every field, and in time if every region is there at its deadline: the retrace, or for the bottom regions of a split copy the scan of their first line; with a backup a late picture is shown at a later retrace of its lines, and the retrace that it missed counts as missed"
     }
 
     /// The halves of a split copy are timed apart.
     fn copy_part(&self, arrival: &Arrival) -> u8 {
         let bottom = u32::from(arrival.target.region.0) >= RegionGrid::FIELD.columns();
         u8::from(bottom && self.copy.is_split())
+    }
+}
+
+/// Retraces after its own within which a late field is shown under a backup, or never: two of its lines.
+const LATER_RETRACES: u64 = 4;
+
+/// How far a field has been copied.
+#[derive(Clone, Copy, Debug, Default)]
+struct Copied {
+    regions: usize,
+    /// When the last region had arrived, and the last top region.
+    at: Time,
+    top_at: Time,
+    buffer: u8,
+}
+
+impl Copied {
+    fn note(&mut self, arrival: &Arrival) {
+        self.regions += 1;
+        self.at = self.at.max(arrival.last_part_at);
+        if u32::from(arrival.target.region.0) < RegionGrid::FIELD.columns() {
+            self.top_at = self.top_at.max(arrival.last_part_at);
+        }
+        self.buffer = arrival.target.buffer;
+    }
+}
+
+/// Which buffer each frame buffer displayed when, under a backup.
+struct Backup {
+    /// By surface, first periods and buffers, in order.
+    swaps: [Vec<(PeriodNumber, u8)>; 2],
+}
+
+impl Backup {
+    fn new(record: &Record) -> Self {
+        let of =
+            |surface| record.observation().swaps_of(SurfaceId(surface)).map(|swap| (swap.tick, swap.buffer)).collect();
+        Self { swaps: [of(0), of(1)] }
+    }
+
+    /// The first period in which both eyes' frame buffers show a field that was copied so: one of its lines, from its own on.
+    fn shown(&self, record: &Record, field: PeriodNumber, copied: &Copied) -> Option<PeriodNumber> {
+        let periods = (field.0..=field.0 + LATER_RETRACES).step_by(2).map(PeriodNumber);
+        let displays = |swaps: &Vec<(PeriodNumber, u8)>, period: PeriodNumber| {
+            let swap = swaps[..swaps.partition_point(|swap| swap.0 <= period)].last();
+            swap.map_or(0, |swap| swap.1) == copied.buffer
+        };
+        periods
+            .filter(|period| copied.top_at < record.tick(*period))
+            .find(|period| self.swaps.iter().all(|swaps| displays(swaps, *period)))
     }
 }
 
@@ -281,7 +343,7 @@ pub(super) const ENTRY: PipelineEntry = PipelineEntry {
     keys: &[
         Key {
             name: "copy",
-            about: "when regions are copied: whole (all before the retrace), split (the bottom ones after it) or backup (whole, \
+            about: "when regions are copied: whole (all before the retrace), split (the bottom ones after it) or backup (split, \
                     and the last complete field stands in for a late one; beyond the prototype)",
             values: KeyValues::Names(&[COPIES[0].0, COPIES[1].0, COPIES[2].0]),
             sets: &[],

@@ -108,18 +108,18 @@ fn asked(message: &Message) -> Option<Asked> {
     }
 }
 
-/// Field by field: the last complete field of its lines is asked for, then it is drawn into the other buffer; that one is asked for if the
-/// copies came before its retrace. A field begins with the retrace after which the one before is done.
+/// At each retrace the last complete field of the lines that the next one scans is asked for. A field goes into the other buffer, and is
+/// asked for when its top regions have been copied before its retrace. After a late field, the next one is of the other lines.
 #[test]
 fn of_a_late_field_the_last_complete_one_of_its_lines_is_shown() {
     use Asked::{Show, Write};
     let mut rig = Rig::new(CopySchedule::Backup, 3);
-    // Fields are 2 (in time), 3 (in time), 4 (late), 6 (in time), 7 (late by more than a field) and 10 (in time).
-    for copied_ms in [30, 50, 85, 110, 165, 190] {
+    // Fields are 2 and 3 (in time), 4 (late), 5 and 6 (in time), 7 (late by more than a field), 8 (late because of that) and 11.
+    for copied_ms in [30, 50, 85, 95, 110, 165, 175, 190] {
         rig.run_to(copied_ms * 1_000, 0);
-        (0..REGIONS).for_each(|_| rig.deliver(Body::Words([COPY_ACKNOWLEDGEMENT, 0, 0, 0].into())));
+        (0..REGIONS / 2).for_each(|_| rig.deliver(Body::Words([COPY_ACKNOWLEDGEMENT, 0, 0, 0].into())));
     }
-    rig.run_to(200_000 - 10, 0);
+    rig.run_to(220_000 - 10, 0);
     let mut found: Vec<(u64, Asked)> = Vec::new();
     for (time, message) in rig.bench.sent() {
         let Some(asked) = asked(message) else { continue };
@@ -132,9 +132,16 @@ fn of_a_late_field_the_last_complete_one_of_its_lines_is_shown() {
         [(1, Show(0)), (1, Write(1)), (1, Show(1))].as_slice(),
         &[(2, Show(0)), (2, Write(1)), (2, Show(1))],
         &[(3, Show(1)), (3, Write(0))],
-        &[(5, Show(1)), (5, Write(0)), (5, Show(0))],
-        &[(6, Show(1)), (6, Write(0))],
-        &[(9, Show(0)), (9, Write(1)), (9, Show(1))],
+        // Field 4 is complete now. Field 5 follows it.
+        &[(4, Show(1)), (4, Write(0)), (4, Show(0))],
+        // Field 4 is asked for.
+        &[(5, Show(0)), (5, Write(1)), (5, Show(1))],
+        &[(6, Show(0)), (6, Write(1))],
+        &[(7, Show(1))],
+        // Fields 7 and 8 are complete now.
+        &[(8, Show(0)), (8, Write(1)), (8, Write(0))],
+        &[(9, Show(0)), (9, Write(0))],
+        &[(10, Show(0))],
     ];
     assert_eq!(found, expected.concat());
 }
