@@ -78,7 +78,7 @@ pub use level::Level;
 pub use outcome::Outcome;
 pub use pipeline::{PictureTimes, Pipeline, Setup, Source};
 pub use pipelines::{
-    Code, FacePipeline, FacePolicy, FaceSource, FinishedRegions, Frameless, Interpolation, Jitp, RenderingControl,
+    Code, FaceLens, FacePipeline, FacePolicy, FaceSource, FinishedRegions, Frameless, Interpolation, Jitp, RenderingControl,
     Slats, Viewpoint, region_at,
 };
 pub use pxpl5_display::{Aim, LightSpan};

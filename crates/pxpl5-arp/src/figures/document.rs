@@ -342,7 +342,7 @@ fn slowed(text: &mut String, all: &Experiments) {
 fn sizes(text: &mut String, all: &Experiments) {
     let _ = write!(
         text,
-        "\n## E3: size against translation\n\nAn object whose middle is 10 m away, approached at 1 m/s; validity in ms.\n\n\
+        "\n## E3: size against translation\n\nAn object whose middle is 10 m away, approached at 1 m/s; validity in ms for a threshold of 90/512 degrees.\n\n\
          | size/distance | translation | size, disc | size, sphere | decides (disc, sphere) |\n|---|---|---|---|---|\n"
     );
     for row in &all.sizes {

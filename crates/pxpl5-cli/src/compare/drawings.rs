@@ -75,13 +75,15 @@ fn axes(comparison: &Comparison, title: &str, across: &str, up: &str) -> ChartAx
 /// Columns of the table of rows, and what stands in them.
 type Column = (&'static str, fn(&ComparisonRow) -> String);
 
-const COLUMNS: [Column; 24] = [
+const COLUMNS: [Column; 26] = [
     ("pipeline", |row| row.pipeline.clone()),
     ("settings", |row| row.settings.clone()),
     ("latency_ms_mean", |row| number(row.latency_ms.mean)),
     ("latency_ms_sd", |row| number(row.latency_ms.sd)),
     ("head_to_light_ms_mean", |row| number(row.head_to_light_ms.mean)),
     ("head_to_light_ms_sd", |row| number(row.head_to_light_ms.sd)),
+    ("turn_to_light_ms_mean", |row| number(row.turn_to_light_ms.mean)),
+    ("turn_to_light_ms_sd", |row| number(row.turn_to_light_ms.sd)),
     ("prediction_interval_ms_mean", |row| number(row.prediction_interval_ms.mean)),
     ("prediction_interval_ms_sd", |row| number(row.prediction_interval_ms.sd)),
     ("updates_hz", |row| number(row.updates_hz.mean)),

@@ -46,7 +46,7 @@ impl FigureFamily {
         let failed = |reason: String| FigureError { id: "E1".to_owned(), reason };
         let mut all = turning(bench).map_err(|error| failed(error.to_string()))?;
         let experiments = Experiments::run().map_err(|error| failed(error.to_string()))?;
-        all.extend(rows(&experiments).into_iter().filter(|row| row.standing != Standing::Formula));
+        all.extend(rows(&experiments));
         Ok(Self {
             title: "Address recalculation and priority rendering",
             document: "docs/address-recalculation.md",
