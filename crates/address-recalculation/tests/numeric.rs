@@ -317,7 +317,9 @@ fn a_display_tells_the_texels_of_a_pixel() {
     assert_eq!(footprint.texels, [texel(402, 145), texel(403, 145), texel(402, 146), texel(403, 146)]);
     assert_eq!((footprint.fractions, footprint.weights(4)), ([15, 4], [12, 180, 4, 60]));
     assert_eq!(ArpConfig::IDEAL.footprint(640, 0, &turned), Ok(None));
-    assert!(ArpConfig { lens: Lens::Radial { k1: -0.3, k2: 0.0 }, ..ArpConfig::IDEAL }.footprint(0, 0, &turned).is_err());
+    assert!(
+        ArpConfig { lens: Lens::Radial { k1: -0.3, k2: 0.0 }, ..ArpConfig::IDEAL }.footprint(0, 0, &turned).is_err()
+    );
 }
 
 #[test]

@@ -82,7 +82,13 @@ pub(crate) mod tests {
 
     pub(crate) fn warp() -> FaceWarp {
         FaceWarp {
-            dealing: Dealing { home: Cell { x: -3, z: 1 << 40 }, side_m: 5.0, inner_rings: 1, ring_growth: 2, memories: 4 },
+            dealing: Dealing {
+                home: Cell { x: -3, z: 1 << 40 },
+                side_m: 5.0,
+                inner_rings: 1,
+                ring_growth: 2,
+                memories: 4,
+            },
             falloff: Falloff::Smoothstep,
             length_m: 4.5,
             drawn_from: DVec3::new(0.1, 1.7, -2.0),

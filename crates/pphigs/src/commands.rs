@@ -258,7 +258,11 @@ impl RegionWords {
         self.triangles(triangles, out);
         self.spheres(&part.spheres, out.words());
         if part.ends && self.pass.shades(self.envelope) {
-            append(&Command::Shade(shade(self.pass.light(), self.pass.share().list().is_matte)), &picture.layout, out.words());
+            append(
+                &Command::Shade(shade(self.pass.light(), self.pass.share().list().is_matte)),
+                &picture.layout,
+                out.words(),
+            );
         }
         if let Some(order) = self.envelope.copy.filter(|_| part.ends) {
             append(&Command::CopyRegion(CopyRegion { target: order.target }), &picture.layout, out.words());

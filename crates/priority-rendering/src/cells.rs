@@ -185,7 +185,8 @@ impl Cells {
         let is_due = |(from, way): (&Option<DVec3>, &f64)| from.is_none_or(|from| eye.distance(from) > *way);
         let mut due: Vec<bool> = self.drawn_from.iter().zip(&ways).map(is_due).collect();
         // A memory without cells is right from everywhere: it is never due, and it does not hold back a new dealing.
-        for (from, _) in self.drawn_from.iter_mut().zip(&ways).filter(|(from, way)| from.is_some() && way.is_infinite()) {
+        for (from, _) in self.drawn_from.iter_mut().zip(&ways).filter(|(from, way)| from.is_some() && way.is_infinite())
+        {
             *from = Some(eye);
         }
         let cell = Cell::of(eye.x, eye.z, self.dealing.side_m);

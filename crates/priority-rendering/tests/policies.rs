@@ -5,12 +5,8 @@ use priority_rendering::{Cell, Cells, Falloff, Objects, PriorityTiming, RegionWa
 use proptest::prelude::*;
 
 /// The interpretation that the specification's numbers are of: equal rings of cells of 5 m, a threshold of 90/512 degrees.
-const EQUAL_RINGS: PriorityTiming = PriorityTiming {
-    theta_deg: 90.0 / 512.0,
-    ring_growth: 1,
-    cell_m: 5.0,
-    ..PriorityTiming::PAPERS
-};
+const EQUAL_RINGS: PriorityTiming =
+    PriorityTiming { theta_deg: 90.0 / 512.0, ring_growth: 1, cell_m: 5.0, ..PriorityTiming::PAPERS };
 const FRAME_M: f64 = 1.0 / 60.0;
 
 fn square(cells: i64) -> impl Iterator<Item = Cell> {

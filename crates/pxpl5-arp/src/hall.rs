@@ -107,7 +107,10 @@ mod tests {
             let path = path_of(&scene, route).expect("a path");
             for step in 0..200 {
                 let place = path.place(path.length_m() * f64::from(step) / 200.0);
-                assert!(place.x.abs() < 20.0 && place.z.abs() < 20.0 && (place.y - 1.7).abs() < 1e-6, "{name}: {place}");
+                assert!(
+                    place.x.abs() < 20.0 && place.z.abs() < 20.0 && (place.y - 1.7).abs() < 1e-6,
+                    "{name}: {place}"
+                );
             }
         }
         // To and fro between 0.6 m before both walls.

@@ -1,8 +1,8 @@
 //! What a walk is made of, by path.
 
 use crate::error::ExperimentError;
-use crate::settings::{PolicyKind, Settings, SourceKind};
 use crate::hall::Route;
+use crate::settings::{PolicyKind, Settings, SourceKind};
 use address_recalculation::{ArpConfig, CompositionOrder, Latch, Lens, Picture};
 use parameters::{Entry, ParameterInfo, ParameterTable, Value, nearest};
 use priority_rendering::Falloff;

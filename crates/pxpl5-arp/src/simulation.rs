@@ -203,7 +203,10 @@ impl<'a> Simulation<'a> {
             segments[self.memory(number)].extend(unit.segments.clone());
         }
         let due = segments.into_iter().enumerate().filter(|(memory, _)| update.due[*memory]);
-        due.map(|(memory, segments)| Ok((memory, Content { eye, frame: self.frames, segments, warp: self.warp(memory, eye)? }))).collect()
+        due.map(|(memory, segments)| {
+            Ok((memory, Content { eye, frame: self.frames, segments, warp: self.warp(memory, eye)? }))
+        })
+        .collect()
     }
 
     fn warp(

@@ -24,7 +24,8 @@ fn the_side_of_a_cell_is_fitted_to_memory_1_and_the_threshold_to_the_width_of_te
 #[test]
 fn table_1_checked_rates_fall_from_memory_to_memory_and_memory_0_is_drawn_in_every_frame() {
     let tried = FIGURES.0.interpretations.ranked.iter().flat_map(|ranked| &ranked.tried);
-    let all = tried.map(|tried| tried.best.rates_hz.to_vec()).chain(FIGURES.0.fits.iter().map(|fit| fit.rates_hz.clone()));
+    let all =
+        tried.map(|tried| tried.best.rates_hz.to_vec()).chain(FIGURES.0.fits.iter().map(|fit| fit.rates_hz.clone()));
     for rates in all {
         // A memory that holds nothing in a small hall is not drawn at all.
         assert!((rates[0] - 60.0).abs() < 1e-9, "{rates:?}");
@@ -48,7 +49,10 @@ fn rings_that_double_explain_table_1_better_than_equal_rings() {
     let straight = held.tried.iter().find(|tried| tried.situation == Situation::Straight).expect("run");
     let expected = [40.6, 25.7, 16.0];
     let rates = straight.best.rates_hz;
-    assert!(expected.iter().zip(&rates[1..]).all(|(expected, found)| (found / expected - 1.0).abs() < 0.05), "{rates:?}");
+    assert!(
+        expected.iter().zip(&rates[1..]).all(|(expected, found)| (found / expected - 1.0).abs() < 0.05),
+        "{rates:?}"
+    );
 }
 
 /// The home cell alone in memory 0: its second rate is as fast as its first.

@@ -3,10 +3,10 @@
 use address_recalculation::{CubeFace, FaceSet, Latch, Lens, TexelAddress};
 use glam::{DQuat, DVec3};
 use priority_rendering::Falloff;
+use pxpl5_arp::pictures::{Picture, of_walk};
 use pxpl5_arp::{
     ExperimentError, Faces, PolicyKind, Report, Settings, Simulation, SourceKind, Tears, World, at_frames, walk,
 };
-use pxpl5_arp::pictures::{Picture, of_walk};
 use pxpl5_scene::{Scene, builtin};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -148,9 +148,7 @@ fn no_vertex_of_any_memory_is_ever_off_by_more_than_theta() {
 
 #[test]
 fn each_segment_is_in_one_memory_in_every_frame_also_when_cells_are_dealt_anew() {
-    for settings in
-        [CELLS, WARPED, Settings { is_segmented: false, ..CELLS }, OBJECTS]
-    {
+    for settings in [CELLS, WARPED, Settings { is_segmented: false, ..CELLS }, OBJECTS] {
         let mut simulation = simulated(&settings);
         let eye = at_frames(&PATH, 3.0, 60.0);
         for frame in 0..700 {

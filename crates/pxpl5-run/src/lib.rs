@@ -78,8 +78,8 @@ pub use level::Level;
 pub use outcome::Outcome;
 pub use pipeline::{PictureTimes, Pipeline, Setup, Source};
 pub use pipelines::{
-    Code, FaceLens, FacePipeline, FacePolicy, FaceSource, FinishedRegions, Frameless, Interpolation, Jitp, RenderingControl,
-    Slats, Viewpoint, region_at,
+    Code, FaceLens, FacePipeline, FacePolicy, FaceSource, FinishedRegions, Frameless, Interpolation, Jitp,
+    RenderingControl, Slats, Viewpoint, region_at,
 };
 pub use pxpl5_display::{Aim, LightSpan};
 pub use raster::Raster;

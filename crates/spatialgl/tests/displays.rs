@@ -188,8 +188,7 @@ fn a_scene_that_keeps_away_from_the_axis_has_no_dead_zone() {
     let wall = |z: f64| [[-300.0, -200.2, z], [300.1, -200.2, z], [0.6, 280.7, z]];
     let found = |z: f64, plane_fraction_bits| {
         let clip = if plane_fraction_bits.is_some() { SliceClip::ShaderPlanes } else { SliceClip::Tapered(0.5) };
-        let config =
-            SweptConfig { plane_fraction_bits, ..SweptConfig::perspecta(clip, Projection::Orthographic) };
+        let config = SweptConfig { plane_fraction_bits, ..SweptConfig::perspecta(clip, Projection::Orthographic) };
         let display = SweptDisplay::new(config).expect("valid");
         let commands = recording(&[wall(z)]);
         let frame = volume(&display, &commands, &VolumeConfig { keeps_colours: true, ..half(VolumeConfig::paper()) });

@@ -32,7 +32,9 @@ pub fn definitions() -> Vec<Definition> {
     // A4 and A17 hold by the order of the stages: nothing that draws lies between the latch and the light.
     let drawn = "share of rendering and buffer swap in rotational latency, by the order of the stages".to_owned();
     all.push(definition("A4", drawn, 0.0, "ms"));
-    let stages = "from the latch to the light: 26 stages, whose clock is assumed so that this is below the printed 1 us".to_owned();
+    let stages =
+        "from the latch to the light: 26 stages, whose clock is assumed so that this is below the printed 1 us"
+            .to_owned();
     all.push(definition("A17", stages, ArpTiming::PAPERS.depth().0 as f64 / 1e6, "us"));
     for (memory, rate) in RATES_HZ.into_iter().enumerate() {
         all.push(definition("D1", format!("mean period of memory {memory}: 60 / A12"), 60.0 / rate, "frames"));

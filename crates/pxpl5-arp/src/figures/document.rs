@@ -162,7 +162,11 @@ pub fn interpretations(all: &Interpretations) -> String {
          fits the other two. Path and hall are unknown, so rules are ranked by their mean over all four.\n\n"
         .to_owned();
     let situations = Situation::ALL.map(Situation::text).join(" | ");
-    let _ = writeln!(text, "| rules | mean | left out | {situations} |\n|---|---|---|{}", "---|".repeat(Situation::ALL.len()));
+    let _ = writeln!(
+        text,
+        "| rules | mean | left out | {situations} |\n|---|---|---|{}",
+        "---|".repeat(Situation::ALL.len())
+    );
     for RankedRules { rules, mean_error_percent, mean_left_out_percent, tried } in &all.ranked {
         let each = tried.iter().map(|tried| format!("{:.1} % ({:.1} m)", tried.error_percent, tried.best.cell_m));
         let each = each.collect::<Vec<_>>().join(" | ");

@@ -226,11 +226,7 @@ pub struct SizeLimit {
 /// threshold), and of the radius' angle by twice the threshold.
 #[must_use]
 pub fn size_limits() -> Vec<SizeLimit> {
-    let kinds = [
-        ("the diameter's, by theta", 0.5),
-        ("the radius', by theta", 1.0),
-        ("the radius', by 2 theta", 2.0),
-    ];
+    let kinds = [("the diameter's, by theta", 0.5), ("the radius', by theta", 1.0), ("the radius', by 2 theta", 2.0)];
     kinds.map(|(angle, factor)| size_limit(angle, factor)).to_vec()
 }
 

@@ -100,7 +100,9 @@ impl Row {
     pub fn cause(&self) -> &'static str {
         match self.id {
             "A8" => "No interpretation of size and distance gives so much.",
-            "A12" => "Scene, path, rings and threshold are not printed; the one number that is fitted is that of memory 1.",
+            "A12" => {
+                "Scene, path, rings and threshold are not printed; the one number that is fitted is that of memory 1."
+            }
             _ => "The cause is not known.",
         }
     }

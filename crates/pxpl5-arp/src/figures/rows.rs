@@ -107,7 +107,8 @@ fn tears(all: &Experiments) -> Vec<Row> {
     let widest = |walk: usize| all.walks[walk].report.tears_px.after.map_or(0.0, |tears| tears.max);
     let [warped, uncut] = [1, 2].map(widest);
     let pixels = widest(0) * all.walks[0].settings.texel_deg() / PIXEL_DEG;
-    let before = "widest tear before warping, 2 to 5 pixels of the display (printed: \"a few\"; the threshold was chosen so)";
+    let before =
+        "widest tear before warping, 2 to 5 pixels of the display (printed: \"a few\"; the threshold was chosen so)";
     let torn = Row::number("A15", before, "px", [3.0, pixels], Standing::Fitted);
     let after = "widest tear left after warping, with cascade";
     vec![
@@ -125,9 +126,7 @@ fn slowed(all: &Experiments) -> Vec<Row> {
         "renderers of {} that are too slow for memory 3; faster memories never miss more often",
         all.slowed.len()
     );
-    vec![
-        Row::shape("2.1", &first, "1", [f64::NAN, misses as f64], ordered && misses > 0),
-    ]
+    vec![Row::shape("2.1", &first, "1", [f64::NAN, misses as f64], ordered && misses > 0)]
 }
 
 fn lens(all: &Experiments) -> Vec<Row> {

@@ -60,12 +60,7 @@ pub(super) fn run(args: TexelArgs) -> Result<(), CliError> {
 /// Yaw about y, then pitch about x, then roll about z: x, y, z, w.
 fn quaternion(degrees: [f64; 3]) -> [f64; 4] {
     let [(sy, cy), (sp, cp), (sr, cr)] = degrees.map(|angle| (angle.to_radians() / 2.0).sin_cos());
-    [
-        cy * sp * cr + sy * cp * sr,
-        sy * cp * cr - cy * sp * sr,
-        cy * cp * sr - sy * sp * cr,
-        cy * cp * cr + sy * sp * sr,
-    ]
+    [cy * sp * cr + sy * cp * sr, sy * cp * cr - cy * sp * sr, cy * cp * sr - sy * sp * cr, cy * cp * cr + sy * sp * sr]
 }
 
 /// The texels with their weights, in parts of one; the weight of the texel beyond a corner is that of a mean of the others.
@@ -98,7 +93,10 @@ fn record(args: &TexelArgs, display: &ArpConfig, footprint: &Footprint) -> Value
 }
 
 fn text(args: &TexelArgs, display: &ArpConfig, footprint: &Footprint) -> String {
-    let mut text = format!("pixel {}, {}\n{:<6} {:>6} {:>6} {:>5} {:>8}\n", args.x, args.y, "face", "column", "row", "bank", "weight");
+    let mut text = format!(
+        "pixel {}, {}\n{:<6} {:>6} {:>6} {:>5} {:>8}\n",
+        args.x, args.y, "face", "column", "row", "bank", "weight"
+    );
     for (texel, weight) in texels(display, footprint) {
         let _ = match texel {
             Some(texel) => {
