@@ -1,9 +1,11 @@
 //! What a display is built of.
 
+use crate::address::{AddressUnit, Footprint};
 use crate::composition::{Composition, CompositionOrder};
 use crate::error::ArpError;
 use crate::face::FaceGeometry;
-use crate::lens::{Lens, LensTable, Picture};
+use crate::lens::{Lens, LensTable, Picture, unit_words};
+use crate::orientation::Orientation;
 use crate::scan::{Latch, Scan};
 use crate::texel::TexelFormat;
 use crate::timing::{ArpTiming, ScanTiming};
@@ -73,6 +75,23 @@ impl ArpConfig {
     pub fn table(&self) -> Result<LensTable, ArpError> {
         self.check()?;
         LensTable::new(&self.lens, &self.picture(), self.timing.vector_bits)
+    }
+
+    /// Which texels of the faces a pixel is for an orientation of the head, and their weights, as the hardware's words have it; `None`
+    /// beyond the picture.
+    ///
+    /// # Errors
+    ///
+    /// As [`ArpConfig::check`].
+    pub fn footprint(&self, x: u32, y: u32, orientation: &Orientation) -> Result<Option<Footprint>, ArpError> {
+        self.check()?;
+        let picture = self.picture();
+        if x >= picture.width || y >= picture.height {
+            return Ok(None);
+        }
+        let vector = unit_words(self.lens.view(&picture, x, y), self.timing.vector_bits);
+        let turned = orientation.words(self.timing.matrix_bits).turn(vector);
+        Ok(AddressUnit::new(&self.timing).footprint(turned))
     }
 
     /// When pixels light and latch.

@@ -1,5 +1,6 @@
 //! The display on the ring: a port for each memory, an orientation register, a picture for each eye.
 
+use crate::address::Footprint;
 use crate::config::ArpConfig;
 use crate::error::ArpError;
 use crate::face::Vector;
@@ -81,6 +82,13 @@ impl AddressRecalculationPipeline {
     #[must_use]
     pub fn latched(&self, eye: Eye, x: u32, y: u32, field: PeriodNumber) -> Option<MatrixWords> {
         self.field(eye.index(), field)?.matrix(x, y)
+    }
+
+    /// The face and the texels that a pixel of a remembered field was looked up in, with their weights; `None` for a pixel that the
+    /// field does not scan.
+    #[must_use]
+    pub fn footprint(&self, eye: Eye, x: u32, y: u32, field: PeriodNumber) -> Option<Footprint> {
+        self.field(eye.index(), field)?.footprint(x, y)
     }
 
     /// What looking a remembered field up costs besides one access a pixel and memory.

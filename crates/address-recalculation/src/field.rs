@@ -1,5 +1,6 @@
 //! A field that was scanned, ready to be looked at: nothing is computed before.
 
+use crate::address::{AddressUnit, Footprint};
 use crate::config::ArpConfig;
 use crate::lens::LensTable;
 use crate::lookup::{Addressing, LookStats, Lookup};
@@ -58,6 +59,12 @@ impl Field<'_> {
     pub(crate) fn matrix(&self, x: u32, y: u32) -> Option<MatrixWords> {
         let latch = self.optics.config.latch;
         Some(self.latch.at(self.optics.scan.latches(latch, x, y, self.number)?))
+    }
+
+    /// The texels that a pixel of the field was looked up in; `None` for one that it does not scan.
+    pub(crate) fn footprint(&self, x: u32, y: u32) -> Option<Footprint> {
+        let turned = self.matrix(x, y)?.turn(self.optics.table().entry(x, y));
+        AddressUnit::new(&self.optics.config.timing).footprint(turned)
     }
 
     /// Writes the lines that the field scans into a frame.

@@ -3,6 +3,7 @@
 use crate::error::ArpError;
 use crate::face::Vector;
 use std::io::BufRead;
+use std::str::FromStr;
 use std::sync::Arc;
 
 /// Widest angle of a flat picture or a radial lens, degrees: as in the other pipelines.
@@ -57,7 +58,29 @@ impl Picture {
     }
 }
 
+impl FromStr for Lens {
+    type Err = ArpError;
+
+    /// Reads `flat`, `equidistant`, `radial:K1` or `radial:K1:K2`. Whether a picture can be seen through it is [`Lens::check`]'s to say.
+    fn from_str(text: &str) -> Result<Self, ArpError> {
+        let wrong = || ArpError::Lens { expected: Self::FORMS.to_owned(), found: excerpt(text) };
+        let mut parts = text.split(':');
+        let name = parts.next();
+        let numbers: Vec<f64> = parts.map(str::parse).collect::<Result<_, _>>().map_err(|_| wrong())?;
+        match (name, numbers.as_slice()) {
+            (Some("flat"), []) => Ok(Self::Flat),
+            (Some("equidistant"), []) => Ok(Self::Equidistant),
+            (Some("radial"), [k1]) => Ok(Self::Radial { k1: *k1, k2: 0.0 }),
+            (Some("radial"), [k1, k2]) => Ok(Self::Radial { k1: *k1, k2: *k2 }),
+            _ => Err(wrong()),
+        }
+    }
+}
+
 impl Lens {
+    /// The texts that a lens is read from.
+    pub const FORMS: &str = "flat, equidistant, radial:K1 or radial:K1:K2";
+
     /// Checks that no two pixels of a picture look through one point of the lens, and that the angle is possible.
     ///
     /// # Errors

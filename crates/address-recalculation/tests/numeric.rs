@@ -306,3 +306,31 @@ fn the_life_of_a_pixel_in_the_guide() {
     assert_eq!(footprint.fractions, [15, 4]);
     assert_eq!(footprint.weights(4), [12, 180, 4, 60]);
 }
+
+/// The life of a pixel in the guide: the upper left pixel before a head that looks 30 degrees to the left.
+#[test]
+fn a_display_tells_the_texels_of_a_pixel() {
+    let half = 15.0_f64.to_radians();
+    let turned = Orientation::from_quaternion([0.0, half.sin(), 0.0, half.cos()]).expect("a rotation");
+    let footprint = ArpConfig::IDEAL.footprint(0, 0, &turned).expect("valid").expect("in the picture");
+    let texel = |column, row| Some(TexelAddress { face: CubeFace::NegX, column, row });
+    assert_eq!(footprint.texels, [texel(402, 145), texel(403, 145), texel(402, 146), texel(403, 146)]);
+    assert_eq!((footprint.fractions, footprint.weights(4)), ([15, 4], [12, 180, 4, 60]));
+    assert_eq!(ArpConfig::IDEAL.footprint(640, 0, &turned), Ok(None));
+    assert!(
+        ArpConfig { lens: Lens::Radial { k1: -0.3, k2: 0.0 }, ..ArpConfig::IDEAL }.footprint(0, 0, &turned).is_err()
+    );
+}
+
+#[test]
+fn a_lens_is_read_from_its_text() {
+    let read = |text: &str| text.parse::<Lens>();
+    assert_eq!(read("flat"), Ok(Lens::Flat));
+    assert_eq!(read("equidistant"), Ok(Lens::Equidistant));
+    assert_eq!(read("radial:0.32"), Ok(Lens::Radial { k1: 0.32, k2: 0.0 }));
+    assert_eq!(read("radial:0.3:-0.1"), Ok(Lens::Radial { k1: 0.3, k2: -0.1 }));
+    for wrong in ["", "radial", "radial:x", "radial:1:2:3", "flat:1", "table:a.txt"] {
+        let error = read(wrong).expect_err(wrong).to_string();
+        assert!(error.contains("radial:K1:K2") && error.contains(wrong), "{error}");
+    }
+}

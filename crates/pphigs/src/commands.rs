@@ -258,7 +258,11 @@ impl RegionWords {
         self.triangles(triangles, out);
         self.spheres(&part.spheres, out.words());
         if part.ends && self.pass.shades(self.envelope) {
-            append(&Command::Shade(shade(self.pass.light())), &picture.layout, out.words());
+            append(
+                &Command::Shade(shade(self.pass.light(), self.pass.share().list().is_matte)),
+                &picture.layout,
+                out.words(),
+            );
         }
         if let Some(order) = self.envelope.copy.filter(|_| part.ends) {
             append(&Command::CopyRegion(CopyRegion { target: order.target }), &picture.layout, out.words());
@@ -394,9 +398,10 @@ fn append(command: &Command, layout: &Layout, out: &mut Vec<Word>) {
     debug_assert!(encoded.is_ok(), "{encoded:?}");
 }
 
-/// Light and highlight in the formats of the command; the eye looks along -z. Nothing is lit without a light.
+/// Light and highlight in the formats of the command; the eye looks along -z. Nothing is lit without a light, and what is matte has no
+/// highlight.
 #[must_use]
-pub fn shade(light: Option<&Light>) -> Shade {
+pub fn shade(light: Option<&Light>, is_matte: bool) -> Shade {
     let Some(light) = light else { return Shade::default() };
     let towards = light.direction;
     let half = unit([towards[0], towards[1], towards[2] + 1.0]);
@@ -405,7 +410,7 @@ pub fn shade(light: Option<&Light>) -> Shade {
         half: fixed_direction(half),
         ambient: fixed_part(light.ambient),
         diffuse: fixed_part(light.diffuse),
-        specular: SPECULAR,
+        specular: if is_matte { 0 } else { SPECULAR },
     }
 }
 

@@ -32,6 +32,8 @@ pub struct DisplayList {
     pub diffuse: f32,
     /// Red, green, blue where nothing is drawn.
     pub background: [u8; 3],
+    /// True if surfaces have no highlight. A highlight needs one direction of the eye for a whole picture.
+    pub is_matte: bool,
     /// What many graphics processors compute alike, kept for the next one; empty at first. Who changes the list empties it.
     pub recent: RecentViews,
 }

@@ -17,7 +17,7 @@ parameters::parameter_table! {
         /// Side of a cell.
         cell_m: f64 = 2.5, "m", Derived, 1.0..=100.0 in 1e-3..=1e6, "fitted to one rate of table 1";
         /// Distance from a border within which warping moves vertices, at most a cell's side.
-        falloff_m: f64 = 2.5, "m", Assumed, 0.1..=100.0 in 1e-3..=1e6, "not printed: a cell's side";
+        falloff_m: f64 = 0.0, "m", Assumed, 0.0..=100.0 in 0.0..=1e6, "not printed; 0 stands for a cell's side";
         /// Frames a second: the rate of the fastest memory.
         frame_hz: f64 = 60.0, "Hz", Published, 60.0..=60.0 in 1.0..=1000.0, "CPR05 4.2";
         /// Display memories of different rates.
@@ -40,6 +40,12 @@ impl PriorityTiming {
             return Err(PriorityError(format!("priority.falloff_m: expected {text}")));
         }
         Ok(())
+    }
+
+    /// Distance from a border within which warping moves vertices, m: a cell's side where none is given.
+    #[must_use]
+    pub const fn falloff_length_m(&self) -> f64 {
+        if self.falloff_m == 0.0 { self.cell_m } else { self.falloff_m }
     }
 
     /// Seconds of a frame.

@@ -338,6 +338,12 @@ fn numbers_are_refused_by_name() {
     for theta_deg in [0.0, -1.0, f64::NAN] {
         assert!(refusal(PriorityTiming { theta_deg, ..papers }).starts_with("priority.theta_deg must be"));
     }
+    for cell_m in [0.5, 2.0, 9.0] {
+        let timing = PriorityTiming { cell_m, ..PriorityTiming::PAPERS };
+        timing.check().expect("the falloff follows the cell");
+        assert_eq!(timing.falloff_length_m(), cell_m);
+    }
+    assert_eq!(PriorityTiming { falloff_m: 1.5, ..papers }.falloff_length_m(), 1.5);
     for cell_m in [0.0, -1.0, f64::NAN] {
         assert!(refusal(PriorityTiming { cell_m, ..papers }).contains("priority.cell_m must be"));
     }

@@ -31,7 +31,7 @@ fn walk(cells: &mut Cells, path: impl Iterator<Item = DVec3>) -> (Vec<u64>, u64)
 
 /// Rates of the memories over two minutes of a straight walk at 1 m/s, in a direction and a lane.
 fn rates(side_m: f64, heading: f64, lane_m: f64) -> [f64; 4] {
-    let timing = PriorityTiming { cell_m: side_m, falloff_m: side_m, ..EQUAL_RINGS };
+    let timing = PriorityTiming { cell_m: side_m, ..EQUAL_RINGS };
     let mut cells = Cells::new(&timing, square(60), false);
     let place = |n: u32| {
         let way = f64::from(n) * FRAME_M;

@@ -53,7 +53,7 @@ pub(crate) fn warp(
     memory: usize,
     places: [DVec3; 2],
 ) -> Result<Option<(RegionWarp, Dealing, usize)>, PriorityError> {
-    let warp = RegionWarp::new(settings.falloff, settings.numbers.falloff_m, places[0], places[1])?;
+    let warp = RegionWarp::new(settings.falloff, settings.numbers.falloff_length_m(), places[0], places[1])?;
     Ok(Some((warp, *dealing, memory)))
 }
 

@@ -36,7 +36,7 @@ const CHOICES: [&str; 10] = [
 
 /// A walk that can be taken: settings by path over defaults that depend on each other.
 ///
-/// What is not said follows: cascade is on where cells are warped, objects are cut under `cells` alone, a falloff is as long as a cell.
+/// What is not said follows: cascade is on where cells are warped, objects are cut under `cells` alone.
 /// `priority.threshold` in pixels or texels goes before `priority.theta_deg`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
@@ -143,7 +143,7 @@ impl Plan {
             "priority.threshold" => threshold(text).map(|threshold| self.threshold = Some(threshold)),
             "priority.cascade" => is_on(text).map(|is_on| self.has_cascade = Some(is_on)),
             "source" => source(text).map(|source| self.chosen.source = source),
-            "arp.lens" => lens(text).map(|lens| self.chosen.display.lens = lens),
+            "arp.lens" => text.parse().map_err(|_| Lens::FORMS.to_owned()).map(|lens| self.chosen.display.lens = lens),
             _ => self.set_number(path, text, place)?,
         };
         done.map_err(|expected| wrong(path, text, place, expected))?;
@@ -196,9 +196,6 @@ impl Plan {
         settings.has_cascade = self.has_cascade.unwrap_or(is_warped);
         if let Some(threshold) = self.threshold {
             settings.numbers.theta_deg = threshold.degrees(&settings.display);
-        }
-        if !self.said.contains_key("priority.falloff_m") {
-            settings.numbers.falloff_m = settings.numbers.cell_m;
         }
         if settings.policy == PolicyKind::Full {
             settings = settings.with_memories(1);
@@ -265,20 +262,6 @@ fn source(text: &str) -> Result<SourceKind, String> {
     let rate = text.parse().ok().filter(|rate: &f64| rate.is_finite() && *rate > 0.0);
     let timed = rate.map(|triangles_per_s| SourceKind::Timed { triangles_per_s });
     timed.ok_or_else(|| "ideal, or triangles a second".to_owned())
-}
-
-fn lens(text: &str) -> Result<Lens, String> {
-    let expected = || "flat, equidistant, radial:K1 or radial:K1:K2".to_owned();
-    let mut parts = text.split(':');
-    let name = parts.next();
-    let numbers: Vec<f64> = parts.map(str::parse).collect::<Result<_, _>>().map_err(|_| expected())?;
-    match (name, numbers.as_slice()) {
-        (Some("flat"), []) => Ok(Lens::Flat),
-        (Some("equidistant"), []) => Ok(Lens::Equidistant),
-        (Some("radial"), [k1]) => Ok(Lens::Radial { k1: *k1, k2: 0.0 }),
-        (Some("radial"), [k1, k2]) => Ok(Lens::Radial { k1: *k1, k2: *k2 }),
-        _ => Err(expected()),
-    }
 }
 
 fn wrong(key: &str, found: &str, place: &str, expected: String) -> ExperimentError {

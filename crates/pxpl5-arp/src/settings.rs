@@ -105,11 +105,10 @@ impl Settings {
         self
     }
 
-    /// The same with cells of this side, and a falloff as long, m.
+    /// The same with cells of this side, m.
     #[must_use]
     pub const fn with_cells(mut self, side_m: f64) -> Self {
         self.numbers.cell_m = side_m;
-        self.numbers.falloff_m = side_m;
         self
     }
 

@@ -41,6 +41,7 @@ impl clap::Args for PipelineOptions {
             command.arg(match key.values {
                 KeyValues::Flag => arg.num_args(0..=1).default_missing_value("true").require_equals(true),
                 KeyValues::Whole(..) => arg.value_name("N").allow_negative_numbers(true),
+                KeyValues::Lens => arg.value_name("LENS").allow_negative_numbers(true),
                 KeyValues::Names(_) => arg.value_name(key.name.to_uppercase()),
             })
         })

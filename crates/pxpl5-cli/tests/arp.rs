@@ -147,6 +147,8 @@ fn what_is_wrong_is_named_with_what_was_expected_and_found() {
         (vec!["arp", "run", "--policy", "objekts"], 2, vec!["--policy", "full, objects, cells", "found objekts"]),
         (vec!["arp", "run", "--warp", "curved"], 2, vec!["--warp", "linear, smoothstep, step", "found curved"]),
         (vec!["arp", "run", "--lens", "radial:-0.3"], 2, vec!["arp.lens", "expected"]),
+        (vec!["arp", "run", "--set", "priority.threshold=2"], 2, vec!["priority.threshold", "2px", "found 2"]),
+        (vec!["arp", "run", "--set", "walk.route=zigzag"], 2, vec!["walk.route", "straight", "found zigzag"]),
         (vec!["arp", "run", "--lens", "table:none.txt"], 1, vec!["none.txt"]),
         (vec!["arp", "run", "bad.toml"], 2, vec!["bad.toml", "`polcy`", "`policy`"]),
         (vec!["arp", "run", "missing.toml"], 1, vec!["missing.toml"]),
@@ -159,4 +161,41 @@ fn what_is_wrong_is_named_with_what_was_expected_and_found() {
         }
         assert_eq!(folder.names(), ["bad.toml"], "{arguments:?}: nothing is left");
     }
+}
+
+#[test]
+fn a_lens_that_is_too_wide_for_a_plane_has_pictures_too() {
+    let folder = Folder::new("arp-wide");
+    let wide = ["--lens", "equidistant", "--set", "arp.horizontal_deg=200", "--json"];
+    let alone = json(&folder.run(&arp("run", &wide)));
+    let written = json(&folder.run(&arp("run", &[&wide[..], &["--out", "o"]].concat())));
+    assert_eq!(alone, written);
+    let names = names(&folder.0.join("o"));
+    assert!(names.contains(&"eye.png".to_owned()) && !names.contains(&"eye-flat.png".to_owned()), "{names:?}");
+}
+
+/// The flat lens is the default: what the eye sees through it is what it sees without a lens.
+#[test]
+fn the_eye_sees_through_no_lens_unless_one_is_given() {
+    let folder = Folder::new("arp-flat");
+    json(&folder.run(&arp("run", &["--json", "--out", "o"])));
+    assert!(picture(&folder, "o/eye.png") == picture(&folder, "o/eye-flat.png"));
+}
+
+/// The life of a pixel in the guide: upper left, head 30 degrees to the left, faces of 512 texels.
+#[test]
+fn texel_prints_the_face_and_the_texels_of_a_pixel() {
+    let folder = Folder::new("arp-texel");
+    let found = json(&folder.run(&["arp", "texel", "0", "0", "--yaw", "30", "--json"]));
+    assert_eq!(found["texels"][0]["face"], "NegX");
+    let texels = found["texels"].as_array().expect("four").iter();
+    let places: Vec<_> = texels.clone().map(|texel| [&texel["column"], &texel["row"]].map(|n| n.as_u64())).collect();
+    let expected = [[402, 145], [403, 145], [402, 146], [403, 146]];
+    assert_eq!(places, expected.map(|place| place.map(Some)));
+    let weights: Vec<f64> = texels.filter_map(|texel| texel["weight"].as_f64()).collect();
+    assert_eq!(weights, [12.0, 180.0, 4.0, 60.0].map(|weight| weight / 256.0));
+    let text = out(&folder.run(&["arp", "texel", "0", "0", "--yaw", "30"]));
+    assert!(text.contains("NegX") && text.contains("402"), "{text}");
+    let beyond = folder.run(&["arp", "texel", "640", "0"]);
+    assert!(err(&beyond).contains("a pixel of 640 x 480"), "{}", err(&beyond));
 }

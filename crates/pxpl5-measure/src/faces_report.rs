@@ -2,7 +2,9 @@
 
 use crate::turn_sum::{RotationPart, Turns};
 use address_recalculation::{AddressRecalculationPipeline, DisplayMemory, Latch};
-use pxpl5_run::{Outcome, Statistics};
+use pxpl5_run::{FaceHistory, Outcome, Statistics};
+use pxpl5_sim::Time;
+use pxpl5_wire::{FieldParity, PeriodNumber};
 use serde::Serialize;
 
 /// An address recalculation pipeline and its memories over a run.
@@ -43,6 +45,12 @@ pub struct MemoryReport {
     pub regions_copied: u64,
     /// Retraces at which an update that had been asked for was not whole.
     pub missed: u64,
+    /// From the measurement of the head, or without a tracker from the instant at which the memory became due, to the light of the
+    /// picture's middle, milliseconds, over the fields that are held; nothing before the first update.
+    pub translation_latency_ms: Option<Statistics>,
+    /// Means of its parts, which add up to its mean: from the measurement until the memory became due, until the update was shown, the
+    /// age of what is shown, the scan.
+    pub translation_latency_parts_ms: Vec<(&'static str, f64)>,
     /// From the first retrace that each late update missed to the one that showed it, summed up, milliseconds.
     pub lateness_ms: f64,
     /// Bytes of both its buffers.
@@ -87,6 +95,7 @@ impl MemoryReport {
             outcome.window().filter(|_| in_window >= 2).map(|window| window.periods() as f64 / in_window as f64);
         let notes = outcome.face_notes().all();
         let last = notes.iter().rfind(|note| note.memory == k);
+        let steps = steps(outcome, k);
         Self {
             updates_hz: period.map(|period| 1e3 / (period * outcome.field_ms())),
             period_frames: period,
@@ -94,8 +103,57 @@ impl MemoryReport {
             segments: last.map_or(0, |note| note.structures.iter().filter(|held| **held).count()),
             regions_copied: stats.regions,
             missed: stats.missed,
+            translation_latency_ms: (!steps.total.is_empty()).then(|| Statistics::of(steps.total.iter().copied())),
+            translation_latency_parts_ms: steps.mean_parts_ms(),
             lateness_ms: stats.lateness.as_ms(),
             bytes: memory.bytes(),
         }
     }
+}
+
+/// Parts of the latency of a step of the head, in the order of time.
+const STEP_PARTS: [&str; 4] = ["before_due", "draw", "age", "scan"];
+
+/// Latencies of what a memory shows, field by field, milliseconds.
+#[derive(Debug, Default)]
+struct Steps {
+    total: Vec<f64>,
+    parts: [f64; STEP_PARTS.len()],
+}
+
+impl Steps {
+    fn mean_parts_ms(&self) -> Vec<(&'static str, f64)> {
+        let count = self.total.len() as f64;
+        let means = STEP_PARTS.into_iter().zip(self.parts).map(|(name, sum)| (name, sum / count));
+        means.filter(|_| count > 0.0).collect()
+    }
+}
+
+/// The latency of what memory `k` shows in the middle of every field from its first update on.
+fn steps(outcome: &Outcome, k: usize) -> Steps {
+    let mut steps = Steps::default();
+    let display: Option<&AddressRecalculationPipeline> = outcome.record().display_of_kind();
+    let Some(scan) = display.and_then(|display| display.config().scan().ok()) else { return steps };
+    let Some(history) = FaceHistory::of(outcome) else { return steps };
+    let sampled = outcome.head().map(|head| head.sampled()).unwrap_or_default();
+    let measured = |view| sampled.iter().find(|sampled| sampled.number == view).and_then(|sampled| sampled.measured_at);
+    let all = history.memory(k);
+    for (place, shown) in all.iter().enumerate() {
+        let due = shown.note.due_at;
+        let begin = measured(shown.note.view).unwrap_or(due);
+        let swapped = scan.retrace(shown.from);
+        let last = all.get(place + 1).map_or(PeriodNumber(outcome.fields()), |next| next.from);
+        for field in shown.from.until(last) {
+            let y = scan.height() / 2 + FieldParity::of_field(field).first_line();
+            let Some(light) = scan.lights(scan.width() / 2, y, field) else { continue };
+            let instants = [begin, due, swapped, scan.retrace(field), light];
+            // A view may rest on a report that came after the memory was due: such a part is below zero.
+            let between = |from: Time, to: Time| (to.0 as f64 - from.0 as f64) * 1e-9;
+            for (sum, pair) in steps.parts.iter_mut().zip(instants.windows(2)) {
+                *sum += between(pair[0], pair[1]);
+            }
+            steps.total.push(between(begin, light));
+        }
+    }
+    steps
 }

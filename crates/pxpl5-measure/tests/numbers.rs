@@ -250,6 +250,13 @@ fn a_display_with_faces_is_reported_with_its_memory() {
     let whole = faces.rotation_latency_ms.expect("a head").mean;
     let parts: f64 = faces.rotation_latency_parts_ms.iter().map(|part| part.statistics.mean).sum();
     assert!(whole > 0.0 && (whole - parts).abs() < 1e-9, "{whole} {parts}");
+    // A step goes the same way up to the retrace before which the ideal renderer draws: it is older by a field at most.
+    let step = memory.translation_latency_ms.expect("updates were shown").mean;
+    let parts: f64 = memory.translation_latency_parts_ms.iter().map(|(_, mean)| mean).sum();
+    assert!(
+        (step - parts).abs() < 1e-9 && step > 0.0 && step < whole + 1e3 / FIELD_HZ + 1e-6,
+        "{step} {parts} {whole}"
+    );
 }
 
 /// The first point is where the pose that is drawn is that of the start; there is one each field until the end.

@@ -45,7 +45,7 @@ pub fn ideal_picture_of(
         place.structure.triangles.clone().for_each(|number| raster.triangle(&placed, number, &mut buffer));
         place.structure.spheres.clone().for_each(|number| raster.sphere(&placed, number, &mut buffer));
     }
-    let shade = shade(placed.first().map(|first| &first.light));
+    let shade = shade(placed.first().map(|first| &first.light), list.is_matte);
     buffer.finish(list.background, |paint| paint.colour(&shade), |stored| widths.sent_depth(stored))
 }
 

@@ -45,6 +45,7 @@ pub fn display_list(scene: &Scene) -> Result<DisplayList, String> {
         ambient: light.ambient,
         diffuse: light.diffuse,
         background: light.background,
+        is_matte: false,
         recent: RecentViews::default(),
     };
     Ok(list.with_vertices_in_order())

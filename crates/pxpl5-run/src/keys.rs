@@ -1,7 +1,9 @@
 //! The keys of pipelines: what experiment files and the command line may set of them.
 
+use address_recalculation::{ArpError, Lens};
 use std::collections::BTreeMap;
 use std::fmt;
+use std::sync::Arc;
 
 /// The value of a pipeline's key.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -12,6 +14,8 @@ pub enum KeyValue {
     Whole(u64),
     /// One of some names.
     Name(&'static str),
+    /// A text in the form of its key.
+    Text(Arc<str>),
 }
 
 impl fmt::Display for KeyValue {
@@ -20,6 +24,7 @@ impl fmt::Display for KeyValue {
             Self::Flag(flag) => flag.fmt(f),
             Self::Whole(number) => number.fmt(f),
             Self::Name(name) => name.fmt(f),
+            Self::Text(text) => text.fmt(f),
         }
     }
 }
@@ -33,6 +38,20 @@ pub enum KeyValues {
     Whole(u64, u64),
     /// It takes one of these names.
     Names(&'static [&'static str]),
+    /// It takes the text of a [`Lens`].
+    Lens,
+}
+
+impl KeyValues {
+    /// The value of a text for a key that takes a lens.
+    ///
+    /// # Errors
+    ///
+    /// [`ArpError::Lens`] with the texts that it takes.
+    pub fn lens(text: &str) -> Result<KeyValue, ArpError> {
+        text.parse::<Lens>()?;
+        Ok(KeyValue::Text(text.into()))
+    }
 }
 
 impl fmt::Display for KeyValues {
@@ -40,6 +59,7 @@ impl fmt::Display for KeyValues {
         match self {
             Self::Flag => f.write_str("true or false"),
             Self::Whole(low, high) => write!(f, "{low} to {high}"),
+            Self::Lens => f.write_str(Lens::FORMS),
             Self::Names([]) => Ok(()),
             Self::Names([name]) => f.write_str(name),
             Self::Names([first @ .., last]) => write!(f, "{} or {last}", first.join(", ")),
@@ -82,6 +102,12 @@ impl PipelineSettings {
     #[must_use]
     pub fn whole(&self, key: &str) -> Option<u64> {
         if let Some(KeyValue::Whole(number)) = self.values.get(key) { Some(*number) } else { None }
+    }
+
+    /// The value of a key that takes a lens; `None` if it was not given.
+    #[must_use]
+    pub fn lens(&self, key: &str) -> Option<Lens> {
+        if let Some(KeyValue::Text(text)) = self.values.get(key) { text.parse().ok() } else { None }
     }
 
     /// The value of a key that takes names; `None` if it was not given.

@@ -79,8 +79,8 @@ pub use level::Level;
 pub use outcome::Outcome;
 pub use pipeline::{PictureTimes, Pipeline, Setup, Source};
 pub use pipelines::{
-    Code, FacePipeline, FacePolicy, FaceSource, FinishedRegions, Frameless, Interpolation, Jitp, RenderingControl,
-    Slats, SlatsLighting, Viewpoint, region_at,
+    Code, FaceLens, FacePipeline, FacePolicy, FaceSource, FinishedRegions, Frameless, Interpolation, Jitp,
+    RenderingControl, Slats, SlatsLighting, Viewpoint, region_at,
 };
 pub use pxpl5_display::{Aim, LightSpan};
 pub use raster::Raster;

@@ -225,7 +225,9 @@ fn chosen(all: &Interpretations) -> String {
            where it is twice as far away, so each memory begins twice as many rings away as the one before.\n\
          - *No cascade*: it is derived here for warping, and table 1 stands before warping in the paper.\n\
          - *To the block's border*: distances to cells that hold something fit equal rings better and rings that double worse. Both are\n  \
-           values (`priority.to_held_cells`).\n",
+           values (`priority.to_held_cells`).\n\
+         - *What it is worth*: three rates are few. A rate of 60 Hz over a whole number stays the same over a range of sides, so that two rates may\n  \
+           tell the third one badly: see what is left out. Without rules for the choice, memory 1 is even predicted as fast as memory 0.\n",
         Rules::USUAL.text()
     )
 }
@@ -346,7 +348,7 @@ fn slowed(text: &mut String, all: &Experiments) {
 fn sizes(text: &mut String, all: &Experiments) {
     let _ = write!(
         text,
-        "\n## E3: size against translation\n\nAn object whose middle is 10 m away, approached at 1 m/s; validity in ms.\n\n\
+        "\n## E3: size against translation\n\nAn object whose middle is 10 m away, approached at 1 m/s; validity in ms for a threshold of 90/512 degrees.\n\n\
          | size/distance | translation | size, disc | size, sphere | decides (disc, sphere) |\n|---|---|---|---|---|\n"
     );
     for row in &all.sizes {

@@ -162,13 +162,16 @@ fn slowed(world: &World, settings: &Settings, path: &Walk) -> Result<Vec<Slowed>
     Ok(all)
 }
 
+/// The threshold of E3 and E4, degrees: a texel of an ideal face.
+const THETA_DEG: f64 = 90.0 / 512.0;
+
 /// Points on a disc of 100 m around a walker, evenly by area.
 const POINTS: usize = 20_000;
 
 /// 60 times the points over the draws of a second, at a speed (m/s), with so many memories and a threshold of 90/512 degrees.
 #[must_use]
 pub fn point_objects_reduction(speed: f64, memories: u64) -> f64 {
-    let numbers = PriorityTiming { memories, theta_deg: 90.0 / 512.0, ..PriorityTiming::PAPERS };
+    let numbers = PriorityTiming { memories, theta_deg: THETA_DEG, ..PriorityTiming::PAPERS };
     let threshold = Threshold::of_degrees(numbers.theta_deg);
     let distances = (0..POINTS).map(|point| 100.0 * libm::sqrt((point as f64 + 0.5) / POINTS as f64));
     let periods: Vec<f64> = distances.map(|distance_m| threshold.way(distance_m) / speed).collect();
@@ -194,7 +197,7 @@ pub struct SizeRow {
 /// Rows from 0.1 to 20.
 #[must_use]
 pub fn size_rows() -> Vec<SizeRow> {
-    let threshold = Threshold::of_degrees(PriorityTiming::PAPERS.theta_deg);
+    let threshold = Threshold::of_degrees(THETA_DEG);
     let sizes = [0.1, 0.2, 0.5, 1.0, 1.4, 1.5, 1.9, 2.0, 5.0, 10.0, 20.0];
     sizes.map(|size| size_row(&threshold, size)).to_vec()
 }
@@ -231,7 +234,7 @@ pub fn size_limits() -> Vec<SizeLimit> {
 const HALVINGS: usize = 60;
 
 fn size_limit(angle: &'static str, factor: f64) -> SizeLimit {
-    let translation = Threshold::of_degrees(PriorityTiming::PAPERS.theta_deg);
+    let translation = Threshold::of_degrees(THETA_DEG);
     let size = Threshold { angle: factor * translation.angle, size: SizeRule::Sphere, ..translation };
     let decides = |radius: f64| size.way_of_size(1.0, radius) < translation.way(1.0);
     let mut range = [0.0, 1.0];

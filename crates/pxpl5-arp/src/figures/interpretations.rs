@@ -63,7 +63,6 @@ impl Rules {
     pub fn numbers(&self, cell_m: f64) -> PriorityTiming {
         PriorityTiming {
             cell_m,
-            falloff_m: cell_m,
             inner_rings: self.inner_rings,
             ring_growth: self.ring_growth,
             to_held_cells: u64::from(self.to_held_cells),

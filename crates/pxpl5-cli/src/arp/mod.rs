@@ -2,8 +2,10 @@
 
 mod compare;
 mod figures;
+mod interpretations;
 mod run;
 mod settings;
+mod texel;
 
 use crate::error::CliError;
 use clap::{Args, Subcommand};
@@ -16,6 +18,8 @@ use pxpl5::arp::ExperimentError;
   pxpl5 arp run --policy objects --set walk.frames=3600 --json
   pxpl5 arp compare --scene gallery --out out/policies
   pxpl5 arp figures
+  pxpl5 arp interpretations
+  pxpl5 arp texel 0 0 --yaw 30
 
 Faces are drawn by an ideal renderer here. `pxpl5 run --pipeline arp-priority` has Pixel-Planes 5 draw them.")]
 pub(crate) struct ArpArgs {
@@ -31,6 +35,10 @@ enum ArpCommand {
     Compare(compare::CompareArgs),
     /// Measure the papers' figures and draw their pictures.
     Figures(figures::FiguresArgs),
+    /// Rank what the paper leaves open about table 1, each rate left out in turn.
+    Interpretations(interpretations::InterpretationsArgs),
+    /// Print the face and the texels that a pixel is for an orientation of the head.
+    Texel(texel::TexelArgs),
 }
 
 pub(crate) fn run(args: ArpArgs) -> Result<(), CliError> {
@@ -38,6 +46,8 @@ pub(crate) fn run(args: ArpArgs) -> Result<(), CliError> {
         ArpCommand::Run(args) => run::run(args),
         ArpCommand::Compare(args) => compare::run(args),
         ArpCommand::Figures(args) => figures::run(args),
+        ArpCommand::Interpretations(args) => interpretations::run(args),
+        ArpCommand::Texel(args) => texel::run(args),
     }
 }
 

@@ -7,7 +7,7 @@ use crate::output::OutputFolder;
 use crate::terminal::{advance, print, progress};
 use clap::Args;
 use pxpl5::arp::pictures::of_walk;
-use pxpl5::arp::{MemoryReport, Percentiles, WalkOutcome};
+use pxpl5::arp::{MemoryReport, Percentiles, Report, WalkOutcome};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -16,13 +16,15 @@ use std::path::{Path, PathBuf};
 #[command(after_help = "Examples:
   pxpl5 arp run --scene gallery --out out/walk --json
   pxpl5 arp run --scene gallery:full --policy objects --segment off
-  pxpl5 arp run --warp none --set priority.cell_m=5.1 --set walk.frames=7200
+  pxpl5 arp run --warp none --set walk.hall_scale=0.5 --set walk.frames=7200
+  pxpl5 arp run --set priority.ring_growth=1 --set priority.threshold=1texel --set priority.cell_m=5
   pxpl5 arp run --lens radial:0.32 --latch line --set arp.face_texels=1024
   pxpl5 arp run --source 20000                             a renderer of 20,000 triangles a second")]
 pub(super) struct RunArgs {
     #[command(flatten)]
     walk: WalkArgs,
-    /// Write into this folder: report.json, frames.csv, faces of all memories, what the eye sees with and without a lens, which memory
+    /// Write into this folder: report.json, frames.csv, faces of all memories, what the eye sees through its lens and (up to 170
+    /// degrees) without one, which memory
     /// won, errors, cells from above, cuts as wires, updates, and the walk torn, warped and without cuts.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -112,7 +114,9 @@ fn text(outcome: &WalkOutcome, out: Option<&Path>) -> String {
         ("cuts unwarped, texels", widths(report.tears_px.before)),
         ("cuts as drawn, texels", widths(report.tears_px.after)),
         ("stretched by warping, texels", widths(report.tears_px.stretch)),
-        ("latch to light", format!("{} ns, before each {}", report.pipeline_ns, report.latch)),
+        ("pipeline", format!("{} ns, before each {}", report.pipeline_ns, report.latch)),
+        ("from latch to light", or_none(report.rotation_latency_ms.total.map(|ms| format!("{ms:.3} ms, mean")))),
+        ("from step to light, by memory", steps(report)),
         ("bytes of a memory", report.memories.first().map_or(0, |memory| memory.bytes).to_string()),
     ];
     text.push('\n');
@@ -123,6 +127,13 @@ fn text(outcome: &WalkOutcome, out: Option<&Path>) -> String {
         let _ = writeln!(text, "\nWritten to {}.", path.display());
     }
     text
+}
+
+/// The mean latency of a step in what each memory shows.
+fn steps(report: &Report) -> String {
+    let totals = report.memories.iter().map(|memory| memory.translation_latency_ms.total);
+    let totals: Vec<String> = totals.map(|total| or_none(total.map(|ms| format!("{ms:.1}")))).collect();
+    format!("{} ms", totals.join(", "))
 }
 
 fn line(text: &mut String, number: usize, memory: &MemoryReport) {

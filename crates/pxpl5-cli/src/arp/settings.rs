@@ -10,7 +10,7 @@ use crate::terminal::warn;
 use clap::Args;
 use parameters::text_of;
 use pxpl5::arp::Plan;
-use pxpl5::arp::address_recalculation::Lens;
+use pxpl5::arp::address_recalculation::{ArpConfig, Lens};
 use pxpl5::arp::pictures::Picture;
 use pxpl5::scene::{Placement, Scene};
 use pxpl5::views::png_bytes;
@@ -47,8 +47,9 @@ pub(super) struct WalkArgs {
     /// Who draws faces: ideal, or so many triangles a second; default ideal.
     #[arg(long, value_name = "SOURCE")]
     source: Option<String>,
-    /// Set any number or choice by its path, such as priority.theta_deg=0.1, priority.cell_m=8, priority.inner_rings=2,
-    /// priority.cascade=off, arp.face_texels=1024, walk.m_per_s=0.5 or walk.frames=3600; may be repeated.
+    /// Set any number or choice by its path, such as priority.theta_deg=0.1, priority.cell_m=8, priority.ring_growth=1,
+    /// priority.threshold=2px, priority.cascade=off, arp.face_texels=1024, walk.route=straight, walk.hall_scale=0.5 or walk.frames=3600;
+    /// may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     sets: Vec<String>,
     #[command(flatten)]
@@ -100,6 +101,20 @@ impl WalkArgs {
         let one = WalkWork::of(plan, scene).estimate();
         let all = Estimate { seconds: walks as f64 * one.seconds, ..one };
         self.budget.admit_estimate(all, "walk fewer frames (--set walk.frames)")
+    }
+
+    /// The display of a walk with a lens and some numbers.
+    ///
+    /// # Errors
+    ///
+    /// As [`WalkArgs::gather`].
+    pub(super) fn of_display(lens: Option<&String>, sets: &[String]) -> Result<ArpConfig, CliError> {
+        let mut plan = Plan::usual();
+        lens.map(|lens| plan.set(LENS, lens, "--lens")).transpose()?;
+        for assignment in sets {
+            plan.assign(assignment, "--set")?;
+        }
+        Ok(plan.settings()?.display)
     }
 
     /// The file's scene, and all settings: the file's, then those of options, then those of `--set`.

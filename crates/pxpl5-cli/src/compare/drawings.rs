@@ -80,13 +80,15 @@ fn axes(comparison: &Comparison, title: &str, across: &str, up: &str) -> ChartAx
 /// Columns of the table of rows, and what stands in them.
 type Column = (&'static str, fn(&ComparisonRow) -> String);
 
-const COLUMNS: [Column; 22] = [
+const COLUMNS: [Column; 24] = [
     ("pipeline", |row| row.pipeline.clone()),
     ("settings", |row| row.settings.clone()),
     ("latency_ms.mean", |row| number(row.latency_ms.mean)),
     ("latency_ms.sd", |row| number(row.latency_ms.sd)),
     ("head_to_light_ms.mean", |row| number(row.head_to_light_ms.mean)),
     ("head_to_light_ms.sd", |row| number(row.head_to_light_ms.sd)),
+    ("turn_to_light_ms.mean", |row| number(row.turn_to_light_ms.mean)),
+    ("turn_to_light_ms.sd", |row| number(row.turn_to_light_ms.sd)),
     ("prediction_interval_ms.mean", |row| number(row.prediction_interval_ms.mean)),
     ("prediction_interval_ms.sd", |row| number(row.prediction_interval_ms.sd)),
     ("updates_hz.mean", |row| number(row.updates_hz.mean)),

@@ -6,9 +6,10 @@ use pxpl5::compare::{Comparison, ComparisonRow, MeanInterval};
 use std::fmt::Write as _;
 
 /// Columns: name, unit, width.
-const COLUMNS: [(&str, &str, usize); 13] = [
+const COLUMNS: [(&str, &str, usize); 14] = [
     ("to light", "ms", 9),
     ("sd", "ms", 6),
+    ("turn", "ms", 7),
     ("predicts", "ms", 9),
     ("updates", "Hz", 8),
     ("not shown", "", 12),
@@ -32,8 +33,10 @@ pub(super) fn text(comparison: &Comparison) -> String {
     comparison.pipelines.iter().for_each(|row| text.push_str(&line(row)));
     text.push_str(&causes(comparison));
     text.push_str(
-        "\nto light: from the head's pose to the light of the picture's middle; predicts: from the newest measurement to the instant that a\n\
-         picture is drawn for; updates: new pictures a second, of frameless rendering passes over all blocks of the screen (docs/results.md); 95 %: where the mean lies, by the seeds; n: judged pixels; best with: the predictor\n\
+        "\nto light: from the head's pose to the light of the picture's middle; turn: the same of an orientation alone, which a display with\n\
+         faces looks up at scan-out; predicts: from the newest measurement to the instant that a picture is drawn for; updates: new pictures a\n\
+         second, of frameless rendering passes over all blocks of the screen (docs/results.md); 95 %: where the mean lies, by the seeds; n:\n\
+         judged pixels; best with: the predictor\n\
          with the least error of the first seed; - : nothing to judge.\n",
     );
     text
@@ -68,6 +71,7 @@ fn line(row: &ComparisonRow) -> String {
     let values = [
         number(row.head_to_light_ms.mean, 2),
         number(row.head_to_light_ms.sd, 2),
+        number(row.turn_to_light_ms.mean, 2),
         number(row.prediction_interval_ms.mean, 2),
         number(row.updates_hz.mean, 2),
         missed,

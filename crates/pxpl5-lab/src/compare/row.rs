@@ -84,8 +84,11 @@ pub struct ComparisonRow {
     pub latency_definition: String,
     /// Latency of the machine alone, milliseconds, over the complete pictures of all seeds.
     pub latency_ms: Statistics,
-    /// From the head's pose to the light of the picture's middle, milliseconds, over the same.
+    /// From the head's pose to the light of the picture's middle, milliseconds, over the same. Of faces this is the way of a step.
     pub head_to_light_ms: Statistics,
+    /// From the head's orientation to the light of the picture's middle, milliseconds. Faces are turned at scan-out, with the newest
+    /// orientation; in all other pictures a turn goes the way of a step.
+    pub turn_to_light_ms: Statistics,
     /// Its stages, milliseconds, over the same.
     pub end_to_end: Budget,
     /// From the measurement of the newest report to the instant that a picture is drawn for, milliseconds.
@@ -137,6 +140,7 @@ impl ComparisonRow {
             latency_definition: definition.to_owned(),
             latency_ms: pooled(trials, |trial| &trial.latency_ms),
             head_to_light_ms: pooled(trials, |trial| &trial.head_to_light_ms),
+            turn_to_light_ms: pooled(trials, |trial| &trial.turn_to_light_ms),
             end_to_end: Budget::pooled(trials.iter().filter(|_| !is_reference).map(|trial| trial.budget)),
             prediction_interval_ms: pooled(trials, |trial| &trial.prediction_interval_ms),
             updates_hz: MeanInterval::of(&hz),

@@ -15,6 +15,7 @@ use std::sync::Arc;
 pub(super) struct Trial {
     pub(super) latency_ms: Vec<f64>,
     pub(super) head_to_light_ms: Vec<f64>,
+    pub(super) turn_to_light_ms: Vec<f64>,
     pub(super) prediction_interval_ms: Vec<f64>,
     pub(super) budget: Budget,
     pub(super) errors: PixelErrors,
@@ -59,6 +60,7 @@ impl Trial {
         Self {
             latency_ms: times(latencies_ms(outcome)),
             head_to_light_ms: times(Budget::totals_ms(outcome)),
+            turn_to_light_ms: times(turns_ms(outcome)),
             prediction_interval_ms: times(prediction_intervals_ms(outcome)),
             budget: Budget::of(outcome),
             causes: ErrorCauses::of(outcome, showing, &errors),
@@ -76,6 +78,14 @@ impl Trial {
 
 fn latencies_ms(outcome: &Outcome) -> Vec<f64> {
     outcome.complete_pictures().map(|times| (times.shown_at - times.transform_at).as_ms()).collect()
+}
+
+/// From the measurement of an orientation to light: faces are turned at scan-out, all other pictures are drawn for it.
+fn turns_ms(outcome: &Outcome) -> Vec<f64> {
+    if outcome.pipeline().draws_faces().is_none() {
+        return Budget::totals_ms(outcome);
+    }
+    outcome.rotation_latencies().iter().map(|turn| turn.total().as_ms()).collect()
 }
 
 /// From the measurement of the newest report that a view rests on to the instant that its picture is drawn for.

@@ -158,11 +158,18 @@ impl ExperimentFile {
         Ok(match key.values {
             KeyValues::Flag => self.flag(key.name)?.map(KeyValue::Flag),
             KeyValues::Whole(low, high) => self.integer(key.name, low..=high)?.map(KeyValue::Whole),
+            KeyValues::Lens => self.lens(key)?,
             KeyValues::Names(names) => {
                 let choices: Vec<(&str, &'static str)> = names.iter().map(|name| (*name, *name)).collect();
                 self.choice(key.name, &choices)?.map(KeyValue::Name)
             }
         })
+    }
+
+    fn lens(&self, key: &Key) -> Result<Option<KeyValue>, FileError> {
+        let Some(setting) = self.get(key.name) else { return Ok(None) };
+        let lens = KeyValues::lens(&plain(&setting.value));
+        lens.map(Some).map_err(|_| wrong(key.name, setting, &KeyValues::Lens.to_string()))
     }
 
     /// Keys of other pipelines have no meaning.

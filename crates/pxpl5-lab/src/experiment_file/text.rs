@@ -84,6 +84,7 @@ impl Plan {
                 KeyValue::Flag(flag) => all.put(key, flag),
                 KeyValue::Whole(number) => all.put(key, number.cast_signed()),
                 KeyValue::Name(name) => all.put(key, name),
+                KeyValue::Text(text) => all.put(key, text.to_string()),
             }
         }
         all.put("display", self.display());

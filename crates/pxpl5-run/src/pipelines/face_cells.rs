@@ -35,7 +35,7 @@ impl ByCells {
             has_moving: updates.setup.moving.iter().any(|moves| *moves),
             cells,
             falloff,
-            length_m: timing.falloff_m,
+            length_m: timing.falloff_length_m(),
             drawn_from: vec![DVec3::ZERO; memories],
             held: vec![false; memories],
         }

@@ -1,7 +1,7 @@
 //! Address recalculation pipelines in the registry: names, keys, variants.
 
-use super::face_keys::{IDEAL_NAMES, NAMES, POLICIES, POLICY, SEGMENT, WARP};
-use super::faces::{FacePipeline, FacePolicy, FaceSource};
+use super::face_keys::{IDEAL_NAMES, LENS, NAMES, POLICIES, POLICY, SEGMENT, WARP};
+use super::faces::{FaceLens, FacePipeline, FacePolicy, FaceSource};
 use super::{SHADING, shading_or};
 use crate::keys::{Key, PipelineSettings};
 use crate::pipeline::Pipeline;
@@ -12,10 +12,11 @@ use pxpl5_machine::NamedTable;
 use std::sync::Arc;
 
 /// Keys by policy.
-const KEYS: [&[Key]; 4] = [&[SHADING], &[SHADING], &[SHADING, SEGMENT], &[SHADING, SEGMENT, WARP]];
+const KEYS: [&[Key]; 4] =
+    [&[SHADING, LENS], &[SHADING, LENS], &[SHADING, LENS, SEGMENT], &[SHADING, LENS, SEGMENT, WARP]];
 
 /// Keys of an ideal source, which has any policy; those of cells mean something where there are cells.
-const IDEAL_KEYS: &[Key] = &[SHADING, POLICY, SEGMENT, WARP];
+const IDEAL_KEYS: &[Key] = &[SHADING, LENS, POLICY, SEGMENT, WARP];
 
 const TABLES: &[NamedTable] = &[("priority", || Box::new(PriorityTiming::PAPERS))];
 
@@ -62,6 +63,7 @@ fn with_settings(new: FacePipeline, latch: Latch, settings: &PipelineSettings) -
         shading: shading_or(settings, new.shading),
         segmented: settings.flag(SEGMENT.name).unwrap_or(new.segmented),
         falloff: falloff.map_or(new.falloff, |(_, falloff)| falloff),
+        lens: settings.lens(LENS.name).and_then(FaceLens::of).unwrap_or(new.lens),
         ..new
     }
 }

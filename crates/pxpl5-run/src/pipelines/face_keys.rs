@@ -14,6 +14,13 @@ pub(super) const NAMES: [[&str; 3]; 4] = [
 /// Names of what an ideal renderer draws, by latch.
 pub(super) const IDEAL_NAMES: [&str; 3] = ["arp-ideal", "arp-ideal-line", "arp-ideal-pixel"];
 
+pub(super) const LENS: Key = Key {
+    name: "lens",
+    about: "what lies before the eye: flat, equidistant, radial:K1 or radial:K1:K2; errors in pixels are those of a flat picture",
+    values: KeyValues::Lens,
+    sets: &[],
+};
+
 /// Policies by their names, in their order.
 pub(super) const POLICIES: [&str; 4] = ["full", "objects", "cells", "cells-warp"];
 

@@ -1,7 +1,7 @@
 //! Six faces of the cube around the eye, drawn by Pixel-Planes 5 for a display that turns with the head.
 
 use super::face_cells::ByCells;
-use super::face_keys::{IDEAL_NAMES, NAMES, POLICIES, POLICY, SEGMENT, WARP};
+use super::face_keys::{IDEAL_NAMES, LENS, NAMES, POLICIES, POLICY, SEGMENT, WARP};
 use super::face_objects::ByObjects;
 use super::face_plan::{Cycles, Full, Plan, Updates};
 use super::ideal_faces::{All, IdealFaces, seen_next};
@@ -12,7 +12,7 @@ use crate::keys::KeyValue;
 use crate::latched_head::{LatchedHead, ORIENTATION_WORDS};
 use crate::pipeline::{PictureTimes, Pipeline, Setup};
 use crate::views::{Poses, ReportTimes};
-use address_recalculation::{AddressRecalculationPipeline, ArpConfig, Latch, Orientation, orientation_message};
+use address_recalculation::{AddressRecalculationPipeline, ArpConfig, Latch, Lens, Orientation, orientation_message};
 use cube_control::{CubeControlConfig, Faces, WarpedLists, host, master, slave};
 use glam::{Mat4, Vec4};
 use pphigs::{DisplayList, Picture, RecentViews, RegionBinning, Shading};
@@ -66,6 +66,55 @@ pub struct FacePipeline {
     pub segmented: bool,
     /// How warping falls off from the border to a slower memory, where cells are warped.
     pub falloff: Falloff,
+    /// What lies between picture and eye.
+    pub lens: FaceLens,
+}
+
+/// A lens that a few numbers describe.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FaceLens {
+    /// As the display has it: without a lens, unless its configuration says otherwise.
+    #[default]
+    OfDisplay,
+    /// The angle grows with the distance from the middle.
+    Equidistant,
+    /// A radial polynomial, its two coefficients as bits, so that pipelines can be compared.
+    Radial([u64; 2]),
+}
+
+impl FaceLens {
+    /// `None` for a table, which has too many numbers.
+    #[must_use]
+    pub fn of(lens: Lens) -> Option<Self> {
+        match lens {
+            Lens::Flat => Some(Self::OfDisplay),
+            Lens::Equidistant => Some(Self::Equidistant),
+            Lens::Radial { k1, k2 } => Some(Self::Radial([k1, k2].map(f64::to_bits))),
+            Lens::Table(_) => None,
+        }
+    }
+
+    /// The lens; `None` for that of the display.
+    #[must_use]
+    pub fn lens(self) -> Option<Lens> {
+        match self {
+            Self::OfDisplay => None,
+            Self::Equidistant => Some(Lens::Equidistant),
+            Self::Radial(bits) => {
+                let [k1, k2] = bits.map(f64::from_bits);
+                Some(Lens::Radial { k1, k2 })
+            }
+        }
+    }
+
+    /// As a key takes it; `None` for that of the display.
+    fn text(self) -> Option<String> {
+        match self.lens()? {
+            Lens::Radial { k1, k2: 0.0 } => Some(format!("radial:{k1}")),
+            Lens::Radial { k1, k2 } => Some(format!("radial:{k1}:{k2}")),
+            _ => Some("equidistant".to_owned()),
+        }
+    }
 }
 
 impl FacePipeline {
@@ -73,7 +122,15 @@ impl FacePipeline {
     #[must_use]
     pub const fn new(policy: FacePolicy) -> Self {
         let source = FaceSource::PixelPlanes;
-        Self { source, policy, latch: Latch::Field, shading: Shading::Phong, segmented: true, falloff: Falloff::Linear }
+        Self {
+            source,
+            policy,
+            latch: Latch::Field,
+            shading: Shading::Phong,
+            segmented: true,
+            falloff: Falloff::Linear,
+            lens: FaceLens::OfDisplay,
+        }
     }
 
     fn config(self, machine: &Machine, pixels: bool) -> Result<CubeControlConfig, ConfigError> {
@@ -219,6 +276,8 @@ impl Pipeline for FacePipeline {
         if self.source == FaceSource::Ideal {
             settings.push((POLICY.name, KeyValue::Name(POLICIES[self.policy as usize])));
         }
+        // Without a lens names of experiments are those from before there was one.
+        settings.extend(self.lens.text().map(|lens| (LENS.name, KeyValue::Text(lens.into()))));
         if self.has_cells() {
             settings.push((SEGMENT.name, KeyValue::Flag(self.segmented)));
         }
@@ -259,6 +318,9 @@ impl Pipeline for FacePipeline {
             config.displays.first_mut().and_then(|d| (d.as_mut() as &mut dyn Any).downcast_mut::<ArpConfig>())
         {
             display.latch = self.latch;
+            if let Some(lens) = self.lens.lens() {
+                display.lens = lens;
+            }
             if self.policy == FacePolicy::Full {
                 display.timing.display_memories = 1;
             }
@@ -287,7 +349,7 @@ impl Pipeline for FacePipeline {
             return self.plug_ideal_source(machine, setup);
         }
         let config = self.config(machine, setup.pixels)?;
-        let mut list = DisplayList::clone(&setup.list);
+        let mut list = matte(&setup.list);
         list.recent = RecentViews::keeping(VIEWS_AT_A_TIME);
         let list = Arc::new(list);
         let foreground = Priority::Foreground;
@@ -378,7 +440,7 @@ impl FacePipeline {
         let ideal = IdealFaces {
             plan: self.plan(machine, setup)?,
             faces: Arc::new(self.faces(machine, setup.pixels)?),
-            list: Arc::clone(&setup.list),
+            list: Arc::new(matte(&setup.list)),
             warped: WarpedLists::default(),
             scan,
             next: PictureNumber::FIRST,
@@ -386,6 +448,12 @@ impl FacePipeline {
         machine.plug_host_line(Box::new(ideal));
         Ok(())
     }
+}
+
+/// The list without highlights. The renderers' light takes one direction of the eye for a region. On faces that is each face's own axis,
+/// so that a highlight on a flat wall would change at the border of two faces.
+fn matte(list: &DisplayList) -> DisplayList {
+    DisplayList { is_matte: true, recent: RecentViews::default(), ..list.clone() }
 }
 
 /// Times of an update that was drawn in no time.

@@ -12,7 +12,7 @@ mod jitp;
 mod rendering_control;
 mod slats;
 
-pub use faces::{FacePipeline, FacePolicy, FaceSource};
+pub use faces::{FaceLens, FacePipeline, FacePolicy, FaceSource};
 pub use frameless::Frameless;
 pub use jitp::{Interpolation, Jitp, Viewpoint, region_at};
 pub use rendering_control::{FinishedRegions, RenderingControl};

@@ -1,12 +1,16 @@
 //! Policy `cells` on the machine: what is cut, what is drawn when, and whether memories meet.
 
-use super::{FULL, after, assert_no_faults, balls, head, machine, memory, missed, texels, walk};
-use address_recalculation::{CubeFace, FaceSet, TexelAddress};
+use super::{FULL, after, assert_no_faults, balls, display, head, machine, memory, missed, texels, walk};
+use address_recalculation::{CubeFace, FaceSet, Lens, TexelAddress};
 use glam::{DVec3, Vec3};
 use pxpl5_machine::{MachineConfig, Record};
-use pxpl5_run::{CutScene, Experiment, FacePipeline, FacePolicy, Outcome, Pipeline, Pixels, Registry};
+use pxpl5_run::{
+    CutScene, Experiment, FacePipeline, FacePolicy, FaceSource, KeyValue, KeyValues, Outcome, Pipeline,
+    PipelineSettings, Pixels, Registry,
+};
 use pxpl5_scene::{Frame, HeadMotion, HeadPath, Lighting, Scene, SceneParts, Structure, Sway, Vertex, builtin};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use tracking::motion::Slide;
 
 pub(crate) const CELLS: FacePipeline = FacePipeline::new(FacePolicy::Cells);
@@ -122,8 +126,7 @@ fn with_cells_too_slow_memories_miss_first_and_turning_does_not_suffer() {
 
 /// A walk along the wall at 1 m/s, with images that may be wrong by an angle.
 fn along_the_wall(pipeline: FacePipeline, theta_deg: f64) -> Outcome {
-    let preset = MachineConfig::preset("design-maximum").expect("listed");
-    let mut config = pipeline.adapt(Registry::of_papers().machine_of(preset));
+    let mut config = machine("design-maximum", pipeline, &[]);
     config.set("priority.theta_deg", theta_deg).expect("a number of the policy");
     let experiment = Experiment::new(config, pipeline, wall()).fields(200);
     experiment.head(head(Slide::right_at(1.0))).run().expect("it runs")
@@ -156,13 +159,13 @@ fn pieces_tear_and_warped_ones_meet() {
 }
 
 /// Updates of each memory by the rule alone, with an ideal source: at every retrace the eye is where the ideal tracker's last report
-/// says, a millisecond apart; memory k is due when it has gone farther than 2 d sin(theta / 2). The border of the cells behind the eye,
-/// 5.5 m away and 5 m more for each memory, is the nearest all the way.
+/// says, a millisecond apart; memory k is due when it has gone farther than 2 d sin(theta / 2). The border of the cells behind the eye is
+/// the nearest all the way: 5.5 m away behind one ring, then behind two rings and four.
 fn updates_by_the_rule(fields: u64) -> [u64; 4] {
     let half_theta = (90.0_f64 / 512.0).to_radians() / 2.0;
     let mut updates = [0; 4];
     for (k, count) in updates.iter_mut().enumerate() {
-        let distance_m = if k == 0 { 0.0 } else { 5.5 + 5.0 * (k as f64 - 1.0) };
+        let distance_m = [0.0, 5.5, 10.5, 20.5][k];
         let mut from_m = f64::NEG_INFINITY;
         for field in 0..fields {
             let eye_m = (field as f64 * 1001.0 / 60.0).floor() * 1e-3;
@@ -190,6 +193,67 @@ fn far_cells_are_drawn_less_often_than_near_ones() {
     assert!(plain.iter().zip(ideal).all(|(found, ideal)| ideal.abs_diff(*found) <= 2), "{plain:?} {ideal:?}");
     assert!(plain[0] > 190 && plain.windows(2).all(|pair| pair[0] >= pair[1]), "{plain:?}");
     assert!(plain[0] > plain[1] && plain[1] > plain[2], "{plain:?}");
+}
+
+/// Diffuse light alone: a wall has one normal, and so one colour, wherever it is seen. A highlight for each face's own axis made a seam.
+#[test]
+fn a_flat_wall_has_one_colour_on_all_faces() {
+    let ideal = FacePipeline { source: FaceSource::Ideal, ..FULL };
+    for pipeline in [FULL, ideal] {
+        let config = machine("small-hmd", pipeline, &[("arp.face_texels", 128)]);
+        let record = after(&Experiment::new(config, pipeline, wall()), 30).into_record();
+        let faces = memory(&record, 0).shown_faces();
+        let wall = texels(128).filter_map(|texel| Some((texel.face, faces.texel(texel)?.0)));
+        let of_face = wall.fold(BTreeMap::<CubeFace, [u8; 2]>::new(), |mut of_face, (face, colour)| {
+            let [_, red, ..] = colour.to_be_bytes();
+            let range = of_face.entry(face).or_insert([red; 2]);
+            *range = [range[0].min(red), range[1].max(red)];
+            of_face
+        });
+        assert!(of_face.len() >= 3, "the wall reaches around the eye: {of_face:?}");
+        let reds: Vec<u8> = of_face.values().flatten().copied().collect();
+        let [least, most] = [reds.iter().min(), reds.iter().max()].map(|red| red.copied().unwrap_or_default());
+        // A normal that is turned to a face's axes is rounded there.
+        assert!(most - least <= 3, "{of_face:?}");
+    }
+}
+
+/// The falloff is as long as a cell unless it is given: any side of a cell can be set alone.
+#[test]
+fn the_falloff_follows_the_side_of_a_cell() {
+    for cell_m in [1.0, 2.0, 9.0] {
+        let mut config = machine("small-hmd", WARPED, &[("arp.face_texels", 128)]);
+        config.set("priority.cell_m", cell_m).expect("a number of the policy");
+        let experiment = Experiment::new(config, WARPED, wall()).fields(3).pixels(Pixels::Off);
+        experiment.run().unwrap_or_else(|error| panic!("{cell_m}: {error}"));
+    }
+}
+
+/// What the eye sees through a lens is another picture; a lens that folds is refused by name.
+#[test]
+fn faces_are_seen_through_a_lens_that_is_given() {
+    let built = |text: &str| {
+        let mut settings = PipelineSettings::default();
+        settings.set("lens", KeyValues::lens(text).expect("a lens"));
+        let registry = Registry::of_papers();
+        let entry = registry.pipeline("arp-full").expect("listed");
+        let pipeline = (entry.build)(&settings);
+        let preset = registry.machine_of(MachineConfig::preset("small-hmd").expect("listed"));
+        let mut config = pipeline.adapt(preset);
+        config.set("arp.face_texels", 128_u64).expect("a number of the display");
+        (config, pipeline)
+    };
+    for (text, expected) in [("flat", Lens::Flat), ("radial:0.32", Lens::Radial { k1: 0.32, k2: 0.0 })] {
+        let (config, pipeline) = built(text);
+        let machine = after(&Experiment::with(config, pipeline, Arc::new(wall())), 12);
+        assert_eq!(display(machine.record()).config().lens, expected);
+    }
+    let (_, pipeline) = built("radial:0.32:0.1");
+    assert!(pipeline.settings().contains(&("lens", KeyValue::Text("radial:0.32:0.1".into()))));
+    let (config, pipeline) = built("radial:-0.3");
+    let error = Experiment::with(config, pipeline, Arc::new(wall())).fields(3).run().expect_err("it folds");
+    assert!(error.to_string().contains("above 0 up to the corner pixel"), "{error}");
+    assert!(KeyValues::lens("fisheye").is_err());
 }
 
 #[test]

@@ -8,14 +8,14 @@ mod turning;
 use address_recalculation::{AddressRecalculationPipeline, CubeFace, DisplayMemory, FaceSet, TexelAddress};
 use cube_control::face_view;
 use glam::{DVec3, Mat4, Vec3};
-use pphigs::{EyeView, FrameView, Picture, RegionBinning, Shading};
+use pphigs::{DisplayList, EyeView, FrameView, Picture, RegionBinning, Shading};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::Stage;
 use pxpl5_machine::{Machine, MachineConfig, Record};
 use pxpl5_oracle::ideal_picture;
 use pxpl5_renderer::Layout;
 use pxpl5_run::{
-    Experiment, ExperimentError, FacePipeline, FacePolicy, Head, Outcome, Pipeline, Pixels, RenderingControl,
+    Experiment, ExperimentError, FacePipeline, FacePolicy, Head, Outcome, Pipeline, Pixels, Registry, RenderingControl,
     display_list,
 };
 use pxpl5_scene::{HeadMotion, Lighting, Scene, SceneParts, Sphere, Structure, builtin};
@@ -30,8 +30,13 @@ const FULL: FacePipeline = FacePipeline::new(FacePolicy::Full);
 const OBJECTS: FacePipeline = FacePipeline::new(FacePolicy::Objects);
 
 /// 13 GPs and 5 renderers with the display, and some of its numbers.
+/// A machine whose policies have a threshold of 90/512 degrees and cells of 5 m, which the numbers of these tests are of.
 fn machine(preset: &str, pipeline: FacePipeline, numbers: &[(&str, u64)]) -> MachineConfig {
-    let mut config = pipeline.adapt(MachineConfig::preset(preset).expect("listed"));
+    let preset = MachineConfig::preset(preset).expect("listed");
+    let mut config = pipeline.adapt(Registry::of_papers().machine_of(preset));
+    for (path, value) in [("priority.theta_deg", 90.0 / 512.0), ("priority.cell_m", 5.0)] {
+        config.set(path, value).expect("a number of the policy");
+    }
     for (path, value) in numbers {
         config.set(path, *value).expect("a number of the machine");
     }
@@ -274,7 +279,7 @@ fn compare_face(scene: &Scene, eye: DVec3, time: Time, faces: &FaceSet, face: Cu
     let edits = edits.iter().map(|edit| pphigs::ModelEdit { structure: edit.structure as u32, model: edit.model });
     let view =
         FrameView { number: pxpl5_wire::ViewNumber(0), eyes: vec![face_view(&ahead, face)], edits: edits.collect() };
-    let list = display_list(scene).expect("something to draw");
+    let list = DisplayList { is_matte: true, ..display_list(scene).expect("something to draw") };
     let ideal = ideal_picture(&list, &view, 0, &picture);
     let [red, green, blue] = list.background;
     let background = u32::from_be_bytes([0, red, green, blue]);

@@ -1,0 +1,32 @@
+//! `pxpl5 arp interpretations`.
+
+use crate::error::CliError;
+use crate::terminal::{advance, print, progress};
+use clap::Args;
+use pxpl5::arp::figures::{Interpretations, interpretations_text};
+
+/// Rank what the paper leaves open about table 1 (rings, distances, cascade, hall, path), each rate left out in turn.
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  pxpl5 arp interpretations
+  pxpl5 arp interpretations --json > interpretations.json")]
+pub(super) struct InterpretationsArgs {
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+    /// Print nothing but errors (and the object of --json).
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+pub(super) fn run(args: InterpretationsArgs) -> Result<(), CliError> {
+    let bar = progress(0, "rules and halls", args.quiet);
+    let all = Interpretations::run(|done, of| advance(&bar, done, of));
+    bar.finish_and_clear();
+    let all = all?;
+    match (args.json, args.quiet) {
+        (true, _) => print(&(serde_json::to_string_pretty(&all).map_err(CliError::failure)? + "\n")),
+        (false, true) => Ok(()),
+        (false, false) => print(interpretations_text(&all).trim_start()),
+    }
+}
