@@ -83,8 +83,8 @@ pub use pxpl5_run::{
     Aim, BareHost, Cause, Code, DefinedStatistics, DuePictures, Estimates, Estimator, Experiment, ExperimentError,
     FIELDS_RANGE, Fingerprint, FinishedRegions, Frameless, Goal, Head, HeadError, HeadViews, Host, Interpolation, Jitp,
     Keep, Key, KeyValue, KeyValues, Level, LimitCriterion, Outcome, Pause, PictureEnd, PictureTimes, Pipeline,
-    PipelineEntry, PipelineSettings, Pixels, Raster, Registry, RenderingControl, ResultWindow, Sampled, Samples, Settled, Setup,
-    Slats, Source, Statistics, Stepper, Summary, Summing, Sums, TestScene, Viewpoint, WARM_UP_PERIODS,
+    PipelineEntry, PipelineSettings, Pixels, Raster, Registry, RenderingControl, ResultWindow, Sampled, Samples,
+    Settled, Setup, Slats, Source, Statistics, Stepper, Summary, Summing, Sums, TestScene, Viewpoint, WARM_UP_PERIODS,
     WARM_UP_PICTURES, WINDOW_DEFINITION, out_of_range,
 };
 pub use pxpl5_sim::{Span, Time, TraceHash};

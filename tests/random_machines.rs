@@ -8,8 +8,8 @@
 use pxpl5::firmware::NodeId;
 use pxpl5::results::quantities_csv;
 use pxpl5::{
-    Experiment, ExperimentError, ExperimentFile, MachineConfig, Measure, Measured, Outcome, Pixels, QUANTITIES, Results,
-    RunError, Saving, Statistics, Time, Transfer, WARM_UP_PERIODS, Workstation, registry,
+    Experiment, ExperimentError, ExperimentFile, MachineConfig, Measure, Measured, Outcome, Pixels, QUANTITIES,
+    Results, RunError, Saving, Statistics, Time, Transfer, WARM_UP_PERIODS, Workstation, registry,
 };
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -262,21 +262,27 @@ fn assert_statistics_are_in_order(path: &str, value: &Value, told: &str) {
         Value::Object(fields) => {
             let of = |name: &str| fields.get(name).and_then(number);
             if let Some(n) = fields.get("n").and_then(Value::as_u64).filter(|_| fields.contains_key("mean")) {
-                let names = ["mean", "min", "p50", "p90", "p99", "max"].into_iter().filter(|name| fields.contains_key(*name));
+                let names =
+                    ["mean", "min", "p50", "p90", "p99", "max"].into_iter().filter(|name| fields.contains_key(*name));
                 assert!(names.clone().all(|name| of(name).is_some() == (n > 0)), "{told}: {path}: {value}");
                 // The mean may differ from equal numbers in its last digits.
                 let near = |a: f64, b: f64| a <= b + 1e-9 * (a.abs() + b.abs() + 1e-3);
                 let in_order: Vec<f64> = names.filter(|name| *name != "mean").filter_map(of).collect();
                 assert!(in_order.windows(2).all(|pair| pair[0] <= pair[1]), "{told}: {path}: {value}");
                 if let (Some(mean), Some(max)) = (of("mean"), of("max")) {
-                    assert!(near(mean, max) && near(of("min").unwrap_or(f64::NEG_INFINITY), mean), "{told}: {path}: {value}");
+                    assert!(
+                        near(mean, max) && near(of("min").unwrap_or(f64::NEG_INFINITY), mean),
+                        "{told}: {path}: {value}"
+                    );
                 }
                 if fields.contains_key("sd") {
                     assert_eq!(of("sd").is_some(), n > 1, "{told}: {path}: {value}");
                     assert!(of("sd").is_none_or(|sd| sd >= 0.0), "{told}: {path}: {value}");
                 }
             }
-            fields.iter().for_each(|(key, value)| assert_statistics_are_in_order(&format!("{path}/{key}"), value, told));
+            fields
+                .iter()
+                .for_each(|(key, value)| assert_statistics_are_in_order(&format!("{path}/{key}"), value, told));
         }
         Value::Array(values) => values.iter().for_each(|value| assert_statistics_are_in_order(path, value, told)),
         _ => {}
@@ -419,7 +425,9 @@ fn each_case(machines: u64, sizes: Sizes, mut check: impl FnMut(&Experiment, &st
     let first = setting("PXPL5_FUZZ_FROM", 0);
     let machines = machines * setting("PXPL5_FUZZ", 1);
     let mut built = 0;
-    for (experiment, told) in (first..first + TRIES * machines).filter_map(|round| case(round, sizes)).take(machines as usize) {
+    for (experiment, told) in
+        (first..first + TRIES * machines).filter_map(|round| case(round, sizes)).take(machines as usize)
+    {
         if first > 0 {
             // What hangs has no last word.
             println!("{told}");

@@ -9,7 +9,9 @@ use crate::pipeline_of;
 use multiversion::multiversion;
 use pphigs::RegionBinning;
 use pxpl5_geometry::Viewport;
-use pxpl5_run::{ClosedForm, Estimates, Experiment, ExperimentError, Samples, Slats, Summary, WARM_UP_PERIODS, WARM_UP_PICTURES};
+use pxpl5_run::{
+    ClosedForm, Estimates, Experiment, ExperimentError, Samples, Slats, Summary, WARM_UP_PERIODS, WARM_UP_PICTURES,
+};
 use pxpl5_wire::FieldParity;
 
 impl SlatsModel {

@@ -172,7 +172,8 @@ fn what_was_not_shown_or_is_never_due_is_null_in_json_and_empty_in_the_table() {
     let out = folder("null");
     let path = out.to_str().expect("a plain path");
     let only = ["--only", "slats,ideal,frameless,jitp-dual-screen"];
-    let settings = ["--head", "pan:200", "--scene", "typical:500", "--gps", "3", "--fields", "30", "--seeds", "2", "--no-limits"];
+    let settings =
+        ["--head", "pan:200", "--scene", "typical:500", "--gps", "3", "--fields", "30", "--seeds", "2", "--no-limits"];
     let json = json(&compare(&[settings.as_slice(), &only, &["--json", "--out", path]].concat()));
     // Of 22 fields due of either seed none was shown; what stands on the screen is from start-up.
     let heavy = row(&json, "jitp-dual-screen");

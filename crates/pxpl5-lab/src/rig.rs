@@ -65,9 +65,7 @@ pub enum RigRunError {
         found: usize,
     },
     /// Light under the photodiode means nothing for the pipeline.
-    #[error(
-        "expected a pipeline whose frames a photodiode can tell apart, found {pipeline}: {reason}; {definition}"
-    )]
+    #[error("expected a pipeline whose frames a photodiode can tell apart, found {pipeline}: {reason}; {definition}")]
     NoFrames {
         /// Name of the pipeline.
         pipeline: &'static str,
@@ -160,7 +158,8 @@ fn check_frames(machine: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), 
     if pipeline.draws_faces().is_some() {
         return refused("its display turns with the head, so the light changes before any frame is drawn");
     }
-    let machine = Machine::new(&pipeline.adapt(machine.clone()), 1, pipeline.layout()).map_err(ExperimentError::from)?;
+    let machine =
+        Machine::new(&pipeline.adapt(machine.clone()), 1, pipeline.layout()).map_err(ExperimentError::from)?;
     if pipeline.periods_a_picture(machine.record()).is_none() {
         return refused("parts of the screen change one by one, so the light under a photodiode is that of one part");
     }

@@ -151,7 +151,8 @@ fn a_picture_of_start_up_that_stays_on_the_screen_has_no_error() {
 /// The only complete fields are those of start-up.
 #[test]
 fn a_run_all_of_whose_due_pictures_failed_has_no_latency() {
-    let text = "pipeline = \"jitp-dual-screen\"\nscene = \"full-screen:4\"\nfields = 60\npixels = \"off\"\nlevel = \"cycle\"";
+    let text =
+        "pipeline = \"jitp-dual-screen\"\nscene = \"full-screen:4\"\nfields = 60\npixels = \"off\"\nlevel = \"cycle\"";
     let plan = ExperimentFile::parse(text, "test").and_then(|file| file.resolve()).expect("valid");
     let outcome = plan.experiment(plan.load_scene().expect("built in")).run().expect("fields are begun");
     let report = outcome.report();

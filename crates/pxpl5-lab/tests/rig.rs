@@ -61,7 +61,9 @@ fn pipelines_without_frames_are_refused_with_the_reason() {
         ("arp-ideal-pixel", "turns with the head"),
         ("frameless", "parts of the screen change one by one"),
     ] {
-        let Err(refused) = measure(TrackerConfig::ideal(), named(pipeline), 2) else { panic!("{pipeline} is measured") };
+        let Err(refused) = measure(TrackerConfig::ideal(), named(pipeline), 2) else {
+            panic!("{pipeline} is measured")
+        };
         let said = refused.to_string();
         assert!(matches!(refused, RigRunError::NoFrames { .. }) && said.contains(reason), "{said}");
     }

@@ -83,7 +83,8 @@ impl MemoryReport {
         let stats = memory.stats();
         let in_window = outcome.tally().memory_updates.get(&k).copied().unwrap_or_default();
         // Periods from one update to the next, on average over the window.
-        let period = outcome.window().filter(|_| in_window >= 2).map(|window| window.periods() as f64 / in_window as f64);
+        let period =
+            outcome.window().filter(|_| in_window >= 2).map(|window| window.periods() as f64 / in_window as f64);
         let notes = outcome.face_notes().all();
         let last = notes.iter().rfind(|note| note.memory == k);
         Self {

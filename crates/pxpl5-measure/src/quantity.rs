@@ -44,8 +44,7 @@ const fn of_run(name: &'static str, definition: &'static str, value: fn(&Outcome
     Quantity { name, definition, value: Value::OfRun(value) }
 }
 
-const LATENCY: &str =
-    "latency as the pipeline defines it (see the report), over all complete pictures in the window";
+const LATENCY: &str = "latency as the pipeline defines it (see the report), over all complete pictures in the window";
 
 const EYE_LATENCY: &str = "from the start of an eye's TRANSFORM to the swap of its frame, over both eyes of all complete pictures in the window; none for Slats";
 
@@ -68,11 +67,9 @@ pub static QUANTITIES: [Quantity; 40] = [
     of_summary("eye_retraces.mean", EYE_RETRACES, |s| s.eye_retraces().mean),
     of_summary("eye_retraces.sd", EYE_RETRACES, |s| s.eye_retraces().sd),
     // What is not a number is no value: see `Measure::of`.
-    of_summary(
-        "updates_hz",
-        "whole pictures shown a second, over the window; none where fewer than two were",
-        |s| s.updates_hz.unwrap_or(f64::NAN),
-    ),
+    of_summary("updates_hz", "whole pictures shown a second, over the window; none where fewer than two were", |s| {
+        s.updates_hz.unwrap_or(f64::NAN)
+    }),
     of_summary("missed_retraces", "pictures due that were not shown: late, incomplete or missed", |s| {
         of_due(s, DuePictures::not_shown)
     }),

@@ -197,7 +197,8 @@ fn a_memory_without_two_updates_in_the_window_has_neither_rate_nor_period() {
         Err(error) => panic!("{error}"),
     };
     let memories = outcome.report().arp.expect("faces").memories;
-    let [shown, never] = [false, true].map(|never| memories.iter().filter(move |memory| (memory.updates == 0) == never));
+    let [shown, never] =
+        [false, true].map(|never| memories.iter().filter(move |memory| (memory.updates == 0) == never));
     assert!(shown.count() > 0 && never.count() > 0, "{memories:?}");
     assert!(memories.iter().all(|memory| (memory.updates_hz, memory.period_frames) == (None, None)), "{memories:?}");
 }

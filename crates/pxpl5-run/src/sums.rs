@@ -55,9 +55,8 @@ impl Settled<'_> {
     /// The periods of the window, from one that was not handed on before to the last one that will not change.
     pub fn periods_from(&self, next: PeriodNumber) -> impl DoubleEndedIterator<Item = PeriodNumber> + Clone + use<> {
         let Self { until, window, .. } = *self;
-        let (first, end) = window.map_or((until, until), |window| {
-            (window.first_period.max(next), window.last_period.next().min(until))
-        });
+        let (first, end) = window
+            .map_or((until, until), |window| (window.first_period.max(next), window.last_period.next().min(until)));
         first.until(end.max(first))
     }
 }

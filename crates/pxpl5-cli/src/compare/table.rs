@@ -60,7 +60,8 @@ fn line(row: &ComparisonRow) -> String {
     if let Some(failure) = &row.failure {
         return format!("{:<NAME$} {failure}\n", row.pipeline);
     }
-    let missed = row.not_shown.zip(row.due).map_or_else(|| "-".to_owned(), |(missed, due)| format!("{missed} of {due}"));
+    let missed =
+        row.not_shown.zip(row.due).map_or_else(|| "-".to_owned(), |(missed, due)| format!("{missed} of {due}"));
     let values = [
         number(row.head_to_light_ms.mean, 2),
         number(row.head_to_light_ms.sd, 2),

@@ -54,7 +54,10 @@ pub fn columns() -> Vec<Column> {
     columns.extend(LATENCY_PARTS.iter().map(|part| {
         Column::optional(
             &format!("{}_ps", part.name),
-            &format!("{}; missing outside of the window and of a picture that was not complete in time", part.definition),
+            &format!(
+                "{}; missing outside of the window and of a picture that was not complete in time",
+                part.definition
+            ),
         )
     }));
     columns
