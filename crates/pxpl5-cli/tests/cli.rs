@@ -581,3 +581,46 @@ fn the_files_of_figures_1_2_9_10_and_11_reproduce_them() {
         }
     }
 }
+
+/// What stands behind a name in the table on the terminal.
+fn cell(text: &str, name: &str) -> String {
+    let line = text.lines().find(|line| line.starts_with(name)).unwrap_or_else(|| panic!("no {name}: {text}"));
+    line[name.len()..].trim().to_owned()
+}
+
+/// Runs of all kinds, light and too heavy: the table on the terminal rounds what JSON has, and has `-` where that has null.
+#[test]
+fn the_terminal_says_what_json_says() {
+    let folder = Folder::new("terminal");
+    let pipelines =
+        ["slats", "rendering-control", "jitp-field", "jitp-dual-screen-racing", "frameless", "arp-priority"];
+    for (i, pipeline) in pipelines.into_iter().enumerate() {
+        for (scene, gps) in [("typical:20", "7"), ("typical:900", "3"), ("sphere:200", "13")] {
+            let fields = (12 + 7 * i).to_string();
+            let run =
+                ["run", "--pipeline", pipeline, "--scene", scene, "--gps", gps, "--fields", &fields, "--pixels", "off"];
+            let report = json_of(&folder.run(&with(&run, &["--json"])));
+            let text = out(&folder.run(&run));
+            let told = format!("{pipeline} {scene}: {text}");
+            let number = |path: &str| report.pointer(path).and_then(serde_json::Value::as_f64);
+            let whole = |path: &str| report.pointer(path).and_then(serde_json::Value::as_u64);
+            let dash = || "-".to_owned();
+            let latency = number("/latency_ms/mean").map_or_else(dash, |mean| {
+                let sd = number("/latency_ms/sd").map_or_else(dash, |sd| format!("{sd:.1}"));
+                format!("{mean:.1}, sd {sd}, n {}", report["latency_ms"]["n"])
+            });
+            assert_eq!(cell(&text, "latency, ms: mean"), latency, "{told}");
+            let hz = number("/updates_hz").map_or_else(dash, |hz| format!("{hz:.2}"));
+            assert_eq!(cell(&text, "updates per second"), hz, "{told}");
+            let not_shown = whole("/missed_retraces").zip(whole("/due/due"));
+            let not_shown = not_shown.map_or_else(dash, |(missed, due)| format!("{missed} of {due} pictures due"));
+            assert_eq!(cell(&text, "not shown in time"), not_shown, "{told}");
+            let ends = ["late", "incomplete", "missed"].map(|end| whole(&format!("/due/{end}")).map(|n| n.to_string()));
+            let ends = ends.into_iter().collect::<Option<Vec<_>>>().map_or_else(dash, |ends| ends.join(", "));
+            assert_eq!(cell(&text, "  late, incompl., missed"), ends, "{told}");
+            let window = whole("/window/first_period").zip(whole("/window/last_period"));
+            let window = window.map_or_else(dash, |(first, last)| format!("{first} to {last}"));
+            assert_eq!(cell(&text, "all over periods"), window, "{told}");
+        }
+    }
+}

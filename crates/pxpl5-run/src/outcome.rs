@@ -252,8 +252,9 @@ impl Outcome {
     #[must_use]
     pub fn summary(&self) -> Summary {
         let tally = self.tally();
-        let [first_copy, last_copy] = &tally.copy_ms;
-        let mean_or_none = |mean: f64| if mean.is_nan() { 0.0 } else { mean };
+        let [first_copy_ms, last_copy_ms] = tally.copy_ms.each_ref().map(|samples| samples.statistics().mean);
+        // A pipeline without a second copy spends no time on it; where nothing was copied nothing is known.
+        let last_copy_ms = if last_copy_ms.is_nan() && !first_copy_ms.is_nan() { 0.0 } else { last_copy_ms };
         Summary {
             latencies_ms: tally.latency_ms.clone(),
             field_ms: self.field_ms(),
@@ -263,8 +264,8 @@ impl Outcome {
             eye_swap_latencies_ms: tally.eye_swap_ms.clone(),
             eye_retraces: tally.eye_retraces.clone(),
             region_copy_us: tally.region_copy_us(),
-            first_copy_ms: mean_or_none(first_copy.statistics().mean),
-            last_copy_ms: mean_or_none(last_copy.statistics().mean),
+            first_copy_ms,
+            last_copy_ms,
             copy_begins_ms: tally.copy_begins_ms.statistics().mean,
         }
     }

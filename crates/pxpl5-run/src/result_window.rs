@@ -4,7 +4,7 @@
 //! window begins then, with the turn of the next picture: the periods up to and with the one in which it is due. No failure behind the
 //! first periods is left out: if a picture due in the first half of the run was not shown, the window begins with the first such picture.
 //! Those before it may owe their time to queues that were still empty. The pictures of start-up have no latency and no error in any case.
-//! The window ends with the last period that was over.
+//! The window ends with the last period that was over, and a period earlier where no picture is due.
 
 use crate::due::{PictureEnd, PictureEnds};
 use pxpl5_wire::PeriodNumber;
@@ -48,7 +48,9 @@ impl ResultWindow {
         planned: PeriodNumber,
     ) -> Option<Self> {
         let begun = Self::begun(ends, every, reached, planned);
-        let periods = reached.0.checked_sub(begun.first_period.0)?;
+        // Where no picture is due, one that is seen in the last period may not be whole before a later one.
+        let end = if every.is_some() { reached.0 } else { reached.0.checked_sub(1)? };
+        let periods = end.checked_sub(begun.first_period.0)?;
         let every = every.unwrap_or(1).max(1);
         let whole = periods / every * every;
         let last_period = PeriodNumber((begun.first_period.0 + whole).checked_sub(1)?);

@@ -22,11 +22,11 @@ pub struct Summary {
     pub eye_swap_latencies_ms: Samples,
     /// The same in retraces: up to and with the one of the swap.
     pub eye_retraces: Samples,
-    /// Port time of a region of 15,360 pixels, microseconds.
+    /// Port time of a region of 15,360 pixels, microseconds; no number where none came.
     pub region_copy_us: f64,
     /// First to last word of a picture's first copy (see [`Pipeline::copy_part`](crate::Pipeline::copy_part)), milliseconds.
     pub first_copy_ms: f64,
-    /// The same of its second copy; 0 where there is none.
+    /// The same of its second copy; 0 where pictures have none. Of no picture there is no number, as of the first copy.
     pub last_copy_ms: f64,
     /// From the start of a picture to the first word of its first copy, milliseconds.
     pub copy_begins_ms: f64,

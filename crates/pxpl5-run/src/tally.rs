@@ -277,10 +277,10 @@ impl Tally {
         self.first_late_regions.extend(late.iter().take(room));
     }
 
-    /// Port time of a region of 15,360 pixels, microseconds.
+    /// Port time of a region of 15,360 pixels, microseconds; no number where none came.
     #[must_use]
     pub fn region_copy_us(&self) -> f64 {
-        self.region_ms * 1e3 * 15_360.0 / self.region_pixels.max(1) as f64
+        self.region_ms * 1e3 * 15_360.0 / self.region_pixels as f64
     }
 
     pub(crate) const fn ends(&self) -> &PictureEnds {
