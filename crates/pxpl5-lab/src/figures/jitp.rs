@@ -120,7 +120,7 @@ fn error_of_field(bench: &Bench) -> Result<FigureValue> {
     let turn_deg = 2.0 * (chord / level).asin().to_degrees();
     let scan_s = beam_s(&outcome, (0, 0), (COLUMN, LAST_LINE));
     let details = vec![detail("at the last line", turn_deg, "deg")];
-    Ok(FigureValue { value: turn_deg / scan_s * outcome.field_ms() / 1e3, details })
+    Ok(FigureValue::with(turn_deg / scan_s * outcome.field_ms() / 1e3, details))
 }
 
 /// J2: the turn from the left end of a line to its right end, scaled to the whole line.
@@ -146,7 +146,7 @@ fn slant_removed(bench: &Bench) -> Result<FigureValue> {
     let [conventional, just_in_time] = [&plates.conventional_seen, &plates.just_in_time_seen].map(slant);
     let details =
         vec![detail("conventional", conventional, "px a field"), detail("just-in-time", just_in_time, "px a field")];
-    Ok(FigureValue { value: 100.0 * (1.0 - (just_in_time / conventional).abs()), details })
+    Ok(FigureValue::with(100.0 * (1.0 - (just_in_time / conventional).abs()), details))
 }
 
 /// Pixels between the first and the last row of the straight line through the right ends of what is white.
@@ -175,7 +175,7 @@ fn transforms(bench: &Bench) -> Result<FigureValue> {
         detail("line by line", line, "vertices a field"),
         detail("one transform a field", field, "vertices a field"),
     ];
-    Ok(FigureValue { value: line / field, details })
+    Ok(FigureValue::with(line / field, details))
 }
 
 /// Fields over which transforms are counted.

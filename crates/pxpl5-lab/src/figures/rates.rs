@@ -160,7 +160,7 @@ fn drawn(machine: MachineConfig, shading: Shading, triangles: u64, fields: u64) 
 
 fn triangle_rate(bench: &Bench, preset: &str, shading: Shading) -> Result<FigureValue> {
     let hz = drawn(bench.machine(preset)?, shading, TRIANGLES, FIELDS)?.updates_hz().unwrap_or(f64::NAN);
-    Ok(FigureValue { value: TRIANGLES as f64 * hz, details: vec![detail("frames a second", hz, "Hz")] })
+    Ok(FigureValue::with(TRIANGLES as f64 * hz, vec![detail("frames a second", hz, "Hz")]))
 }
 
 /// Commands of a renderer over the time in which its array works. Of the 26,000 of a frame 80 are no triangles.
@@ -196,7 +196,7 @@ fn rig_total(bench: &Bench) -> Result<FigureValue> {
     let measured = measured.map_err(|error| ExperimentError::Scene(error.to_string()))?;
     let [tracking, rendering] = [measured.outside.tracking, measured.outside.rendering].map(|part| part.mean_s * 1e3);
     let details = vec![detail("tracking", tracking, "ms"), detail("rendering", rendering, "ms")];
-    Ok(FigureValue { value: measured.outside.total.mean_s * 1e3, details })
+    Ok(FigureValue::with(measured.outside.total.mean_s * 1e3, details))
 }
 
 /// Turns of the loop of the i860, and multiply-adds in each.

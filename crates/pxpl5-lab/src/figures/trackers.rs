@@ -69,7 +69,7 @@ fn polling(bench: &Bench) -> Result<FigureValue> {
     let greatest = waits_ms.iter().copied().fold(0.0, f64::max) / field_ms;
     let in_a_run = (pose_to_transform_ms(bench, polled)? - pose_to_transform_ms(bench, patched)?) / field_ms;
     let details = vec![detail("mean of all reports", mean, "fields"), detail("mean in a run", in_a_run, "fields")];
-    Ok(FigureValue { value: greatest, details })
+    Ok(FigureValue::with(greatest, details))
 }
 
 /// Fields of a run: ten seconds.
