@@ -442,8 +442,20 @@ fn table_of_code() -> Result<(), Box<dyn std::error::Error>> {
     ]);
     for (name, version, of, table) in [
         ("PPHIGS: scheduled, Phong, frames in bins", CodeVersion::Scheduled, CodeUse::Pphigs, GpTiming::PAPERS),
-        ("Slats: compiled, Gouraud, fields", CodeVersion::Compiled, CodeUse::Slats, GpTiming::SLATS_1994),
-        ("Slats: scheduled, Gouraud, fields", CodeVersion::Scheduled, CodeUse::Slats, GpTiming::SLATS_OPTIMISED),
+        ("Slats: compiled, precomputed colours, fields", CodeVersion::Compiled, CodeUse::Slats, GpTiming::SLATS_1994),
+        (
+            "Slats: scheduled, precomputed colours, fields",
+            CodeVersion::Scheduled,
+            CodeUse::Slats,
+            GpTiming::SLATS_OPTIMISED,
+        ),
+        ("Slats: compiled, light on the GP, fields", CodeVersion::Compiled, CodeUse::SlatsLit, GpTiming::SLATS_1994),
+        (
+            "Slats: scheduled, light on the GP, fields",
+            CodeVersion::Scheduled,
+            CodeUse::SlatsLit,
+            GpTiming::SLATS_OPTIMISED,
+        ),
     ] {
         let times = code_times(version, of)?;
         let us = |ns: f64| format!("{:.2}", ns * 1e-3);

@@ -74,7 +74,43 @@ impl GpTiming {
         }
     }
 
-    /// This table with the times of the compiled code for Gouraud triangles of a field, thirty in a clump: Slats.
+    /// This table with the times of the compiled code for triangles of a field whose colours are precomputed, thirty in a clump, both eyes in
+    /// one pass: Slats.
+    #[must_use]
+    pub const fn of_compiled_precomputed(self) -> Self {
+        Self {
+            message_ns: 17_298,
+            triangle_ns: 53_963,
+            sphere_ns: 77_953,
+            guard_ns: 133_222,
+            bin_entry_ns: 0,
+            edit_ns: 4_117,
+            pass_ns: 12_739,
+            structure_ns: 98_826,
+            sphere_view_ns: 31_622,
+            ..self
+        }
+    }
+
+    /// The same of the scheduled code.
+    #[must_use]
+    pub const fn of_scheduled_precomputed(self) -> Self {
+        Self {
+            message_ns: 20_132,
+            triangle_ns: 20_295,
+            sphere_ns: 78_420,
+            guard_ns: 226_560,
+            bin_entry_ns: 0,
+            edit_ns: 4_117,
+            pass_ns: 25_343,
+            structure_ns: 98_832,
+            sphere_view_ns: 25_584,
+            ..self
+        }
+    }
+
+    /// This table with the times of the compiled code for Gouraud triangles of a field, thirty in a clump: Slats with light on the
+    /// GP.
     #[must_use]
     pub const fn of_compiled_gouraud(self) -> Self {
         Self {

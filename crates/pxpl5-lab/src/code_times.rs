@@ -29,8 +29,8 @@ pub use strips::{StripTimes, strip_times};
 
 use glam::Mat4;
 use pphigs::{
-    DisplayList, DisplayStructure, Editing, FrameView, ModelEdit, Pass, Picture, RegionBinning, Shading, Share,
-    TransformCost,
+    DisplayList, DisplayStructure, Editing, FrameView, KernelOutput, ModelEdit, Pass, Picture, RegionBinning, Shading,
+    Share, TransformCost,
 };
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{CodeVersion, GpTiming, Processor, ProcessorFault, Work};
@@ -69,13 +69,15 @@ const MORE_STRUCTURES: usize = 8;
 /// A board's memory (published TR94).
 const MEMORY: u64 = 8 << 20;
 
-/// What code does: PPHIGS draws frames in Phong shading, with bins; Slats fields in Gouraud shading, in clumps for all regions.
+/// What code does: PPHIGS draws frames in Phong shading, with bins; Slats fields with colours at corners, in clumps for all regions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CodeUse {
     /// Frames, Phong shading, bins.
     Pphigs,
-    /// Fields, Gouraud shading, clumps of thirty.
+    /// Fields, precomputed colours, clumps of thirty, both eyes in one pass.
     Slats,
+    /// The same with light on the GP, an eye after the other.
+    SlatsLit,
 }
 
 /// Times of primitives in nanoseconds, as the code gives them.
@@ -120,7 +122,8 @@ impl CodeUse {
     fn picture(self) -> Picture {
         let (viewport, shading, binning) = match self {
             Self::Pphigs => (Viewport::FRAME, Shading::Phong, RegionBinning::Touched),
-            Self::Slats => (Viewport::field(FieldParity::Even), Shading::Gouraud, RegionBinning::All),
+            Self::Slats => (Viewport::field(FieldParity::Even), Shading::Precomputed, RegionBinning::All),
+            Self::SlatsLit => (Viewport::field(FieldParity::Even), Shading::Gouraud, RegionBinning::All),
         };
         Picture { viewport, shading, binning, layout: Layout::rendering_control_phong(), pixels: false }
     }
@@ -129,14 +132,14 @@ impl CodeUse {
     const fn eyes_of_a_pass(self) -> &'static [&'static [usize]] {
         match self {
             Self::Pphigs => &[&[0], &[1]],
-            Self::Slats => &[&[0, 1]],
+            Self::Slats | Self::SlatsLit => &[&[0, 1]],
         }
     }
 
     fn parts(self, share: &Share) -> Vec<Share> {
         match self {
             Self::Pphigs => vec![share.clone()],
-            Self::Slats => share.clumps(CLUMP).take(CLUMPS).collect(),
+            Self::Slats | Self::SlatsLit => share.clumps(CLUMP).take(CLUMPS).collect(),
         }
     }
 }
@@ -286,19 +289,28 @@ fn sphere_samples(version: CodeVersion, of: CodeUse, scene: &str) -> Result<Vec<
     if rig.share.counts().spheres == 0 { Ok(Vec::new()) } else { measured(of, rig, sphere_sample) }
 }
 
-/// All passes but the first.
-fn measured<S>(
+/// All passes but the first. What goes through both eyes in one pass is one sample.
+fn measured<const N: usize>(
     of: CodeUse,
     mut rig: Rig,
-    sample: impl Fn(&Pass, &mut Processor, u8) -> Result<Option<S>, ProcessorFault>,
-) -> Result<Vec<S>, ExperimentError> {
+    sample: impl Fn(&Pass, &KernelOutput) -> [f64; N],
+) -> Result<Vec<[f64; N]>, ExperimentError> {
     let mut samples = Vec::new();
     let parts = of.parts(&rig.share);
     for number in 0..VIEWS {
         let view = rig.view(number);
-        for (part, eye) in parts.iter().flat_map(|part| [(part, 0), (part, 1)]) {
-            let pass = part.transform(&view, eye, of.picture());
-            samples.extend(sample(&pass, &mut rig.processor, eye as u8).map_err(fault)?);
+        for part in &parts {
+            let passes = [0, 1].map(|eye| part.transform(&view, eye, of.picture()));
+            let [left, right] = &passes;
+            if let Some(made) = left.run_code_for_both(right, &mut rig.processor, 0).map_err(fault)? {
+                let [left, right] = [sample(left, &made[0]), sample(right, &made[1])];
+                samples.push(std::array::from_fn(|n| left[n] + right[n]));
+                continue;
+            }
+            for (pass, context) in passes.iter().zip([0, 1]) {
+                let made = pass.run_code(&mut rig.processor, context).map_err(fault)?;
+                samples.extend(made.map(|made| sample(pass, &made)));
+            }
         }
     }
     samples.remove(0);
@@ -368,7 +380,7 @@ fn beginning_ns(of: CodeUse, mut rig: Rig) -> Result<f64, ExperimentError> {
             // The triangles of the pass before have taken the caches.
             eyes.iter().try_for_each(|eye| {
                 let pass = rig.share.transform(&view, *eye, of.picture());
-                sample(&pass, &mut rig.processor, *eye as u8).map(|_| ()).map_err(fault)
+                pass.run_code(&mut rig.processor, *eye as u8).map(|_| ()).map_err(fault)
             })?;
             let span = beginning.by_code(&GpTiming::PAPERS, &mut rig.processor).map_err(fault)?;
             all_ns += span.0 as f64 / 1e3;
@@ -389,18 +401,16 @@ fn edit_ns(version: CodeVersion) -> Result<f64, ExperimentError> {
     Ok((more - one) / f64::from(EDITS))
 }
 
-fn sample(pass: &Pass, processor: &mut Processor, context: u8) -> Result<Option<Sample>, ProcessorFault> {
-    let Some(made) = pass.run_code(processor, context)? else { return Ok(None) };
+fn sample(pass: &Pass, made: &KernelOutput) -> Sample {
     let cut = pass.stats().clipped;
     let uncut = u64::from(pass.transformed().triangles) - cut;
-    Ok(Some([uncut as f64, cut as f64, made.entries() as f64, made.span.0 as f64 / 1e3]))
+    [uncut as f64, cut as f64, made.entries() as f64, made.span.0 as f64 / 1e3]
 }
 
-fn sphere_sample(pass: &Pass, processor: &mut Processor, context: u8) -> Result<Option<SphereSample>, ProcessorFault> {
-    let Some(made) = pass.run_code(processor, context)? else { return Ok(None) };
+fn sphere_sample(pass: &Pass, made: &KernelOutput) -> SphereSample {
     let regions = pass.picture().viewport.grid().regions() as u16;
     let entries: u32 = (0..regions).map(|region| pass.counts(RegionId(region)).spheres).sum();
-    Ok(Some([pass.transformed().spheres.into(), entries.into(), made.of_spheres.0 as f64 / 1e3]))
+    [pass.transformed().spheres.into(), entries.into(), made.of_spheres.0 as f64 / 1e3]
 }
 
 #[cfg(test)]

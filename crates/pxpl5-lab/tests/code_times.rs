@@ -18,8 +18,10 @@ fn the_table_of_the_code_is_what_the_code_takes() {
     let papers = GpTiming::PAPERS;
     let uses = [
         (CodeVersion::Scheduled, CodeUse::Pphigs, papers.of_scheduled_phong()),
-        (CodeVersion::Compiled, CodeUse::Slats, papers.of_compiled_gouraud()),
-        (CodeVersion::Scheduled, CodeUse::Slats, papers.of_scheduled_gouraud()),
+        (CodeVersion::Compiled, CodeUse::Slats, papers.of_compiled_precomputed()),
+        (CodeVersion::Scheduled, CodeUse::Slats, papers.of_scheduled_precomputed()),
+        (CodeVersion::Compiled, CodeUse::SlatsLit, papers.of_compiled_gouraud()),
+        (CodeVersion::Scheduled, CodeUse::SlatsLit, papers.of_scheduled_gouraud()),
     ];
     let measured = uses.map(|(version, of, _)| code_times(version, of).expect("the scenes are built in"));
     let expected = measured.map(table);

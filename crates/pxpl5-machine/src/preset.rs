@@ -104,8 +104,8 @@ impl MachineConfig {
     pub fn with_times_of_code(self) -> Self {
         let slats = self.preset.starts_with("slats");
         let gp = match self.code {
-            Some(CodeVersion::Scheduled) if slats => self.gp.of_scheduled_gouraud(),
-            _ if slats => self.gp.of_compiled_gouraud(),
+            Some(CodeVersion::Scheduled) if slats => self.gp.of_scheduled_precomputed(),
+            _ if slats => self.gp.of_compiled_precomputed(),
             _ => self.gp.of_scheduled_phong(),
         };
         Self { gp, ..self }

@@ -73,7 +73,7 @@ pub(super) fn traffic(version: CodeVersion, of: CodeUse, scene: &str) -> Result<
         let view = rig.view(number);
         match of {
             CodeUse::Pphigs => slave(&mut rig, of, &view, &mut traffic),
-            CodeUse::Slats => field(&mut rig, of, &view, &mut traffic),
+            CodeUse::Slats | CodeUse::SlatsLit => field(&mut rig, of, &view, &mut traffic),
         }
         .map_err(|error| ExperimentError::Scene(error.to_string()))?;
         if number == 0 {
@@ -129,8 +129,10 @@ fn field(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) ->
     traffic.receive(&mut rig.processor, view.to_words().len() as u32)?;
     for clump in of.parts(&rig.share) {
         let passes = [0, 1].map(|eye| clump.transform(view, eye, of.picture()));
-        for pass in &passes {
-            pass.run_code(&mut rig.processor, 0)?;
+        if passes[0].run_code_for_both(&passes[1], &mut rig.processor, 0)?.is_none() {
+            for pass in &passes {
+                pass.run_code(&mut rig.processor, 0)?;
+            }
         }
         let lists = passes.iter().flat_map(|pass| {
             let of_region = |region| region_messages(pass, RegionId(region), 0, RegionEnvelope::default());

@@ -41,8 +41,8 @@ fn times_of_code_are_those_of_the_code_that_a_preset_runs() {
         let before = MachineConfig::preset(preset.name).expect("it is listed");
         let after = before.clone().with_times_of_code();
         let expected = match preset.name {
-            "slats" | "slats-1995" => before.gp.of_compiled_gouraud(),
-            "slats-optimised" => before.gp.of_scheduled_gouraud(),
+            "slats" | "slats-1995" => before.gp.of_compiled_precomputed(),
+            "slats-optimised" => before.gp.of_scheduled_precomputed(),
             _ => before.gp.of_scheduled_phong(),
         };
         assert_eq!(after.gp, expected, "{}", preset.name);
@@ -51,7 +51,7 @@ fn times_of_code_are_those_of_the_code_that_a_preset_runs() {
     }
     let mut without = MachineConfig::slats();
     without.code = None;
-    assert_eq!(without.with_times_of_code().gp, GpTiming::SLATS_1994.of_compiled_gouraud());
+    assert_eq!(without.with_times_of_code().gp, GpTiming::SLATS_1994.of_compiled_precomputed());
     let mut compiled = MachineConfig::small_hmd();
     compiled.code = Some(CodeVersion::Compiled);
     assert_eq!(compiled.with_times_of_code().gp, GpTiming::PAPERS.of_scheduled_phong());
