@@ -1,7 +1,7 @@
 //! `pxpl5 merge`.
 
 use crate::error::CliError;
-use crate::numbers::{are, count_of};
+use crate::numbers::{are, count_of, were};
 use crate::terminal::{complain, print};
 use clap::Args;
 use pxpl5::sweep::{Merged, ROWS_FILE, merge};
@@ -31,16 +31,19 @@ pub(crate) struct MergeArgs {
 
 pub(crate) fn run(args: MergeArgs) -> Result<(), CliError> {
     let Merged { points, failed, duplicates, missing } = merge(&args.folders, &args.out, args.partial)?;
-    for (points, what) in [(&duplicates, "there more than once"), (&missing, "missing")] {
-        if let Some(first) = points.first() {
-            let points = are(points.len() as u64, "point");
-            complain(&format!("pxpl5: {points} {what}, the first of them point {first}\n"));
-        }
+    if let Some(first) = duplicates.first() {
+        let points = were(duplicates.len() as u64, "point");
+        complain(&format!("pxpl5: {points} there more than once, the first of them point {first}\n"));
+    }
+    if let Some(first) = missing.first() {
+        let points = are(missing.len() as u64, "point");
+        complain(&format!("pxpl5: {points} missing, the first of them point {first}\n"));
     }
     if args.quiet {
         return Ok(());
     }
     let path = args.out.join(ROWS_FILE);
-    let there = count_of(points - missing.len() as u64, "point");
-    print(&format!("{there} in {}; {failed} failed.\n", path.display()))
+    let there = points - missing.len() as u64;
+    let verb = if there == 1 { "is" } else { "are" };
+    print(&format!("{}, {failed} of them failed, {verb} in {}.\n", count_of(there, "point"), path.display()))
 }

@@ -292,7 +292,7 @@ fn the_jobs_of_slurm_find_the_rows_of_the_whole_sweep() {
     let written =
         folder.run(&["sweep", "s.toml", "--out", "a b", "--set", "title=it's one", "--slurm", "jobs", "--tasks", "3"]);
     succeeds(&written);
-    assert!(out(&written).starts_with("3 tasks of 1 threads") && out(&written).ends_with("bash jobs/submit.sh\n"));
+    assert!(out(&written).starts_with("3 tasks of 1 thread,") && out(&written).ends_with("bash jobs/submit.sh\n"));
     assert_eq!(names(&folder.0.join("jobs")), ["array.sh", "merge.sh", "submit.sh"]);
     assert!(!folder.0.join("a b").exists(), "nothing is run");
     for script in ["array.sh", "merge.sh", "submit.sh"] {

@@ -131,8 +131,9 @@ pub(crate) fn run(args: PlotArgs) -> Result<(), CliError> {
     let figure = formats::bytes(&svg, format)?;
     write(&args, &results, (&figure, &csv(&question, &groups)))?;
     if missing > 0 {
+        let (have, are) = if missing == 1 { ("has", "is") } else { ("have", "are") };
         let rows = count_of(missing as u64, "row");
-        complain(&format!("pxpl5: {rows} without a number under {}: left out of the means\n", args.y));
+        complain(&format!("pxpl5: {rows} {have} no number under {} and {are} left out of the means\n", args.y));
     }
     if args.quiet {
         return Ok(());
