@@ -12,9 +12,11 @@
 //! - a renderer executes in order and is held by the copy of a region;
 //! - a frame-buffer port takes one region at a time, in order of arrival.
 //!
-//! **Not modelled:** the order of messages of different senders at one instant, the exact words of the last clump's
-//! messages beside its primitives, the host's own messages (a rate instead), different weights of regions within a
-//! clump (their mean instead), memory.
+//! Slats on several GPs goes through its messages one by one, in the order in which the ring grants them (`senders`). Other
+//! pipelines, displays that are not NTSC, and heads with a tracker are refused.
+//!
+//! **Not modelled:** channels that pixels take, interrupts of a GP by messages of others, the words of the last clump's messages beside its
+//! primitives, the host's own messages (a rate instead), views after the first one (Slats), memory.
 //!
 //! Times are nanoseconds in f64; an error of 1 ns is far below everything that is compared.
 

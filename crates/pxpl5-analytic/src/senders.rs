@@ -170,6 +170,13 @@ impl Renderer {
     }
 }
 
+/// A message to a renderer: so many of each command, in the order of sending.
+#[derive(Clone, Copy, Debug)]
+struct Message {
+    region: usize,
+    runs: [(Cost, f64); 4],
+}
+
 /// A GP that sends its clumps, one chain of messages after the other.
 #[derive(Debug)]
 struct Sender<'a> {
@@ -177,8 +184,8 @@ struct Sender<'a> {
     clumps: &'a [Clump],
     /// Clumps that are sent or being sent.
     begun: usize,
-    /// The region that the next message goes to; all are served at the end of a chain.
-    region: usize,
+    /// The messages of the chain that have not been granted; none at its end.
+    messages: VecDeque<Message>,
     /// When that message came to the head of the queue.
     since_ns: f64,
     /// When each channel of its port is free.
@@ -191,8 +198,8 @@ struct Sender<'a> {
 }
 
 impl Sender<'_> {
-    const fn is_done(&self) -> bool {
-        self.region >= REGIONS
+    fn is_done(&self) -> bool {
+        self.messages.is_empty()
     }
 }
 
@@ -242,7 +249,7 @@ impl<'a> Ring<'a> {
                 gp,
                 clumps,
                 begun: 0,
-                region: REGIONS,
+                messages: VecDeque::new(),
                 since_ns: 0.0,
                 channels_ns: vec![f64::MIN; model.source_channels],
                 cpu_ns: begin_ns[gp],
@@ -263,7 +270,7 @@ impl<'a> Ring<'a> {
             gp: 0,
             clumps: std::slice::from_ref(&nothing),
             begun: 0,
-            region: REGIONS,
+            messages: VecDeque::new(),
             since_ns: 0.0,
             channels_ns: vec![f64::MIN; self.model.source_channels],
             cpu_ns: 0.0,
@@ -287,7 +294,7 @@ impl<'a> Ring<'a> {
             let transformed = later(sender.cpu_ns, sender.draining_ns) + clump.transform_ns;
             sender.cpu_ns = later(transformed, sender.accepted_ns);
             sender.begun += 1;
-            sender.region = self.next_region(sender, 0);
+            sender.messages = self.messages_of(clump, self.clears && sender.begun == 1);
             if !sender.is_done() {
                 sender.cpu_ns += self.model.message_ns;
                 sender.since_ns = sender.cpu_ns;
@@ -298,16 +305,33 @@ impl<'a> Ring<'a> {
         }
     }
 
-    /// The first region from one on that gets a message of the clump that is being sent.
-    fn next_region(&self, sender: &Sender<'_>, from: usize) -> usize {
-        let clears = self.clears && sender.begun == 1;
-        let bins = &sender.clumps[sender.begun - 1].bins;
-        (from..REGIONS).find(|region| clears || bins[*region] != [0.0; 2]).unwrap_or(REGIONS)
+    /// The messages of a clump: a region's selection, its clearing in the first clump of a field, and as many primitives as each holds.
+    fn messages_of(&self, clump: &Clump, clears: bool) -> VecDeque<Message> {
+        let SlatsModel { select, clear, command, sphere, .. } = *self.model;
+        let mut messages = VecDeque::new();
+        for (region, bin) in clump.bins.iter().enumerate() {
+            let mut left = *bin;
+            let mut clearing = if clears { 1.0 } else { 0.0 };
+            while clearing > 0.0 || left != [0.0; 2] {
+                let mut room = f64::from(MAX_MESSAGE_WORDS) - select.words - clearing * clear.words;
+                let held = [(command, 0), (sphere, 1)].map(|(command, kind)| {
+                    let count = left[kind].min((room / command.words).floor());
+                    left[kind] -= count;
+                    room -= count * command.words;
+                    count
+                });
+                let runs = [(select, 1.0), (clear, clearing), (command, held[0]), (sphere, held[1])];
+                messages.push_back(Message { region, runs });
+                clearing = 0.0;
+            }
+        }
+        messages
     }
 
     /// When the next message of a sender can be granted, and since when it waits.
     fn head(&self, sender: &Sender<'_>) -> (f64, f64) {
-        let port = &self.renderers[sender.region % self.renderers.len()];
+        let region = sender.messages.front().map_or(0, |message| message.region);
+        let port = &self.renderers[region % self.renderers.len()];
         let since = later(sender.since_ns, soonest(&sender.channels_ns).1);
         (later(later(since, port.released_ns), soonest(&self.channels_ns).1), since)
     }
@@ -323,9 +347,10 @@ impl<'a> Ring<'a> {
     fn grant(&mut self, sender: &mut Sender<'_>) {
         let model = self.model;
         let (granted, _) = self.head(sender);
-        let number = sender.region % self.renderers.len();
+        let Some(message) = sender.messages.pop_front() else { return };
+        let number = message.region % self.renderers.len();
         let latency = model.hop_ns * (model.gps - sender.gp + number) as f64;
-        let accepted = self.message(sender, number, granted + model.overhead_ns + latency);
+        let accepted = self.take(&message, number, granted + model.overhead_ns + latency);
         let released = accepted - latency;
         self.renderers[number].released_ns = released;
         for channels in [&mut sender.channels_ns, &mut self.channels_ns] {
@@ -337,35 +362,23 @@ impl<'a> Ring<'a> {
             sender.draining_ns = later(sender.draining_ns, accepted);
         }
         sender.since_ns = granted;
-        sender.region = self.next_region(sender, sender.region + 1);
         if sender.is_done() {
             self.next_clump(sender);
         }
     }
 
-    /// The words of a message enter a FIFO from an instant on: selection, clearing in the first message of a field, primitives.
-    fn message(&mut self, sender: &Sender<'_>, number: usize, from_ns: f64) -> f64 {
-        let model = self.model;
-        let (depth, word) = (model.fifo_words, model.word_ns);
-        let [triangles, spheres] = sender.clumps[sender.begun - 1].bins[sender.region];
-        let clear = if self.clears && sender.begun == 1 { 1.0 } else { 0.0 };
-        let runs = [(model.select, 1.0), (model.clear, clear), (model.command, triangles), (model.sphere, spheres)];
+    /// The words of a message enter a FIFO from an instant on; returns when the last one has entered.
+    fn take(&mut self, message: &Message, number: usize, from_ns: f64) -> f64 {
+        let (depth, word) = (self.model.fifo_words, self.model.word_ns);
         let renderer = &mut self.renderers[number];
         let mut entered = from_ns;
-        let mut words = 0.0;
-        for (command, count) in runs {
+        for (command, count) in message.runs {
             let mut left = count;
             while left > 0.0 {
                 // Means need not be whole numbers.
                 let part = left.min(1.0);
                 let some = Cost { words: command.words * part, ns: command.ns * part };
-                // What a message cannot hold goes into another one behind it.
-                if words + some.words > f64::from(MAX_MESSAGE_WORDS) {
-                    entered += model.overhead_ns;
-                    words = 0.0;
-                }
                 entered = renderer.take(entered, some, depth, word);
-                words += some.words;
                 left -= part;
             }
         }
