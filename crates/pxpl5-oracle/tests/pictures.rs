@@ -50,7 +50,7 @@ fn view() -> FrameView {
 
 fn drawn_in(list: &DisplayList, viewport: Viewport, shading: Shading) -> IdealPicture {
     let layout = match shading {
-        Shading::Gouraud => Layout::slats(),
+        Shading::Gouraud | Shading::Precomputed => Layout::slats(),
         Shading::Phong => Layout::rendering_control_phong(),
     };
     ideal_picture(

@@ -40,7 +40,10 @@ fn no_bottom_region_of_a_field_is_copied_before_all_top_ones() {
                 let (top, bottom): (Vec<Arrival>, Vec<Arrival>) = regions.into_iter().partition(is_top);
                 let Some(begin) = bottom.iter().map(|arrival| arrival.begins_at(message)).min() else { continue };
                 let copied = top.iter().map(|arrival| arrival.last_part_at).max().expect("top regions");
-                assert!(top.len() == 10 && begin > copied, "{slats:?}, {triangles}: {picture:?}, {begin:?}, {copied:?}");
+                assert!(
+                    top.len() == 10 && begin > copied,
+                    "{slats:?}, {triangles}: {picture:?}, {begin:?}, {copied:?}"
+                );
                 fields += 1;
             }
             assert!(fields > 5, "{slats:?}, {triangles}: {fields}");
@@ -52,7 +55,8 @@ fn no_bottom_region_of_a_field_is_copied_before_all_top_ones() {
 /// retrace, nothing comes behind the beam, and nothing of a newer picture is written into the buffer meanwhile.
 #[test]
 fn with_a_backup_the_last_complete_field_is_shown_and_never_a_torn_one() {
-    for scene in ["full-screen:147", "full-screen:160", "full-screen:200", "typical:147", "typical:160", "typical:200"] {
+    for scene in ["full-screen:147", "full-screen:160", "full-screen:200", "typical:147", "typical:160", "typical:200"]
+    {
         let outcome = run(Slats::backup(), scene);
         let display: &NtscDisplay = outcome.record().display_of_kind().expect("an NTSC display");
         let pictures = by_picture(&outcome);
@@ -110,7 +114,10 @@ fn with_a_backup_a_late_field_is_shown_later_and_a_missed_retrace_is_reported() 
         let (periods, due) = shown(scene);
         let late = periods.iter().filter(|(drawn_for, shown)| shown.0 == drawn_for.0 + 2).count();
         assert!(late > 3, "{scene}: {periods:?}");
-        assert!(periods.iter().all(|(drawn_for, shown)| (shown.0 - drawn_for.0).is_multiple_of(2)), "{scene}: {periods:?}");
+        assert!(
+            periods.iter().all(|(drawn_for, shown)| (shown.0 - drawn_for.0).is_multiple_of(2)),
+            "{scene}: {periods:?}"
+        );
         assert!(due.is_some_and(|due| due.shown > 0 && due.not_shown() > 0), "{scene}: {due:?}");
     }
 }

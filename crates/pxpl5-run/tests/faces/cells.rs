@@ -5,8 +5,8 @@ use address_recalculation::{CubeFace, FaceSet, Lens, TexelAddress};
 use glam::{DVec3, Vec3};
 use pxpl5_machine::{MachineConfig, Record};
 use pxpl5_run::{
-    CutScene, Experiment, FacePipeline, FacePolicy, FaceSource, KeyValue, KeyValues, Outcome, Pipeline,
-    PipelineSettings, Pixels, Registry,
+    CutScene, Experiment, FacePipeline, FacePolicy, FaceSource, KeyValue, KeyValues, Outcome, PipelineSettings, Pixels,
+    Registry,
 };
 use pxpl5_scene::{Frame, HeadMotion, HeadPath, Lighting, Scene, SceneParts, Structure, Sway, Vertex, builtin};
 use std::collections::BTreeMap;
