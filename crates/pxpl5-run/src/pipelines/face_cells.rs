@@ -82,8 +82,11 @@ impl DuePolicy for ByCells {
         }
         let view = updates.view(number, now);
         let from = view.eyes.first().map_or(eye, |eye| place(&eye.world_to_eye));
-        for (drawn_from, _) in self.drawn_from.iter_mut().zip(&update.due).filter(|(_, due)| **due) {
-            *drawn_from = from;
+        for (memory, drawn_from) in self.drawn_from.iter_mut().enumerate() {
+            // A memory without cells is right from everywhere: no vertex is moved to meet it.
+            if update.due[memory] || self.policy.way(eye, memory).is_infinite() {
+                *drawn_from = from;
+            }
         }
         let memories: Vec<usize> = (0..self.cells.len()).map(|structure| self.memory(structure)).collect();
         let of_memory = |memory: usize| memories.iter().map(|held_by| *held_by == memory).collect();
