@@ -182,9 +182,9 @@ fn text(query: &LimitQuery, limit: Limit) -> String {
     format!(
         "{} on {} and {}: at most {} of {} ({first_miss}; {} simulated for {})\n{row}{island}",
         query.pipeline.name(),
-        count_of(query.config.n_gps as u64, "GP"),
-        count_of(query.config.n_renderers as u64, "renderer"),
-        count_of(limit.triangles as u64, "triangle"),
+        count_of(query.config.n_gps, "GP"),
+        count_of(query.config.n_renderers, "renderer"),
+        count_of(limit.triangles, "triangle"),
         scene(query),
         were(limit.tried as u64, "size"),
         count_of(query.criterion.fields, "field"),

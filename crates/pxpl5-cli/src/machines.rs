@@ -114,8 +114,8 @@ fn one_text(machine: &MachineConfig) -> String {
     let mut text = format!(
         "{}: {}, {}\n\n",
         machine.preset,
-        count_of(machine.n_gps as u64, "GP"),
-        count_of(machine.n_renderers as u64, "renderer")
+        count_of(machine.n_gps, "GP"),
+        count_of(machine.n_renderers, "renderer")
     );
     for Suitability { pipeline, lacks } in suitability(&registry(), machine) {
         let said = lacks.map_or_else(|| "runs".to_owned(), |lacks| format!("cannot run: {lacks}"));

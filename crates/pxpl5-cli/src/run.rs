@@ -82,7 +82,7 @@ fn nothing_shown(report: &Report) -> CliError {
     CliError::failure(format!(
         "no complete picture was shown in {}: {} came after their deadline; {advice}",
         count_of(report.fields, "field"),
-        count_of(report.late_regions as u64, "region")
+        count_of(report.late_regions, "region")
     ))
 }
 

@@ -99,6 +99,6 @@ pub(crate) fn run(args: TraceArgs) -> Result<(), CliError> {
         return Ok(());
     }
     let path = args.out.display();
-    let (fields, tracks) = (count_of(plan.fields, "field"), count_of(trace.tracks.len() as u64, "track"));
+    let (fields, tracks) = (count_of(plan.fields, "field"), count_of(trace.tracks.len(), "track"));
     print(&format!("{path}: {fields}, {tracks}; open it with ui.perfetto.dev.\n"))
 }

@@ -112,8 +112,6 @@ mod tests {
             let told = all.told();
             assert_eq!((told.sd, told.n, told.min, told.max), (0.0, 3, all.min, all.max));
             assert!(told.min <= told.mean && told.mean <= told.max, "{told:?}");
-            let json = serde_json::to_value(all).expect("numbers");
-            assert_eq!((&json["sd"], &json["n"]), (&0.0.into(), &3.into()));
         }
         let varies = Statistics::of([1.0, 1.000_001].into_iter());
         assert_eq!(varies.told(), varies);

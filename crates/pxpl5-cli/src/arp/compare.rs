@@ -76,12 +76,8 @@ const COLUMNS: [Column; 10] = [
 ];
 
 fn text(comparison: &ArpComparison) -> String {
-    let mut text = format!(
-        "{}: {} at {} m/s\n\n",
-        comparison.scene,
-        count_of(comparison.frames as u64, "frame"),
-        comparison.m_per_s
-    );
+    let mut text =
+        format!("{}: {} at {} m/s\n\n", comparison.scene, count_of(comparison.frames, "frame"), comparison.m_per_s);
     let heads = COLUMNS.map(|(name, _)| name.to_owned());
     let rows = comparison.rows.iter().map(|row| COLUMNS.map(|(_, cell)| cell(row)));
     let lines: Vec<[String; COLUMNS.len()]> = std::iter::once(heads).chain(rows).collect();

@@ -92,9 +92,9 @@ fn text(outcome: &WalkOutcome, out: Option<&Path>) -> String {
     let mut text = format!(
         "{} ({} in {}): {} at {} m/s, policy {}\n\n{:>6} {:>10} {:>10} {:>10} {:>8} {:>12}\n",
         walk.scene,
-        count_of(walk.triangles as u64, "triangle"),
-        count_of(walk.segments as u64, "segment"),
-        count_of(walk.frames as u64, "frame"),
+        count_of(walk.triangles, "triangle"),
+        count_of(walk.segments, "segment"),
+        count_of(walk.frames, "frame"),
         walk.m_per_s,
         report.priority.policy,
         "memory",

@@ -92,7 +92,7 @@ fn caption(row: &ComparisonRow, last: &LastPicture) -> String {
 fn about(comparison: &Comparison) -> Vec<String> {
     let Comparison { triangles, machine, fields, seeds, pipelines, .. } = comparison;
     let seed = seeds.first().copied().unwrap_or_default();
-    let (triangles, fields) = (count_of(*triangles as u64, "triangle"), count_of(*fields, "field"));
+    let (triangles, fields) = (count_of(*triangles, "triangle"), count_of(*fields, "field"));
     let mut about = vec![format!("{triangles} on {machine}, {fields}, seed {seed}")];
     let failed = pipelines.iter().filter(|row| row.picture.is_none());
     about.extend(failed.filter_map(|row| Some(format!("{}: {}", row.pipeline, row.failure.as_ref()?))));

@@ -47,12 +47,12 @@ fn heading(comparison: &Comparison) -> String {
     let head: Vec<String> = head.iter().map(|(key, value)| format!("{key} {value}")).collect();
     format!(
         "{scene} ({}) on {machine} ({}, {}); {}; {}, {}\n",
-        count_of(*triangles as u64, "triangle"),
-        count_of(boards[0] as u64, "GP"),
-        count_of(boards[1] as u64, "renderer"),
+        count_of(*triangles, "triangle"),
+        count_of(boards[0], "GP"),
+        count_of(boards[1], "renderer"),
         head.join(", "),
         count_of(*fields, "field"),
-        count_of(seeds.len() as u64, "seed")
+        count_of(seeds.len(), "seed")
     )
 }
 

@@ -124,7 +124,7 @@ pub(crate) fn run(args: PlotArgs) -> Result<(), CliError> {
         let y = &args.y;
         return Err(CliError::failure(format!(
             "none of {} has a number under {y}: nothing was drawn",
-            count_of(missing as u64, "row")
+            count_of(missing, "row")
         )));
     }
     let svg = drawing::chart(&args, &groups).svg();
@@ -132,7 +132,7 @@ pub(crate) fn run(args: PlotArgs) -> Result<(), CliError> {
     write(&args, &results, (&figure, &csv(&question, &groups)))?;
     if missing > 0 {
         let (have, are) = if missing == 1 { ("has", "is") } else { ("have", "are") };
-        let rows = count_of(missing as u64, "row");
+        let rows = count_of(missing, "row");
         complain(&format!("pxpl5: {rows} {have} no number under {} and {are} left out of the means\n", args.y));
     }
     if args.quiet {

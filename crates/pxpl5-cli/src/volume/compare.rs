@@ -107,12 +107,8 @@ fn rows_csv(comparison: &VolumeComparison) -> String {
 }
 
 fn text(comparison: &VolumeComparison) -> String {
-    let mut text = format!(
-        "{} ({}), seed {}\n\n",
-        comparison.scene,
-        count_of(comparison.triangles as u64, "primitive"),
-        comparison.seed
-    );
+    let mut text =
+        format!("{} ({}), seed {}\n\n", comparison.scene, count_of(comparison.triangles, "primitive"), comparison.seed);
     let rows: Vec<[String; COLUMNS.len()]> =
         comparison.variants.iter().map(|row| COLUMNS.map(|(_, cell)| cell(row))).collect();
     let widths: Vec<usize> = (0..COLUMNS.len())

@@ -138,7 +138,7 @@ fn text(study: &HeadStudy, motion: &str, out: &Path) -> String {
          volume: voxels {:.4} degrees off on the mean, {:.3} mm; a dither cell {:.3} degrees; what changes in it shows {own} later\n\
          {}: report.json, errors.csv, errors.svg, eyes.png.\n",
         study.scene,
-        count_of(study.samples.len() as u64, "instant"),
+        count_of(study.samples.len(), "instant"),
         study.latency_ms,
         study.latency_is,
         mean(study, |sample| sample.hmd_mean_deg),
