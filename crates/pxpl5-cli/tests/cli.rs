@@ -623,3 +623,22 @@ fn the_terminal_says_what_json_says() {
         }
     }
 }
+
+/// A ball that stays where it is, before a head that stays: one update is all that a display needs that turns what was drawn.
+#[test]
+fn a_scene_that_is_drawn_once_has_no_rate_and_no_limit_by_rate_and_is_shown() {
+    let folder = Folder::new("drawn-once");
+    let still = ["--scene", "sphere:1000", "--set", "motion.path=still", "--set", "motion.sway=0"];
+    for pipeline in ["arp-priority", "arp-cells"] {
+        for fields in ["60", "200"] {
+            let run = ["run", "--pipeline", pipeline, "--fields", fields, "--pixels", "off", "--json"];
+            let report = json(&folder.run(&with(&run, &still)));
+            assert!(report["shown"].as_u64() > Some(0) && report["updates_hz"].is_null(), "{pipeline}: {report}");
+            let memories = report["arp"]["memories"].as_array().expect("a list");
+            assert!(memories.iter().all(|memory| memory["updates_hz"].is_null()), "{pipeline}: {memories:?}");
+        }
+        let output = folder.run(&with(&["limit", "--pipeline", pipeline], &still));
+        assert_eq!(output.status.code(), Some(1), "{}", out(&output));
+        assert!(err(&output).contains("expected a scene whose updates have a rate"), "{}", err(&output));
+    }
+}
