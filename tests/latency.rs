@@ -128,11 +128,11 @@ fn figure_12_without_the_copy_optimisation_110_triangles_are_the_most() {
 }
 
 #[test]
-fn figure_13_with_it_the_model_draws_147_triangles_where_140_were_measured() {
-    // FIXME(accuracy): 5 % too many, with nothing fitted to it.
+fn figure_13_with_it_the_model_draws_146_triangles_where_140_were_measured() {
+    // FIXME(accuracy): 4 % too many, with nothing fitted to it.
     assert!(!misses("slats", Slats::split(), 140));
-    assert!(!misses("slats", Slats::split(), 147));
-    assert!(misses("slats", Slats::split(), 148));
+    assert!(!misses("slats", Slats::split(), 146));
+    assert!(misses("slats", Slats::split(), 147));
 }
 
 #[test]
@@ -147,7 +147,7 @@ fn figure_14_the_code_of_1995_draws_about_100_triangles() {
 #[test]
 fn figure_15_the_first_copy_begins_about_12_8_ms_after_the_retrace() {
     // 16.683 - 5 x 0.78 = 12.78 ms is the latest possible begin; the fullest field comes within a triangle of it.
-    let outcome = slats("slats", Slats::split(), 147);
+    let outcome = slats("slats", Slats::split(), 146);
     let top =
         outcome.observation().arrivals.iter().filter(|a| a.target.picture == PictureNumber(6) && a.target.region.0 < 5);
     let begin = top.map(|a| a.first_part_at.0).min().expect("regions") - 52_000_000;

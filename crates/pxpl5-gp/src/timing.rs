@@ -79,15 +79,15 @@ impl GpTiming {
     #[must_use]
     pub const fn of_compiled_precomputed(self) -> Self {
         Self {
-            message_ns: 17_298,
-            triangle_ns: 53_963,
-            sphere_ns: 77_953,
-            guard_ns: 133_222,
+            message_ns: 17_231,
+            triangle_ns: 45_029,
+            sphere_ns: 77_780,
+            guard_ns: 136_639,
             bin_entry_ns: 0,
             edit_ns: 4_117,
-            pass_ns: 12_739,
-            structure_ns: 98_826,
-            sphere_view_ns: 31_622,
+            pass_ns: 12_252,
+            structure_ns: 98_742,
+            sphere_view_ns: 31_919,
             ..self
         }
     }
@@ -96,15 +96,15 @@ impl GpTiming {
     #[must_use]
     pub const fn of_scheduled_precomputed(self) -> Self {
         Self {
-            message_ns: 20_132,
-            triangle_ns: 20_295,
-            sphere_ns: 78_420,
-            guard_ns: 226_560,
+            message_ns: 20_246,
+            triangle_ns: 17_362,
+            sphere_ns: 78_164,
+            guard_ns: 218_040,
             bin_entry_ns: 0,
             edit_ns: 4_117,
-            pass_ns: 25_343,
-            structure_ns: 98_832,
-            sphere_view_ns: 25_584,
+            pass_ns: 26_581,
+            structure_ns: 98_757,
+            sphere_view_ns: 24_897,
             ..self
         }
     }

@@ -10,7 +10,9 @@ use std::collections::BTreeMap;
 
 fn run(slats: Slats, scene: &str) -> Outcome {
     let scene = builtin(scene).expect("built in");
-    let experiment = Experiment::new(MachineConfig::slats(), slats, scene).fields(30).pixels(Pixels::Off);
+    let mut machine = MachineConfig::slats();
+    machine.displays[0].remember(40);
+    let experiment = Experiment::new(machine, slats, scene).fields(30).pixels(Pixels::Off);
     experiment.run().unwrap_or_else(|error| panic!("{slats:?}: {error}"))
 }
 
@@ -64,28 +66,33 @@ fn with_a_backup_the_last_complete_field_is_shown_and_never_a_torn_one() {
         for field in (8..28).map(PeriodNumber) {
             let parity = FieldParity::of_field(field);
             let [begins, ends] = [field, field.next()].map(|field| display.video().retrace(field));
-            // The request to show a field is on its way for some microseconds.
-            let on_its_way = Span::from_ns(60_000);
+            // The software of five acknowledgements and of the request, and what they take on the ring.
+            let on_its_way = Span::from_ns(6 * 12_000 + 28_000);
             let of_lines = |arrival: &&Arrival| arrival.target.lines == Lines::Field(parity);
             let top_at = |regions: &[Arrival]| {
                 let top: Vec<_> = regions.iter().filter(|arrival| is_top(arrival)).filter(of_lines).collect();
                 (top.len() == 10).then(|| top.iter().map(|arrival| arrival.last_part_at).max().unwrap_or(Time::ZERO))
             };
             let complete = pictures.iter().filter_map(|(picture, regions)| Some((picture, top_at(regions)?)));
-            let Some((picture, at)) = complete.filter(|(_, at)| *at < begins).last() else { continue };
-            assert!(at + on_its_way < begins, "{scene}: the request is sent in time for {field:?}");
+            let complete: Vec<_> = complete.filter(|(_, at)| *at < begins).collect();
+            let seen = display.boards().iter().map(|board| board.seen(field).expect("it was scanned"));
+            let seen: Vec<_> = seen.collect();
+            // The newest; the one before it, if that came while the request could no longer arrive.
+            let may_be_seen = |picture: &PictureNumber| seen[0].buffer() == pictures[picture][0].target.buffer;
+            let newest =
+                complete.iter().rev().take(2).find(|(picture, at)| *at + on_its_way < begins || may_be_seen(picture));
+            let Some((picture, _)) = newest else { continue };
             let regions = &pictures[picture];
             let buffer = regions[0].target.buffer;
             assert_eq!(regions.len(), 20, "{scene}, {field:?}: all regions of {picture:?}");
-            for board in display.boards() {
-                let seen = board.seen(field).expect("it was scanned");
+            for seen in &seen {
                 assert_eq!(seen.buffer(), buffer, "{scene}, {field:?}: {picture:?}");
                 assert_eq!(seen.late_regions().len(), 0, "{scene}, {field:?}: {picture:?}");
             }
             let newer = pictures.range(picture.next()..).flat_map(|(_, regions)| regions).filter(of_lines);
             let torn = newer.filter(|arrival| arrival.target.buffer == buffer && arrival.first_part_at < ends);
             assert_eq!(torn.count(), 0, "{scene}, {field:?}: {picture:?}");
-            seen_pictures[parity as usize].push(*picture);
+            seen_pictures[parity as usize].push(**picture);
         }
         // New fields go on coming, of both lines.
         for of_lines in &mut seen_pictures {
@@ -96,9 +103,9 @@ fn with_a_backup_the_last_complete_field_is_shown_and_never_a_torn_one() {
     }
 }
 
-/// A late field is shown at a later retrace of its lines; the retrace that it missed counts as missed.
+/// A late field is shown at a later retrace of its lines. A retrace at which no new field is shown counts as missed.
 #[test]
-fn with_a_backup_a_late_field_is_shown_later_and_a_missed_retrace_is_reported() {
+fn with_a_backup_a_late_field_is_shown_later_and_retraces_without_a_new_field_are_missed() {
     let shown = |scene: &str| {
         let outcome = run(Slats::backup(), scene);
         let periods = outcome.pictures().iter().filter(|times| times.is_shown()).map(|times| {
@@ -108,7 +115,7 @@ fn with_a_backup_a_late_field_is_shown_later_and_a_missed_retrace_is_reported() 
         (periods.collect::<Vec<_>>(), outcome.due())
     };
     let (in_time, due) = shown("full-screen:140");
-    assert!(in_time.len() > 20 && in_time.iter().all(|(drawn_for, shown)| drawn_for == shown));
+    assert!(in_time.len() > 20 && in_time.iter().all(|(drawn_for, shown)| drawn_for == shown), "{in_time:?}");
     assert_eq!(due.map(|due| due.not_shown()), Some(0));
     for scene in ["full-screen:160", "full-screen:200"] {
         let (periods, due) = shown(scene);

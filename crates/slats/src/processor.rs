@@ -51,6 +51,8 @@ struct Bottom {
     not_before: PeriodNumber,
     /// Renderers that copy top regions: all must have acknowledged them.
     copiers: usize,
+    /// True while the field is asked for, just before the chain is started.
+    is_taken: bool,
 }
 
 type SharedState = Rc<RefCell<ProcessorState>>;
@@ -119,10 +121,7 @@ async fn listen(gp: Gp, state: SharedState, backup: Option<Backup>) -> Result<()
                 };
                 let note = state.borrow_mut().note(words);
                 note.map_err(|error| Fault::Protocol { node: gp.node(), found: error.to_string() })?;
-                let copied = start_bottom_when_due(&gp, &state);
-                if let (Some(backup), Some(field)) = (backup, copied) {
-                    backup.show_next(&gp, &state, field).await;
-                }
+                copy_bottom_when_due(&gp, &state, backup).await;
             }
             Event::Retrace(field) => {
                 present = field;
@@ -135,8 +134,8 @@ async fn listen(gp: Gp, state: SharedState, backup: Option<Backup>) -> Result<()
 }
 
 impl Backup {
-    /// Notes that all top regions of a field are copied, and asks for it if the next retrace is its own. Its bottom regions follow at once,
-    /// faster than the beam.
+    /// Notes that all top regions of a field are copied, and asks for it if the next retrace is its own. Its bottom regions follow, faster than
+    /// the beam.
     async fn show_next(self, gp: &Gp, state: &SharedState, field: PeriodNumber) {
         {
             let state = &mut *state.borrow_mut();
@@ -160,19 +159,27 @@ impl Backup {
     }
 }
 
-/// Starts the copies of the bottom regions of a field when all its top regions are copied and the beam has left the lines; gives the field.
-fn start_bottom_when_due(gp: &Gp, state: &SharedState) -> Option<PeriodNumber> {
-    let is_due =
-        |state: &ProcessorState, bottom: &Bottom| state.copied >= bottom.copiers && gp.field() >= bottom.not_before;
+/// Starts the copies of the bottom regions of a field when all its top regions are copied and the beam has left the lines. With a backup the
+/// field is asked for before: afterwards the ports of the frame buffers are taken by regions.
+async fn copy_bottom_when_due(gp: &Gp, state: &SharedState, backup: Option<Backup>) {
     let due = {
         let state = &mut *state.borrow_mut();
-        let is_due = state.bottom.as_ref().is_some_and(|bottom| is_due(state, bottom));
-        if is_due { state.bottom.take() } else { None }
+        let copied = state.copied;
+        let is_due =
+            |bottom: &&mut Bottom| !bottom.is_taken && copied >= bottom.copiers && gp.field() >= bottom.not_before;
+        state.bottom.as_mut().filter(is_due).map(|bottom| {
+            bottom.is_taken = true;
+            bottom.field
+        })
     };
-    due.map(|bottom| {
+    let Some(field) = due else { return };
+    if let Some(backup) = backup {
+        backup.show_next(gp, state, field).await;
+    }
+    let bottom = state.borrow_mut().bottom.take();
+    if let Some(bottom) = bottom {
         gp.start(bottom.chain);
-        bottom.field
-    })
+    }
 }
 
 impl ProcessorState {
@@ -226,7 +233,7 @@ impl SlatsProcessor {
         let mut last = None;
         loop {
             let now = self.gp.field_from(begin_at).await;
-            start_bottom_when_due(&self.gp, &self.state);
+            copy_bottom_when_due(&self.gp, &self.state, self.backup).await;
             let field = self.next_field(now, last);
             last = Some(field);
             let view = self.gp.until("a view", || self.state.borrow().newest.clone()).await;
@@ -252,11 +259,9 @@ impl SlatsProcessor {
                 let chain = self.gp.prepare(self.copies(field, false)).await;
                 // With a backup the beam is in the other buffer.
                 let not_before = if self.config.copy == CopySchedule::Backup { PeriodNumber::FIRST } else { field };
-                self.state.borrow_mut().bottom = Some(Bottom { chain, field, not_before, copiers });
-                let copied = start_bottom_when_due(&self.gp, &self.state);
-                if let (Some(backup), Some(field)) = (self.backup, copied) {
-                    backup.show_next(&self.gp, &self.state, field).await;
-                }
+                let bottom = Bottom { chain, field, not_before, copiers, is_taken: false };
+                self.state.borrow_mut().bottom = Some(bottom);
+                copy_bottom_when_due(&self.gp, &self.state, self.backup).await;
             }
             begin_at = if self.gp.field() < field { field } else { self.gp.field().next() };
         }

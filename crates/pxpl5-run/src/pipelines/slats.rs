@@ -250,7 +250,7 @@ impl Pipeline for Slats {
     }
 
     fn due_definition(&self) -> &'static str {
-        "a picture is due every field, and in time if every region is there at its deadline: the retrace, or for the bottom regions of a split copy the scan of their first line; with a backup a late picture is shown at a later retrace of its lines, and the retrace that it missed counts as missed"
+        "a picture is due every field, and in time if every region is there at its deadline: the retrace, or for the bottom regions of a split copy the scan of their first line; with a backup a late picture counts for the later retrace of its lines at which it is shown"
     }
 
     /// The halves of a split copy are timed apart.

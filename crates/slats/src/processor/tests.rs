@@ -109,7 +109,7 @@ fn asked(message: &Message) -> Option<Asked> {
 }
 
 /// At each retrace the last complete field of the lines that the next one scans is asked for. A field goes into the other buffer, and is
-/// asked for when its top regions have been copied before its retrace. After a late field, the next one is of the other lines.
+/// asked for when its top regions have been copied before its retrace, before the bottom ones take the ports of the frame buffers. After a late field, the next one is of the other lines.
 #[test]
 fn of_a_late_field_the_last_complete_one_of_its_lines_is_shown() {
     use Asked::{Show, Write};
@@ -129,13 +129,13 @@ fn of_a_late_field_the_last_complete_one_of_its_lines_is_shown() {
         }
     }
     let expected = [
-        [(1, Show(0)), (1, Write(1)), (1, Show(1))].as_slice(),
-        &[(2, Show(0)), (2, Write(1)), (2, Show(1))],
+        [(1, Show(0)), (1, Write(1)), (1, Show(1)), (1, Write(1))].as_slice(),
+        &[(2, Show(0)), (2, Write(1)), (2, Show(1)), (2, Write(1))],
         &[(3, Show(1)), (3, Write(0))],
         // Field 4 is complete now. Field 5 follows it.
-        &[(4, Show(1)), (4, Write(0)), (4, Show(0))],
+        &[(4, Show(1)), (4, Write(0)), (4, Show(0)), (4, Write(0))],
         // Field 4 is asked for.
-        &[(5, Show(0)), (5, Write(1)), (5, Show(1))],
+        &[(5, Show(0)), (5, Write(1)), (5, Show(1)), (5, Write(1))],
         &[(6, Show(0)), (6, Write(1))],
         &[(7, Show(1))],
         // Fields 7 and 8 are complete now.
