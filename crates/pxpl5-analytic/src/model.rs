@@ -2,7 +2,7 @@
 
 use super::copies::{CopyTimes, MOST_RENDERERS, Queue};
 use super::renderer::Cost;
-use crate::video_of;
+use crate::{no_form, video_of};
 use pphigs::TransformCost;
 use pxpl5_gp::GpTiming;
 use pxpl5_machine::{ConfigError, MachineConfig};
@@ -17,6 +17,9 @@ pub(super) const REGIONS: usize = 20;
 
 /// Channels that a ring can have.
 pub(super) const MOST_CHANNELS: usize = 8;
+
+/// Channels that copies to two frame buffers need.
+const COPY_CHANNELS: u64 = 2;
 
 /// Eyes, for each of which a structure is put in its place.
 const EYES: f64 = 2.0;
@@ -81,7 +84,8 @@ impl SlatsModel {
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] for too few renderers.
+    /// [`ConfigError`] for too few renderers, and for messages that leave split copies fewer than two channels: both then wait for each
+    /// other, which this level does not model.
     pub fn new(config: &MachineConfig, program: Slats) -> Result<Self, ConfigError> {
         let contexts = usize::from(program.layout().plan().contexts.max(1));
         if config.n_renderers < REGIONS.div_ceil(contexts) {
@@ -93,6 +97,16 @@ impl SlatsModel {
         }
         if program.code.is_some() {
             return Self::new(&program.adapt(config.clone()), Slats { code: None, ..program });
+        }
+        let ring = &config.ring;
+        let to_renderers = ring.fifo_channels.min(ring.source_channels.saturating_mul(config.n_gps as u64));
+        if program.copy.is_split() && to_renderers.saturating_add(COPY_CHANNELS) > ring.channels {
+            let what = format!(
+                "split copies that lack channels: ring.channels: expected at least {}, found {}",
+                to_renderers.saturating_add(COPY_CHANNELS),
+                ring.channels
+            );
+            return Err(no_form(&what));
         }
         let video = video_of(config)?;
         let field_ns = video.retrace(PeriodNumber(1)).since(Time::ZERO).as_ms() * 1e6;

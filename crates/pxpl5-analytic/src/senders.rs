@@ -235,10 +235,10 @@ impl<'a> Ring<'a> {
         if !self.clears {
             accepted_ns = self.clear_all();
             let words_ns = model.overhead_ns + (clumps.view_words + 3.0) * model.word_ns;
-            for gp in 1..model.gps {
+            for (gp, begin) in begin_ns.iter_mut().enumerate().skip(1) {
                 let round = (gp - 1) / model.source_channels + 1;
                 let arrives = later(accepted_ns, 2.0 * model.message_ns) + round as f64 * words_ns;
-                begin_ns[gp] = arrives + gp as f64 * model.hop_ns + model.message_ns;
+                *begin = arrives + gp as f64 * model.hop_ns + model.message_ns;
             }
             // The first GP goes on when it has paid for both chains, and sends when both have been accepted.
             accepted_ns = begin_ns[1..].iter().fold(accepted_ns, |last, begin| later(last, begin - model.message_ns));

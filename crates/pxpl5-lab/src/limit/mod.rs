@@ -147,11 +147,16 @@ impl LimitQuery {
     }
 
     /// What the analytic level says of the sizes; nothing where the pipeline has no closed form, or where that is what is searched.
+    ///
+    /// A model is thinned and seen from all views for each size, which takes as long at that level as at any other. So small triangles stand
+    /// for it, of which a size takes a moment.
     fn hints(&self) -> Hints {
-        if self.level == Level::Analytic {
+        if self.level == Level::Analytic && self.model.is_none() {
             return Hints::default();
         }
-        let analytic = Self { level: Level::Analytic, ..self.clone() };
+        let scene = if self.model.is_some() { TestScene::Typical } else { self.criterion.scene };
+        let criterion = LimitCriterion { scene, ..self.criterion };
+        let analytic = Self { level: Level::Analytic, model: None, criterion, ..self.clone() };
         let near = about(self.ceiling(), |triangles| analytic.reached(triangles)).ok();
         let doubtful = near.filter(|_| self.model.is_none()).map(|near| analytic.doubtful(near));
         Hints { near, doubtful: doubtful.unwrap_or_default() }
