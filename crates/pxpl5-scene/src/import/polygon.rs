@@ -29,7 +29,7 @@ pub(super) fn cut(fan: &[[u32; 3]], place: impl Fn(u32) -> DVec3) -> Cut {
     }
     let Some(flat) = Projection::of(fan, &place) else { return Cut::Fan };
     let flat = |corner| flat.point(place(corner));
-    if is_convex(fan, &flat) {
+    if is_convex(fan, flat) {
         return Cut::Fan;
     }
     // Corners on top of the one before add no area; without them fewer have to be looked at.
