@@ -583,7 +583,8 @@ fn cell(text: &str, name: &str) -> String {
 #[test]
 fn the_terminal_says_what_json_says() {
     let folder = Folder::new("terminal");
-    let pipelines = ["slats", "rendering-control", "jitp-field", "jitp-dual-screen-racing", "frameless", "arp-priority"];
+    let pipelines =
+        ["slats", "rendering-control", "jitp-field", "jitp-dual-screen-racing", "frameless", "arp-priority"];
     for (i, pipeline) in pipelines.into_iter().enumerate() {
         for (scene, gps) in [("typical:20", "7"), ("typical:900", "3"), ("sphere:200", "13")] {
             let fields = (12 + 7 * i).to_string();
