@@ -4,7 +4,7 @@ pub(crate) use crate::drawn::{Drawn, FacesSeen, Moment};
 use crate::screen::Screen;
 use crate::turned::TurnedFaces;
 use pxpl5_display::{Display, Surface};
-use pxpl5_run::{Cause, Estimator, HeadViews, ResultWindow, Sampled, Settled, Source};
+use pxpl5_run::{Cause, Estimator, HeadViews, ResultWindow, Sampled, Settled, Source, WARM_UP_PICTURES};
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, ViewNumber};
 use std::collections::{BTreeMap, BTreeSet};
@@ -29,8 +29,10 @@ pub(crate) enum Seen {
 pub(crate) struct Shown {
     screen: Screen,
     views: BTreeMap<PictureNumber, ViewNumber>,
-    /// Pictures that were complete in time, each with the period from which on it was shown.
-    complete: BTreeMap<PictureNumber, PeriodNumber>,
+    /// Pictures that were complete in time, each with the period from which on it was shown; `None` for those of start-up.
+    complete: BTreeMap<PictureNumber, Option<PeriodNumber>>,
+    /// Pictures that were taken.
+    pictures: usize,
     /// The window outside of which pictures are not evaluated; `None` where none is ever due: there every picture is seen until the next
     /// one covers it.
     window: Option<ResultWindow>,
@@ -53,6 +55,7 @@ impl Shown {
             screen: Screen::default(),
             views: BTreeMap::new(),
             complete: BTreeMap::new(),
+            pictures: 0,
             window: None,
             moments: BTreeMap::new(),
             faces: TurnedFaces::begin(run, head),
@@ -70,9 +73,15 @@ impl Shown {
     pub(crate) fn take(&mut self, run: &Settled<'_>, head: &HeadViews) {
         self.screen.take(run);
         self.views.extend(run.pictures.iter().map(|times| (times.picture, times.view)));
-        let complete = run.pictures.iter().filter(|times| times.is_shown());
         let display = run.record.display();
-        self.complete.extend(complete.map(|times| (times.picture, display.period_at(times.shown_at))));
+        for times in run.pictures {
+            self.pictures += 1;
+            let is_start_up = self.pictures <= WARM_UP_PICTURES;
+            if times.is_shown() {
+                let period = (!is_start_up).then(|| display.period_at(times.shown_at));
+                self.complete.insert(times.picture, period);
+            }
+        }
         self.window = run.window.filter(|_| run.pipeline.periods_a_picture(run.record).is_some());
         self.moments.extend(head.sampled().iter().map(|sampled| (sampled.number, viewed(sampled))));
         self.faces.iter_mut().for_each(|faces| faces.take(run));
@@ -117,7 +126,8 @@ impl Shown {
         if self.faces.is_none() {
             if let Some(target) = self.screen.shown(x, y, field, at) {
                 let Some(shown) = self.complete.get(&target.picture) else { return Seen::Incomplete };
-                if self.window.is_some_and(|window| !window.holds_picture(*shown)) {
+                let is_evaluated = |period| self.window.is_none_or(|window| window.holds_picture(period));
+                if !shown.is_some_and(is_evaluated) {
                     return Seen::Before;
                 }
             }
