@@ -199,8 +199,8 @@ pub fn dead_zone_radius(display: &dyn SpatialDisplay, commands: &CommandBuffer, 
     }
     let [crossing, shown] = innermost;
     let shown = shown?;
-    // A pixel counts as shown with its neighbours: a crossing beside one is no dark one.
-    let is_dark = crossing.is_some_and(|crossing| shown > crossing);
+    // Samples are a pixel apart, so that a gap of one pixel may be that of the samples.
+    let is_dark = crossing.is_some_and(|crossing| shown > crossing + 1);
     Some(if is_dark { shown } else { 0 })
 }
 

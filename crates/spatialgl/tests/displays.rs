@@ -186,7 +186,7 @@ fn planes_of_few_bits_leave_a_dead_zone() {
 #[test]
 fn a_scene_that_keeps_away_from_the_axis_has_no_dead_zone() {
     let wall = |z: f64| [[-300.0, -200.2, z], [300.1, -200.2, z], [0.6, 280.7, z]];
-    let found = |z: f64, plane_fraction_bits| {
+    let found = |z: f64, plane_fraction_bits: Option<u32>| {
         let clip = if plane_fraction_bits.is_some() { SliceClip::ShaderPlanes } else { SliceClip::Tapered(0.5) };
         let config = SweptConfig { plane_fraction_bits, ..SweptConfig::perspecta(clip, Projection::Orthographic) };
         let display = SweptDisplay::new(config).expect("valid");
