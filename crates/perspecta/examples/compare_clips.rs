@@ -4,7 +4,7 @@
 use perspecta::PerspectaConfig;
 use spatialgl::{
     HostRenderer, Jitter, Projection, SliceClip, Threads, TimeModel, VolumeConfig, brightness_by_radius, connected,
-    innermost_lit_radius, record_scene, render_volume,
+    dead_zone_radius, record_scene, render_volume,
 };
 use std::error::Error;
 
@@ -16,7 +16,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         commands.primitives()
     );
     println!(
-        "clip         projection    passes  generated   accepted  tiles %  draws %  connected %  from px  \
+        "clip         projection    passes  generated   accepted  tiles %  draws %  connected %  dead px  \
          lit by radius           Hz serial  overlapped"
     );
     for clip in SliceClip::ALL {
@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 stats.tile_occupancy_percent(),
                 100.0 * stats.draws as f64 / stats.draws_unbinned as f64,
                 connected(&display, &commands, &frame).map_or(0.0, |found| found.percent()),
-                innermost_lit_radius(&frame.planes).unwrap_or(384),
+                dead_zone_radius(&frame.planes).unwrap_or(384),
                 format!("{:?}", [0, 1, 8, 32].map(|ring| rings[ring] / 16)),
                 time.serial_hz(),
                 time.overlapped_hz(),

@@ -88,7 +88,7 @@ fn rows_of_slice(
 ) -> Vec<Connected> {
     let mut rows = vec![Connected::default(); height as usize];
     each_curve(view, commands, all, |ends| {
-        around.samples(view, ends, |[_, y], is_shown| {
+        around.samples(view, ends, |y, is_shown| {
             rows[y as usize].samples += 1;
             rows[y as usize].shown += u64::from(is_shown);
         });
@@ -133,8 +133,8 @@ impl Around {
         Self { size, near }
     }
 
-    /// Calls for each sample of a curve inside the image, with its column and row and whether it is shown.
-    fn samples(&self, view: &SliceView, ends: [[f64; 3]; 2], mut each: impl FnMut([u32; 2], bool)) {
+    /// Calls for each sample of a curve inside the image, with its row and whether it is shown.
+    fn samples(&self, view: &SliceView, ends: [[f64; 3]; 2], mut each: impl FnMut(u32, bool)) {
         let [from, to] = ends.map(|end| pixel_of(view, end, self.size));
         let length = libm::hypot(to[0] - from[0], to[1] - from[1]);
         let steps = length.ceil().max(1.0);
@@ -143,7 +143,7 @@ impl Around {
             let t = (f64::from(i) + 0.5) / steps;
             let [x, y] = [0, 1].map(|axis| from[axis] * (1.0 - t) + to[axis] * t);
             if x >= 0.0 && y >= 0.0 && x < f64::from(self.size[0]) && y < f64::from(self.size[1]) {
-                each([x as u32, y as u32], self.near[y as usize * self.size[0] as usize + x as usize]);
+                each(y as u32, self.near[y as usize * self.size[0] as usize + x as usize]);
             }
         }
     }
@@ -163,51 +163,16 @@ pub fn brightness_by_radius(planes: &BitPlanes, ring: u32) -> Vec<u64> {
     let radius = width / 2;
     let mut rings = vec![0; radius.div_ceil(ring.max(1)) as usize];
     for (x, lit) in (0..width).zip(lit_by_column(planes)) {
-        rings[(from_middle(x, width) / ring.max(1)) as usize] += lit;
+        let distance = if x < radius { radius - 1 - x } else { x - radius };
+        rings[(distance / ring.max(1)) as usize] += lit;
     }
     rings
 }
 
-/// Distance in pixels of the innermost lit pixel from the middle column; `None` for a dark volume.
+/// Radius in pixels within which no slice shows anything; `None` for a dark volume.
 #[must_use]
-pub fn innermost_lit_radius(planes: &BitPlanes) -> Option<u32> {
+pub fn dead_zone_radius(planes: &BitPlanes) -> Option<u32> {
     brightness_by_radius(planes, 1).iter().position(|lit| *lit > 0).map(|radius| radius as u32)
-}
-
-/// Radius in pixels within which a mesh crosses the slices and nothing of it is shown: 0 where its innermost crossing is shown, however
-/// far from the axis that lies.
-///
-/// `None` without colours, as [`connected`], and where no crossing is shown.
-#[must_use]
-pub fn dead_zone_radius(display: &dyn SpatialDisplay, commands: &CommandBuffer, frame: &VolumeFrame) -> Option<u32> {
-    let colours = frame.colours.as_ref()?;
-    let size = display.target_size();
-    let all = Bin::new(commands, (0..commands.primitives() as u32).collect());
-    let mut innermost = [None::<u32>; 2];
-    for (view, drawn) in display.views().iter().zip(colours) {
-        let around = Around::new(size, drawn);
-        each_curve(view, commands, &all, |ends| {
-            around.samples(view, ends, |[x, _], is_shown| {
-                let radius = from_middle(x, size[0]);
-                let [crossing, shown] = &mut innermost;
-                *crossing = Some(crossing.map_or(radius, |least| least.min(radius)));
-                if is_shown {
-                    *shown = Some(shown.map_or(radius, |least| least.min(radius)));
-                }
-            });
-        });
-    }
-    let [crossing, shown] = innermost;
-    let shown = shown?;
-    // A pixel counts as shown with its neighbours: a crossing beside one is no dark one.
-    let is_dark = crossing.is_some_and(|crossing| shown > crossing);
-    Some(if is_dark { shown } else { 0 })
-}
-
-/// Pixels from a column to the middle of an image of so many.
-const fn from_middle(x: u32, width: u32) -> u32 {
-    let radius = width / 2;
-    if x < radius { radius - 1 - x } else { x - radius }
 }
 
 fn lit_by_column(planes: &BitPlanes) -> Vec<u64> {
