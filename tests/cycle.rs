@@ -5,7 +5,7 @@ use pxpl5::limit::test_scene;
 use pxpl5::run::{FacePipeline, FacePolicy};
 use pxpl5::{
     CodeVersion, Experiment, ExperimentError, Frameless, Interpolation, Jitp, Level, MachineConfig, Measured, Outcome,
-    PictureNumber, Pipeline, Pixels, RenderingControl, Slats, TestScene, Viewpoint, Workstation, scene,
+    PictureNumber, Pipeline, Pixels, RenderingControl, Slats, TestScene, TraceHash, Viewpoint, Workstation, scene,
 };
 use pxpl5_gp::Stage;
 use std::sync::Arc;
@@ -36,8 +36,13 @@ fn rendering_control() -> Experiment {
         .level(Level::Cycle)
 }
 
-fn hash(experiment: &Experiment) -> String {
-    experiment.run().expect("it runs").report().trace_hash
+/// The hash of everything that happened, of runs in which nothing is shown behind start-up too.
+fn hash(experiment: &Experiment) -> TraceHash {
+    match experiment.run() {
+        Ok(outcome) => outcome.record().trace_hash(),
+        Err(ExperimentError::TooShort { partial, .. }) => partial.record().trace_hash(),
+        Err(error) => panic!("{error}"),
+    }
 }
 
 /// Mean time of TRANSFORM of the pictures after the first ones, in microseconds.

@@ -144,15 +144,23 @@ fn figure_14_the_code_of_1995_draws_about_100_triangles() {
     }
 }
 
-#[test]
-fn figure_15_the_first_copy_begins_about_12_8_ms_after_the_retrace() {
-    // 16.683 - 5 x 0.78 = 12.78 ms is the latest possible begin; the fullest field comes within a triangle of it.
-    let outcome = slats("slats", Slats::split(), 146);
+/// When the first region of a field is copied, in milliseconds after the retrace.
+fn first_copy_ms(triangles: u32) -> f64 {
+    let outcome = slats("slats", Slats::split(), triangles);
     let top =
         outcome.observation().arrivals.iter().filter(|a| a.target.picture == PictureNumber(6) && a.target.region.0 < 5);
     let begin = top.map(|a| a.first_part_at.0).min().expect("regions") - 52_000_000;
-    let ms = (begin - video(&outcome).retrace(PeriodNumber(5)).0) as f64 * 1e-9;
-    assert!((ms - 12.8).abs() < 0.1, "{ms} ms");
+    (begin - video(&outcome).retrace(PeriodNumber(5)).0) as f64 * 1e-9
+}
+
+/// I3D95 prints "about 12.8 ms". 16.683 - 5 x 0.78 = 12.78 ms is the latest possible begin. 146 triangles are the most that are in time, so
+/// one more begins later than a renderer's acknowledgement (two messages of 12 us and their way) allows.
+#[test]
+fn figure_15_the_first_copy_begins_about_12_8_ms_after_the_retrace() {
+    let [most, too_many] = [146, 147].map(first_copy_ms);
+    let latest = 16.683 - 5.0 * 0.78;
+    assert!((most / 12.8 - 1.0).abs() < 0.03, "{most} ms");
+    assert!(most < latest && too_many > latest - 0.05, "{most} and {too_many} ms, at the latest {latest}");
 }
 
 #[test]

@@ -189,14 +189,14 @@ fn pictures(rounds: usize, opengl: Option<&str>) -> Fallible<Vec<Row>> {
     let mut rows = vec![
         time_ms("one eye of the head, `euc` 0.5", None, &measured[0]),
         time_ms("the same, ours, without the machine", None, &measured[1]),
-        chosen_row(ratio("ours in parts of `euc`", Some(0.42), &measured[1], &measured[0])),
+        chosen_row(ratio("time relative to `euc`", Some(0.42), &measured[1], &measured[0])),
         time_ms("the same, `retrofire` 0.4", None, &measured[2]),
-        ratio("ours in parts of `retrofire`", None, &measured[1], &measured[2]),
+        ratio("time relative to `retrofire`", None, &measured[1], &measured[2]),
     ];
     if let Some((opengl, measured_there)) = opengl.zip(measured.get(3)) {
         agree(&opengl.renderer, opengl.covered, ours.covered() as f64)?;
         rows.push(time_ms(&format!("the same, OpenGL on one thread, {}", opengl.renderer), None, measured_there));
-        rows.push(ratio("ours in parts of that", Some(0.22), &measured[1], measured_there));
+        rows.push(ratio("time relative to that", Some(0.22), &measured[1], measured_there));
     }
     Ok(rows)
 }
@@ -248,8 +248,8 @@ fn growth(rounds: usize) -> Fallible<Vec<Row>> {
     let ways = machines.iter().map(|experiment| Way::new("", || pairs(experiment, FIELDS))).collect();
     let measured = in_turns(rounds, ways)?;
     Ok(vec![
-        ratio("10,000 triangles, a pair: 50 GPs in parts of 13", Some(1.40), &measured[1], &measured[0]),
-        ratio("20 renderers in parts of 5", Some(1.12), &measured[2], &measured[0]),
+        ratio("10,000 triangles, a pair: 50 GPs relative to 13", Some(1.40), &measured[1], &measured[0]),
+        ratio("20 renderers relative to 5", Some(1.12), &measured[2], &measured[0]),
     ])
 }
 
@@ -269,7 +269,7 @@ fn looks(rounds: usize) -> Fallible<Vec<Row>> {
     )?;
     let part = |work, goal, way: usize| ratio(work, goal, &measured[way], &measured[0]);
     Ok(vec![
-        part("lazy pixels of the head, nobody looks, in parts of no pixels", Some(1.02), 1),
+        part("head, lazy pixels never read, relative to pixels off", Some(1.02), 1),
         part("the same, one eye's field of 120 is looked at", Some(1.10), 2),
         part("the same, one of 60", None, 3),
     ])

@@ -6,6 +6,9 @@ use pxpl5::Plan;
 use pxpl5::scene::Scene;
 use std::sync::Arc;
 
+/// Fields of a run that is too short for any pipeline to fill, however light its scene is: a second.
+const SHORT_RUN: u64 = 60;
+
 /// Says that a run of so many fields is expected to show nothing behind the warm-up: by the closed form of its pipeline, or, without one, where
 /// its processors cannot even transform all primitives once.
 pub(crate) fn too_heavy(plan: &Plan, scene: &Arc<Scene>, fields: u64) -> Option<String> {
@@ -15,7 +18,7 @@ pub(crate) fn too_heavy(plan: &Plan, scene: &Arc<Scene>, fields: u64) -> Option<
         Some(form) => {
             let experiment = plan.experiment(Arc::clone(scene)).fields(fields);
             match (form.estimates.fields_needed)(&experiment) {
-                Some(needed) if needed <= fields => return None,
+                Some(needed) if needed <= fields.max(SHORT_RUN) => return None,
                 Some(needed) => {
                     format!("by the closed form the first picture with a latency is shown after about {needed} fields")
                 }

@@ -306,7 +306,10 @@ fn a_run_that_is_interrupted_leaves_no_folder() {
             "-INT",
             &["run", "--pipeline", "slats", "--scene", "full-screen:4", "--fields", "1000000", "--out", "a/b"][..],
         ),
-        ("-KILL", &["trace", "--pipeline", "slats", "--scene", "full-screen:4", "--fields", "100000", "--out", "a/b"]),
+        (
+            "-KILL",
+            &["trace", "--pipeline", "slats", "--scene", "full-screen:4", "--fields", "100000", "--out", "a/b.json"],
+        ),
     ] {
         let mut child = command(&[args, &["--quiet", "--max-memory", "1000000"]].concat());
         let mut child = child.current_dir(&folder.0).stderr(Stdio::null()).spawn().expect("it starts");

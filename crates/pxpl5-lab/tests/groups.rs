@@ -1,11 +1,11 @@
 //! Figures by topic: each is measured by a run that could have given another value.
 
-use pxpl5_lab::figures::{Bench, FigureGroup, FigureRow};
+use pxpl5_lab::figures::{Bench, FigureRow, figure_groups};
 use pxpl5_run::Level;
 use std::sync::LazyLock;
 
 static ROWS: LazyLock<Vec<FigureRow>> = LazyLock::new(|| {
-    let groups = FigureGroup::all(&Bench::new(Level::Transaction)).expect("every figure has a value");
+    let groups = figure_groups(&Bench::new(Level::Transaction)).expect("every figure has a value");
     groups.into_iter().flat_map(|group| group.rows).collect()
 });
 

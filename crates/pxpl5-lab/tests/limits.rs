@@ -134,14 +134,15 @@ fn many_senders_are_limited_by_the_channels_that_they_share() {
     assert!((analytic / simulated - 1.0).abs() < BOUND_PERCENT / 100.0, "{analytic} for {simulated}");
 }
 
-/// 807 triangles are in time on 13 GPs and 20 renderers, 796 to 806 are not.
+/// On 13 GPs and 20 renderers 795 triangles are in time and 796 are not. (807 were an island until bottom regions waited for an
+/// acknowledgement of the top ones; src/limit/search.rs has the property tests of islands.)
 #[test]
-fn the_answer_lies_below_an_island() {
+fn the_answer_is_the_size_below_the_first_miss() {
     let query = query(&boards(13, 20), TestScene::Typical);
     let reached = |triangles: u32| query.reached(triangles).expect("it runs");
-    assert_eq!([795, 796, 806, 807, 808].map(reached), [true, false, false, true, false]);
+    assert_eq!([795, 796, 806, 807, 808].map(reached), [true, false, false, false, false]);
     let found = query.search().expect("it runs");
-    assert_eq!((found.triangles, found.first_miss, found.island), (795, Some(796), Some(807)));
+    assert_eq!((found.triangles, found.first_miss, found.island), (795, Some(796), None));
 }
 
 /// Every size up to the answer is tried; the search must have found the least that misses.

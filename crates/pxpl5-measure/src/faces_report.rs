@@ -4,7 +4,7 @@ use crate::turn_sum::{RotationPart, Turns};
 use address_recalculation::{AddressRecalculationPipeline, DisplayMemory, Latch};
 use pxpl5_run::{FaceHistory, Outcome, Statistics};
 use pxpl5_sim::Time;
-use pxpl5_wire::{FieldParity, PeriodNumber};
+use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 
 /// An address recalculation pipeline and its memories over a run.
@@ -144,8 +144,10 @@ fn steps(outcome: &Outcome, k: usize) -> Steps {
         let swapped = scan.retrace(shown.from);
         let last = all.get(place + 1).map_or(PeriodNumber(outcome.fields()), |next| next.from);
         for field in shown.from.until(last) {
-            let y = scan.height() / 2 + FieldParity::of_field(field).first_line();
-            let Some(light) = scan.lights(scan.width() / 2, y, field) else { continue };
+            // An interlaced display shows one of two neighbouring lines in each period.
+            let mut middle =
+                [0, 1].into_iter().map(|line| scan.lights(scan.width() / 2, scan.height() / 2 + line, field));
+            let Some(light) = middle.find_map(|light| light) else { continue };
             let instants = [begin, due, swapped, scan.retrace(field), light];
             // A view may rest on a report that came after the memory was due: such a part is below zero.
             let between = |from: Time, to: Time| (to.0 as f64 - from.0 as f64) * 1e-9;

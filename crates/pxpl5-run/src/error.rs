@@ -1,7 +1,7 @@
 //! Why an experiment gives no result.
 
 use crate::outcome::Outcome;
-use crate::result_window::WARM_UP_PICTURES;
+use crate::picture_ends::WARM_UP_PICTURES;
 use pxpl5_machine::{ConfigError, RunError};
 use pxpl5_sim::Time;
 use thiserror::Error;

@@ -153,7 +153,8 @@ impl Outcome {
         }
         let window = self.closed.window?;
         let pictures = complete as f64 / self.pipeline().updates_per_picture(&self.record);
-        let seen = pictures.min(self.closed.tally.ends().periods_shown(&window) as f64);
+        let seen =
+            pictures.min(self.closed.tally.ends().periods_shown([window.first_period, window.last_period]) as f64);
         Some(seen * 1e3 / (window.periods() as f64 * self.field_ms()))
     }
 

@@ -1,9 +1,9 @@
 //! Pipelines as experiments see them.
 
 use crate::cut::CutScene;
-use crate::due::PictureEnd;
 use crate::face_notes::FaceNotes;
 use crate::keys::KeyValue;
+use crate::picture_ends::PictureEnd;
 use crate::views::{FrameStarts, Poses, ReportTimes, Views, ViewsWanted};
 use address_recalculation::Latch;
 use image::RgbImage;

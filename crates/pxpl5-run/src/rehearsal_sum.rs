@@ -3,9 +3,9 @@
 use crate::head_views::{HeadViews, Sampled};
 use crate::instants::Instants;
 use crate::latched_head::LatchedHead;
+use crate::picture_ends::WARM_UP_PICTURES;
 use crate::pipeline::PictureTimes;
 use crate::rehearsal::{Rehearsal, Rehearsed};
-use crate::result_window::WARM_UP_PICTURES;
 use crate::sums::{Settled, Summing};
 use pxpl5_display::LightSpan;
 use pxpl5_sim::{Span, Time};

@@ -1,21 +1,18 @@
 //! The one window of a run over which its results are computed: latencies, pictures due, errors and rates.
 //!
-//! Start-up is over when [`WARM_UP_PERIODS`] have passed and [`WARM_UP_PICTURES`] pictures were begun, whichever comes later. The
+//! Start-up is over when [`WARM_UP_PERIODS`] have passed and [`WARM_UP_PICTURES`](crate::WARM_UP_PICTURES) pictures were begun, whichever comes later. The
 //! window begins then, with the turn of the next picture: the periods up to and with the one in which it is due. No failure behind the
 //! first periods is left out: if a picture due in the first half of the run was not shown, the window begins with the first such picture.
 //! Those before it may owe their time to queues that were still empty. The pictures of start-up have no latency and no error in any case.
 //! The window ends with the last period that was over, and a period earlier where no picture is due.
 
-use crate::due::{PictureEnd, PictureEnds};
+use crate::picture_ends::{PictureEnd, PictureEnds};
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 
 /// Periods of the display at the start of a run that are not evaluated: the first views are on their way, and the first pictures
 /// were ordered when their time had nearly passed (assumed).
 pub const WARM_UP_PERIODS: u64 = 8;
-
-/// Pictures at the start of a run that are not evaluated, because the pipeline is still filling (TR94 discards the first frames too).
-pub const WARM_UP_PICTURES: usize = 4;
 
 /// The rule by which the window of a run is found, for readers of a report.
 pub const WINDOW_DEFINITION: &str = "latencies, pictures due, errors and rates are over one window: from the 9th period of the display, or \

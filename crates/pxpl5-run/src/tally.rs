@@ -3,9 +3,9 @@
 //! Pictures are taken in the order in which they are shown, each once, when everything that belongs to it has been observed. What
 //! is held does not grow with the run but for a byte a period ([`PictureEnds`]), where samples have a limit.
 
-use crate::due::PictureEnds;
 use crate::face_notes::FaceNotes;
 use crate::latency::{ENDS, LATENCY_PARTS, Pair, WHOSE, pair, parts};
+use crate::picture_ends::PictureEnds;
 use crate::pipeline::{PictureTimes, Pipeline};
 use crate::samples::Samples;
 use crate::summary::retraces;

@@ -2,10 +2,11 @@
 
 use super::compared::{composite_differs, turned_differ};
 use super::fit::fitted_cell_m;
-use super::interpretations::{Interpretations, Rules, ThresholdRow, threshold_rows};
+use super::gallery::gallery;
+use super::interpretations::{Interpretations, ThresholdRow, threshold_rows};
 use super::lens::straight_edge;
+use super::rules::Rules;
 use crate::error::ExperimentError;
-use crate::hall::{Route, path_of, scaled};
 use crate::report::Report;
 use crate::settings::{Settings, SourceKind};
 use crate::walk::{WalkTally, at_frames, walk};
@@ -81,21 +82,6 @@ pub struct Experiments {
     pub composite_differs: u64,
     /// Pixels that a stalled renderer changes in what a head sees that turns.
     pub turned_differ: u64,
-}
-
-/// Scale of the gallery's plan in the experiments: its 20 m are eight cells of 2.5 m, with 191 segments. Table 2 prints 183 and 213.
-const HALL_SCALE: f64 = 0.5;
-
-/// The gallery and its path.
-pub(crate) fn gallery() -> Result<(Scene, Walk), ExperimentError> {
-    let scene = builtin("gallery").map_err(|error| ExperimentError::Scene {
-        scene: "gallery".to_owned(),
-        expected: "a built-in scene",
-        found: error.to_string(),
-    })?;
-    let scene = scaled(&scene, HALL_SCALE)?;
-    let path = path_of(&scene, Route::Scene)?;
-    Ok((scene, path))
 }
 
 /// A head that looks at a point, upright.

@@ -1,6 +1,6 @@
 //! The side of a cell, fitted to one rate of table 1; the other rates are checked.
 
-use super::interpretations::Rules;
+use super::rules::Rules;
 use crate::error::ExperimentError;
 use crate::walk::at_frames;
 use crate::world::World;

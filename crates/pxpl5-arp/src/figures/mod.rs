@@ -5,25 +5,29 @@ mod definitions;
 mod document;
 mod experiments;
 mod fit;
+mod gallery;
 mod interpretations;
 mod lens;
 mod row;
 mod rows;
+mod rules;
 
 pub use definitions::{Definition, SEGMENTS, definitions};
 pub use document::{interpretations as interpretations_text, markdown, missed, table};
+pub(crate) use experiments::looking_at;
 pub use experiments::{
     EXPERIMENT_FRAMES, Experiments, Fit, SizeLimit, SizeRow, Slowed, Walked, point_objects_reduction, size_limits,
     size_rows,
 };
-pub(crate) use experiments::{gallery, looking_at};
 pub use fit::{RATE_FITTED, RATES_HZ, fitted_cell_m, policy_rates_hz};
+pub(crate) use gallery::gallery;
 pub use interpretations::{
-    Interpretations, LeftOutRate, PIXEL_DEG, RankedRules, Rules, Situation, ThresholdRow, Trial, Tried, threshold_rows,
+    Interpretations, LeftOutRate, PIXEL_DEG, RankedRules, Situation, ThresholdRow, Trial, Tried, threshold_rows,
 };
 pub use lens::straight_edge;
 pub use row::{Row, Standing};
 pub use rows::rows;
+pub use rules::Rules;
 
 use crate::error::ExperimentError;
 

@@ -2,7 +2,7 @@
 //! events at every level of the bench; none counts for the mean error of the table.
 
 use super::measured::{FigureValue, Result};
-use super::{Basis, Bench, Figure, FigureError, FigureRow, jitp, rates, trackers};
+use super::{Basis, Bench, Figure, FigureError, FigureRow};
 use crate::intervals::{photodiode_line, variations};
 use crate::parallel;
 use serde::Serialize;
@@ -28,10 +28,10 @@ pub(super) struct Measurement {
 }
 
 /// A topic with its experiments.
-struct Topic {
-    title: &'static str,
-    about: &'static str,
-    measurements: Vec<Measurement>,
+pub(super) struct Topic {
+    pub(super) title: &'static str,
+    pub(super) about: &'static str,
+    pub(super) measurements: Vec<Measurement>,
 }
 
 /// A figure in which nothing was fitted.
@@ -45,25 +45,9 @@ pub(super) const fn free(
     Figure { id, paper, section, statement, value, unit, spread, experiment, basis: Basis::Free, cause }
 }
 
-fn topics() -> [Topic; 3] {
-    [
-        Topic { title: rates::TITLE, about: rates::ABOUT, measurements: rates::measurements() },
-        Topic { title: jitp::TITLE, about: jitp::ABOUT, measurements: jitp::measurements() },
-        Topic { title: trackers::TITLE, about: trackers::ABOUT, measurements: trackers::measurements() },
-    ]
-}
-
 impl FigureGroup {
-    /// Measures all groups.
-    ///
-    /// # Errors
-    ///
-    /// The first [`FigureError`].
-    pub fn all(bench: &Bench) -> std::result::Result<Vec<Self>, FigureError> {
-        topics().into_iter().map(|topic| Self::of(&topic, bench)).collect()
-    }
-
-    fn of(topic: &Topic, bench: &Bench) -> std::result::Result<Self, FigureError> {
+    /// Measures the figures of a topic.
+    pub(super) fn of(topic: &Topic, bench: &Bench) -> std::result::Result<Self, FigureError> {
         let rows = parallel::map(&topic.measurements, |measurement| measurement.row(bench));
         let rows = rows.into_iter().collect::<std::result::Result<Vec<_>, _>>()?;
         Ok(Self { title: topic.title, about: topic.about, rows })

@@ -1,6 +1,5 @@
 //! Experiments with a head: the pendulum rig, and what passes from head to light.
 
-use super::measure::PHOTODIODE_LINE;
 use super::measured::{FigureValue, Result, detail, scene_named};
 use super::reading::Reading;
 use crate::rig::Rig;
@@ -12,6 +11,9 @@ use tracking::motion::Synthetic;
 use tracking::predict::PredictorKind;
 use tracking::rig::{Latency, PendulumRig};
 use tracking::tracker::TrackerConfig;
+
+/// The visible line of the screen under the photodiode of figure 17, as a change of a bench.
+pub const PHOTODIODE_LINE: &str = "tracking.rig.photodiode_line";
 
 /// Figure 17: the mean that is seen from outside, with the photodiode on a line that was said, or else on the line that is assumed,
 /// beside what is seen under the first and the last line of the screen. The paper does not print the photodiode's place.

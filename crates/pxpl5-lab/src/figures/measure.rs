@@ -1,7 +1,7 @@
 //! The experiments behind the figures.
 
 use super::applications::{Applications, key_of};
-use super::heads;
+use super::heads::{self, PHOTODIODE_LINE};
 use super::measured::{FigureValue, Result, detail, scene_named};
 use super::reading::{Reading, Samples};
 use crate::levels::summarise;
@@ -40,9 +40,6 @@ pub struct Bench {
 
 /// TRANSFORM and RENDER of figure 6 (milliseconds): a spread of lengths, because the swap waits for a retrace.
 const LONG_STAGES_MS: [u64; 7] = [22, 23, 24, 25, 26, 27, 28];
-
-/// The visible line of the screen under the photodiode of figure 17, as a change of a bench.
-pub const PHOTODIODE_LINE: &str = "tracking.rig.photodiode_line";
 
 /// Fields of figures 16b and 16c, whose frames take about 30 each.
 const FIELDS_OF_FULL_BINS: u64 = 600;

@@ -23,16 +23,19 @@ mod rates;
 mod reading;
 mod row;
 mod table;
+mod topics;
 mod trackers;
 
 pub use document::markdown;
 pub use family::FigureFamily;
 pub use group::FigureGroup;
-pub use measure::{Bench, PHOTODIODE_LINE};
+pub use heads::PHOTODIODE_LINE;
+pub use measure::Bench;
 pub use measured::{Detail, FigureValue};
 pub use reading::{FieldCount, ROOM, Reading, Samples};
 pub use row::{FigureRow, MISS_PERCENT, mean_error_percent};
 pub use table::{Basis, FIGURES, Figure, WITHOUT_CLOSED_FORM};
+pub use topics::figure_groups;
 
 use crate::application_time::{ApplicationTime, application_times};
 use crate::intervals::{Interval, fill, intervals};
@@ -122,7 +125,7 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
         families
     };
     let groups = || {
-        let groups = FigureGroup::all(bench);
+        let groups = figure_groups(bench);
         step();
         groups
     };

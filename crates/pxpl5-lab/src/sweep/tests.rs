@@ -266,7 +266,7 @@ fn what_a_kill_left_under_temporary_names_is_removed_and_nothing_else() {
     drop(Store::open(&path, sweep.header().expect("valid"), false).expect("writable"));
     let entries = std::fs::read_dir(&path).expect("there").map(|entry| entry.expect("entry").file_name());
     let names: BTreeSet<_> = entries.map(|name| name.to_string_lossy().into_owned()).collect();
-    let expected = [".lock", "mine.1.tmp", "rows..tmp", "rows.jsonl", "rows.old.tmp", "times.jsonl"];
+    let expected = [".lock", "manifest.json", "mine.1.tmp", "rows..tmp", "rows.jsonl", "rows.old.tmp", "times.jsonl"];
     assert_eq!(names, expected.map(str::to_owned).into());
     let _ = std::fs::remove_dir_all(path);
 }

@@ -2,8 +2,8 @@
 
 use super::jitp::{TABLES, config, load, whole_pass};
 use super::{ntsc, samples};
-use crate::due::PictureEnd;
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
+use crate::picture_ends::PictureEnd;
 use crate::pipeline::{PictureTimes, Pipeline, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use jitp::{BlockOrder, DrawingSchedule, JitpConfig};

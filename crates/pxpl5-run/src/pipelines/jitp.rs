@@ -1,8 +1,8 @@
 //! Just-in-time pixels on the emulated machine.
 
 use super::{late_regions, ntsc, samples};
-use crate::due::PictureEnd;
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
+use crate::picture_ends::PictureEnd;
 use crate::pipeline::{PictureTimes, Pipeline, Setup, Source};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use jitp::{Beam, DrawingSchedule, JitpConfig, JitpTiming, Transforms, Wanted, host, master, slave};

@@ -18,8 +18,8 @@ pub use jitp::{Interpolation, Jitp, Viewpoint, region_at};
 pub use rendering_control::{FinishedRegions, RenderingControl};
 pub use slats::{Code, Slats, SlatsLighting};
 
-use crate::due::PictureEnd;
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
+use crate::picture_ends::PictureEnd;
 use crate::pipeline::PictureTimes;
 use crate::registry::PipelineEntry;
 use pphigs::Shading;

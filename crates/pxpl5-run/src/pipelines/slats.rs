@@ -1,8 +1,8 @@
 //! Slats on the emulated machine.
 
 use super::{late_regions, ntsc, samples};
-use crate::due::PictureEnd;
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
+use crate::picture_ends::PictureEnd;
 use crate::pipeline::{PictureTimes, Pipeline, Setup, light_span};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use pphigs::{RegionBinning, Shading, Share};

@@ -1,0 +1,21 @@
+//! The gallery in which the experiments walk.
+
+use crate::error::ExperimentError;
+use crate::hall::{Route, path_of, scaled};
+use pxpl5_scene::{Scene, builtin};
+use tracking::motion::Walk;
+
+/// Scale of the gallery's plan in the experiments: its 20 m are eight cells of 2.5 m, with 191 segments. Table 2 prints 183 and 213.
+const HALL_SCALE: f64 = 0.5;
+
+/// The gallery and its path.
+pub(crate) fn gallery() -> Result<(Scene, Walk), ExperimentError> {
+    let scene = builtin("gallery").map_err(|error| ExperimentError::Scene {
+        scene: "gallery".to_owned(),
+        expected: "a built-in scene",
+        found: error.to_string(),
+    })?;
+    let scene = scaled(&scene, HALL_SCALE)?;
+    let path = path_of(&scene, Route::Scene)?;
+    Ok((scene, path))
+}
