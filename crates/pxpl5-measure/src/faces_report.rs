@@ -46,7 +46,7 @@ pub struct MemoryReport {
     /// Retraces at which an update that had been asked for was not whole.
     pub missed: u64,
     /// From the measurement of the head, or without a tracker from the instant at which the memory became due, to the light of the
-    /// picture's middle, milliseconds, over the fields that are held; nothing before the first update.
+    /// picture's middle, milliseconds, over all fields from the first update on; `None` before it, and in a run that has dropped records.
     pub translation_latency_ms: Option<Statistics>,
     /// Means of its parts, which add up to its mean: from the measurement until the memory became due, until the update was shown, the
     /// age of what is shown, the scan.
@@ -133,6 +133,10 @@ impl Steps {
 fn steps(outcome: &Outcome, k: usize) -> Steps {
     let mut steps = Steps::default();
     let display: Option<&AddressRecalculationPipeline> = outcome.record().display_of_kind();
+    // The first fields of such a run are not known any more.
+    if outcome.has_forgotten() {
+        return steps;
+    }
     let Some(scan) = display.and_then(|display| display.config().scan().ok()) else { return steps };
     let Some(history) = FaceHistory::of(outcome) else { return steps };
     let sampled = outcome.head().map(|head| head.sampled()).unwrap_or_default();
