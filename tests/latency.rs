@@ -145,7 +145,7 @@ fn figure_14_the_code_of_1995_draws_about_100_triangles() {
 }
 
 /// When the first region of a field is copied, in milliseconds after the retrace.
-fn first_copy_ms(triangles: u32) -> f64 {
+fn first_copy_ms(triangles: usize) -> f64 {
     let outcome = slats("slats", Slats::split(), triangles);
     let top =
         outcome.observation().arrivals.iter().filter(|a| a.target.picture == PictureNumber(6) && a.target.region.0 < 5);

@@ -123,8 +123,10 @@ fn measure(bench: &Bench, changes: Vec<(String, u64)>) -> Vec<Option<f64>> {
 
 /// A figure's value; `None` for one without a closed form, and where the experiment gives none.
 fn value_of(bench: &Bench, id: &str) -> Option<f64> {
-    let has_closed_form = !WITHOUT_CLOSED_FORM.contains(&id);
-    bench.measure(id).ok().filter(|_| has_closed_form).map(|measured| measured.value).filter(|value| value.is_finite())
+    if WITHOUT_CLOSED_FORM.contains(&id) {
+        return None;
+    }
+    Some(bench.measure(id).ok()?.value).filter(|value| value.is_finite())
 }
 
 /// Intervals of all figures, around what a bench has at the analytic level.

@@ -3,8 +3,9 @@
 use super::definitions::{SEGMENTS, definitions};
 use super::experiments::{EXPERIMENT_FRAMES, Experiments, Fit, SizeLimit, Slowed, Walked};
 use super::fit::RATES_HZ;
-use super::interpretations::{Interpretations, LeftOutRate, RankedRules, Rules, Situation, ThresholdRow, Trial};
+use super::interpretations::{Interpretations, LeftOutRate, RankedRules, Situation, ThresholdRow, Trial};
 use super::row::{Row, Standing};
+use super::rules::Rules;
 use crate::pictures::OF_FIGURES;
 use std::fmt::Write as _;
 

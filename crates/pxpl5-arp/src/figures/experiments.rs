@@ -14,7 +14,6 @@ use crate::world::World;
 use address_recalculation::Lens;
 use glam::{DMat3, DQuat, DVec3};
 use priority_rendering::{Objects, PriorityTiming, SizeRule, Threshold};
-use pxpl5_scene::{Scene, builtin};
 use tracking::motion::Walk;
 
 /// Frames of each walk: two minutes, four fifths of a round. The specification asks for 1,800 at least.
