@@ -143,7 +143,8 @@ fn arithmetic(config: &PerspectaConfig) -> Vec<Definition> {
 
 /// P20, and D12: equal times of CPU and GPU today, and the CPU's share in 18 months.
 fn doubling() -> Vec<Definition> {
-    let share = |months: f64| 100.0 / (1.0 + libm::exp2(-CPU_DOUBLES_MONTHS / months));
+    // The CPU takes half of its time then, a GPU that doubles every m months 2^(-18/m) of it.
+    let share = |months: f64| 100.0 / (1.0 + libm::exp2(1.0 - CPU_DOUBLES_MONTHS / months));
     let [least, most] = GPU_DOUBLES_MONTHS;
     vec![
         defined("P20", "months in which a GPU doubles, at least", least, "months"),

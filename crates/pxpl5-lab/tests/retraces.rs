@@ -94,12 +94,7 @@ fn a_frame_that_takes_two_hundred_fields_is_one_picture_of_a_hundred_that_are_du
     let in_window = shown.filter(|field| (due.first_period..=due.last_period).contains(field)).count() as u64;
     assert_eq!((due.shown, due.missed), (in_window, due.due - in_window));
     assert!(due.last_period.after(2).0 >= report.fields && due.shown > 0, "{due:?}");
-    let window_s = due.last_period.next().since(due.first_period) as f64 * 1.001 / 60.0;
-    // A single picture has no rate.
-    let expected = (in_window > 1).then(|| in_window as f64 / window_s);
-    let found = report.updates_hz;
-    assert_eq!(found.is_some(), expected.is_some(), "{found:?}");
-    assert!(found.zip(expected).is_none_or(|(hz, expected)| (hz - expected).abs() < 1e-9), "{found:?}");
+    assert_eq!(report.updates_hz, None, "a single picture behind start-up has no rate");
 }
 
 #[test]
