@@ -91,7 +91,7 @@ impl Dealing {
     }
 
     /// Horizontal distance of a place from a cell, m; 0 inside.
-    fn to_cell(&self, place: DVec3, cell: Cell) -> f64 {
+    fn to_cell(self, place: DVec3, cell: Cell) -> f64 {
         let along = |place: f64, number: i64| {
             (border(number, self.side_m) - place).max(place - border(number.saturating_add(1), self.side_m)).max(0.0)
         };

@@ -123,13 +123,13 @@ impl Shown {
 
     /// What a pixel that lights at `at` shows, and whether its picture was complete in time, in the window.
     pub(crate) fn seen(&self, run: &Settled<'_>, [x, y]: [u32; 2], field: PeriodNumber, at: Time) -> Seen {
-        if self.faces.is_none() {
-            if let Some(target) = self.screen.shown(x, y, field, at) {
-                let Some(shown) = self.complete.get(&target.picture) else { return Seen::Incomplete };
-                let is_evaluated = |period| self.window.is_none_or(|window| window.holds_picture(period));
-                if !shown.is_some_and(is_evaluated) {
-                    return Seen::Before;
-                }
+        if self.faces.is_none()
+            && let Some(target) = self.screen.shown(x, y, field, at)
+        {
+            let Some(shown) = self.complete.get(&target.picture) else { return Seen::Incomplete };
+            let is_evaluated = |period| self.window.is_none_or(|window| window.holds_picture(period));
+            if !shown.is_some_and(is_evaluated) {
+                return Seen::Before;
             }
         }
         self.drawn(run, [x, y], field, at).map_or(Seen::Nothing, Seen::Complete)
