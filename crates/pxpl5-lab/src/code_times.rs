@@ -5,7 +5,7 @@
 //!   clocks of spheres             = sphere * (spheres) + entry * (their entries of bins)
 //! ```
 //!
-//! `guard` comes from triangles that cover the screen and reach beyond the guard band ([`CLIPPED_M`]), the others from the three application
+//! `guard` comes from triangles that cover the screen and reach beyond the guard band (`CLIPPED_M`), the others from the three application
 //! scenes: a share of each, seen along its own head motion; the first pass only fills the caches. `entry` is the slope over all passes by least squares,
 //! `triangle` the mean of the scenes' means. Each is found from what the others leave of the time, in turn until they stay. `sphere` is
 //! what entries leave of the spheres' time, the mean of the means of those of the three scenes that have spheres. Triangles are measured

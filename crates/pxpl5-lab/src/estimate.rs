@@ -8,7 +8,7 @@
 //!
 //! Time, seconds on one core:
 //! `runs (FIELD_S fields + pictures eyes (PICTURE_S + GP_S gps) + BLOCK_S blocks fields) + LOAD_S eyes primitives + JUDGED_FIELD_S fields`,
-//! where `runs` is [`RUNS_OF_HEAD`] of a tracked head, else 1; `LOAD_S` counts where pictures come from a closed form, `BLOCK_S` where a pipeline draws
+//! where `runs` is `RUNS_OF_HEAD` of a tracked head, else 1; `LOAD_S` counts where pictures come from a closed form, `BLOCK_S` where a pipeline draws
 //! blocks, and `JUDGED_FIELD_S` of a tracked head.
 //!
 //! The constants of time are fitted to 606 points of all pipelines (experiments/sweep-costs.toml and sweep-costs-heads.toml, release build) by logarithms, so

@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 /// How many of the late regions are listed.
 pub const LATE_REGIONS_LISTED: usize = 20;
 
-/// Sums over a run. Times are over the pictures in its [`ResultWindow`], in milliseconds; latencies are those of complete ones.
+/// Sums over a run. Times are over the pictures in its [`ResultWindow`](crate::ResultWindow), in milliseconds; latencies are those of complete ones.
 #[derive(Clone, Debug)]
 pub struct Tally {
     /// Pictures that were begun and judged, complete or not.
