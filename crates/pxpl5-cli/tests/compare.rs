@@ -207,7 +207,7 @@ fn what_was_not_shown_or_is_never_due_is_null_in_json_and_empty_in_the_table() {
         for count in ["due", "not_shown", "late_regions"] {
             assert_eq!(cell(line, count).parse().ok(), row[count].as_u64(), "{name} {count}");
         }
-        assert_eq!(cell(line, "error_px_mean").parse().ok(), row["error"]["mean_px"]["mean"].as_f64(), "{name}");
+        assert_eq!(cell(line, "error.mean_px.mean").parse().ok(), row["error"]["mean_px"]["mean"].as_f64(), "{name}");
     }
     // No point stands for what is not there.
     let drawing = out.join("plot.svg");
