@@ -236,9 +236,15 @@ impl Report {
         let pictures =
             (self.pictures, self.shown, &self.updates_hz, &self.due, self.missed_retraces, self.ends_complete);
         let late = (self.late_regions, &self.first_late_regions, &self.display_counters);
+        // The latency of a step is no part of it, since a run that has dropped records does not know it.
+        let mut arp = self.arp.clone();
+        for memory in arp.iter_mut().flat_map(|faces| &mut faces.memories) {
+            memory.translation_latency_ms = None;
+            memory.translation_latency_parts_ms.clear();
+        }
         let mut text = HashedText::default();
         // Numbers print with as many digits as tell them apart.
-        let _ = write!(text, "{latencies:?}{pictures:?}{late:?}{:?}{:?}", self.head, self.arp);
+        let _ = write!(text, "{latencies:?}{pictures:?}{late:?}{:?}{:?}", self.head, arp);
         hash.0 = hash.0.wrapping_add(text.0);
         self.trace_hash = hash.to_string();
     }
