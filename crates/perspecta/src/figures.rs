@@ -16,13 +16,13 @@ use spatialgl::{
 pub struct Definition {
     /// Its number in the specification: P is printed in the paper, D derived from it.
     pub id: &'static str,
-    /// What it states, in words.
+    /// The statement, in words.
     pub statement: &'static str,
     /// The number that this model has, in `unit`.
     pub value: f64,
     /// Unit of the value.
     pub unit: &'static str,
-    /// Whether the value is printed or derived.
+    /// Provenance of the value: printed or derived.
     pub standing: Standing,
 }
 
@@ -31,7 +31,7 @@ pub struct Definition {
 pub struct Figure {
     /// Its number in the specification: P is printed in the paper, D derived from it.
     pub id: &'static str,
-    /// What it states, in words.
+    /// The statement, in words.
     pub statement: &'static str,
     /// Unit of both values and of the interval.
     pub unit: &'static str,
@@ -39,9 +39,9 @@ pub struct Figure {
     pub published: f64,
     /// Smallest and largest value that agree with it.
     pub interval: [f64; 2],
-    /// What the model has.
+    /// The value that this model computes.
     pub computed: f64,
-    /// Whether the value is printed or derived.
+    /// Provenance of the value: printed or derived.
     pub standing: Standing,
 }
 

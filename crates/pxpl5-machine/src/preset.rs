@@ -100,6 +100,9 @@ impl MachineConfig {
 
     /// The machine with the times of primitives that follow from the code that its preset runs, instead of those that were published
     /// or fitted.
+    ///
+    /// Presets of Slats take the times of code for precomputed vertex colours. They do not hold for Slats with light on the GP
+    /// (`lighting = "gp"`), whose code is slower; only the cycle level has its times.
     #[must_use]
     pub fn with_times_of_code(self) -> Self {
         let slats = self.preset.starts_with("slats");

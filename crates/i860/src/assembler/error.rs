@@ -11,7 +11,7 @@ pub struct AssemblyError {
     pub file: String,
     /// Line from 1; of the call, for text from a macro.
     pub line: usize,
-    /// What is wrong: expected and found.
+    /// The fault, with the expected and the found text.
     pub reason: String,
 }
 
@@ -24,7 +24,7 @@ pub struct AssemblyWarning {
     pub line: usize,
     /// The rule.
     pub rule: Rule,
-    /// What is wrong: expected and found.
+    /// The fault, with the expected and the found text.
     pub reason: String,
 }
 

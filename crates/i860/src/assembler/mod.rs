@@ -47,13 +47,13 @@ pub struct Program {
     pub labels: Vec<(String, u32)>,
     /// Source line of every instruction in its own source, by address.
     pub lines: Vec<(u32, usize)>,
-    /// What is no instruction, by address.
+    /// The data of the program, by address.
     pub data: Vec<Data>,
     /// Rules that are broken and may be meant to be, by line.
     pub warnings: Vec<AssemblyWarning>,
 }
 
-/// What a directive puts into memory.
+/// Bytes that a directive puts into memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Data {
     /// Address of its first byte.
@@ -62,11 +62,11 @@ pub struct Data {
     pub bytes: u32,
     /// Line in its own source.
     pub line: usize,
-    /// What the bytes are.
+    /// The kind of the bytes.
     pub kind: DataKind,
 }
 
-/// What the bytes of a directive are.
+/// The kind of the bytes of a directive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DataKind {
     /// Integers of so many bytes each: `.byte`, `.short`, `.long`.
@@ -75,7 +75,7 @@ pub enum DataKind {
     Singles,
     /// `.double`.
     Doubles,
-    /// What `.align`, `.org` and `.space` leave free.
+    /// Bytes that `.align`, `.org` and `.space` leave free.
     Gap,
 }
 
@@ -162,7 +162,7 @@ enum Item {
 }
 
 impl Item {
-    /// What its bytes are; `None` for an instruction.
+    /// The kind of its bytes; `None` for an instruction.
     fn data_kind(&self) -> Option<DataKind> {
         match self {
             Self::Instruction { .. } => None,
