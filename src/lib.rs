@@ -47,6 +47,8 @@
 //!
 //! **Not modelled:** see the data sheet at the head of each board's crate, and ACCURACY.md for what comes out wrong.
 
+#![warn(missing_docs)]
+
 pub use pxpl5_analytic as analytic;
 pub use pxpl5_arp as arp;
 pub use pxpl5_display as display;

@@ -18,6 +18,8 @@
 //! **Not here:** what firmware must know of a display to draw for it (fields, beams): a pipeline that is written for one
 //! display finds it by its type: a display is [`Any`].
 
+#![warn(missing_docs)]
+
 mod aim;
 mod config;
 mod double_buffer;

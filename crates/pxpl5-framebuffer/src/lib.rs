@@ -52,6 +52,8 @@
 //! Sources: TR94 (resolution, two buffers of two fields, two boards in lock-step), NTSC (field, line). Where the
 //! blanking lies is assumed.
 
+#![warn(missing_docs)]
+
 mod board;
 mod buffer;
 mod config;

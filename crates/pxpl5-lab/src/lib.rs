@@ -18,6 +18,8 @@
 //! [`registry`] lists the pipelines and displays of the papers with their closed forms; an experiment file may be read with
 //! another one.
 
+#![warn(missing_docs)]
+
 pub mod application_time;
 pub mod code_times;
 pub mod compare;

@@ -8,6 +8,8 @@
 //!
 //! **Not here:** the computer that the simulation runs on. Clocks, threads and files are handed in ([`PixelWorker`]).
 
+#![warn(missing_docs)]
+
 mod agenda;
 mod board;
 mod config;

@@ -10,6 +10,8 @@
 //!
 //! [`Measured`] gives an [`Outcome`] the most common of them as methods.
 
+#![warn(missing_docs)]
+
 mod budget;
 mod causes;
 mod content;

@@ -11,6 +11,8 @@
 //!
 //! **Not here:** the computer that it runs on. A clock and threads are handed in by a [`Host`]; scenes come as values.
 
+#![warn(missing_docs)]
+
 mod assembled;
 mod assembly;
 mod cut;

@@ -53,6 +53,8 @@
 //! *Just-In-Time Pixels*, UNC TR93-005; myoglobin = H. C. Watson 1969, Protein Data Bank 1MBN; radii of atoms =
 //! Bondi 1964. Every number with its standing: [`config`] and [`HmdConfig::unc`].
 
+#![warn(missing_docs)]
+
 mod builtin;
 pub mod config;
 mod decimate;

@@ -27,6 +27,8 @@
 //! **Not here:** files, threads and clocks of the host. Everything goes to a [`std::io::Write`], or comes back as text or
 //! bytes.
 
+#![warn(missing_docs)]
+
 mod animation;
 pub mod charts;
 mod film;

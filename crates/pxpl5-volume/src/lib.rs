@@ -19,6 +19,8 @@
 //! Connected coverage, mirrored strobes and the renderers of Pixel-Planes 5 are not the paper's. Every report names those that it
 //! used ([`VolumeReport::beyond_paper`]).
 
+#![warn(missing_docs)]
+
 mod choices;
 pub mod compare;
 mod error;

@@ -60,6 +60,8 @@
 //! offset: Breglia 1981. Frameless rendering: Bishop, Fuchs, McMillan and Scher Zagier 1994. The rig: Cohen and Olano,
 //! UNC TR94-028. Elliptic functions: Abramowitz and Stegun 16 and 17.
 
+#![warn(missing_docs)]
+
 pub mod config;
 mod error;
 mod identify;
