@@ -10,7 +10,7 @@ use i860::timing::{DramTiming, FREEZES, Freeze};
 use i860::{AddressProfile, Config, Profile, linear};
 use kernel::{Bench, Strip, frame, strips, triangles};
 use parameters::{ParameterTable, Value};
-use pxpl5::lab::code_times::{CodeUse, code_times, strip_times};
+use pxpl5::lab::code_times::{code_times, strip_times};
 use pxpl5::limit::{LimitQuery, test_scene};
 use pxpl5::{CodeVersion, Experiment, Level, MachineConfig, PictureNumber, Pixels, Slats, TestScene};
 use pxpl5_geometry::kernel::{Kernel, KernelList, KernelPicture, KernelSurface, Schedule};

@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 stats.tile_occupancy_percent(),
                 100.0 * stats.draws as f64 / stats.draws_unbinned as f64,
                 connected(&display, &commands, &frame).map_or(0.0, |found| found.percent()),
-                dead_zone_radius(&frame.planes).unwrap_or(384),
+                dead_zone_radius(&display).unwrap_or(384),
                 format!("{:?}", [0, 1, 8, 32].map(|ring| rings[ring] / 16)),
                 time.serial_hz(),
                 time.overlapped_hz(),

@@ -55,6 +55,6 @@ pub use memory::{Account, Memory, OutOfMemory};
 pub use messages::Chain;
 pub use probe::{Mark, Stage, StageEdge};
 pub use processor::{BreakpointHit, CodeVersion, KEPT_HITS, Processor, ProcessorFault};
-pub use timing::{GpTiming, HostTiming};
+pub use timing::{CodeUse, GpTiming, HostTiming};
 pub use window::RING_MEMORY;
 pub use work::Work;

@@ -1,5 +1,6 @@
 //! Every number of the board, and of the host that runs on the same model.
 
+use crate::CodeVersion;
 use pxpl5_sim::Span;
 
 parameters::parameter_table! {
@@ -49,6 +50,17 @@ impl GpTiming {
     };
 }
 
+/// Use of the i860 code of triangles and spheres, on which its times depend.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CodeUse {
+    /// PPHIGS: frames, Phong shading, bins.
+    Pphigs,
+    /// Slats: fields, precomputed colours, clumps of thirty, both eyes in one pass.
+    Slats,
+    /// Slats with light on the GP: fields, clumps of thirty, one eye after the other.
+    SlatsLit,
+}
+
 // Times of primitives that follow from i860 code (derived from code): means over the three application scenes as
 // `pxpl5_lab::code_times` measures them; its test holds these constants to the code. `message_ns` is what kernels/ring.s takes for a message
 // or a chain, which differs with the scene (docs/gp-timing.md), with what kernels/token.s takes however many entries it hands over;
@@ -56,6 +68,20 @@ impl GpTiming {
 // `pass_ns` is what structures leave of the beginning of a pass: bins that are reset, and code that comes into the caches. A structure
 // that culls takes 3.2 us more than one that does not, which is not in the table.
 impl GpTiming {
+    /// Returns this table with the times of primitives that follow from the code of a version in one use.
+    ///
+    /// PPHIGS has times of its scheduled code only: it fits the instruction cache, and no machine of the papers ran it otherwise.
+    #[must_use]
+    pub const fn of_code(self, version: CodeVersion, of: CodeUse) -> Self {
+        match (of, version) {
+            (CodeUse::Pphigs, _) => self.of_scheduled_phong(),
+            (CodeUse::Slats, CodeVersion::Scheduled) => self.of_scheduled_precomputed(),
+            (CodeUse::Slats, _) => self.of_compiled_precomputed(),
+            (CodeUse::SlatsLit, CodeVersion::Scheduled) => self.of_scheduled_gouraud(),
+            (CodeUse::SlatsLit, _) => self.of_compiled_gouraud(),
+        }
+    }
+
     /// This table with the times of the scheduled code for Phong triangles of a frame, in bins: PPHIGS.
     #[must_use]
     pub const fn of_scheduled_phong(self) -> Self {

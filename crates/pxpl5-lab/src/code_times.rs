@@ -33,7 +33,7 @@ use pphigs::{
     Share, TransformCost,
 };
 use pxpl5_geometry::Viewport;
-use pxpl5_gp::{CodeVersion, GpTiming, Processor, ProcessorFault, Work};
+use pxpl5_gp::{CodeUse, CodeVersion, GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_machine::MachineConfig;
 use pxpl5_renderer::Layout;
 use pxpl5_run::{ExperimentError, Views, display_list, views};
@@ -68,17 +68,6 @@ const MORE_STRUCTURES: usize = 8;
 
 /// A board's memory (published TR94).
 const MEMORY: u64 = 8 << 20;
-
-/// What code does: PPHIGS draws frames in Phong shading, with bins; Slats fields with colours at corners, in clumps for all regions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CodeUse {
-    /// Frames, Phong shading, bins.
-    Pphigs,
-    /// Fields, precomputed colours, clumps of thirty, both eyes in one pass.
-    Slats,
-    /// The same with light on the GP, an eye after the other.
-    SlatsLit,
-}
 
 /// Times of primitives in nanoseconds, as the code gives them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -118,29 +107,27 @@ type Sample = [f64; 4];
 /// The same of spheres: spheres, their entries, nanoseconds.
 type SphereSample = [f64; 3];
 
-impl CodeUse {
-    fn picture(self) -> Picture {
-        let (viewport, shading, binning) = match self {
-            Self::Pphigs => (Viewport::FRAME, Shading::Phong, RegionBinning::Touched),
-            Self::Slats => (Viewport::field(FieldParity::Even), Shading::Precomputed, RegionBinning::All),
-            Self::SlatsLit => (Viewport::field(FieldParity::Even), Shading::Gouraud, RegionBinning::All),
-        };
-        Picture { viewport, shading, binning, layout: Layout::rendering_control_phong(), pixels: false }
-    }
+fn picture(of: CodeUse) -> Picture {
+    let (viewport, shading, binning) = match of {
+        CodeUse::Pphigs => (Viewport::FRAME, Shading::Phong, RegionBinning::Touched),
+        CodeUse::Slats => (Viewport::field(FieldParity::Even), Shading::Precomputed, RegionBinning::All),
+        CodeUse::SlatsLit => (Viewport::field(FieldParity::Even), Shading::Gouraud, RegionBinning::All),
+    };
+    Picture { viewport, shading, binning, layout: Layout::rendering_control_phong(), pixels: false }
+}
 
-    /// The eyes of each pass over the display list, one pass after the other.
-    const fn eyes_of_a_pass(self) -> &'static [&'static [usize]] {
-        match self {
-            Self::Pphigs => &[&[0], &[1]],
-            Self::Slats | Self::SlatsLit => &[&[0, 1]],
-        }
+/// Returns the eyes of each pass over the display list, one pass after the other.
+const fn eyes_of_a_pass(of: CodeUse) -> &'static [&'static [usize]] {
+    match of {
+        CodeUse::Pphigs => &[&[0], &[1]],
+        CodeUse::Slats | CodeUse::SlatsLit => &[&[0, 1]],
     }
+}
 
-    fn parts(self, share: &Share) -> Vec<Share> {
-        match self {
-            Self::Pphigs => vec![share.clone()],
-            Self::Slats | Self::SlatsLit => share.clumps(CLUMP).take(CLUMPS).collect(),
-        }
+fn parts(of: CodeUse, share: &Share) -> Vec<Share> {
+    match of {
+        CodeUse::Pphigs => vec![share.clone()],
+        CodeUse::Slats | CodeUse::SlatsLit => share.clumps(CLUMP).take(CLUMPS).collect(),
     }
 }
 
@@ -298,11 +285,11 @@ fn measured<const N: usize>(
     sample: impl Fn(&Pass, &KernelOutput) -> [f64; N],
 ) -> Result<Vec<[f64; N]>, ExperimentError> {
     let mut samples = Vec::new();
-    let parts = of.parts(&rig.share);
+    let parts = parts(of, &rig.share);
     for number in 0..VIEWS {
         let view = rig.view(number);
         for part in &parts {
-            let passes = [0, 1].map(|eye| part.transform(&view, eye, of.picture()));
+            let passes = [0, 1].map(|eye| part.transform(&view, eye, picture(of)));
             let [left, right] = &passes;
             if together && let Some(made) = left.run_code_for_both(right, &mut rig.processor, 0).map_err(fault)? {
                 let [left, right] = [sample(left, &made[0]), sample(right, &made[1])];
@@ -362,7 +349,7 @@ fn begun(version: CodeVersion, of: CodeUse, scene: &str) -> Result<Begun, Experi
     let whole_ns = beginning_ns(of, whole)?;
     let plain_ns = beginning_ns(of, rig(without_spheres)?)?;
     let more_ns = beginning_ns(of, rig(with_more_structures)?)?;
-    let eyes = of.eyes_of_a_pass()[0].len() as f64;
+    let eyes = eyes_of_a_pass(of)[0].len() as f64;
     let structure_ns = (more_ns - plain_ns) / (MORE_STRUCTURES as f64 * eyes);
     Ok(Begun {
         pass_ns: plain_ns - structure_ns * structures as f64 * eyes,
@@ -373,15 +360,15 @@ fn begun(version: CodeVersion, of: CodeUse, scene: &str) -> Result<Begun, Experi
 
 /// Mean time in which a pass begins: of each eye, or of both where one follows the other.
 fn beginning_ns(of: CodeUse, mut rig: Rig) -> Result<f64, ExperimentError> {
-    let eyes = of.eyes_of_a_pass();
+    let eyes = eyes_of_a_pass(of);
     let mut all_ns = 0.0;
     for number in 0..VIEWS {
         let view = rig.view(number);
         for eyes in eyes {
-            let beginning = rig.share.beginning(&view, eyes, of.picture());
+            let beginning = rig.share.beginning(&view, eyes, picture(of));
             // The triangles of the pass before have taken the caches.
             eyes.iter().try_for_each(|eye| {
-                let pass = rig.share.transform(&view, *eye, of.picture());
+                let pass = rig.share.transform(&view, *eye, picture(of));
                 pass.run_code(&mut rig.processor, *eye as u8).map(|_| ()).map_err(fault)
             })?;
             let span = beginning.by_code(&GpTiming::PAPERS, &mut rig.processor).map_err(fault)?;

@@ -1,7 +1,7 @@
 //! The timing table's constants that follow from code, held to the code.
 
 use pxpl5_gp::{CodeVersion, GpTiming};
-use pxpl5_lab::code_times::{CodeTimes, CodeUse, code_times};
+use pxpl5_lab::code_times::{CodeTimes, code_times};
 
 fn table(times: CodeTimes) -> Vec<u64> {
     let CodeTimes { triangle_ns, sphere_ns, guard_ns, entry_ns, edit_ns, message_ns, .. } = times;

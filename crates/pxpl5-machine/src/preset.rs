@@ -3,7 +3,7 @@
 use crate::config::{ConfigError, MachineConfig};
 use parameters::nearest;
 use pxpl5_framebuffer::FrameBufferConfig;
-use pxpl5_gp::{CodeVersion, GpTiming, HostTiming};
+use pxpl5_gp::{CodeUse, CodeVersion, GpTiming, HostTiming};
 use pxpl5_renderer::RendererTiming;
 use pxpl5_ring::RingTiming;
 use serde::Serialize;
@@ -98,19 +98,11 @@ impl MachineConfig {
         Ok(Self::from_preset(preset))
     }
 
-    /// The machine with the times of primitives that follow from the code that its preset runs, instead of those that were published
-    /// or fitted.
-    ///
-    /// Presets of Slats take the times of code for precomputed vertex colours. They do not hold for Slats with light on the GP
-    /// (`lighting = "gp"`), whose code is slower; only the cycle level has its times.
+    /// Returns the machine with the times of primitives that follow from its i860 code in one use, instead of those that were
+    /// published or fitted. A machine without code takes the times of compiled code.
     #[must_use]
-    pub fn with_times_of_code(self) -> Self {
-        let slats = self.preset.starts_with("slats");
-        let gp = match self.code {
-            Some(CodeVersion::Scheduled) if slats => self.gp.of_scheduled_precomputed(),
-            _ if slats => self.gp.of_compiled_precomputed(),
-            _ => self.gp.of_scheduled_phong(),
-        };
+    pub fn with_times_of_code(self, of: CodeUse) -> Self {
+        let gp = self.gp.of_code(self.code.unwrap_or(CodeVersion::Compiled), of);
         Self { gp, ..self }
     }
 

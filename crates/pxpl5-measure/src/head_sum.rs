@@ -3,6 +3,7 @@
 use crate::budget::{Budget, BudgetSum};
 use crate::error_sum::ErrorSum;
 use crate::errors::PixelErrors;
+use crate::step_sum::{StepSum, Steps};
 use crate::turn_sum::{TurnSum, Turns};
 use pxpl5_run::{Settled, Summing};
 use std::any::Any;
@@ -13,6 +14,7 @@ use std::any::Any;
 pub struct HeadSum {
     budget: BudgetSum,
     turns: TurnSum,
+    steps: StepSum,
     errors: ErrorSum,
 }
 
@@ -28,12 +30,14 @@ impl Summing for HeadSum {
     fn take(&mut self, settled: &Settled<'_>) {
         self.budget.take(settled);
         self.turns.take(settled);
+        self.steps.take(settled);
         self.errors.take(settled);
     }
 
     fn said(self: Box<Self>) -> Box<dyn Any + Send + Sync> {
-        let Self { budget, turns, errors } = *self;
-        Box::new(HeadSaid { end_to_end: budget.said(), turns: turns.said(), error: errors.said() })
+        let Self { budget, turns, steps, errors } = *self;
+        let (turns, steps) = (turns.said(), steps.result());
+        Box::new(HeadSaid { end_to_end: budget.said(), turns, steps, error: errors.said() })
     }
 }
 
@@ -42,5 +46,6 @@ impl Summing for HeadSum {
 pub(crate) struct HeadSaid {
     pub(crate) end_to_end: Budget,
     pub(crate) turns: Turns,
+    pub(crate) steps: Vec<Steps>,
     pub(crate) error: PixelErrors,
 }

@@ -33,6 +33,7 @@ mod registration;
 mod report;
 mod screen;
 mod shown;
+mod step_sum;
 mod summary;
 mod too_heavy;
 mod turn_sum;

@@ -4,6 +4,7 @@ use crate::budget::{Budget, BudgetSum, of_pictures, poses};
 use crate::error_sum::ErrorSum;
 use crate::errors::{PixelErrors, Showing};
 use crate::head_sum::HeadSaid;
+use crate::step_sum::{StepSum, Steps};
 use crate::turn_sum::{TurnSum, Turns};
 use pxpl5_run::{Cause, Outcome};
 
@@ -89,5 +90,20 @@ impl Turns {
         let mut sum = TurnSum::default();
         sum.take(&outcome.settled());
         sum.said()
+    }
+}
+
+impl Steps {
+    /// Returns the latencies of a step for each memory of a run; none where the run dropped its records unobserved.
+    pub(crate) fn of(outcome: &Outcome) -> Vec<Self> {
+        if let Some(said) = HeadSaid::while_it_ran(outcome) {
+            return said.steps.clone();
+        }
+        if outcome.has_forgotten() {
+            return Vec::new();
+        }
+        let mut sum = StepSum::default();
+        sum.take(&outcome.settled());
+        sum.result()
     }
 }

@@ -41,10 +41,20 @@ impl FaceHistory {
 
     /// What each memory that shows something shows in a period, the lowest first.
     pub fn at(&self, period: PeriodNumber) -> impl Iterator<Item = &ShownMemory> {
-        self.memories.iter().filter_map(move |shown| {
-            let after = shown.partition_point(|shown| shown.from <= period);
-            shown[..after].last()
-        })
+        (0..self.memories.len()).filter_map(move |memory| self.memory_at(memory, period))
+    }
+
+    /// Returns the number of memories of the display.
+    #[must_use]
+    pub const fn n_memories(&self) -> usize {
+        self.memories.len()
+    }
+
+    /// Returns what a memory shows in a period; `None` before its first update.
+    #[must_use]
+    pub fn memory_at(&self, memory: usize, period: PeriodNumber) -> Option<&ShownMemory> {
+        let shown = self.memory(memory);
+        shown[..shown.partition_point(|shown| shown.from <= period)].last()
     }
 
     /// Everything that a memory showed, in order.

@@ -10,7 +10,7 @@ use image::RgbImage;
 use pphigs::{DisplayList, Shading};
 use priority_rendering::Cell;
 use pxpl5_display::{Aim, LightSpan};
-use pxpl5_gp::HostTiming;
+use pxpl5_gp::{CodeUse, HostTiming};
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_scene::Scene;
@@ -114,6 +114,11 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     /// Where it computes colours: at the corners, unless said.
     fn shading(&self) -> Shading {
         Shading::Gouraud
+    }
+
+    /// Use that the pipeline makes of the i860 code, for the times of the code: PPHIGS, unless said otherwise.
+    fn code_use(&self) -> CodeUse {
+        CodeUse::Pphigs
     }
 
     /// The machine with what the pipeline's variant changes in it, such as the time of its code.

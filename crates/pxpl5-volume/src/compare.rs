@@ -33,7 +33,7 @@ pub struct VariantRow {
     pub tile_occupancy_percent: f64,
     /// Part of the mesh's intersections with the slices that is shown, percent.
     pub connected_percent: f64,
-    /// Radius within which no slice shows anything; none of a dark volume.
+    /// Radius in pixels within which no slice can show a point, whatever the scene; none if no slice can show anything.
     pub dead_zone_radius_px: Option<u32>,
     /// Pixels lit in any colour, in all slices.
     pub lit_voxels: u64,

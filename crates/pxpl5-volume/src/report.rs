@@ -5,7 +5,7 @@ use crate::pixel_planes::{BoundRow, SimulatedRow, SliceBounds, SliceTraffic, sim
 use crate::settings::VolumeSettings;
 use parameters::Value;
 use serde::Serialize;
-use spatialgl::{SpatialDisplay, VolumeTime, brightness_by_radius, connected, dead_zone_radius};
+use spatialgl::{SpatialDisplay, VolumeTime, brightness_by_radius, connected, dead_zone_radius, innermost_lit_radius};
 
 /// Width of the rings in which brightness is reported, pixels.
 const RING_PX: u32 = 8;
@@ -73,8 +73,10 @@ pub struct VolumeReport {
     pub connected_percent: f64,
     /// Lit pixels by their distance from the axis.
     pub brightness_by_radius: Brightness,
-    /// Radius within which no slice shows anything; none of a dark volume.
+    /// Radius in pixels within which no slice can show a point, whatever the scene; none if no slice can show anything.
     pub dead_zone_radius_px: Option<u32>,
+    /// Distance in pixels from the axis to the nearest lit pixel; none of a dark volume.
+    pub innermost_lit_px: Option<u32>,
     /// Times of the model of a host with a GPU; none if the renderers of Pixel-Planes 5 drew.
     pub model_ms: Option<ModelTimes>,
     /// Volumes a second if processor, GPU and bus follow each other; none likewise.
@@ -236,7 +238,8 @@ impl Volume {
             lit_voxels: planes.lit_voxels(),
             connected_percent: self.connected_percent(),
             brightness_by_radius: self.brightness(),
-            dead_zone_radius_px: dead_zone_radius(planes),
+            dead_zone_radius_px: dead_zone_radius(&self.display),
+            innermost_lit_px: innermost_lit_radius(planes),
             model_ms: time.as_ref().map(|time| self.model_times(time)),
             volumes_hz_serial: time.as_ref().map(VolumeTime::serial_hz),
             volumes_hz_overlapped: time.as_ref().map(VolumeTime::overlapped_hz),

@@ -52,6 +52,7 @@ const FIELDS: [&str; 34] = [
     "connected_percent",
     "brightness_by_radius",
     "dead_zone_radius_px",
+    "innermost_lit_px",
     "model_ms",
     "volumes_hz_serial",
     "volumes_hz_overlapped",
@@ -108,7 +109,8 @@ fn an_empty_scene_is_a_dark_volume() {
     let commands = pxpl5_volume::spatialgl::CommandBuffer::default();
     let volume = Volume::draw_commands(&small(), "nothing", commands, &OneThread).expect("valid");
     let report = volume.report();
-    assert_eq!((report.lit_voxels, report.tiles_occupied, report.dead_zone_radius_px), (0, 0, None));
+    assert_eq!((report.lit_voxels, report.tiles_occupied, report.innermost_lit_px), (0, 0, None));
+    assert_eq!(report.dead_zone_radius_px, Some(0), "exact planes can show any column");
     assert_eq!(report.slices_empty, 36);
 }
 

@@ -81,7 +81,9 @@ pub use error::SpatialError;
 pub use frame::{BitPlanes, ColourSample, VolumeFrame};
 pub use halftone::Halftone;
 pub use image::SliceImage;
-pub use measure::{Connected, brightness_by_radius, connected, dead_zone_radius, gap_correlation};
+pub use measure::{
+    Connected, brightness_by_radius, connected, dead_zone_radius, gap_correlation, innermost_lit_radius,
+};
 pub use pack::{
     BitOrder, DENSE_PIXELS, PIXELS_PER_WORD, in_bit_order, pack_dense, packed_word, pixel_of_word, unpack_dense,
 };

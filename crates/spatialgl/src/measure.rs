@@ -169,10 +169,28 @@ pub fn brightness_by_radius(planes: &BitPlanes, ring: u32) -> Vec<u64> {
     rings
 }
 
-/// Radius in pixels within which no slice shows anything; `None` for a dark volume.
+/// Returns the distance of the lit pixel that is nearest to the axis, in pixels; `None` for a dark volume.
 #[must_use]
-pub fn dead_zone_radius(planes: &BitPlanes) -> Option<u32> {
+pub fn innermost_lit_radius(planes: &BitPlanes) -> Option<u32> {
     brightness_by_radius(planes, 1).iter().position(|lit| *lit > 0).map(|radius| radius as u32)
+}
+
+/// Returns the radius in pixels of the display's dead zone, in which no slice can show any point, whatever the scene.
+///
+/// A column of pixels belongs to the dead zone if no slice accepts the centre of the column at half of the volume's height, on either
+/// side of the axis. `None` if no column of any slice accepts it.
+#[must_use]
+pub fn dead_zone_radius(display: &dyn SpatialDisplay) -> Option<u32> {
+    let to_world: Vec<_> = display.views().iter().map(|view| view.view.inverse()).collect();
+    let is_shown = |column: &u32| {
+        let radius = f64::from(*column) + 0.5;
+        let sides = [radius, -radius].map(|x| DVec3::new(x, 0.0, 0.0));
+        to_world
+            .iter()
+            .enumerate()
+            .any(|(view, to_world)| sides.iter().any(|local| display.accepts(view, to_world.transform_point3(*local))))
+    };
+    (0..display.target_size()[0] / 2).find(is_shown)
 }
 
 fn lit_by_column(planes: &BitPlanes) -> Vec<u64> {

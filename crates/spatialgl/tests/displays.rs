@@ -178,7 +178,11 @@ fn planes_of_few_bits_leave_a_dead_zone() {
         // In the plane of slice 0 A = B = r S.
         let first = (1..10_000).map(|i| f64::from(i) * 1e-3).find(|r| display.accepts(0, DVec3::new(*r, 0.0, 0.0)));
         assert!((first.expect("somewhere") - radius).abs() < 0.002 + radius * 0.002, "{first:?}");
+        // The columns whose centres (0.5, 1.5 ...) lie inside, whatever is drawn.
+        assert_eq!(dead_zone_radius(&display), Some((radius + 0.5).floor() as u32));
     }
+    let exact = swept(SliceClip::ShaderPlanes, Projection::Orthographic);
+    assert_eq!(dead_zone_radius(&exact), Some(0), "a property of the display, not of what is lit");
 }
 
 /// Section 1 of the specification: the prism is bright near the axis, exact planes dark; the hyperbola neither.

@@ -1,6 +1,6 @@
 //! Mean time of a message's software: what a board receives and sends around the passes over a scene, but for entries handed over.
 
-use super::{BOARDS, CodeUse, Rig, VIEWS, solve};
+use super::{BOARDS, CodeUse, Rig, VIEWS, parts, picture, solve};
 use pphigs::{FrameView, Handing, Pass, RegionEnvelope, region_messages};
 use pxpl5_gp::{CodeVersion, Fault, GpTiming, Processor, Work};
 use pxpl5_machine::MachineConfig;
@@ -86,7 +86,7 @@ pub(super) fn traffic(version: CodeVersion, of: CodeUse, scene: &str) -> Result<
 
 /// A frame of a slave: the host's view, leave for EDIT and TRANSFORM, reports of both, and of each eye the token of every region.
 fn slave(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) -> Result<(), Fault> {
-    let regions = of.picture().viewport.grid().regions() as u16;
+    let regions = picture(of).viewport.grid().regions() as u16;
     traffic.receive(&mut rig.processor, 1 + view.to_words().len() as u32)?;
     traffic.receive(&mut rig.processor, ORDER)?;
     traffic.send_words(&mut rig.processor, ORDER)?;
@@ -94,7 +94,7 @@ fn slave(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) ->
         if eye > 0 {
             traffic.receive(&mut rig.processor, ORDER)?;
         }
-        let pass = rig.share.transform(view, eye, of.picture());
+        let pass = rig.share.transform(view, eye, picture(of));
         pass.run_code(&mut rig.processor, eye as u8)?;
         traffic.send_words(&mut rig.processor, ORDER + u32::from(regions))?;
         for region in (0..regions).map(RegionId) {
@@ -125,10 +125,10 @@ fn token(
 /// A field of Slats on a board: the view, a chain for each clump to the regions of both eyes, and two chains of copy commands to all
 /// renderers.
 fn field(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) -> Result<(), Fault> {
-    let regions = of.picture().viewport.grid().regions() as u16;
+    let regions = picture(of).viewport.grid().regions() as u16;
     traffic.receive(&mut rig.processor, view.to_words().len() as u32)?;
-    for clump in of.parts(&rig.share) {
-        let passes = [0, 1].map(|eye| clump.transform(view, eye, of.picture()));
+    for clump in parts(of, &rig.share) {
+        let passes = [0, 1].map(|eye| clump.transform(view, eye, picture(of)));
         if passes[0].run_code_for_both(&passes[1], &mut rig.processor, 0)?.is_none() {
             for pass in &passes {
                 pass.run_code(&mut rig.processor, 0)?;

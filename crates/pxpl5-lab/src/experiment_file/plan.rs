@@ -212,7 +212,7 @@ impl ExperimentFile {
             machine.code = code;
         }
         if self.choice("machine.times", &TIMES)? == Some(true) {
-            machine = machine.with_times_of_code();
+            machine = machine.with_times_of_code(pipeline.code_use());
         }
         let adapted = machine.clone();
         for (path, setting) in &self.settings {

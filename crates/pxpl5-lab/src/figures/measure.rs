@@ -11,6 +11,7 @@ use parameters::{ParameterTable, Value};
 use pphigs::{BIN_ENTRY_BYTES, Picture, RegionBinning, Shading, Share, TransformCost};
 use pxpl5_analytic::{StereoModel, stereo_loads};
 use pxpl5_geometry::Viewport;
+use pxpl5_gp::CodeUse;
 use pxpl5_machine::{ConfigError, MachineConfig, PRESETS};
 use pxpl5_renderer::{CommandKind, Layout};
 use pxpl5_run::{
@@ -76,7 +77,8 @@ impl Bench {
     pub fn with_times_of_code(mut self) -> Self {
         for preset in PRESETS {
             let Ok(machine) = MachineConfig::preset(preset.name) else { continue };
-            let by_code = machine.clone().with_times_of_code().gp.entries();
+            let of = if preset.name.starts_with("slats") { CodeUse::Slats } else { CodeUse::Pphigs };
+            let by_code = machine.clone().with_times_of_code(of).gp.entries();
             for (code, table) in by_code.iter().zip(machine.gp.entries()) {
                 if let Value::Whole(ns) = code.value
                     && code.value != table.value

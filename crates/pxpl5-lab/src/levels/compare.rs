@@ -94,7 +94,7 @@ fn of_variant((level, times_of_code): (Level, bool), number: u64) -> Result<Expe
     if !times_of_code || level == Level::Cycle {
         return Ok(experiment);
     }
-    let machine = experiment.config().clone().with_times_of_code();
+    let machine = experiment.config().clone().with_times_of_code(experiment.pipeline().code_use());
     let other = Experiment::with(machine, Arc::clone(experiment.pipeline()), Arc::clone(experiment.scene()));
     Ok(other.fields(experiment.length()).seed(experiment.seed_of_motion()).pixels(Pixels::Off).level(level))
 }

@@ -1,6 +1,6 @@
 //! The machines of the papers.
 
-use pxpl5_gp::{CodeVersion, GpTiming};
+use pxpl5_gp::{CodeUse, CodeVersion, GpTiming};
 use pxpl5_machine::{MachineConfig, PRESETS};
 
 /// TR94 (small-hmd, slats), I3D95 (slats-1995, slats-optimised, large), F89 (design-maximum). Triangles: TR94's limit of 110 a field and
@@ -34,27 +34,25 @@ fn an_unknown_preset_names_the_nearest() {
     assert_eq!(error.to_string(), "there is no machine `larg`; did you mean `large`? (`pxpl5 machines` lists all)");
 }
 
-/// Slats lights by Gouraud (TR94), Rendering Control by Phong; compiled is the code that did not fit the cache.
+/// Compiled is the code that did not fit the cache.
 #[test]
-fn times_of_code_are_those_of_the_code_that_a_preset_runs() {
-    for preset in PRESETS {
-        let before = MachineConfig::preset(preset.name).expect("it is listed");
-        let after = before.clone().with_times_of_code();
-        let expected = match preset.name {
-            "slats" | "slats-1995" => before.gp.of_compiled_precomputed(),
-            "slats-optimised" => before.gp.of_scheduled_precomputed(),
-            _ => before.gp.of_scheduled_phong(),
-        };
-        assert_eq!(after.gp, expected, "{}", preset.name);
-        assert_ne!(after.gp, before.gp);
-        assert_eq!(MachineConfig { gp: before.gp, ..after }, before, "the rest stays");
+fn times_of_code_are_those_of_the_version_in_its_use() {
+    let compiled = MachineConfig::slats();
+    let scheduled = MachineConfig::preset("slats-optimised").expect("it is listed");
+    let expected = [
+        (&compiled, CodeUse::Slats, GpTiming::SLATS_1994.of_compiled_precomputed()),
+        (&compiled, CodeUse::SlatsLit, GpTiming::SLATS_1994.of_compiled_gouraud()),
+        (&scheduled, CodeUse::Slats, GpTiming::SLATS_OPTIMISED.of_scheduled_precomputed()),
+        (&scheduled, CodeUse::SlatsLit, GpTiming::SLATS_OPTIMISED.of_scheduled_gouraud()),
+        (&compiled, CodeUse::Pphigs, GpTiming::SLATS_1994.of_scheduled_phong()),
+    ];
+    for (before, of, times) in expected {
+        let after = before.clone().with_times_of_code(of);
+        assert_eq!(after.gp, times, "{} {of:?}", before.preset);
+        assert_eq!(MachineConfig { gp: before.gp, ..after }, *before, "the rest stays");
     }
-    let mut without = MachineConfig::slats();
-    without.code = None;
-    assert_eq!(without.with_times_of_code().gp, GpTiming::SLATS_1994.of_compiled_precomputed());
-    let mut compiled = MachineConfig::small_hmd();
-    compiled.code = Some(CodeVersion::Compiled);
-    assert_eq!(compiled.with_times_of_code().gp, GpTiming::PAPERS.of_scheduled_phong());
+    let without = MachineConfig { code: None, ..compiled.clone() };
+    assert_eq!(without.with_times_of_code(CodeUse::Slats).gp, compiled.with_times_of_code(CodeUse::Slats).gp);
 }
 
 #[test]

@@ -8,7 +8,7 @@ use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use pphigs::{RegionBinning, Shading, Share};
 use pxpl5_display::LightSpan;
 use pxpl5_framebuffer::Video;
-use pxpl5_gp::{CodeVersion, GpTiming, Priority};
+use pxpl5_gp::{CodeUse, CodeVersion, GpTiming, Priority};
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
@@ -147,6 +147,13 @@ impl Pipeline for Slats {
 
     fn shading(&self) -> Shading {
         self.lighting.shading()
+    }
+
+    fn code_use(&self) -> CodeUse {
+        match self.lighting {
+            SlatsLighting::Precomputed => CodeUse::Slats,
+            SlatsLighting::OnGp => CodeUse::SlatsLit,
+        }
     }
 
     /// The code decides the times per primitive, nothing else.
