@@ -1,4 +1,4 @@
-//! What a machine tells its displays, and what they tell it.
+//! Events between the machine and its displays.
 
 use super::{Contexts, Machine};
 use crate::agenda::schedule_own;
@@ -16,6 +16,7 @@ impl Machine {
         let first_surface = record.first_surface(display);
         record.displays[display].handle(event, context.at(now));
         schedule_own(queue, context, |event| Event::Display(display, event));
+        // Record every output in the trace and in the observation.
         for (time, output) in context.drain_outputs() {
             match output {
                 DisplayOutput::RegionArrived { surface, target, first_part_at, last_part_at } => {
@@ -40,7 +41,8 @@ impl Machine {
     }
 }
 
-/// Notes that a surface, or a part of it behind a port of its own, shows its other buffer from a tick on, and tells the master.
+/// Records that a surface, or the part of it behind one port, shows its other buffer from a tick on, and signals the
+/// first GP.
 fn note_swap(
     observation: &mut Observation,
     queue: &mut EventQueue<Event>,
