@@ -1,23 +1,21 @@
-//! What follows from printed numbers alone: no code under test could give another value, so there is no verdict.
+//! Numbers that follow from printed numbers alone. No simulation could change them, so they have no verdict.
 
 use super::fit::RATES_HZ;
 use address_recalculation::ArpTiming;
 use priority_rendering::{draws_per_s, saved_percent};
 use serde::Serialize;
 
-/// Segments drawn, with segmentation and without (table 2).
+/// Number of segments drawn by each memory, with and without segmentation (table 2).
 pub const SEGMENTS: [[u64; 4]; 2] = [[87, 14, 20, 62], [160, 8, 3, 42]];
 
-/// A number that is computed from printed ones.
+/// A number computed from printed numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Definition {
-    /// Its name in the specification.
+    /// Name of the number in the specification.
     pub id: &'static str,
-    /// What it is, and what it is computed from.
+    /// Description of the number and of its inputs.
     pub statement: String,
-    /// Its value.
     pub value: f64,
-    /// Its unit.
     pub unit: &'static str,
 }
 
@@ -25,11 +23,11 @@ fn definition(id: &'static str, statement: String, value: f64, unit: &'static st
     Definition { id, statement, value, unit }
 }
 
-/// All definitions.
+/// Returns all definitions.
 #[must_use]
 pub fn definitions() -> Vec<Definition> {
     let mut all = Vec::new();
-    // A4 and A17 hold by the order of the stages: nothing that draws lies between the latch and the light.
+    // A4 and A17 follow from the order of the stages: no drawing stage lies between the latch and the light.
     let drawn = "share of rendering and buffer swap in rotational latency, by the order of the stages".to_owned();
     all.push(definition("A4", drawn, 0.0, "ms"));
     let stages =

@@ -1,4 +1,4 @@
-//! All rows, experiment by experiment.
+//! All rows of the comparison, by experiment.
 
 use super::definitions::SEGMENTS;
 use super::experiments::{Experiments, Fit};
@@ -7,8 +7,9 @@ use super::interpretations::PIXEL_DEG;
 use super::row::{Row, Standing};
 use priority_rendering::saved_percent;
 
-/// Rows of E1 to E9; those of E1 that need a machine are not among them. What follows from printed numbers alone stands in
-/// [`definitions`](super::definitions()).
+/// Returns the rows of E1 to E9, except rows of E1 that need a machine.
+///
+/// Numbers that follow from printed numbers alone are in [`definitions`](super::definitions()).
 #[must_use]
 pub fn rows(all: &Experiments) -> Vec<Row> {
     let experiments = [
@@ -36,7 +37,7 @@ fn composition(all: &Experiments) -> Vec<Row> {
     vec![Row::number("fig. 2", statement, "texels", [0.0, all.composite_differs as f64], Standing::Checked)]
 }
 
-/// "About ten times the distance": spheres, the distance being that of the nearest point; the radius' angle may change by the threshold.
+/// Compares A8, "about ten times the distance", for spheres and the distance of the nearest point.
 fn sizes(all: &Experiments) -> Vec<Row> {
     let limits = all.size_limits.iter().map(|limit| limit.of_nearest);
     let [least, most] = [limits.clone().fold(f64::INFINITY, f64::min), limits.fold(0.0, f64::max)];
@@ -64,7 +65,6 @@ fn reductions(all: &Experiments) -> Vec<Row> {
     rows
 }
 
-/// Table 1.
 fn table_1(all: &Experiments) -> Vec<Row> {
     (0..4).map(|memory| rate(all, memory)).collect()
 }

@@ -1,4 +1,4 @@
-//! Drawings: cells from above, and a row of updates for each memory.
+//! Drawings of the cells from above, and of the updates of each memory.
 
 use super::colours::MEMORY_COLOURS;
 use crate::simulation::{FrameOutcome, Simulation};
@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use tracking::motion::Walk;
 
-/// Pixels of a metre, and of the margin.
+/// Pixels per metre.
 const SCALE: f64 = 14.0;
 const MARGIN: f64 = 30.0;
 
@@ -18,7 +18,7 @@ fn colour(memory: usize) -> String {
     format!("#{:06x}", MEMORY_COLOURS[memory % MEMORY_COLOURS.len()])
 }
 
-/// Where places lie on a drawing of the floor.
+/// Mapping from the floor of the hall to a drawing.
 struct Plan {
     low: [f64; 2],
     size: [f64; 2],
@@ -48,7 +48,8 @@ fn head(width: f64, height: f64) -> String {
     )
 }
 
-/// Cells by their memories, partitions, the path, the eye and its home cell, from above, -z at the top.
+/// Draws the cells from above, coloured by memory, with partitions, path, eye and home cell. The direction -z is at the
+/// top.
 #[must_use]
 pub fn cells_svg(world: &World, simulation: &Simulation<'_>, path: &Walk, eye: DVec3) -> String {
     let side = simulation.settings().numbers.cell_m;
@@ -106,7 +107,7 @@ fn legend(svg: &mut String, memory: usize, top: f64) {
     );
 }
 
-/// Edges of triangles that stand upright, seen from above: walls and partitions.
+/// Draws the edges of upright triangles from above: walls and partitions.
 fn upright_edges(svg: &mut String, world: &World, plan: &Plan) {
     for three in world.segments.iter().flat_map(|segment| &segment.triangles) {
         let [a, b, c] = three.map(|i| world.vertices[i as usize]);
@@ -124,7 +125,8 @@ fn upright_edges(svg: &mut String, world: &World, plan: &Plan) {
     }
 }
 
-/// For each frame of a range a mark in the row of each memory: due and shown, due and missed, dealt anew.
+/// Draws a row per memory with a mark for each frame in which the memory was shown or missed, and for new assignments
+/// of cells.
 #[must_use]
 pub fn updates_svg(tally: &WalkTally, frames: std::ops::Range<u64>) -> String {
     let memories = tally.memories.len();
@@ -162,7 +164,7 @@ pub fn updates_svg(tally: &WalkTally, frames: std::ops::Range<u64>) -> String {
     svg
 }
 
-/// What happened to a memory in a frame.
+/// Draws the mark of a memory in one frame.
 fn mark(svg: &mut String, outcome: &FrameOutcome, memory: usize, x: f64) {
     let top = 22.0 + 34.0 * memory as f64;
     let place = format!("x=\"{x:.0}\" y=\"{top:.0}\" width=\"6\" height=\"24\"");

@@ -1,4 +1,4 @@
-//! Cuts of the segmentation as wires, as an eye sees them.
+//! Wireframe of the cuts that the segmentation makes, as the eye sees them.
 
 use crate::world::World;
 use address_recalculation::Picture;
@@ -6,11 +6,12 @@ use glam::{DQuat, DVec3};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-/// What lies nearer before the eye is not drawn, m.
+/// Near plane in metres. Edges nearer to the eye are clipped.
 const NEAR_M: f64 = 0.05;
 
-/// Edges of all triangles as an eye at a place sees them, nothing hidden: grey what the scene has, red what borders of cells of this side
-/// (m) cut into it.
+/// Draws the edges of all triangles without hidden-line removal.
+///
+/// Edges of the scene are grey. Edges cut by the borders of cells with side `side_m` are red.
 #[must_use]
 pub fn cuts_svg(world: &World, side_m: f64, eye: DVec3, orientation: DQuat, screen: &Picture) -> String {
     let [width, height] = [screen.width, screen.height].map(f64::from);
@@ -40,7 +41,7 @@ pub fn cuts_svg(world: &World, side_m: f64, eye: DVec3, orientation: DQuat, scre
     svg
 }
 
-/// Edges by their vertices, and whether each lies on a border of cells.
+/// Returns all edges by their vertices, with a flag that is true if the edge lies on a border of cells.
 fn edges(world: &World, side_m: f64) -> BTreeMap<[u32; 2], bool> {
     let mut edges = BTreeMap::new();
     for three in world.segments.iter().flat_map(|segment| &segment.triangles) {
@@ -54,13 +55,14 @@ fn edges(world: &World, side_m: f64) -> BTreeMap<[u32; 2], bool> {
     edges
 }
 
-/// Whether both coordinates are the same border: cuts compute them exactly so.
+/// Returns true if both coordinates are exactly the same border. Cuts compute coordinates so that this comparison is
+/// exact.
 fn is_on_border(p: f64, q: f64, side_m: f64) -> bool {
     let border = (p / side_m).round() * side_m;
     p == border && q == border
 }
 
-/// The part of an edge that lies before the eye.
+/// Returns the part of an edge in front of the near plane.
 fn before(a: DVec3, b: DVec3) -> Option<[DVec3; 2]> {
     let at_near = |from: DVec3, to: DVec3| from.lerp(to, (-NEAR_M - from.z) / (to.z - from.z));
     match (a.z < -NEAR_M, b.z < -NEAR_M) {
