@@ -1,12 +1,13 @@
-//! The literal twin: every register of every stage, clock by clock.
+//! The reference model: every register of every stage, clock by clock.
 //!
 //! ```text
 //! table - multiply - add - add - face - divide x q - address - memory - compare x log2 n - interpolate -> light
 //! ```
 //!
-//! A pixel enters at each clock and lights as many clocks later as there are stages. Products are sums of partial products,
-//! quotients come bit by bit, texels out of banks, the nearest through a tree of comparators. Nothing of it is shared with the
-//! fast path but the names of faces and the format of words.
+//! A pixel enters at each clock and lights after as many clocks as there are stages. Products are sums of partial
+//! products. Quotients are computed bit by bit. Texels come from banks. A tree of comparators finds the nearest texel.
+//!
+//! The reference model shares with the fast model only the names of faces and the format of words.
 
 mod arithmetic;
 mod banks;
@@ -25,7 +26,7 @@ use arithmetic::{Divider, multiply, multiply_unsigned, signed};
 use registers::Registers;
 use std::collections::VecDeque;
 
-/// What a stage does to the registers of the pixel in it.
+/// A stage of the pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
     Table,
@@ -45,9 +46,9 @@ enum Stage {
 pub struct LitPixel {
     /// Column and line in the frame.
     pub pixel: [u32; 2],
-    /// What it shows: 0x00RRGGBB.
+    /// Displayed colour, 0x00RRGGBB.
     pub colour: u32,
-    /// The texels that it was made of.
+    /// The texels from which the pixel was computed.
     pub footprint: Footprint,
 }
 
@@ -60,12 +61,12 @@ pub struct LiteralPipeline {
     vector_bits: u64,
     matrix_bits: u64,
     stages: Vec<Stage>,
-    /// The pixel in each stage, the first stage first.
+    /// The pixel in each stage, starting with the first stage.
     inside: VecDeque<Option<Registers>>,
 }
 
 impl LiteralPipeline {
-    /// An empty pipeline with a table of viewing vectors.
+    /// Creates an empty pipeline with a table of viewing vectors.
     #[must_use]
     pub fn new(config: &ArpConfig, table: LensTable) -> Self {
         let timing = &config.timing;
@@ -88,14 +89,16 @@ impl LiteralPipeline {
         }
     }
 
-    /// Stages from the table to the light.
+    /// Returns the number of stages from the table to the light.
     #[must_use]
     pub fn stages(&self) -> usize {
         self.stages.len()
     }
 
-    /// One clock: takes a pixel with the orientation that was latched for it, moves all others one stage on and gives the one
-    /// that lights. The buffers are those that are shown at this clock, the background memory last.
+    /// Simulates one clock. All pixels advance by one stage, and the pixel that leaves the last stage is returned.
+    ///
+    /// `entering` is the new pixel with its latched orientation. `memories` and `background` are the buffers visible at
+    /// this clock.
     pub fn clock(
         &mut self,
         entering: Option<([u32; 2], MatrixWords)>,
@@ -139,7 +142,7 @@ impl LiteralPipeline {
         }
     }
 
-    /// Bits of a sum of three products: the product's and one more.
+    /// Returns the number of bits of a sum of three products: one more than a product.
     const fn sum_bits(&self) -> u64 {
         self.vector_bits + self.matrix_bits + 1
     }
@@ -167,7 +170,7 @@ impl LiteralPipeline {
         }
     }
 
-    /// Comparators choose the longest component, multiplexers and sign changers the face's axes.
+    /// Selects the face by comparators, and the face's axes by multiplexers and sign changers.
     fn select_face(&self, registers: &mut Registers) {
         let [x, y, z] = registers.sums;
         let longer = [x.abs() >= y.abs(), x.abs() >= z.abs(), y.abs() >= z.abs()];
@@ -185,7 +188,8 @@ impl LiteralPipeline {
         registers.dividers = [forward + right, forward - up].map(|dividend| Divider::new(dividend as u64, divisor));
     }
 
-    /// Multiplies the quotients by the face's size; what is above the binary point is the texel, below it the fractions.
+    /// Multiplies the quotients by the size of the face. Bits above the binary point select the texel, and lower bits
+    /// the fractions.
     fn address(&self, registers: &Registers) -> Footprint {
         let q = self.unit.quotient_bits;
         let inner = u64::from(self.unit.geometry.inner());

@@ -1,4 +1,4 @@
-//! The stages behind the memories: comparators and interpolation.
+//! The stages after the memories in the reference model: comparators and interpolation.
 
 use super::arithmetic::multiply_unsigned;
 use super::banks::BankedMemory;
@@ -35,7 +35,9 @@ fn candidate(memory: &BankedMemory, texels: &[Option<TexelAddress>; 4], behind: 
     read
 }
 
-/// One level of the tree: of each two neighbours the nearer, the first on ties; one without a neighbour goes on.
+/// Simulates one level of the comparator tree. Of two neighbours the nearer one stays, and the first one wins a tie.
+///
+/// A candidate without a neighbour passes unchanged.
 pub(super) fn compare(registers: &mut Registers) {
     let pairs = registers.candidates.chunks(2);
     registers.candidates = pairs.map(|pair| pair.iter().copied().reduce(nearer).unwrap_or(pair[0])).collect();
@@ -52,7 +54,7 @@ fn nearer(first: Candidate, second: Candidate) -> Candidate {
     nearest
 }
 
-/// Weighs the four texels of every candidate that is left.
+/// Interpolates the four texels of every remaining candidate.
 pub(super) fn interpolate(composition: &Composition, registers: &mut Registers) {
     let Some(footprint) = registers.footprint else { return };
     let products = footprint.weights(composition.weight_bits);
@@ -69,7 +71,7 @@ pub(super) fn interpolate(composition: &Composition, registers: &mut Registers) 
     registers.colour = registers.candidates.first().map_or(0, |candidate| candidate.colours[0]);
 }
 
-/// The colour that leaves the last stage: what is behind all memories where their nearest is the farthest.
+/// Returns the colour that leaves the last stage. If the nearest memory is empty, the background is visible.
 pub(super) fn lit(composition: &Composition, registers: &Registers, memories: &[BankedMemory]) -> u32 {
     let farthest = memories.first().map_or(0, BankedMemory::farthest);
     match (composition.order, registers.candidates.first()) {
@@ -84,7 +86,7 @@ pub(super) fn lit(composition: &Composition, registers: &Registers, memories: &[
     }
 }
 
-/// What becomes of the bits below the word.
+/// Rounding of the bits below the word.
 #[derive(Clone, Copy)]
 enum Rounding {
     Nearest,
@@ -96,7 +98,8 @@ fn mixed(colours: [u32; 4], weights: [Option<u64>; 4], bits: u64) -> u32 {
     channel(16) << 16 | channel(8) << 8 | channel(0)
 }
 
-/// A sum of products with weights that add up to 2^bits; the mean of three where one has none.
+/// Returns the weighted sum of values, with weights that add up to 2^bits. If a weight is `None`, returns the mean of
+/// three.
 fn weighed(values: [u32; 4], weights: [Option<u64>; 4], bits: u64, rounding: Rounding) -> u32 {
     if weights.contains(&None) {
         let three: u64 = (0..4).filter(|k| weights[*k].is_some()).map(|k| u64::from(values[k])).sum();
