@@ -1,4 +1,5 @@
-//! TRANSFORM and RENDER of Slats on any number of GPs: each message by itself, in the order in which the ring grants channels.
+//! TRANSFORM and RENDER of Slats on any number of GPs. Messages are processed in the order in which the ring grants
+//! channels.
 //!
 //! ```text
 //!   clumps of GP 0 --chain--+
@@ -6,10 +7,12 @@
 //!   ...                     |
 //! ```
 //!
-//! One GP alone is limited by its own code, so the mean of a clump is enough ([`super::clumps`]). Many GPs are limited by what they share:
-//! a renderer's port takes one message at a time, and a message that waits for room in a full FIFO keeps its channel, of which there are
-//! [`fifo_channels`](pxpl5_ring::RingTiming::fifo_channels) for all renderers. Which renderers work at the same time is decided by the order of
-//! grants, so the model goes through all messages in that order. It computes times with the rules of ring, FIFO and firmware, without their code.
+//! A single GP is limited by its own code, so the mean of a clump suffices ([`super::clumps`]). Several GPs are limited
+//! by shared resources: a renderer's port accepts one message at a time, and a message that waits for room in a full
+//! FIFO occupies its channel. All renderers share [`fifo_channels`](pxpl5_ring::RingTiming::fifo_channels) channels.
+//!
+//! The order of grants decides which renderers work at the same time, so the model processes all messages in this
+//! order. It uses the timing rules of ring, FIFO and firmware, but not their code.
 
 use super::copies::MOST_RENDERERS;
 use super::model::{PerTriangle, REGIONS, SlatsModel};
@@ -29,24 +32,24 @@ use std::sync::Arc;
 /// A clump of one GP.
 #[derive(Clone, Debug, PartialEq)]
 struct Clump {
-    /// TRANSFORM for both eyes.
+    /// Time of TRANSFORM for both eyes.
     transform_ns: f64,
-    /// Triangles and spheres that each region gets, in the order of sending.
+    /// Numbers of triangles and spheres for each region, in the order of sending.
     bins: [[f64; 2]; REGIONS],
 }
 
-/// The clumps of every GP, and the words of the view that the first one sends to the others.
+/// The clumps of every GP, and the length of the view that the first GP sends to the others.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Clumps {
     of_gps: Vec<Vec<Clump>>,
     view_words: f64,
 }
 
-/// Words of a view of two eyes without edits: number, counts and three matrices an eye.
+/// Number of words of a view of two eyes without edits: number, counts and three matrices per eye.
 const VIEW_WORDS: f64 = 4.0 + 2.0 * 3.0 * 16.0;
 
 impl Clumps {
-    /// So many equal triangles, dealt to the GPs in turn, of which every region gets the same part.
+    /// Creates clumps of equal triangles, distributed evenly over the GPs and the regions.
     pub(super) fn uniform(model: &SlatsModel, triangles: f64, each: PerTriangle) -> Self {
         let all = triangles.round() as usize;
         let of_gp = |gp: usize| {
@@ -63,15 +66,15 @@ impl Clumps {
         Self { of_gps: (0..model.gps).map(of_gp).collect(), view_words: VIEW_WORDS }
     }
 
-    /// The primitives of an experiment's scene as its first view sees them.
+    /// Creates clumps from an experiment's scene in its first view.
     ///
     /// # Errors
     ///
-    /// [`ExperimentError::Scene`] for a scene without primitives.
+    /// [`ExperimentError::Scene`] if the scene has no primitives.
     ///
     /// # Panics
     ///
-    /// Never: the papers' head-mounted display is in range.
+    /// Never, because the head-mounted display of the papers is in range.
     pub(super) fn of_scene(
         model: &SlatsModel,
         experiment: &Experiment,
@@ -92,7 +95,7 @@ impl Clumps {
             let clump = |(n, share): (usize, &Share)| {
                 let passes = [0, 1].map(|eye| share.transform(&view, eye, picture));
                 let work = Transforming { passes: &passes, context: 0, begins: n == 0 };
-                // All columns of a half of one eye, then of the other eye, then the same of the other half.
+                // Order: all columns of the upper half for one eye and the other, then the same for the lower half.
                 let bins = std::array::from_fn(|region| {
                     let (kind, column) = (region / COLUMNS, region % COLUMNS);
                     let counts = passes[kind % 2].counts(RegionId((kind / 2 * COLUMNS + column) as u16));
@@ -106,11 +109,12 @@ impl Clumps {
     }
 }
 
-/// Field regions of an eye beside each other.
+/// Number of field regions of an eye side by side.
 const COLUMNS: usize = REGIONS / 4;
 
-/// Sends all clumps to renderers that are free as `arrays` says; returns when the last one was accepted, and when
-/// the first GP has nothing else to do and knows it.
+/// Sends all clumps to renderers with the state `arrays`.
+///
+/// Returns the time at which the last clump was accepted, and the time at which the first GP knows this and is free.
 pub(super) fn render(model: &SlatsModel, arrays: &mut [Array<1>], clumps: &Clumps) -> [f64; 2] {
     let mut ring = Ring::new(model, arrays);
     let mut senders = ring.begin(clumps);
@@ -125,7 +129,7 @@ pub(super) fn render(model: &SlatsModel, arrays: &mut [Array<1>], clumps: &Clump
     [accepted_ns, ring.all_done_ns(&senders)]
 }
 
-/// Commands in a FIFO's past: their words made room for the words a FIFO's depth behind them.
+/// Commands that have left a FIFO. Their departure made room for words one FIFO depth later.
 #[derive(Clone, Copy, Debug)]
 struct Departure {
     first_word: f64,
@@ -143,10 +147,11 @@ struct Renderer {
 }
 
 impl Renderer {
-    /// Takes a command whose words come one after the other from an instant on; returns when the last one has entered.
+    /// Receives a command whose words arrive without gaps from an instant on. Returns the time at which the last word
+    /// has entered.
     ///
-    /// A word enters when the word a FIFO's depth before it has left; the words of a command leave when it starts; it starts when its words
-    /// are there and the command before it has ended.
+    /// A word enters when the word one FIFO depth before it has left. The words of a command leave when the command
+    /// starts. A command starts when all its words have arrived and the previous command has ended.
     fn take(&mut self, from_ns: f64, command: Cost, depth_words: f64, word_ns: f64) -> f64 {
         let first = self.words_in;
         let last = first + command.words - 1.0;
@@ -170,7 +175,7 @@ impl Renderer {
     }
 }
 
-/// A message to a renderer: so many of each command, in the order of sending.
+/// A message to a renderer: counts of each command, in the order of sending.
 #[derive(Clone, Copy, Debug)]
 struct Message {
     region: usize,
@@ -182,17 +187,18 @@ struct Message {
 struct Sender<'a> {
     gp: usize,
     clumps: &'a [Clump],
-    /// Clumps that are sent or being sent.
+    /// Number of clumps that were sent or are being sent.
     begun: usize,
-    /// The messages of the chain that have not been granted; none at its end.
+    /// Messages of the chain that have not been granted. Empty after the last clump.
     messages: VecDeque<Message>,
-    /// When that message came to the head of the queue.
+    /// Time at which the next message reached the head of the queue.
     since_ns: f64,
-    /// When each channel of its port is free.
+    /// Time at which each channel of the port is free.
     channels_ns: Vec<f64>,
     cpu_ns: f64,
-    /// Acceptance of the last message of the chain, and of the latest of the first messages to each renderer.
+    /// Acceptance of the chain's last message.
     accepted_ns: f64,
+    // Latest acceptance among the first messages to each renderer.
     draining_ns: f64,
     served: [bool; MOST_RENDERERS],
 }
@@ -203,13 +209,13 @@ impl Sender<'_> {
     }
 }
 
-/// What all senders share.
+/// State that all senders share.
 struct Ring<'a> {
     model: &'a SlatsModel,
     renderers: Vec<Renderer>,
-    /// When each channel is free that messages to renderers may use.
+    /// Time at which each channel for messages to renderers is free.
     channels_ns: Vec<f64>,
-    /// Whether the first message to a region clears it.
+    /// True if the first message to a region clears it.
     clears: bool,
 }
 
@@ -224,12 +230,14 @@ impl<'a> Ring<'a> {
         }
     }
 
-    /// The senders with their first clumps. One GP alone clears in its first clump. Of several the first one clears all regions by a chain
-    /// of its own, then sends the view to the others.
+    /// Returns the senders with their first clumps.
+    ///
+    /// A single GP clears regions in its first clump. With several GPs, the first one clears all regions by its own
+    /// chain of messages, and then sends the view to the others.
     fn begin<'c>(&mut self, clumps: &'c Clumps) -> Vec<Sender<'c>> {
         let model = self.model;
         let mut begin_ns = vec![0.0; model.gps];
-        // The host's next view, which the first GP receives while it transforms.
+        // The first GP receives the host's next view during TRANSFORM.
         begin_ns[0] = model.message_ns;
         let mut accepted_ns = 0.0;
         if !self.clears {
@@ -240,7 +248,7 @@ impl<'a> Ring<'a> {
                 let arrives = later(accepted_ns, 2.0 * model.message_ns) + round as f64 * words_ns;
                 *begin = arrives + gp as f64 * model.hop_ns + model.message_ns;
             }
-            // The first GP goes on when it has paid for both chains, and sends when both have been accepted.
+            // The first GP continues after the software cost of both chains, and sends when both have been accepted.
             accepted_ns = begin_ns[1..].iter().fold(accepted_ns, |last, begin| later(last, begin - model.message_ns));
             begin_ns[0] += 2.0 * model.message_ns;
         }
@@ -263,7 +271,7 @@ impl<'a> Ring<'a> {
         clumps.of_gps.iter().enumerate().map(sender).collect()
     }
 
-    /// Sends the messages that clear all regions; returns when the last one has been accepted.
+    /// Sends the messages that clear all regions. Returns the acceptance of the last one.
     fn clear_all(&mut self) -> f64 {
         let nothing = Clump { transform_ns: 0.0, bins: [[0.0; 2]; REGIONS] };
         let mut sender = Sender {
@@ -287,10 +295,10 @@ impl<'a> Ring<'a> {
         sender.accepted_ns
     }
 
-    /// Transforms clumps until there is one that goes to a region, or none is left.
+    /// Transforms clumps until one produces messages, or none is left.
     fn next_clump(&self, sender: &mut Sender<'_>) {
         while let Some(clump) = sender.clumps.get(sender.begun) {
-            // The one clump buffer is written again when all renderers have begun with what was in it.
+            // The single clump buffer can be reused after all renderers have started to receive its content.
             let transformed = later(sender.cpu_ns, sender.draining_ns) + clump.transform_ns;
             sender.cpu_ns = later(transformed, sender.accepted_ns);
             sender.begun += 1;
@@ -305,7 +313,8 @@ impl<'a> Ring<'a> {
         }
     }
 
-    /// The messages of a clump: a region's selection, its clearing in the first clump of a field, and as many primitives as each holds.
+    /// Returns the messages of a clump. Each selects a region, clears it if needed, and holds as many primitives as
+    /// fit.
     fn messages_of(&self, clump: &Clump, clears: bool) -> VecDeque<Message> {
         let SlatsModel { select, clear, command, sphere, .. } = *self.model;
         let mut messages = VecDeque::new();
@@ -328,7 +337,7 @@ impl<'a> Ring<'a> {
         messages
     }
 
-    /// When the next message of a sender can be granted, and since when it waits.
+    /// Returns the time at which a sender's next message can be granted, and the time since which it waits.
     fn head(&self, sender: &Sender<'_>) -> (f64, f64) {
         let region = sender.messages.front().map_or(0, |message| message.region);
         let port = &self.renderers[region % self.renderers.len()];
@@ -336,14 +345,16 @@ impl<'a> Ring<'a> {
         (later(later(since, port.released_ns), soonest(&self.channels_ns).1), since)
     }
 
-    /// The sender whose message is granted next: of several at one instant the one that waits longest, then the first one.
+    /// Returns the sender whose message is granted next.
+    ///
+    /// Of several at one instant, the sender that waits longest goes first, then the one with the lowest number.
     fn first_head(&self, senders: &[Sender<'_>]) -> Option<usize> {
         let waiting = senders.iter().enumerate().filter(|(_, sender)| !sender.is_done());
         let heads = waiting.map(|(place, sender)| (self.head(sender), place));
         heads.reduce(|first, head| if head.0 < first.0 { head } else { first }).map(|(_, place)| place)
     }
 
-    /// Grants the next message of a sender: it holds port and channels until its last word is in the FIFO.
+    /// Grants the next message of a sender. It occupies port and channels until its last word is in the FIFO.
     fn grant(&mut self, sender: &mut Sender<'_>) {
         let model = self.model;
         let (granted, _) = self.head(sender);
@@ -367,7 +378,7 @@ impl<'a> Ring<'a> {
         }
     }
 
-    /// The words of a message enter a FIFO from an instant on; returns when the last one has entered.
+    /// Receives a message's words from an instant on. Returns the time at which the last word has entered the FIFO.
     fn take(&mut self, message: &Message, number: usize, from_ns: f64) -> f64 {
         let (depth, word) = (self.model.fifo_words, self.model.word_ns);
         let renderer = &mut self.renderers[number];
@@ -375,7 +386,7 @@ impl<'a> Ring<'a> {
         for (command, count) in message.runs {
             let mut left = count;
             while left > 0.0 {
-                // Means need not be whole numbers.
+                // Mean counts need not be integers.
                 let part = left.min(1.0);
                 let some = Cost { words: command.words * part, ns: command.ns * part };
                 entered = renderer.take(entered, some, depth, word);
@@ -385,7 +396,9 @@ impl<'a> Ring<'a> {
         entered
     }
 
-    /// When the first GP knows that all clumps have been accepted: each other one tells it by a message, which its software takes.
+    /// Returns the time at which the first GP knows that all clumps have been accepted.
+    ///
+    /// Each other GP reports by a message, which costs software time at the first GP.
     fn all_done_ns(&self, senders: &[Sender<'_>]) -> f64 {
         let model = self.model;
         let (Some(first), others) = (senders.first(), senders.get(1..).unwrap_or_default()) else { return 0.0 };
@@ -402,10 +415,10 @@ impl<'a> Ring<'a> {
     }
 }
 
-/// Ports of the two frame buffers.
+/// Number of ports of the two frame buffers.
 const FRAME_BUFFERS: usize = 2;
 
-/// The soonest of some times, and its place.
+/// Returns the earliest time and its index.
 fn soonest(times: &[f64]) -> (usize, f64) {
     let all = times.iter().copied().enumerate();
     all.reduce(|first, time| if time.1 < first.1 { time } else { first }).unwrap_or((0, f64::MIN))
