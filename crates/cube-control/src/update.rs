@@ -25,7 +25,7 @@ pub struct FaceUpdate {
     pub warp: Option<FaceWarp>,
 }
 
-/// The bit that says that a warp follows the structures.
+/// Flag bit of an encoded update: a warp follows the structures.
 const WARPED: Word = 1 << 24;
 
 /// Number of words before the structures.

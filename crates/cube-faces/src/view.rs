@@ -28,7 +28,7 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// Adds another drawing.
+    /// Adds the counts of another drawing.
     pub const fn add(&mut self, other: Self) {
         self.triangles += other.triangles;
         self.on_faces += other.on_faces;
