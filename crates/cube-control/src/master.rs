@@ -333,7 +333,7 @@ mod tests {
     use pxpl5_sim::Span;
     use pxpl5_wire::NodeId;
 
-    /// The last region may arrive before the master hears that its commands were accepted.
+    /// The last region may arrive before the master learns that its commands were accepted.
     #[test]
     fn an_update_is_over_when_its_regions_have_arrived_and_its_commands_were_accepted() {
         for accepted_first in [true, false] {
@@ -343,7 +343,7 @@ mod tests {
             master.note_transformed(PictureNumber::FIRST, &[1, 0, 0, 0, 0, 0]);
             master.begin_render();
             let rendering = master.rendering.as_mut().expect("it is transformed");
-            // As after the token of its one region.
+            // This is the state after the token of the update's single region was sent.
             (rendering.unassigned, rendering.tokens_out) = (VecDeque::new(), 1);
             for is_token in [accepted_first, !accepted_first] {
                 assert_eq!((master.completed.copied, master.under_way.len()), (0, 1), "{accepted_first}");

@@ -58,7 +58,7 @@ mod tests {
     use pxpl5_geometry::Culling;
     use pxpl5_wire::ViewNumber;
 
-    /// A triangle for each structure, half a metre inside the border to the slower memory at x = 10 m.
+    /// Returns structures of one triangle each, half a metre inside the border to the slower memory at x = 10 m.
     fn list() -> Arc<DisplayList> {
         let mut list = DisplayList::default();
         let frames = [ModelFrame::World, ModelFrame::Head, ModelFrame::World, ModelFrame::World, ModelFrame::World];
@@ -79,7 +79,7 @@ mod tests {
         Arc::new(list)
     }
 
-    /// It holds all structures but the third, and moves the fourth.
+    /// Returns an update whose memory holds all structures but the third. An edit moves the fourth structure.
     fn update(number: u64) -> FaceUpdate {
         let dealing = Dealing { home: Cell { x: 0, z: 0 }, side_m: 10.0, inner_rings: 0, ring_growth: 1, memories: 2 };
         let eye = EyeView { world_to_eye: Mat4::IDENTITY, head_to_eye: Mat4::IDENTITY, projection: Mat4::IDENTITY };

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   MachineConfig + Load --> SlatsModel::field  --> times of one field   (clumps x regions)
-//!                        --> StereoModel::steady --> times of a frame     (pictures x regions)
+//!                        --> StereoModel::frames --> times of a frame     (pictures x regions)
 //! ```
 //!
 //! The closed forms have no events, programs or pixels. A configuration takes a few hundred additions and maxima, so a

@@ -196,7 +196,7 @@ mod tests {
     use pxpl5_gp::GpTiming;
     use pxpl5_machine::MachineConfig;
 
-    /// A machine for Slats with some of its numbers changed.
+    /// Returns the model of a machine for Slats with changed parameters.
     fn model(gps: usize, renderers: usize, numbers: [u64; 5], split: bool) -> SlatsModel {
         let mut config = MachineConfig { n_gps: gps, n_renderers: renderers, ..MachineConfig::slats() };
         let [triangle_ns, message_ns, fifo_words, word_ns, hop_ns] = numbers;
@@ -211,7 +211,10 @@ mod tests {
         SlatsModel::new(&config, program).expect("in range")
     }
 
-    /// The Mig has six structures, without spheres; molecules are one, with spheres. Nothing but the processor is waited for.
+    /// Compares times with and without the cost of structures.
+    ///
+    /// The scene `mig` has six structures without spheres. The scene `molecules` has one structure with spheres. Only
+    /// the processor limits the time.
     #[test]
     fn a_structure_takes_its_time_for_both_eyes() {
         let rendered_ns = |scene: &str, gp: GpTiming| {
@@ -234,7 +237,7 @@ mod tests {
     }
 
     proptest! {
-        /// To the last bit, in any number, and where not all are of the same structure.
+        /// Results are bit-identical for any number of machines, including machines with different structures.
         #[test]
         fn machines_that_are_computed_together_are_what_they_are_alone(
             gps in 1usize..5,

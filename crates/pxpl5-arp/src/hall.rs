@@ -89,7 +89,7 @@ mod tests {
     use super::*;
     use pxpl5_scene::builtin;
 
-    /// The gallery is 40 m wide and 4 m high; its path begins at (-16, -15).
+    /// The built-in gallery is 40 m wide and 4 m high. Its path begins at (-16, -15).
     #[test]
     fn a_scaled_hall_keeps_its_height_and_its_eyes() {
         let scene = builtin("gallery").expect("built in");
@@ -113,7 +113,7 @@ mod tests {
                 );
             }
         }
-        // To and fro between 0.6 m before both walls.
+        // The path leads back and forth between points 0.6 m from both walls.
         let straight = path_of(&scene, Route::Straight).expect("a path");
         assert!((straight.length_m() - 2.0 * 38.8).abs() < 1e-6, "{}", straight.length_m());
         assert!(path_of(&builtin("mig").expect("built in"), Route::Straight).is_err(), "no eyes");

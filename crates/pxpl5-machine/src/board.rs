@@ -99,7 +99,7 @@ mod tests {
         assert_eq!(happening.to_string(), format!("{} renderer 3: copy command begins", Time(7)));
     }
 
-    /// The host is at port 0, the graphics processors behind it.
+    /// The host has port 0, and the graphics processors have the following ports.
     #[test]
     fn boards_with_processors_are_numbered_behind_the_host() {
         assert_eq!([0, 1, 4].map(Board::of_processor), [Board::Host, Board::Gp(0), Board::Gp(3)]);

@@ -412,9 +412,8 @@ mod tests {
     }
 
     parameters::parameter_table! {
-        /// Numbers of some firmware.
         struct Numbers {
-            /// A time that may be changed.
+            /// A time within a range.
             step_ns: 500, "ns", Assumed, 100..=900, "made up";
         }
     }

@@ -56,7 +56,8 @@ mod tests {
         assert_eq!(facts_of_line(6, &Body::Commands(list)), [10, 6]);
     }
 
-    /// Hashes that were published hold only as long as the numbers of surfaces stay: 2 is none, those from the third on follow.
+    /// Published trace hashes depend on these codes: 2 means no surface, and surfaces from the third on have their
+    /// number plus 1.
     #[test]
     fn marks_are_told_with_their_surfaces_as_ever() {
         let surfaces = [Some(0), Some(1), None, Some(2), Some(3)];

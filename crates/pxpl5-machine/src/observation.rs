@@ -217,7 +217,8 @@ mod tests {
 
     const EYES: [SurfaceId; 2] = [SurfaceId(0), SurfaceId(1)];
 
-    /// Two eyes that swap every second period, the second one period later.
+    /// Returns an observation of two eyes that swap every second period. The second eye swaps one period after the
+    /// first.
     fn stereo() -> Observation {
         let swap = |number: u64| {
             EYES.map(|surface| {
@@ -237,7 +238,8 @@ mod tests {
         let mut observation = stereo();
         let all = observation.frames(2);
         assert!(all.iter().all(|(number, tick)| tick.0 == 2 * number + 1) && all.len() == 20);
-        // Between the swaps of frame 7's eyes: the first eye's swap is the last before the instant, and kept.
+        // This instant lies between the swaps of both eyes for frame 7. The first eye's swap is the last one before it
+        // and is kept.
         observation.forget_before(Time(1_450), tick);
         let left = observation.frames(2);
         assert_eq!(left, all.into_iter().filter(|(number, _)| *number >= 7).collect());
@@ -307,7 +309,7 @@ mod tests {
         for capacity in [observation.marks.capacity(), observation.arrivals.capacity()] {
             assert!((200..1_000).contains(&capacity), "{capacity}");
         }
-        // Swaps at 900 (the second eye's, whose period 9 begins then) and later, and the last one of each eye before.
+        // Kept are the swaps from time 900 on, and the last swap of each eye before it.
         let of = |surface| observation.swaps_of(surface).map(|swap| swap.tick.0).collect::<Vec<_>>();
         assert_eq!(of(EYES[0])[..2], [8, 10]);
         assert_eq!(of(EYES[1])[..3], [7, 9, 11]);

@@ -166,7 +166,7 @@ mod tests {
         assert_eq!(traffic.fifo_changes, [(0, Time(20), 5)]);
     }
 
-    /// What a history says of an instant: that of the last entry that is not after it.
+    /// Returns the state of a history at an instant, which is that of the last entry at or before it.
     fn at<T: Copy>(history: &[(Time, T)], instant: u64) -> Option<T> {
         history.iter().rev().find(|(time, _)| time.0 <= instant).map(|(_, state)| *state)
     }

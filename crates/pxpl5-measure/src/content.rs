@@ -200,7 +200,7 @@ mod tests {
             for j in -5..=5 {
                 let direction = DVec3::new(f64::from(i) * 0.015, f64::from(j) * 0.015, -1.0);
                 let ray = Ray { origin: eye, direction };
-                // At time 0 the rudder is at the begin of its swing, so ask where every structure is.
+                // The rudder is at the start of its swing at time 0, so it must be placed like all other structures.
                 let posed = scene.posed(&scene.edits_at(0));
                 let corner = |v: u32| posed.vertices()[v as usize].position.as_dvec3();
                 let all = posed.triangles().iter().filter_map(|t| ray.meets_triangle(&t.map(corner)));
@@ -243,7 +243,7 @@ mod tests {
         for i in -20..=20 {
             for j in -20..=20 {
                 let at = DVec3::new(f64::from(i) * 0.13 + 0.01, f64::from(j) * 0.11 + 0.01, -3.0);
-                // 1 m of depth is half of the way to the plane.
+                // 1 m of depth is half of the distance to the plane.
                 let ray = Ray { origin, direction: (at - origin) / 2.0 };
                 let is_inside = at.x >= 0.0 && at.y >= 0.0 && at.x / 2.0 + at.y <= 1.0;
                 let found = ray.meets_triangle(&triangle);
@@ -253,7 +253,7 @@ mod tests {
         }
     }
 
-    /// The nearest point of a line to a centre is where a small step to either side comes no nearer.
+    /// Searches the smallest distance by stepping along the line, and compares it with `passes` and `meets_sphere`.
     #[test]
     fn a_line_passes_a_centre_at_its_least_distance_and_enters_a_sphere_on_its_surface() {
         let centre = DVec3::new(0.5, -1.0, -6.0);

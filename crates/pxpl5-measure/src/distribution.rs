@@ -80,7 +80,7 @@ const fn middle(bin: u64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Numbers of many sizes in an order of no meaning.
+    /// Returns numbers of different magnitudes in pseudo-random order.
     fn numbers(n: u64) -> impl Iterator<Item = f64> + Clone {
         (0..n).map(move |i| {
             let place = i * 7_919 % n;
@@ -112,7 +112,7 @@ mod tests {
         }
     }
 
-    /// From 1 to 2 bins are 1/1024 wide, from 4 to 8 four times that.
+    /// Bins between 1 and 2 are 1/1024 wide. Bins between 4 and 8 are four times as wide.
     #[test]
     fn a_bin_stands_for_its_middle() {
         for (value, middle) in [(1.0, 1.0 + 1.0 / 2_048.0), (1.000_9, 1.0 + 1.0 / 2_048.0), (6.0, 6.0 + 4.0 / 2_048.0)]

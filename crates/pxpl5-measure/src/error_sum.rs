@@ -241,7 +241,7 @@ mod tests {
     use tracking::predict::PredictorKind;
     use tracking::tracker::TrackerConfig;
 
-    /// What is held after each step of a run that goes on.
+    /// A streaming observer that records the number of held views after each step of a run.
     #[derive(Debug, Default)]
     struct Watched {
         sum: ErrorSum,
@@ -259,7 +259,7 @@ mod tests {
         }
     }
 
-    /// Of a run that gives up its records no more is held at its end than when it gave them up for the first time.
+    /// A run that discards its records holds no more views at its end than after the first time it discarded records.
     #[test]
     fn what_is_held_of_a_run_does_not_grow_with_it() {
         for (name, scene, fields) in [
@@ -280,7 +280,8 @@ mod tests {
         }
     }
 
-    /// Five fields of which three are kept one by one; the middle pixel of each is off by its number, and so many degrees.
+    /// Evaluates five fields with a limit of three. The middle pixel of field n has an error of n pixels and n/8
+    /// degrees.
     #[test]
     fn so_many_fields_are_kept_one_by_one_and_all_of_them_counted() {
         let mut collected = Collected::keeping(3);

@@ -283,7 +283,7 @@ mod tests {
     use pxpl5_renderer::Layout;
     use pxpl5_wire::{Body, swap_request};
 
-    /// A processor that asks a frame buffer for its buffer 2 of 2, so many times.
+    /// A program requests the invalid buffer 2 of a double-buffered frame buffer, `asks` times.
     #[test]
     fn displays_say_what_they_could_not_use_and_nothing_else() {
         for asks in [0, 1, 3] {
