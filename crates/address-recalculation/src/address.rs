@@ -111,6 +111,7 @@ impl AddressUnit {
     #[must_use]
     pub fn footprint(&self, direction: [i64; 3]) -> Option<Footprint> {
         let met = Meeting::of(direction)?;
+        // Positions in texels with `quotient_bits` fractional bits.
         let across = self.place(self.quotient(met.right, met.forward));
         let down = self.place(self.quotient(-met.up, met.forward));
         let column = across >> self.quotient_bits;

@@ -84,9 +84,11 @@ impl Batch {
 pub(crate) fn addresses(batch: &mut Batch, unit: &AddressUnit, vectors: [&[i32]; 3], matrix: &MatrixWords) {
     batch.count = vectors[0].len().min(BATCH);
     let met = &mut batch.met;
+    // Load the vectors into the lanes.
     for (lanes, axis) in met.vectors.iter_mut().zip(vectors) {
         lanes[..batch.count].copy_from_slice(&axis[..batch.count]);
     }
+    // Rotate, select faces, divide, and split positions into texels and fractions.
     for (out, row) in met.turned.iter_mut().zip(&matrix.0) {
         turn(out, &met.vectors, row);
     }
@@ -110,6 +112,7 @@ fn turn(out: &mut Each<f64>, [x, y, z]: &[Each<i32>; 3], row: &[i32; 3]) {
 fn meet(met: &mut Met) {
     let Met { turned: [xs, ys, zs], face, forward, right, down, .. } = met;
     for i in 0..BATCH {
+        // Comparisons without branches keep the loop vectorizable.
         let [x, y, z] = [xs[i], ys[i], zs[i]];
         let [ax, ay, az] = [x.abs(), y.abs(), z.abs()];
         let is_x = (ax >= ay) & (ax >= az);
@@ -219,6 +222,7 @@ fn two(four: &[Each<u32>; 4], batch: &Batch, weight_bits: u32, out: &mut [u32]) 
     for i in 0..count {
         let [right, down] = [batch.right[i], batch.down[i]];
         let weights = [(one - right) * (one - down), right * (one - down), (one - right) * down, right * down];
+        // Red and blue share one word. The added half rounds to nearest.
         let mut outer = half | half << 16;
         let mut green = half;
         for k in 0..4 {
@@ -240,6 +244,7 @@ fn each(four: &[Each<u32>; 4], batch: &Batch, weight_bits: u32, out: &mut [u32])
         let weights = [(one - right) * (one - down), right * (one - down), (one - right) * down, right * down];
         let mut pixel = 0;
         for shift in [16, 8, 0] {
+            // The added half rounds to nearest.
             let mut sum = half;
             for k in 0..4 {
                 sum += (four[k][i] >> shift & 0xFF) * weights[k];

@@ -20,7 +20,7 @@ pub struct ArpConfig {
     pub scan: ScanTiming,
     /// Lens between the picture and the eye.
     pub lens: Lens,
-    /// Event before which the orientation is latched.
+    /// Rule for the latch of the orientation: once per field, per line or per pixel.
     pub latch: Latch,
     /// Order of depth comparison and interpolation.
     pub order: CompositionOrder,

@@ -156,6 +156,7 @@ impl AddressRecalculationPipeline {
         let target = pixels.target;
         let last_part_at = context.now();
         let receipt = self.eyes[surface].memories[memory].receive(pixels, last_part_at)?;
+        // Report a complete region one word time after its last message.
         if let PixelReceipt::Region(first_part_at) = receipt {
             let at = last_part_at + Span::from_ns(self.optics.config.timing.word_ns);
             context.output(at, DisplayOutput::RegionArrived { surface, target, first_part_at, last_part_at });
@@ -301,6 +302,7 @@ impl DisplayConfig for ArpConfig {
     fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError> {
         Self::check(self).map_err(refused)?;
         let scan = self.scan().map_err(refused)?;
+        // The number of ports determines the number of eyes.
         let eyes = nodes.len() / self.ports_of_an_eye();
         if nodes.len() != self.ports(eyes) {
             let expected = format!("{} ports for one eye, {} for two", self.ports(1), self.ports(2));

@@ -80,6 +80,7 @@ impl Field<'_> {
         let mut lookup = Lookup::new(&self.optics.config, self.optics.table(), memories, background);
         let mut stats = LookStats::default();
         let mut colours = vec![0; self.optics.scan.width() as usize];
+        // Compute the pixels of each run with its own orientation.
         for run in runs {
             let pixels = &mut colours[..run.count as usize];
             stats.add(lookup.run(self.place(&run), &run.matrix, pixels));
@@ -111,6 +112,7 @@ impl Field<'_> {
         if is_one {
             return whole.into_iter().collect();
         }
+        // With a latch per pixel, start a new run when the matrix changes.
         let mut runs: Vec<Run> = Vec::new();
         for x in 0..width {
             let Some(matrix) = self.matrix(x, y) else { continue };

@@ -67,6 +67,7 @@ impl FromStr for Lens {
         let wrong = || ArpError::Lens { expected: Self::FORMS.to_owned(), found: excerpt(text) };
         let mut parts = text.split(':');
         let name = parts.next();
+        // All parts after the name must be numbers.
         let numbers: Vec<f64> = parts.map(str::parse).collect::<Result<_, _>>().map_err(|_| wrong())?;
         match (name, numbers.as_slice()) {
             (Some("flat"), []) => Ok(Self::Flat),
@@ -139,10 +140,12 @@ impl Lens {
             last = number;
             let wrong =
                 |expected: &str, found: String| ArpError::Table { line: number, expected: expected.to_owned(), found };
+            // Skip empty lines and comments.
             let line = line.map_err(|error| wrong("text in UTF-8", error.to_string()))?;
             if line.trim().is_empty() || line.trim_start().starts_with('#') {
                 continue;
             }
+            // Refuse surplus lines before their content is parsed.
             if vectors.len() == wanted {
                 return Err(wrong(&format!("nothing after {wanted} vectors"), excerpt(&line)));
             }

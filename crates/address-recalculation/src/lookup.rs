@@ -81,10 +81,12 @@ impl<'a> Addressing<'a> {
         for start in (0..count).step_by(BATCH) {
             let here = start..(start + BATCH).min(count);
             let vectors = vectors.map(|axis| &axis[here.clone()]);
+            // Footprints inside a face come from the group computation.
             let is_filled = self.fill(&mut batch, vectors, matrix);
             if is_filled {
                 batch.inside().for_each(|index| self.mark_square(index, touched));
             }
+            // The others are computed one by one.
             for i in (0..here.len()).filter(|i| !is_filled || batch.leaves(*i)) {
                 self.mark_footprint(vectors.map(|axis| axis[i]), matrix, touched);
             }
@@ -191,12 +193,14 @@ impl<'a> Lookup<'a> {
         let mut stats = LookStats::default();
         let is_filled = self.composition.order == CompositionOrder::DepthFirst
             && self.addressing.fill(&mut self.batch, vectors, matrix);
+        // Group computation for footprints that stay on their face.
         if is_filled {
             self.pixels(out);
             if !self.batch.is_left() {
                 return stats;
             }
         }
+        // Single computation for the remaining pixels.
         for (i, pixel) in out.iter_mut().enumerate().filter(|(i, _)| !is_filled || self.batch.leaves(*i)) {
             let footprint = self.addressing.footprint(vectors.map(|axis| axis[i]), matrix);
             *pixel = footprint.map_or(self.composition.background, |footprint| {
@@ -223,6 +227,7 @@ impl<'a> Lookup<'a> {
         let mut last = [usize::MAX; 2];
         for i in 0..self.batch.count {
             let first = self.batch.index[i] as usize;
+            // Compose the pieces that contain the upper and the lower row, if not done yet.
             let pieces = [first / PIECE, (first + reach) / PIECE];
             if pieces != last {
                 last = pieces;
@@ -299,16 +304,19 @@ impl Drop for Lookup<'_> {
 fn compose(out: &mut [u32], memories: &[&FaceSet], behind: Option<&[u64]>, background: u32, start: usize) {
     let piece = |words: &[u64]| words[start..].first_chunk::<PIECE>().copied().unwrap_or([0; PIECE]);
     let mut best = [0; PIECE];
+    // Select the nearest texel of all memories.
     for faces in memories {
         let words = piece(faces.words());
         for (best, word) in best.iter_mut().zip(&words) {
             *best = nearer(*best, *word);
         }
     }
+    // Empty texels show the background.
     let far = behind.map_or([0; PIECE], piece);
     for ((out, best), far) in out.iter_mut().zip(&best).zip(&far) {
         *out = shown(*best, shown(*far, background));
     }
+    // The last footprint of a piece also reads the following texel.
     if let Some(after) = out.get_mut(PIECE) {
         let at = |words: &[u64]| words[start + PIECE];
         let nearest = memories.iter().fold(0, |best, faces| nearer(best, at(faces.words())));

@@ -58,9 +58,11 @@ impl MemoryKind {
     fn draw_row(self, words: &[Word], start: usize, first: TexelAddress, faces: &mut FaceSet) {
         let row = start..start + REGION_SIZE as usize;
         let Some(low) = words.get(row.clone()) else { return };
+        // The background memory has no depths.
         if !self.has_depth {
             return faces.set_row(first, low, std::iter::repeat(0));
         }
+        // Colour and depth share a word: colour in the lower half.
         if self.format.words() == 1 {
             let colours: Vec<u32> = low.iter().map(|word| crate::texel::widened(word & 0xFFFF)).collect();
             return faces.set_row(first, &colours, low.iter().map(|word| *word >> 16 << 8));
@@ -245,6 +247,7 @@ impl DisplayMemory {
     /// retrace.
     pub(crate) fn retrace(&mut self, may_swap: bool, now: Time) -> Option<u8> {
         let request = self.request.filter(|request| request.asked_at < now)?;
+        // Remember since when the update is late.
         if !may_swap {
             self.stats.missed += 1;
             self.late_since.get_or_insert(now);
@@ -252,6 +255,7 @@ impl DisplayMemory {
         }
         self.request = None;
         self.stats.swaps += 1;
+        // Count the delay of a late update.
         if let Some(since) = self.late_since.take() {
             self.stats.lateness += now.since(since);
         }

@@ -28,6 +28,7 @@ impl Orientation {
         if let Some(component) = rows.iter().flatten().find(|component| !component.is_finite()) {
             return refused(format!("a component of {component}"));
         }
+        // The products of rows must be those of an orthonormal matrix.
         for i in 0..3 {
             for j in 0..=i {
                 let product = dot(rows[i], rows[j]);
@@ -36,6 +37,7 @@ impl Orientation {
                 }
             }
         }
+        // A negative determinant means a reflection.
         let determinant = dot(rows[0], cross(rows[1], rows[2]));
         if determinant < 0.0 { refused(format!("a reflection, determinant {determinant}")) } else { Ok(Self { rows }) }
     }

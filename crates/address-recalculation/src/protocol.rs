@@ -118,6 +118,7 @@ fn announced(map: &[Word], count: u32) -> Result<Vec<u16>, ArpError> {
     if map.len() != count.div_ceil(Word::BITS) as usize {
         return Err(wrong(&format!("a map of {count} regions"), &format!("{} words", map.len())));
     }
+    // Bits are numbered from the lowest bit of the first word.
     let bits = (0..map.len() as u32 * Word::BITS)
         .filter(|bit| map[(bit / Word::BITS) as usize] >> (bit % Word::BITS) & 1 == 1);
     let regions: Vec<u16> = bits.map(|bit| bit as u16).collect();

@@ -116,6 +116,7 @@ impl ScanTiming {
         check("pixel_ps", self.pixel_ps, (self.pixel_divisor, MAX)).map_err(path)?;
         check("visible_pixels", self.visible_pixels, (1, self.line_pixels)).map_err(path)?;
         check("left_blanking", self.left_blanking, (0, self.line_pixels - self.visible_pixels)).map_err(path)?;
+        // Each field contains half of the lines of a frame.
         let field_lines = self.frame_lines / 2;
         check("visible_lines", self.visible_lines, (1, field_lines)).map_err(path)?;
         check("top_blanking", self.top_blanking, (0, field_lines - self.visible_lines)).map_err(path)?;

@@ -27,7 +27,7 @@ struct UnderWay {
     before: u64,
     /// Number of slaves that have applied the edits.
     edited: usize,
-    // Number of slaves that have transformed the update.
+    /// Number of slaves that have transformed the update.
     transformed: usize,
     /// Number of entries in each region's bin, summed over the slaves that have transformed the update.
     entries: Vec<u64>,
@@ -144,6 +144,7 @@ impl CubeMaster {
     /// Starts the most urgent action that the rules permit. Returns false if there is none.
     async fn begin_one(&mut self) -> bool {
         self.swaps_known = self.swaps();
+        // Order of urgency: announce, copy, token, edit.
         self.begin_render();
         if let Some(place) = self.update_to_announce() {
             self.announce(place).await;
@@ -214,9 +215,11 @@ impl CubeMaster {
         let update = rendering.number;
         let of = rendering.regions;
         self.renderers[renderer] = RendererUse::Receiving;
+        // Slaves take turns to receive a token first, which balances their load.
         let slave = self.config.slaves[self.next_slave];
         self.next_slave = (self.next_slave + 1) % self.config.slaves.len();
         let slaves_left = self.config.slaves.len() as u16;
+        // If the memory is available, the last slave adds the copy command.
         let copies = self.is_announced(update);
         let token = Token { update, region, renderer: renderer as u16, slaves_left, of, copies };
         let (words, body) = UpdateOrder::Token(token).message();
@@ -288,10 +291,12 @@ impl CubeMaster {
     fn note_accepted(&mut self, token: Token) {
         let renderer = usize::from(token.renderer);
         let target = self.under_way(token.update).map(|one| self.config.faces.target(&one.update, token.region));
+        // Without a copy command, the renderer holds the region.
         let held = target.filter(|_| !token.copies);
         self.renderers[renderer] = held.map_or(RendererUse::Idle, RendererUse::Holding);
         let Some(rendering) = &mut self.rendering else { return };
         rendering.tokens_out -= 1;
+        // RENDER ends with the last token.
         if rendering.tokens_out == 0 && rendering.unassigned.is_empty() {
             self.gp.end(Stage::Render, rendering.number, Some(SurfaceId(0)));
             self.completed.rendered += 1;

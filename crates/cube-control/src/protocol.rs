@@ -86,6 +86,7 @@ impl UpdateOrder {
             EDIT => number_of(words).map(Self::Edit),
             EDITED => number_of(words).map(Self::Edited),
             EDITS_DONE => number_of(words).map(Self::EditsDone),
+            // The entries of bins follow the tag and the number.
             TRANSFORMED => number_of(words).map(|update| Self::Transformed(update, words[3..].to_vec())),
             TOKEN => Token::read(words).map(Self::Token),
             ACCEPTED => Token::read(words).map(Self::Accepted),

@@ -21,7 +21,7 @@ struct SlaveState {
     next_edit: PictureNumber,
     /// The two bin contexts.
     bins: [Option<CubePass>; 2],
-    // Number of tokens that this slave has seen for each context.
+    /// Number of tokens that this slave has seen for each context.
     tokens: [u16; 2],
 }
 
@@ -51,6 +51,7 @@ pub fn slave(
     index: usize,
 ) -> [(Priority, impl Future<Output = Result<(), Fault>> + use<>); 2] {
     let state = SharedSlaveState::default();
+    // Tokens interrupt TRANSFORM.
     [Priority::Interrupt, Priority::Foreground].map(|level| {
         let gp = gp.at_priority(level);
         let config = config.clone();
@@ -72,6 +73,7 @@ async fn transform_program(
     share: Share,
     state: SharedSlaveState,
 ) -> Result<(), Fault> {
+    // Reserve memory for the program and the display list.
     gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
     gp.reserve(Account::DisplayList, share.bytes(), None)?;
     gp.install(|processor| share.install(processor))?;
@@ -145,6 +147,7 @@ async fn token_program(gp: Gp, config: CubeControlConfig, index: usize, state: S
     loop {
         let received = gp.next_message().await;
         let order = UpdateOrder::read(&received, gp.node());
+        // `walk` charges the cost of receiving a token. Other messages are paid for below.
         if let Ok(UpdateOrder::Token(token)) = order {
             walk(&gp, &config, index, &state, &received, token).await?;
             continue;
@@ -167,6 +170,7 @@ async fn walk(
     received: &Received,
     token: Token,
 ) -> Result<(), Fault> {
+    // Send the bin to the renderer, then pass the token on.
     let renderer = config.renderers[usize::from(token.renderer)];
     let bin = TokenBin::of(config, state, token);
     let lists = bin.as_ref().map_or_else(Vec::new, TokenBin::messages);

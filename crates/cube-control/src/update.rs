@@ -59,6 +59,7 @@ impl FaceUpdate {
     /// Decodes an update, or returns `None` for invalid words.
     pub(crate) fn from_words(words: &[Word]) -> Option<Self> {
         let [low, high, place, count] = *words.first_chunk::<HEADER>()?;
+        // Split the words after the header: bits of structures, warp if any, view.
         let rest = &words[HEADER..];
         let (map, rest) = rest.split_at_checked((count as usize).div_ceil(32))?;
         let warp_words = if place & WARPED == 0 { 0 } else { WARP_WORDS };

@@ -49,6 +49,7 @@ impl FaceWarp {
     /// Decodes a warp, or returns `None` for invalid words.
     pub(crate) fn from_words(words: &[Word; WARP_WORDS]) -> Option<Self> {
         let (whole, reals) = words.split_first_chunk::<7>()?;
+        // Integers come first, then floating-point numbers in two words each.
         let [x_low, x_high, z_low, z_high, rings, memories, falloff] = *whole;
         let cell = |low: Word, high: Word| joined(low, high) as i64;
         let reals: Vec<f64> = reals.chunks_exact(2).map(|pair| f64::from_bits(joined(pair[0], pair[1]))).collect();

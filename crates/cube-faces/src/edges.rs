@@ -71,7 +71,7 @@ pub(crate) struct Crossing {
     has_edge: bool,
     /// Factor from the row's constant part to columns.
     columns_of: f64,
-    // Column of the face's middle.
+    /// Column of the face's middle.
     middle: f64,
 }
 
@@ -94,12 +94,14 @@ impl Crossing {
     /// determines the exact column.
     #[inline(always)]
     pub(crate) fn narrow(&self, row: f64, columns: Columns, range: &mut [i64; 2]) {
+        // A horizontal edge accepts the whole row or nothing.
         if self.edge.x == 0.0 {
             if !self.takes(0.0, row) {
                 range[1] = range[0];
             }
             return;
         }
+        // Estimate the crossing, then test the two nearest columns.
         let at = (row * self.columns_of + self.middle).clamp(range[0] as f64 - 1.0, range[1] as f64 + 1.0);
         let border = at.floor() as i64 + 1;
         let is_left = self.edge.x > 0.0;

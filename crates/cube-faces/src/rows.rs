@@ -72,9 +72,11 @@ pub(crate) fn draw(triangle: &OnFace, rows: [i64; 2], faces: &mut FaceSet) -> u6
 fn compute(triangle: &OnFace, y: f64, first: i64, count: usize, run: &mut Run) {
     let whole = count.next_multiple_of(LANES).min(RUN);
     let mut places = [0.0; RUN];
+    // Positions of the texel middles.
     for (i, place) in places[..whole].iter_mut().enumerate() {
         *place = triangle.columns.first + (first as i32 + i as i32) as f64 * triangle.columns.step;
     }
+    // 1/w and the depth are linear along a row.
     let along = [triangle.reciprocal.x, triangle.reciprocal.row(y)];
     let [near, scale] = triangle.depth;
     let depth = [along[0] * scale, near + along[1] * scale];
@@ -86,6 +88,7 @@ fn compute(triangle: &OnFace, y: f64, first: i64, count: usize, run: &mut Run) {
         Shade::Smooth(parts) => {
             let rows = parts.map(|part| part.row(y));
             for (colour, x) in run.colours[..whole].iter_mut().zip(&places[..whole]) {
+                // Divide the interpolated colours by the interpolated 1/w.
                 let distance = 1.0 / (along[0] * x + along[1]);
                 let red = byte((parts[0].x * x + rows[0]) * distance);
                 let green = byte((parts[1].x * x + rows[1]) * distance);

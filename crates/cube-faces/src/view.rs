@@ -71,6 +71,7 @@ impl CubeView {
             drawing.triangles += 1;
             let seen = corners.map(|corner| corner.place - eye);
             let colours = corners.map(|corner| corner.colour);
+            // Draw the triangle on every face that it may touch.
             for view in &views {
                 if let Some(places) = view.in_sight(seen) {
                     drawing.on_faces += 1;
@@ -84,6 +85,7 @@ impl CubeView {
     fn face(&self, face: CubeFace) -> FaceView {
         let axis = |axis: [i64; 3]| DVec3::from_array(axis.map(|component| component as f64));
         let inner = f64::from(self.geometry.inner());
+        // Texel middles, in tangents from the face's middle.
         let columns = Columns { first: (1.0 - 2.0 * f64::from(self.geometry.guard)) / inner - 1.0, step: 2.0 / inner };
         FaceView {
             face,
@@ -115,9 +117,11 @@ impl FaceView {
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
         for (i, place) in places.iter().enumerate() {
             let next = places[(i + 1) % 3];
+            // Corners beyond the near plane project directly.
             if place.z >= self.near_m {
                 include(&mut range, place.y / place.z);
             }
+            // Edges through the near plane contribute their intersection with it.
             if (place.z >= self.near_m) != (next.z >= self.near_m) {
                 let share = (self.near_m - place.z) / (next.z - place.z);
                 include(&mut range, (place.y + (next.y - place.y) * share) / self.near_m);

@@ -41,11 +41,13 @@ impl Objects {
     /// images of all its objects are right until its next frame.
     pub fn frame(&mut self, frame: u64, periods_s: &[f64]) -> Update {
         let mut together = vec![false; self.memories];
+        // Move objects between memories first.
         for (object, period) in periods_s.iter().enumerate().take(self.objects.len()) {
             self.place(object, frame, *period, &mut together);
         }
         let due: Vec<bool> = (0..self.memories).map(|memory| together[memory] || self.is_due(memory, frame)).collect();
         let now = frame as f64 * self.frame_s;
+        // Drawing an object renews its validity period.
         for (held, period) in self.objects.iter_mut().zip(periods_s) {
             if let Some((memory, right_until)) = held
                 && due[*memory]
@@ -62,6 +64,7 @@ impl Objects {
         match self.objects[object] {
             None => self.objects[object] = Some((wanted, f64::NEG_INFINITY)),
             Some((memory, right_until)) if memory != wanted => {
+                // The slower memory is drawn in a subset of the faster memory's frames.
                 let both_drawn = frame.is_multiple_of(1 << memory.max(wanted));
                 if both_drawn {
                     self.objects[object] = Some((wanted, right_until));

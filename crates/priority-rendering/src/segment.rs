@@ -77,6 +77,7 @@ fn check(vertices: &[DVec3], triangles: &[[u32; 3]], side_m: f64) -> Result<(), 
     if let Some(corner) = triangles.iter().flatten().find(|corner| **corner as usize >= vertices.len()) {
         return refused(format!("scene: expected corners below {}, found {corner}", vertices.len()));
     }
+    // Limit the number of pieces before cutting, to bound time and memory.
     let pieces: f64 =
         triangles.iter().map(|triangle| most_pieces(triangle.map(|i| vertices[i as usize]), side_m)).sum();
     if pieces > MOST_PIECES {
@@ -139,6 +140,7 @@ impl Cutter {
     fn slabs(&mut self, polygon: Vec<u32>, axis: Axis) -> Vec<Vec<u32>> {
         let mut pieces = Vec::new();
         let mut rest = polygon;
+        // The first border lies after the smallest coordinate.
         let mut number = column(self.least(&rest, axis), self.side_m) + 1;
         while self.greatest(&rest, axis) > border(number, self.side_m) {
             let [below, above] = self.cut(&rest, axis, number);
@@ -157,12 +159,14 @@ impl Cutter {
         for (i, vertex) in polygon.iter().enumerate() {
             let next = polygon[(i + 1) % polygon.len()];
             let [here, there] = [*vertex, next].map(|vertex| self.along(vertex, axis));
+            // A vertex on the border belongs to both parts.
             if here <= at {
                 parts[0].push(*vertex);
             }
             if here >= at {
                 parts[1].push(*vertex);
             }
+            // An edge that crosses the border gets a new vertex, shared by both parts.
             if (here < at && there > at) || (here > at && there < at) {
                 let made = self.vertex([*vertex, next], axis, number);
                 parts.iter_mut().for_each(|part| part.push(made));
@@ -173,6 +177,7 @@ impl Cutter {
 
     /// Returns the vertex of a line on a border. All polygons get the same vertex.
     fn vertex(&mut self, line: [u32; 2], axis: Axis, number: i64) -> u32 {
+        // The order of the ends must not matter, so sort them.
         let between = [line[0].min(line[1]), line[0].max(line[1])];
         if let Some(made) = self.made.get(&(between, axis, number)) {
             return *made;
@@ -181,6 +186,7 @@ impl Cutter {
         let at = border(number, self.side_m);
         let share = (at - axis.of(from)) / (axis.of(to) - axis.of(from));
         let mut place = from + (to - from) * share;
+        // Set the coordinate exactly to the border, without rounding errors.
         match axis {
             Axis::X => place.x = at,
             Axis::Z => place.z = at,

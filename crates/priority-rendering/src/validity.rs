@@ -70,7 +70,7 @@ pub struct ValidityPeriod {
     pub translation_s: f64,
     /// Limit from the growth of the apparent size.
     pub size_s: f64,
-    /// Limit from the animation, as the user states it.
+    /// Time limit from the animation, as given by the user.
     pub animation_s: f64,
     /// Limit from the rotation of the object.
     pub turn_s: f64,
@@ -85,7 +85,8 @@ impl ValidityPeriod {
 }
 
 impl Threshold {
-    /// Returns the default rules, which are those of the paper or nearest to it: chord, disc and nearest point.
+    /// Returns a threshold with the default rules: chord, disc and nearest point. They follow the paper as closely as
+    /// possible.
     #[must_use]
     pub fn of_degrees(theta_deg: f64) -> Self {
         let distance = Distance::Nearest;
@@ -110,6 +111,7 @@ impl Threshold {
         match self.size {
             SizeRule::Disc => {
                 let angle = libm::atan2(radius_m, distance_m) + self.angle;
+                // Beyond 90 degrees, the size stays valid until the eye reaches the object.
                 if angle >= quarter { distance_m } else { distance_m - radius_m / libm::tan(angle) }
             }
             SizeRule::Sphere if distance_m <= radius_m => 0.0,
@@ -135,6 +137,7 @@ impl Threshold {
     pub fn period(&self, object: &SeenObject) -> ValidityPeriod {
         let nearest = (object.distance_m - object.radius_m).max(0.0);
         let counted = if self.distance == Distance::Nearest { nearest } else { object.distance_m };
+        // Inside the bounding sphere, images are never valid.
         if nearest == 0.0 {
             return ValidityPeriod { translation_s: 0.0, size_s: 0.0, animation_s: object.animation_s, turn_s: 0.0 };
         }

@@ -35,7 +35,7 @@ pub(super) fn render<const N: usize>(
     [chain.accepted, chain.cpu]
 }
 
-/// Cost of messages, independent of their content.
+/// The part of a message's cost that does not depend on its content.
 struct Sending<const N: usize> {
     source_channels: usize,
     overhead: Times<N>,
@@ -76,7 +76,7 @@ struct Clump<const N: usize> {
     message: Commands<N>,
     /// Delay until a message has [room](Commands::room_behind) behind a message of the previous clump.
     behind_last: Times<N>,
-    // The same behind another message of this clump.
+    /// Delay until a message has room behind another message of the same clump.
     behind_itself: Times<N>,
 }
 
@@ -126,12 +126,14 @@ impl<const N: usize> Chain<N> {
         for round in (0..REGIONS).step_by(arrays.len()) {
             for (renderer, array) in arrays.iter_mut().enumerate().take(REGIONS - round) {
                 let latency = sending.hop * Times::all((renderer + 1) as f64);
+                // A message is granted when the renderer's port and a channel are free.
                 granted = granted.later(array.released).later(channels.soonest);
                 let first = array.take(granted + sending.overhead + latency, &clump.message, behind);
                 array.released = first - latency;
                 channels.give_back(array.released);
                 accepted = accepted.later(first);
             }
+            // After the first round, every renderer has accepted one message.
             if round == 0 {
                 self.draining = accepted;
             }

@@ -43,9 +43,11 @@ impl Queue {
     pub(super) fn by_turns(self, begins_right: bool) -> Self {
         let copies = (0..self.len()).map(|n| self.0 >> (Self::BITS * n) & Self::RIGHT != 0);
         let mut left = [0; 2];
+        // Count the copies of each side.
         copies.for_each(|to_right| left[usize::from(to_right)] += 1);
         let mut next = if begins_right { left[1] > 0 } else { self.0 & Self::RIGHT != 0 };
         let mut all = Self::default();
+        // Alternate, and skip a side without remaining copies.
         while left != [0; 2] {
             if left[usize::from(next)] > 0 {
                 left[usize::from(next)] -= 1;
@@ -85,11 +87,13 @@ pub(super) fn make<const N: usize>(
 ) -> [CopyTimes; N] {
     let mut left = *queues;
     let mut ports = Ports::new();
+    // While all configurations agree on the first renderer, copy for all lanes at once.
     while let Some(first) = first_of_all(arrays, &left) {
         let to_right = left[first].0 & Queue::RIGHT != 0;
         left[first].0 >>= Queue::BITS;
         arrays[first].free = ports.copy(arrays[first].free, to_right, region);
     }
+    // Then copy for each lane in its own order.
     ports.copy_apart(arrays, &left, region);
     std::array::from_fn(|i| CopyTimes { begin_ns: ports.begins.0[i], end_ns: ports.ends.0[i] })
 }
@@ -101,11 +105,13 @@ pub(super) fn make<const N: usize>(
 fn first_of_all<const N: usize>(arrays: &[Array<N>], left: &[Queue; MOST_RENDERERS]) -> Option<usize> {
     let waiting = || (0..arrays.len()).filter(|r| left[*r].0 != 0);
     let there = |r: usize| arrays[r].free.0[0];
+    // Candidate: the first renderer of configuration 0.
     let first = waiting().reduce(|first, r| if there(r) < there(first) { r } else { first })?;
     if N == 1 {
         return Some(first);
     }
     let own = arrays[first].free.0;
+    // Check that no other renderer precedes the candidate in any configuration.
     let mut not_first = [0; N];
     for r in waiting() {
         let other = arrays[r].free.0;

@@ -63,6 +63,7 @@ impl Load {
         binning: RegionBinning,
         times: &[u64],
     ) -> Result<Vec<Self>, ExperimentError> {
+        // All GPs together hold the whole scene, so a single share suffices.
         let list = Arc::new(display_list(experiment.scene()).map_err(ExperimentError::Scene)?);
         let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is valid");
         let (views, _) = views(experiment.scene(), experiment.seed_of_motion(), hmd, 2);

@@ -88,6 +88,7 @@ impl SlatsModel {
     /// [`ConfigError`] if there are too few renderers. Also if messages to renderers leave fewer than two channels for
     /// split copies: both would wait for each other, which the analytic level does not model.
     pub fn new(config: &MachineConfig, program: Slats) -> Result<Self, ConfigError> {
+        // Each renderer holds as many regions as its memory layout permits.
         let contexts = usize::from(program.layout().plan().contexts.max(1));
         if config.n_renderers < REGIONS.div_ceil(contexts) {
             let error = slats::SlatsConfigError::TooFewRenderers {
@@ -99,6 +100,7 @@ impl SlatsModel {
         if program.code.is_some() {
             return Self::new(&program.adapt(config.clone()), Slats { code: None, ..program });
         }
+        // Split copies need channels that messages to renderers leave free.
         let ring = &config.ring;
         let to_renderers = ring.fifo_channels.min(ring.source_channels.saturating_mul(config.n_gps as u64));
         if program.copy.is_split() && to_renderers.saturating_add(COPY_CHANNELS) > ring.channels {
@@ -141,7 +143,7 @@ impl SlatsModel {
         })
     }
 
-    /// Returns the same model for the structures of a scene.
+    /// Returns the model adapted to the number of structures in a scene.
     #[must_use]
     pub fn over(self, scene: &Scene) -> Self {
         let sphere_views = scene.structures().iter().filter(|structure| !structure.spheres.is_empty()).count();

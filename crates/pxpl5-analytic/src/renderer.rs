@@ -126,13 +126,13 @@ impl<const N: usize> Add for Costs<N> {
 pub(super) struct Commands<const N: usize> {
     /// Time on the channel of the words before the commands, such as selection and clearing.
     head_wire: Times<N>,
-    // Execution time of these words.
+    /// Execution time of the words before the commands.
     head: Times<N>,
     /// Time from the head's last word to the start of the first command, if the array is free.
     lead: Times<N>,
     /// Number of commands.
     count: f64,
-    // Execution time of one command.
+    /// Execution time of one command.
     each: Times<N>,
     /// Time of the whole message on the channel.
     wire: Times<N>,
@@ -142,7 +142,8 @@ pub(super) struct Commands<const N: usize> {
     ///
     /// The last word has room when the command that contains the word one FIFO depth before it has started. `f64::MIN`
     /// if this command is in the previous message.
-    // Position of this command, counted from the end of the previous message. Infinite if it is in this message.
+    /// Position, counted from the end of the previous message, of the command that must start. Infinite if it is in
+    /// this message.
     room_after: Times<N>,
     room_before: Times<N>,
 }
@@ -153,8 +154,10 @@ impl<const N: usize> Commands<N> {
     pub(super) fn new(fifos: &Fifos<N>, head: &Costs<N>, count: f64, each: &Costs<N>) -> Self {
         let (word_ns, counts) = (fifos.word_ns, Times::all(count));
         let total = head.words + counts * each.words;
+        // A command needs at least the time of its words on the channel.
         let first_wire = each.words * word_ns;
         let slowest = each.ns.later(first_wire);
+        // Word that must have left before the last word has room, counted from the first command.
         let before_last = total - Times::all(1.0) - fifos.depth_words - head.words;
         let room_after = Times::each(|i| {
             let command = sooner((before_last.0[i] / each.words.0[i]).floor(), count);

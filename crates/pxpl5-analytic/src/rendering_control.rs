@@ -77,7 +77,7 @@ struct History {
     copied: Vec<f64>,
     /// Bytes of a slave's bins for the previous picture.
     bin_bytes: f64,
-    // Time by which the first slave has freed these bins before the last slave.
+    /// Time by which the first slave has freed its bins before the last slave.
     first_free_ns: f64,
     edited_ns: f64,
     swapped_ns: f64,
@@ -88,7 +88,7 @@ struct History {
 struct Renderers {
     /// Time at which the master may assign a region to each renderer.
     idle_ns: Vec<f64>,
-    // Time at which each renderer's array is free.
+    /// Time at which each renderer's array is free.
     free_ns: Vec<f64>,
     /// Times at which the regions of each renderer had been copied.
     sent_ns: Vec<Vec<f64>>,
@@ -96,7 +96,7 @@ struct Renderers {
     stored_until_ns: Vec<Vec<f64>>,
     /// Number of words sent to each renderer.
     words: Vec<f64>,
-    // For each renderer's latest regions: words sent before, start of the first command, and cost of all commands.
+    /// For each renderer's latest regions: words sent before, start of the first command, and cost of all commands.
     started: Vec<Vec<(f64, f64, Cost)>>,
     ports_ns: [f64; 2],
 }
@@ -123,6 +123,7 @@ impl StereoModel {
             let what = "n_gps of Rendering Control (a master and slaves)".to_owned();
             return Err(ConfigError::Value { what, expected: (2, 1_000), found: config.n_gps as u64 });
         }
+        // Timing of messages and commands.
         let video = video_of(config)?;
         let phong = program.shading == Shading::Phong;
         let word_ns = config.ring.word_ns as f64;
@@ -326,14 +327,17 @@ impl StereoModel {
     /// Returns the time at which a region's last word was accepted, and the time at which its commands were executed.
     fn execute(&self, all: &mut Renderers, r: usize, token_ns: f64, arrived_ns: f64, bin: &[f64; 2]) -> (f64, f64) {
         let [triangles, spheres] = *bin;
+        // Commands of the region: clear, draw, shade and copy.
         let drawing_ns = triangles * self.triangle.ns + spheres * self.sphere.ns;
         let drawing_words = triangles * self.triangle.words + spheres * self.sphere.words;
         let words = self.clear.words + drawing_words + self.shade.words + self.copy_words;
+        // The first word follows the token through two message routines.
         let first_ns = token_ns + self.transit_ns() + 2.0 * self.message_ns;
         let start_ns = first_ns.max(all.free_ns[r]);
         let rate = Cost { words: words.max(1.0), ns: self.clear.ns + drawing_ns };
         all.started[r].push((all.words[r], start_ns, rate));
         all.words[r] += words;
+        // The last word enters when it has arrived and the FIFO has room.
         let wire_ns = arrived_ns.max(first_ns + words * self.word_ns);
         let accepted_ns = wire_ns.max(self.room_ns(all, r));
         let last_ns = if triangles > 0.0 { self.triangle.ns } else { self.clear.ns };
@@ -413,6 +417,7 @@ impl StereoModel {
     /// Returns the summary of the frames shown before the end, without warm-up.
     #[must_use]
     pub fn summary(&self, frames: &[StereoTimes], fields: u64) -> Summary {
+        // Frames of the warm-up do not count.
         let end_ns = fields as f64 * self.field_ns;
         let shown: Vec<_> = frames.iter().filter(|frame| frame.shown_ns < end_ns).skip(WARM_UP_PICTURES).collect();
         let due = self.due(frames, fields);

@@ -52,11 +52,13 @@ impl Clumps {
     /// Creates clumps of equal triangles, distributed evenly over the GPs and the regions.
     pub(super) fn uniform(model: &SlatsModel, triangles: f64, each: PerTriangle) -> Self {
         let all = triangles.round() as usize;
+        // Distribute the triangles evenly over the GPs.
         let of_gp = |gp: usize| {
             let share = (all + model.gps - 1 - gp) / model.gps;
             let clumps = share.div_ceil(CLUMP).max(1);
             let clump = |n: usize| {
                 let size = (share - n * CLUMP).min(CLUMP) as f64;
+                // The first clump includes the begin of the pass.
                 let begin_ns = if n == 0 { model.begin_ns } else { 0.0 };
                 let bins = [[size * each.entries / 10.0, 0.0]; REGIONS];
                 Clump { transform_ns: begin_ns + model.clump_ns(size, each), bins }
@@ -80,6 +82,7 @@ impl Clumps {
         experiment: &Experiment,
         binning: RegionBinning,
     ) -> Result<Self, ExperimentError> {
+        // Transform the scene for the first view.
         let list = Arc::new(display_list(experiment.scene()).map_err(ExperimentError::Scene)?);
         let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is valid");
         let (views, _) = views(experiment.scene(), experiment.seed_of_motion(), hmd, 2);
@@ -89,6 +92,7 @@ impl Clumps {
         let of_gp = |gp: usize| {
             let share = Share::new(Arc::clone(&list), gp, model.gps);
             let mut clumps: Vec<Share> = share.clumps(CLUMP).collect();
+            // A GP without primitives still begins its pass.
             if clumps.is_empty() {
                 clumps.push(share);
             }
@@ -118,9 +122,11 @@ const COLUMNS: usize = REGIONS / 4;
 pub(super) fn render(model: &SlatsModel, arrays: &mut [Array<1>], clumps: &Clumps) -> [f64; 2] {
     let mut ring = Ring::new(model, arrays);
     let mut senders = ring.begin(clumps);
+    // Grant messages in the order of the ring's arbiter.
     while let Some(place) = ring.first_head(&senders) {
         ring.grant(&mut senders[place]);
     }
+    // Report the final state of the renderers.
     for (array, renderer) in arrays.iter_mut().zip(&ring.renderers) {
         array.free = Times::all(renderer.free_ns);
         array.released = Times::all(renderer.released_ns);
@@ -156,6 +162,7 @@ impl Renderer {
         let first = self.words_in;
         let last = first + command.words - 1.0;
         let mut complete = from_ns + command.words * word_ns;
+        // Departures make room for words one FIFO depth later.
         while let Some(room) = self.departures.front() {
             let made_room_for = room.first_word + depth_words;
             if made_room_for > last {
@@ -198,7 +205,7 @@ struct Sender<'a> {
     cpu_ns: f64,
     /// Acceptance of the chain's last message.
     accepted_ns: f64,
-    // Latest acceptance among the first messages to each renderer.
+    /// Latest acceptance among the first messages to each renderer.
     draining_ns: f64,
     served: [bool; MOST_RENDERERS],
 }
@@ -240,10 +247,12 @@ impl<'a> Ring<'a> {
         // The first GP receives the host's next view during TRANSFORM.
         begin_ns[0] = model.message_ns;
         let mut accepted_ns = 0.0;
+        // With several GPs, the first one clears all regions and then sends the view.
         if !self.clears {
             accepted_ns = self.clear_all();
             let words_ns = model.overhead_ns + (clumps.view_words + 3.0) * model.word_ns;
             for (gp, begin) in begin_ns.iter_mut().enumerate().skip(1) {
+                // A port sends on `source_channels` channels at a time.
                 let round = (gp - 1) / model.source_channels + 1;
                 let arrives = later(accepted_ns, 2.0 * model.message_ns) + round as f64 * words_ns;
                 *begin = arrives + gp as f64 * model.hop_ns + model.message_ns;
@@ -273,6 +282,7 @@ impl<'a> Ring<'a> {
 
     /// Sends the messages that clear all regions. Returns the acceptance of the last one.
     fn clear_all(&mut self) -> f64 {
+        // A clump without primitives produces only the messages that clear.
         let nothing = Clump { transform_ns: 0.0, bins: [[0.0; 2]; REGIONS] };
         let mut sender = Sender {
             gp: 0,
@@ -322,6 +332,7 @@ impl<'a> Ring<'a> {
             let mut left = *bin;
             let mut clearing = if clears { 1.0 } else { 0.0 };
             while clearing > 0.0 || left != [0.0; 2] {
+                // Fill the message with triangles, then with spheres.
                 let mut room = f64::from(MAX_MESSAGE_WORDS) - select.words - clearing * clear.words;
                 let held = [(command, 0), (sphere, 1)].map(|(command, kind)| {
                     let count = left[kind].min((room / command.words).floor());
@@ -337,7 +348,8 @@ impl<'a> Ring<'a> {
         messages
     }
 
-    /// Returns the time at which a sender's next message can be granted, and the time since which it waits.
+    /// Returns the time at which a sender's next message can be granted, and the time since which the message has
+    /// waited.
     fn head(&self, sender: &Sender<'_>) -> (f64, f64) {
         let region = sender.messages.front().map_or(0, |message| message.region);
         let port = &self.renderers[region % self.renderers.len()];
@@ -362,6 +374,7 @@ impl<'a> Ring<'a> {
         let number = message.region % self.renderers.len();
         let latency = model.hop_ns * (model.gps - sender.gp + number) as f64;
         let accepted = self.take(&message, number, granted + model.overhead_ns + latency);
+        // Port and channels are free when the last word has entered the FIFO.
         let released = accepted - latency;
         self.renderers[number].released_ns = released;
         for channels in [&mut sender.channels_ns, &mut self.channels_ns] {
@@ -369,6 +382,7 @@ impl<'a> Ring<'a> {
             channels[place] = released;
         }
         sender.accepted_ns = later(sender.accepted_ns, accepted);
+        // The clump buffer is free when every renderer has accepted its first message.
         if !std::mem::replace(&mut sender.served[number], true) {
             sender.draining_ns = later(sender.draining_ns, accepted);
         }
@@ -404,12 +418,14 @@ impl<'a> Ring<'a> {
         let (Some(first), others) = (senders.first(), senders.get(1..).unwrap_or_default()) else { return 0.0 };
         let message_ns = model.overhead_ns + 3.0 * model.word_ns;
         let ports = 1 + model.gps + self.renderers.len() + FRAME_BUFFERS;
+        // Each GP reports after its last message was accepted.
         let arrival = |sender: &Sender<'_>| {
             let sent = later(sender.cpu_ns + model.message_ns, sender.accepted_ns);
             sent + message_ns + model.hop_ns * (ports - sender.gp) as f64
         };
         let mut arrivals: Vec<f64> = others.iter().map(arrival).collect();
         arrivals.sort_by(f64::total_cmp);
+        // The first GP handles the reports one by one.
         let told = arrivals.into_iter().fold(0.0, |done, arrival| later(done, arrival) + model.message_ns);
         later(first.cpu_ns, told)
     }

@@ -117,6 +117,7 @@ fn copy<const N: usize>(
     from: Times<N>,
     queues: &[Queue; MOST_RENDERERS],
 ) -> [CopyTimes; N] {
+    // A message with two copies has 22 words: SelectRegion and CopyRegion take 11 words per region.
     let each = Times::<N>::each(|i| models[i].overhead_ns + 2.0 * 11.0 * models[i].word_ns);
     for (renderer, array) in arrays.iter_mut().enumerate() {
         let commanded = from + each * Times::all((renderer + 1) as f64);

@@ -78,6 +78,7 @@ pub fn compare(scene: &Scene, plan: &Plan, finished: impl Fn(u64, u64)) -> ArpCo
         failed: Vec::new(),
     };
     for (done, (variant, choices)) in (1..).zip(VARIANTS) {
+        // Failed variants are reported, and the comparison continues.
         let mut plan = plan.clone();
         let chosen = choices.iter().try_for_each(|(path, value)| plan.set(path, value, variant));
         match chosen.and_then(|()| WalkOutcome::of(scene, &plan, |_, _| {})) {

@@ -36,6 +36,7 @@ const MARGIN: f64 = 0.015;
 ///
 /// [`ExperimentError::Scene`] if the scene has no path of its own, which defines the height of the eye.
 pub fn path_of(scene: &Scene, route: Route) -> Result<Walk, ExperimentError> {
+    // The scene's own path defines the height of the eye.
     let own: Vec<DVec3> = scene.path().iter().map(|corner| corner.as_dvec3()).collect();
     if own.len() < 2 {
         return Err(ExperimentError::Scene {
@@ -44,6 +45,7 @@ pub fn path_of(scene: &Scene, route: Route) -> Result<Walk, ExperimentError> {
             found: "none".to_owned(),
         });
     }
+    // All other routes are derived from the bounding box of the scene.
     let places = || scene.vertices().iter().map(|vertex| vertex.position.as_dvec3());
     let low = places().fold(DVec3::INFINITY, DVec3::min);
     let high = places().fold(DVec3::NEG_INFINITY, DVec3::max);
@@ -67,6 +69,7 @@ pub fn scaled(scene: &Scene, factor: f64) -> Result<Scene, ExperimentError> {
     let mut parts = scene.clone().into_parts();
     let factor = factor as f32;
     let on_plan = |place: Vec3| Vec3::new(place.x * factor, place.y, place.z * factor);
+    // Scale the vertices, spheres and path in x and z.
     for vertex in &mut parts.vertices {
         vertex.position = on_plan(vertex.position);
         // Normals scale by the inverse, so that they stay perpendicular to the surface.

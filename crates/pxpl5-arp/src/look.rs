@@ -29,6 +29,7 @@ impl Faces {
         let view = settings.view()?;
         let mut drawing = Drawing::default();
         let mut memories = Vec::new();
+        // Memories without an update stay empty.
         for content in simulation.shown() {
             let mut faces = FaceSet::new(view.geometry.texels, settings.display.format());
             if let Some(content) = content {

@@ -147,6 +147,7 @@ impl Plan {
             _ => self.set_number(path, text, place)?,
         };
         done.map_err(|expected| wrong(path, text, place, expected))?;
+        // Record the setting for the report.
         self.said.insert(path.to_owned(), text.to_owned());
         Ok(())
     }

@@ -134,6 +134,7 @@ impl Report {
             face_texels: timing.face_texels,
             latch: latch(&settings.display),
             pipeline_ns: timing.depth().0 as f64 / 1e3,
+            // A walk has no tracker that sends matrices.
             matrix_loads: None,
             matrix_refused: None,
             footprints_split: looked.map(|looked| looked.stats.split),

@@ -170,6 +170,7 @@ impl<'a> Simulation<'a> {
             let together = if update.together[memory] { update.together_bits() } else { 0 };
             self.queue.put(memory, Job { content, work_s, left_s: work_s, together });
         }
+        // Draw for the duration of one frame, then show complete updates.
         self.queue.work(self.settings.numbers.frame_s());
         for (memory, shown) in self.queue.retrace().into_iter().enumerate() {
             match shown {
@@ -184,6 +185,7 @@ impl<'a> Simulation<'a> {
     }
 
     fn update(&mut self, eye: DVec3) -> Update {
+        // The validity of an object depends on the eye's speed since the previous frame.
         let speed = self.before.map_or(0.0, |before| before.distance(eye) * self.settings.numbers.frame_hz);
         match &mut self.policy {
             Policy::Full => Update { due: vec![true], together: vec![false], deals_anew: false },

@@ -43,6 +43,7 @@ impl Queue {
 
     /// Returns the updates that can be shown at a retrace, by memory. `Err` marks an incomplete update.
     pub(crate) fn retrace(&mut self) -> Vec<Option<Result<Content, ()>>> {
+        // A memory without an update counts as complete, so that it does not delay its group.
         let whole: Vec<bool> =
             self.running.iter().map(|job| job.as_ref().is_none_or(|job| job.left_s == 0.0)).collect();
         let outcomes = (0..self.running.len()).map(|memory| {
@@ -52,6 +53,7 @@ impl Queue {
             Some(if may_swap { Ok(job.content.clone()) } else { Err(()) })
         });
         let outcomes: Vec<Option<Result<Content, ()>>> = outcomes.collect();
+        // The next waiting update takes the place of a shown one.
         for (memory, outcome) in outcomes.iter().enumerate() {
             if matches!(outcome, Some(Ok(_))) {
                 self.running[memory] = self.waiting[memory].take();

@@ -71,6 +71,7 @@ impl WalkTally {
         for (memory, tally) in self.memories.iter_mut().enumerate() {
             tally.missed += u64::from(outcome.missed[memory]);
             let Some(content) = &simulation.shown()[memory] else { continue };
+            // Contents and age of what the memory shows.
             let segments = content.segments.len() as u64;
             tally.segment_frames += segments;
             tally.age_m += content.eye.distance(outcome.eye);
@@ -86,6 +87,7 @@ impl WalkTally {
             tally.age_frames += age.max(tally.drawn_in);
             tally.drawing_frames += tally.drawn_in;
         }
+        // Tears between all memories in this frame.
         let tears = Tears::of(simulation.world(), simulation.shown());
         self.widest.push(tears.widest);
         self.tears.before.extend(tears.before);

@@ -197,6 +197,7 @@ fn packed(parts: [f64; 3]) -> u32 {
 }
 
 fn shared(segments: &[Segment]) -> Vec<SharedVertex> {
+    // Collect the segments of each vertex. Vertices of one segment repeat, so compare with the last entry.
     let mut holders: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for (number, segment) in segments.iter().enumerate() {
         for vertex in segment.triangles.iter().flatten() {

@@ -68,6 +68,7 @@ impl FromStr for Board {
     fn from_str(text: &str) -> Result<Self, String> {
         let refused = format!("expected host, ring, gp N, renderer N or display N, found {text:?}");
         let text = text.to_ascii_lowercase();
+        // Split off the digits at the end, then remove an optional space.
         let (name, number) = text.split_at(text.trim_end_matches(|c: char| c.is_ascii_digit()).len());
         match (name, name.strip_suffix(' ').unwrap_or(name), number.parse()) {
             ("host", _, Err(_)) => Ok(Self::Host),

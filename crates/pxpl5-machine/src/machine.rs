@@ -50,7 +50,7 @@ pub struct Machine {
     failure: Option<RunError>,
     /// Events since the last tick of the first display, not counting events of displays and clocks.
     work_events: u64,
-    // Consecutive ticks of the first display without any other event between them.
+    /// Number of consecutive ticks of the first display without any other event between them.
     idle_ticks: u64,
 }
 
@@ -85,6 +85,7 @@ impl Machine {
         config.check()?;
         // Number the ports first: every board needs its own port number.
         let ports = Ports::plug(config, pictures);
+        // Renderers are not elastic: they accept a message only when their FIFO has room.
         let renderers = ports.renderers.clone();
         let elastic = move |node: NodeId| !renderers.contains(&node);
         let ring =
@@ -92,6 +93,7 @@ impl Machine {
         // Build the boards in the order of their ports.
         let host = GpBoard::new(ports.host, config.host.board(), cycle());
         let gps = ports.gps.iter().map(|node| GpBoard::new(*node, config.gp, cycle()));
+        // All renderers share one pool for their pixel arrays.
         let pool = ArrayPool::new(layout);
         let renderer = |node: &NodeId| Renderer::new(*node, config.renderer, config.ring.word(), cycle(), pool.clone());
         let displays = config.displays.iter().zip(&ports.displays).map(|(display, nodes)| display.build(nodes));
@@ -214,9 +216,11 @@ impl Machine {
 
     /// Starts the machine: all programs and the first period of every display begin at time zero.
     pub fn switch_on(&mut self) {
+        // Every processor polls its programs first.
         for board in 0..self.processors.len() {
             self.queue.schedule(Time::ZERO, Phase::Work, Event::Gp(board, GpEvent::Poll));
         }
+        // Start the clocks of the displays.
         for (display, device) in self.record.displays.iter().enumerate() {
             self.queue.schedule(
                 device.tick(PeriodNumber::FIRST),
@@ -224,6 +228,7 @@ impl Machine {
                 Event::Tick(display, PeriodNumber::FIRST),
             );
         }
+        // With the optimization `IdleBoards` disabled, poll at every clock edge.
         if self.every_edge {
             self.queue.schedule(Time::ZERO, Phase::Work, Event::Edge);
         }
@@ -352,6 +357,7 @@ impl Machine {
         let Self { record: Record { ring, observation, .. }, contexts: Contexts { ring: context, .. }, queue, .. } =
             self;
         let mut traffic = observation.traffic.as_deref_mut();
+        // Record that a renderer accepts a message.
         if let (Some(traffic), RingEvent::Accept { destination, last_word_at }) = (&mut traffic, &event) {
             traffic.accept(*destination, *last_word_at);
         }
@@ -368,6 +374,7 @@ impl Machine {
         let record = &mut self.record;
         let mut traffic = record.observation.traffic.as_deref_mut();
         match output {
+            // The first words of a message reach a renderer's FIFO.
             RingOutput::Announce { message, first_word_at, .. } => {
                 record.hash.record(now, &facts(1, &message));
                 if let Some(traffic) = &mut traffic {
@@ -376,6 +383,7 @@ impl Machine {
                 let board = usize::from(message.destination.0 - record.ports.renderers[0].0);
                 self.renderer_event(now, board, RendererEvent::Announce { message, first_word_at });
             }
+            // A message has arrived completely.
             RingOutput::Delivered(message) => {
                 record.hash.record(now, &facts(2, &message));
                 if let Some(traffic) = &mut traffic {
@@ -383,6 +391,7 @@ impl Machine {
                 }
                 self.deliver(now, message);
             }
+            // Tell the sender that its message was accepted.
             RingOutput::Sent { source, ticket } => {
                 record.hash.record(now, &[3, u64::from(source.0), ticket]);
                 match record.ports.renderers.binary_search(&source) {
@@ -390,6 +399,7 @@ impl Machine {
                     Err(_) => self.gp_event(now, usize::from(source.0), GpEvent::Accepted(ticket)),
                 }
             }
+            // An invalid message stops the machine.
             RingOutput::Refused { error, .. } => {
                 self.failure = Some(RunError::Ring { time: now, reason: error.to_string() });
             }

@@ -106,6 +106,7 @@ impl Record {
     /// next picture arrives before the other buffer is free. Discarded arrivals and swaps are missing.
     #[must_use]
     pub fn shown_by(&self, port: NodeId) -> Vec<Shown> {
+        // Sort the arrivals at this port by time.
         let arrivals = self.observation.arrivals.iter().filter(|arrival| arrival.target.frame_buffer == port);
         let arrivals = arrivals.map(|arrival| (arrival.last_part_at, arrival.target.picture));
         let mut arrivals: Vec<(Time, PictureNumber)> = arrivals.collect();
@@ -113,6 +114,7 @@ impl Record {
         let mut arrivals = arrivals.into_iter().peekable();
         let mut newest: Option<(PictureNumber, Time)> = None;
         let swaps = self.observation.swaps.iter().filter(|swap| swap.port == port);
+        // For each swap, find the newest picture that has arrived.
         let shown = swaps.filter_map(|swap| {
             let at = self.tick(swap.tick);
             while let Some((arrived_at, picture)) = arrivals.next_if(|arrival| arrival.0 <= at) {

@@ -114,7 +114,7 @@ pub(crate) fn poses(run: &Settled<'_>) -> Poses {
     run.head.map(|head| head.sampled()).unwrap_or_default().into_iter().map(|s| (s.number, s)).collect()
 }
 
-/// Returns the stages of each complete picture whose measured pose is still held.
+/// Returns the duration of each stage, for every complete picture whose measured pose is still in memory.
 pub(crate) fn of_pictures<'a>(
     run: &Settled<'_>,
     poses: &Poses,
@@ -128,6 +128,7 @@ pub(crate) fn of_pictures<'a>(
 fn of_picture(run: &Settled<'_>, times: &PictureTimes, sampled: &Sampled) -> Option<[f64; STAGES]> {
     let light = run.pipeline.light(run.record, times);
     let taken_at = sampled.known.max(sampled.arrived_at?);
+    // The stages lie between these consecutive instants.
     let path = [
         sampled.measured_at?,
         sampled.arrived_at?,

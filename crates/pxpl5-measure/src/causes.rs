@@ -42,6 +42,7 @@ impl ErrorCauses {
             return None;
         }
         let whole_px = whole.pixels.mean;
+        // Evaluate the run again without each single cause.
         let parts = Cause::ALL.map(|cause| {
             let without_px = PixelErrors::without(outcome, showing, cause).pixels.mean;
             ErrorPart { cause, px: whole_px - without_px }

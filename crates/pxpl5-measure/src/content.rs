@@ -164,6 +164,7 @@ impl Ray {
         if determinant == 0.0 {
             return None;
         }
+        // `u` and `v` are barycentric coordinates of the hit.
         let way = self.origin - a;
         let u = way.dot(normal) / determinant;
         let across = way.cross(ab);

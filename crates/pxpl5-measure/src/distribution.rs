@@ -46,6 +46,7 @@ impl Distribution {
         if statistics.n <= self.limit as u64 {
             return Percentiles::of(self.samples.iter().copied());
         }
+        // The percentile has the smallest rank that covers the requested share.
         let at = |percent: u64| self.ranked((statistics.n * percent).div_ceil(100).max(1));
         Percentiles {
             n: statistics.n,

@@ -112,6 +112,7 @@ impl Judging {
     ) {
         let display = run.record.display();
         let shown = &self.shown;
+        // Find all views that some evaluated pixel shows.
         let of_field = |field: PeriodNumber| {
             let pixels = grid(display, field).into_iter();
             pixels.flat_map(move |(x, y, at)| shown.views_at(run, [x, y], field, at))
@@ -144,6 +145,7 @@ impl Judging {
     fn seen(&mut self, run: &Settled<'_>, place: [u32; 2], field: PeriodNumber, at: Time) -> Seen {
         match &mut self.content {
             Content::Plain => self.shown.seen(run, place, field, at),
+            // Only whole views can be shifted. An interpolated picture or faces have no single pose.
             Content::Shifted(_, offset) => match self.shown.seen(run, place, field, at) {
                 Seen::Complete(Drawn::View(moment)) => {
                     let shift = offset.map(|offset| offset.shift_px(&self.judge.view, at.0));
@@ -161,6 +163,7 @@ impl Judging {
     /// Returns the error of a pixel. If there is none, increments the counter of the reason.
     fn error(&self, [x, y]: [u32; 2], at: Time, seen: Seen, collected: &mut Collected) -> Option<PixelError> {
         let errors = &mut collected.errors;
+        // Each reason has its own counter.
         let (error, unjudged) = match seen {
             Seen::Nothing => (None, &mut errors.empty),
             Seen::Incomplete => (None, &mut errors.incomplete),
@@ -185,7 +188,7 @@ struct Collected {
     errors: PixelErrors,
 }
 
-/// Number of grid values kept for each field kept: 4 MiB for pixels and 4 MiB for degrees.
+/// Number of grid values kept for each kept field. The limit corresponds to 4 MiB for pixels and 4 MiB for degrees.
 const KEPT_OF_GRID: usize = 8;
 
 impl Collected {

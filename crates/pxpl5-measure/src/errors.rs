@@ -70,6 +70,7 @@ pub(crate) fn grid(display: &dyn Display, period: PeriodNumber) -> Vec<(u32, u32
     let place = |i: u32, size: u32| (2 * i + 1) * size / (2 * GRID);
     let mut pixels = Vec::new();
     for j in 0..GRID {
+        // Move the row to the nearest line above that this field lights.
         let y = place(j, surface.height) / row_distance * row_distance + first_row;
         for x in (0..GRID).map(|i| place(i, surface.width)) {
             pixels.extend(display.lights(0, x, y, period).map(|at| (x, y, at)));

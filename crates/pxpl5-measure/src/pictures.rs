@@ -33,6 +33,7 @@ pub fn picture(outcome: &Outcome, surface: impl Into<SurfaceId>) -> Option<RgbIm
     if outcome.experiment().pixels_wanted() == Pixels::Off {
         return None;
     }
+    // A shifted raster needs the offsets of the fields that are visible.
     match RasterOffsets::of(outcome) {
         Some(offsets) => {
             let display = outcome.record().display();

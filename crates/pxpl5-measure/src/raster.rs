@@ -50,9 +50,11 @@ pub(crate) fn offset(
     field: PeriodNumber,
     drawn_for: &Pose,
 ) -> RasterOffset {
+    // Only reports known at the retrace count.
     let known = display.tick(field);
     let first = display.first_light(0, field).unwrap_or(known);
     let field_span = display.tick(field.next()).since(known);
+    // Predict the pose at the first line and one field later, to get the rates.
     let [begin, end] = [first, first + field_span].map(|at| estimator.pose(known, at));
     let seconds = field_span.as_ms() * 1e-3;
     let rate = rotation::difference(begin.orientation, end.orientation) / seconds;
@@ -118,8 +120,10 @@ impl<'a> RasterOffsets<'a> {
         [x, y]: [u32; 2],
     ) -> Rgb<u8> {
         let (first_row, row_distance) = self.display.rows_lit(field);
+        // The shift depends on the time at which the beam lights the pixel.
         let at = self.display.lights(0, x, y, field).unwrap_or(Time::ZERO);
         let shift = offset.shift_px(&self.view, at.0);
+        // Stay within the rows of this field.
         let row = (y - first_row) / row_distance;
         let from = DVec2::new(f64::from(x) - shift.x, f64::from(row) - shift.y / f64::from(row_distance)).round();
         let inside = from.x >= 0.0 && from.y >= 0.0;

@@ -59,7 +59,7 @@ impl Judge {
         })
     }
 
-    /// Returns the content that a drawn pixel shows.
+    /// Returns the point of the scene that a drawn pixel shows.
     fn content(&self, drawn: &Drawn, place: DVec2) -> Content {
         match drawn {
             Drawn::View(moment) => self.met(moment, place),

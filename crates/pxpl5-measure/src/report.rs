@@ -185,6 +185,7 @@ impl Report {
         let due = outcome.due();
         let tally = outcome.tally();
         let mut report = Self {
+            // Identity of the run.
             schema: Self::SCHEMA.to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             machine: config.preset.clone(),
@@ -199,6 +200,7 @@ impl Report {
                 .collect::<Vec<_>>()
                 .join(" "),
             display: record.display().name().to_owned(),
+            // Warnings and configuration.
             overrides: config.overrides(),
             warnings: experiment.warnings().into_iter().chain(untold(outcome)).collect(),
             display_faults: faults(record).collect(),
@@ -207,6 +209,7 @@ impl Report {
             scene: scene.name().to_owned(),
             triangles: scene.triangles().len(),
             spheres: scene.spheres().len(),
+            // Results over the window.
             fields: outcome.fields(),
             window: outcome.window(),
             pictures: tally.complete as usize,
@@ -214,6 +217,7 @@ impl Report {
             latency_ms: outcome.latency_ms().defined(pipeline.latency_definition()),
             latency_parts_ms: latency_part_statistics(outcome),
             latency_by_eye_ms: latency_by_surface(outcome),
+            // Results over the whole run.
             shown: outcome.shown(),
             updates_hz: outcome.updates_hz(),
             due,
@@ -224,6 +228,7 @@ impl Report {
             late_regions: tally.late_regions as usize,
             first_late_regions: tally.first_late_regions.clone(),
             display_counters: record.display().counters(),
+            // Parts that only some runs have.
             head: outcome.head().and_then(|views| HeadReport::of_head(outcome, views.head())),
             arp: FacesReport::of(outcome),
             trace_hash: String::new(),

@@ -34,6 +34,7 @@ pub(crate) struct Turns {
 impl TurnSum {
     pub(crate) fn take(&mut self, run: &Settled<'_>) {
         let window_from = run.window.map(|window| window.first_period);
+        // The window has moved: everything summed so far lies before it.
         if self.parts.is_empty() || self.window_from != window_from {
             self.window_from = window_from;
             self.total = Samples::keeping(run.samples);

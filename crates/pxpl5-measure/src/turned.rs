@@ -76,8 +76,10 @@ impl TurnedFaces {
         field: PeriodNumber,
         moment: impl Fn(ViewNumber) -> Option<Moment>,
     ) -> Option<FacesSeen> {
+        // Find the report and the instant from which this pixel's orientation was predicted.
         let (report, aimed_at) = self.latched.turned_by(&self.head, x, y, field)?;
         let orientation = self.turns.borrow_mut().at(&self.head, self.without, report, aimed_at);
+        // Each memory keeps its position but is seen in this orientation.
         let seen = self.history.at(field).filter_map(|shown| {
             let Moment { pose, objects_at } = moment(shown.note.view)?;
             let pose = Pose { orientation, ..pose };

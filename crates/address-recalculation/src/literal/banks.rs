@@ -33,6 +33,7 @@ impl BankedMemory {
             for row in 0..texels {
                 for column in 0..texels {
                     let texel = TexelAddress { face, column, row };
+                    // Empty texels keep the initial cell.
                     if let Some((colour, depth)) = faces.texel(texel) {
                         let colour = if format.colour_bits == 16 { narrowed(colour) } else { colour };
                         let place = memory.place(texel);

@@ -73,6 +73,7 @@ impl LiteralPipeline {
         let first = [Stage::Table, Stage::Multiply, Stage::AddFirst, Stage::AddSecond, Stage::Face];
         let divide = vec![Stage::Divide; timing.quotient_bits as usize];
         let compare = vec![Stage::Compare; timing.compare_stages() as usize];
+        // The order of composition decides the order of the last stages.
         let last = match config.order {
             CompositionOrder::DepthFirst => [compare, vec![Stage::Interpolate]],
             CompositionOrder::InterpolationFirst => [vec![Stage::Interpolate], compare],
@@ -105,8 +106,10 @@ impl LiteralPipeline {
         memories: &[BankedMemory],
         background: Option<&BankedMemory>,
     ) -> Option<LitPixel> {
+        // Shift all pixels by one stage.
         self.inside.push_front(entering.map(|(pixel, matrix)| Registers::of(pixel, matrix)));
         self.inside.truncate(self.stages.len());
+        // All stages work in parallel.
         for place in 0..self.stages.len() {
             if let Some(mut registers) = self.inside[place].take() {
                 self.work(self.stages[place], &mut registers, memories, background);
@@ -184,6 +187,7 @@ impl LiteralPipeline {
         };
         let forward = x.abs().max(y.abs()).max(z.abs());
         registers.face = face;
+        // The dividers compute (1 + side / forward) / 2, so the divisor is twice the forward component.
         let divisor = (2 * forward) as u64;
         registers.dividers = [forward + right, forward - up].map(|dividend| Divider::new(dividend as u64, divisor));
     }
@@ -192,6 +196,7 @@ impl LiteralPipeline {
     /// the fractions.
     fn address(&self, registers: &Registers) -> Footprint {
         let q = self.unit.quotient_bits;
+        // Offset of the first position: guard texels and rounding, minus half a texel for interpolation.
         let inner = u64::from(self.unit.geometry.inner());
         let half = if self.unit.weight_bits == 0 { 0 } else { 1_i64 << (q - 1) };
         let first = (i64::from(self.unit.geometry.guard) << q) + (inner / 2) as i64 - half;
@@ -201,6 +206,7 @@ impl LiteralPipeline {
             let here = self.unit.around(registers.face, whole, [0, 0]);
             return Footprint { texels: [here.texels[0]; 4], fractions: [0, 0], is_split: false };
         }
+        // Round the fraction, which may become 1.
         let rounding = |place: i64| {
             let below = q - self.unit.weight_bits;
             let doubled = (place as u64 & ((1 << q) - 1)) << 1 >> below;

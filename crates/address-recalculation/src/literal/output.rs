@@ -14,6 +14,7 @@ pub(super) fn read(
     constant: u32,
 ) {
     let Some(footprint) = registers.footprint else { return };
+    // Read the background first: empty texels of the other memories show it.
     registers.behind = [constant; 4];
     if let Some(memory) = background {
         let read = candidate(memory, &footprint.texels, [constant; 4]);
@@ -60,11 +61,13 @@ pub(super) fn interpolate(composition: &Composition, registers: &mut Registers) 
     let products = footprint.weights(composition.weight_bits);
     let weights = [0, 1, 2, 3].map(|k| footprint.texels[k].map(|_| u64::from(products[k])));
     let bits = 2 * composition.weight_bits;
+    // Depths are rounded up, so a mean never counts as nearer than it is.
     for candidate in &mut registers.candidates {
         let depth = weighed(candidate.depths, weights, bits, Rounding::Up);
         candidate.depths = [depth; 4];
         candidate.colours = [mixed(candidate.colours, weights, bits); 4];
     }
+    // The background is interpolated here only if no depth comparison preceded.
     if composition.order == CompositionOrder::InterpolationFirst {
         registers.behind = [mixed(registers.behind, weights, bits); 4];
     }
@@ -101,6 +104,7 @@ fn mixed(colours: [u32; 4], weights: [Option<u64>; 4], bits: u64) -> u32 {
 /// Returns the weighted sum of values, with weights that add up to 2^bits. If a weight is `None`, returns the mean of
 /// three.
 fn weighed(values: [u32; 4], weights: [Option<u64>; 4], bits: u64, rounding: Rounding) -> u32 {
+    // Beyond a corner, take the mean of the other three.
     if weights.contains(&None) {
         let three: u64 = (0..4).filter(|k| weights[*k].is_some()).map(|k| u64::from(values[k])).sum();
         let remainder = three % 3;

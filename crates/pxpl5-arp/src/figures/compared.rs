@@ -49,6 +49,7 @@ const STALLED_TRIANGLES_PER_S: f64 = 700.0;
 /// Counts the pixels that differ between an ideal and a stalled renderer, after rotations of a head at a fixed
 /// position.
 pub(super) fn turned_differ(world: &World, settings: &Settings, eye: DVec3) -> Result<u64, ExperimentError> {
+    // Simulate both renderers with the eye at rest until the slow one has drawn all memories.
     let ideal = small(settings);
     let source = SourceKind::Timed { triangles_per_s: STALLED_TRIANGLES_PER_S };
     let stalled = Settings { source, ..ideal.clone() };
@@ -60,6 +61,7 @@ pub(super) fn turned_differ(world: &World, settings: &Settings, eye: DVec3) -> R
         }
         seen.push(Faces::of(&simulation)?);
     }
+    // Rotate the head and compare the pictures.
     let mut differ = 0;
     for degrees in [12.0_f64, 90.0, 180.0] {
         let turned = DQuat::from_rotation_y(degrees.to_radians());

@@ -34,10 +34,12 @@ pub fn definitions() -> Vec<Definition> {
         "from the latch to the light: 26 stages, whose clock is assumed so that this is below the printed 1 us"
             .to_owned();
     all.push(definition("A17", stages, ArpTiming::PAPERS.depth().0 as f64 / 1e6, "us"));
+    // D1 follows from the rates of table 1.
     for (memory, rate) in RATES_HZ.into_iter().enumerate() {
         all.push(definition("D1", format!("mean period of memory {memory}: 60 / A12"), 60.0 / rate, "frames"));
         all.push(definition("D1", format!("way walked in one period of memory {memory}: A9 / A12"), 1e3 / rate, "mm"));
     }
+    // D2 to D4 follow from tables 1 and 2.
     for (segments, (id, kind)) in SEGMENTS.iter().zip([("A13", "cut"), ("A14", "uncut")]) {
         let sum = segments.iter().sum::<u64>() as f64;
         let draws = draws_per_s(&RATES_HZ, segments);
@@ -46,6 +48,7 @@ pub fn definitions() -> Vec<Definition> {
         let saved = saved_percent(draws, sum * 60.0);
         all.push(definition("D4", format!("saved against all at 60 Hz by tables 1 and 2, {kind}"), saved, "%"));
     }
+    // Savings by segmentation.
     let [cut, uncut] = SEGMENTS;
     let saved = saved_percent(draws_per_s(&RATES_HZ, &cut), draws_per_s(&RATES_HZ, &uncut));
     all.push(definition("D3", "saved by cutting, by tables 1 and 2".to_owned(), saved, "%"));

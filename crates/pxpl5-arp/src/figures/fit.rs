@@ -44,6 +44,7 @@ pub(super) fn rates_hz(
 ) -> Vec<f64> {
     let mut cells = Cells::new(numbers, held, has_cascade);
     let mut updates = vec![0_u64; numbers.memories as usize];
+    // Count the updates of each memory.
     for frame in 0..frames {
         let update = cells.frame(eye(frame));
         update.memories().for_each(|memory| updates[memory] += 1);
@@ -65,6 +66,7 @@ pub fn fitted_cell_m(
     rules: &Rules,
     frames: u64,
 ) -> Result<(f64, Vec<f64>), ExperimentError> {
+    // Keep the side, its rates and its error.
     let mut best = (f64::NAN, Vec::new(), f64::INFINITY);
     for tenths in TENTHS {
         let cell_m = f64::from(tenths) / 10.0;

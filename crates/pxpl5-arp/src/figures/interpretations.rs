@@ -210,17 +210,20 @@ impl Interpretations {
         let all = Rules::all();
         let runs = (all.len() * Situation::ALL.len()) as u64;
         let mut ranked = Vec::new();
+        // Try each set of rules in every situation.
         for rules in all {
             let mut tried = Vec::new();
             for situation in Situation::ALL {
                 tried.push(Tried::of(rules, situation)?);
                 finished((ranked.len() * Situation::ALL.len() + tried.len()) as u64, runs);
             }
+            // Average over the situations, because the paper's path and hall are unknown.
             let mean = |value: fn(&Tried) -> f64| tried.iter().map(value).sum::<f64>() / tried.len() as f64;
             let mean_error_percent = mean(|tried| tried.error_percent);
             let mean_left_out_percent = mean(|tried| tried.left_out_percent);
             ranked.push(RankedRules { rules, mean_error_percent, mean_left_out_percent, tried });
         }
+        // Rank the rules, then cross-validate.
         ranked.sort_by(|a, b| a.mean_error_percent.total_cmp(&b.mean_error_percent));
         let left_out = COMPARED.into_iter().filter_map(|memory| left_out(&ranked, memory)).collect();
         Ok(Self { ranked, left_out })

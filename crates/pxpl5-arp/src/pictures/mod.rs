@@ -125,12 +125,15 @@ pub(crate) fn ahead(path: &Walk, way_m: f64) -> DQuat {
 fn seen(simulation: &Simulation<'_>, orientation: DQuat, eye: DVec3) -> Result<Vec<Picture>, ExperimentError> {
     let faces = Faces::of(simulation)?;
     let mut pictures: Vec<Picture> = Vec::new();
+    // Unfolded faces of each memory.
     for (memory, set) in faces.memories.iter().enumerate() {
         pictures.push(Picture::Pixels(format!("faces-{memory}"), cross(set, faces.background())));
     }
+    // Faces of a reference memory with the whole scene.
     let whole = Settings { display: simulation.settings().display.clone(), ..Settings::FULL }.with_memories(1);
     let whole = Faces::of(&shown(simulation.world(), &whole, 0..1, &|_| eye)?)?;
     pictures.push(Picture::Pixels("faces-whole".to_owned(), cross(&whole.memories[0], faces.background())));
+    // Views without a lens, then through the display's lens.
     let display = &simulation.settings().display;
     let views = Views { faces: &faces, orientation, lens: without_lens(display) };
     if views.lens == Lens::Flat {
@@ -180,9 +183,11 @@ fn gaping(
     let mut best = (0, DQuat::IDENTITY, 0);
     for frame in 0..frames {
         let outcome = simulation.frame(eye(frame))?;
+        // Evaluate only some frames, because drawing is slow.
         if frame % EVERY.max(frames / TRIED) != 0 {
             continue;
         }
+        // Look horizontally towards the widest tear.
         let Some(vertex) = widest_upright(world, &simulation) else { continue };
         let orientation = looking_at(outcome.eye, vertex.with_y(outcome.eye.y));
         let faces = Faces::of(&simulation)?;
@@ -215,6 +220,7 @@ fn gaps(
     orientation: DQuat,
 ) -> Result<Vec<Picture>, ExperimentError> {
     let mut both = Vec::new();
+    // Draw the frame torn, warped and uncut.
     for (falloff, is_segmented) in [(Falloff::None, true), (Falloff::Linear, true), (Falloff::None, false)] {
         let settings = Settings { falloff, has_cascade: falloff != Falloff::None, is_segmented, ..torn.clone() };
         let simulation = shown(world, &settings, 0..frame + 1, eye)?;

@@ -57,6 +57,7 @@ pub fn cells_svg(world: &World, simulation: &Simulation<'_>, path: &Walk, eye: D
     let plan = Plan::of(&cells, side);
     let [width, depth] = plan.size;
     let mut svg = head(width, depth + 40.0);
+    // Cells in the colours of their memories.
     for (x, z) in &cells {
         let cell = Cell { x: *x, z: *z };
         let memory = simulation.dealing().map_or(0, |dealing| dealing.memory(cell));
@@ -68,9 +69,11 @@ pub fn cells_svg(world: &World, simulation: &Simulation<'_>, path: &Walk, eye: D
             &format!("fill=\"{}\" fill-opacity=\"0.55\" stroke=\"white\"", colour(memory)),
         );
     }
+    // Outline of the home cell.
     if let Some(dealing) = simulation.dealing() {
         cell_box(&mut svg, &plan, dealing.home, side, "fill=\"none\" stroke=\"black\" stroke-width=\"3\"");
     }
+    // Walls, path and eye.
     upright_edges(&mut svg, world, &plan);
     walked(&mut svg, path, &plan);
     let [x, y] = plan.at(eye.x, eye.z);
@@ -110,11 +113,13 @@ fn legend(svg: &mut String, memory: usize, top: f64) {
 /// Draws the edges of upright triangles from above: walls and partitions.
 fn upright_edges(svg: &mut String, world: &World, plan: &Plan) {
     for three in world.segments.iter().flat_map(|segment| &segment.triangles) {
+        // Only upright triangles form walls.
         let [a, b, c] = three.map(|i| world.vertices[i as usize]);
         let normal = (b - a).cross(c - a).normalize_or_zero();
         if normal.y.abs() > 0.01 {
             continue;
         }
+        // Seen from above, a wall is its longest horizontal edge.
         let ends = [[a, b], [b, c], [c, a]];
         let longest = ends
             .iter()
@@ -135,14 +140,17 @@ pub fn updates_svg(tally: &WalkTally, frames: std::ops::Range<u64>) -> String {
     let width = left + step * (frames.end - frames.start) as f64 + 20.0;
     let height = 34.0 * memories as f64 + 70.0;
     let mut svg = head(width, height);
+    // Labels and base lines of the memories.
     for memory in 0..memories {
         let top = 20.0 + 34.0 * memory as f64;
         let _ = writeln!(svg, "<text x=\"8\" y=\"{:.0}\">memory {memory}</text>", top + 17.0);
         let _ = writeln!(svg, "<path d=\"M{left:.0} {0:.0}H{1:.0}\" stroke=\"#ccc\"/>", top + 26.0, width - 20.0);
     }
+    // One column per frame.
     for (column, frame) in frames.clone().enumerate() {
         let Some(outcome) = tally.outcomes.get(frame as usize) else { break };
         let x = left + step * column as f64;
+        // A dashed line marks a new assignment of cells.
         if outcome.deals_anew {
             let _ = writeln!(
                 svg,
@@ -151,6 +159,7 @@ pub fn updates_svg(tally: &WalkTally, frames: std::ops::Range<u64>) -> String {
             );
         }
         (0..memories).for_each(|memory| mark(&mut svg, outcome, memory, x));
+        // Label every 15th frame.
         if frame % 15 == 0 {
             let _ = writeln!(svg, "<text x=\"{x:.0}\" y=\"{:.0}\">{frame}</text>", height - 30.0);
         }

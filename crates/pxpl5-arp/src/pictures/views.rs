@@ -66,6 +66,7 @@ impl Views<'_> {
         let screen = simulation.settings().display.picture();
         let bar = 24;
         let focal = pixels_per_radian(&self.lens, &screen);
+        // The rows below the picture hold the scale.
         Ok(RgbImage::from_fn(screen.width, screen.height + bar, |x, y| match y.checked_sub(screen.height) {
             Some(_) => heat(2.0 * f64::from(x) / f64::from(screen.width), x % (screen.width / 8) == 0),
             None => {

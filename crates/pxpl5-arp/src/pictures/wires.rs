@@ -20,14 +20,17 @@ pub fn cuts_svg(world: &World, side_m: f64, eye: DVec3, orientation: DQuat, scre
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {height:.0}\" fill=\"none\">\n\
          <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
     );
+    // Rotate world coordinates to the axes of the head.
     let back = orientation.conjugate();
     let seen = |index: u32| back * (world.vertices[index as usize] - eye);
+    // Draw the grey edges first, so that red ones cover them.
     for (is_cut, style) in
         [(false, "stroke=\"#999\" stroke-width=\"0.7\""), (true, "stroke=\"#d00\" stroke-width=\"1.2\"")]
     {
         let mut wires = String::new();
         for ([a, b], _) in edges(world, side_m).iter().filter(|(_, cut)| **cut == is_cut) {
             let Some([from, to]) = before(seen(*a), seen(*b)) else { continue };
+            // Project, and skip edges outside the picture.
             let [x1, x2] = [from, to].map(|p| width / 2.0 + focal * p.x / -p.z);
             let [y1, y2] = [from, to].map(|p| height / 2.0 - focal * p.y / -p.z);
             let is_beside = x1.max(x2) < 0.0 || x1.min(x2) > width || y1.max(y2) < 0.0 || y1.min(y2) > height;

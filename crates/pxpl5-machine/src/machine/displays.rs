@@ -31,6 +31,7 @@ impl Machine {
                     record.hash.record(time, &[6, u64::from(surface.0), u64::from(buffer), tick.0]);
                     note_swap(&mut record.observation, queue, swaps, (time, surface, port, tick, buffer));
                 }
+                // An update of a part of a surface, which has its own port.
                 DisplayOutput::Updated { surface, port, buffer, tick } => {
                     let surface = SurfaceId((first_surface + surface) as u16);
                     record.hash.record(time, &[7, u64::from(port.0), u64::from(buffer), tick.0]);
