@@ -1,10 +1,12 @@
-//! The machines of the papers.
+//! The presets, compared with published numbers.
 
 use pxpl5_gp::{CodeVersion, GpTiming};
 use pxpl5_machine::{MachineConfig, PRESETS};
 
-/// TR94 (small-hmd, slats), I3D95 (slats-1995, slats-optimised, large), F89 (design-maximum). Triangles: TR94's limit of 110 a field and
-/// I3D95's of 100 fit 30.0 and 55.8 us; code that fits the cache takes a third.
+/// Sources are TR94 (small-hmd, slats), I3D95 (slats-1995, slats-optimised, large) and F89 (design-maximum).
+///
+/// The published limits of 110 triangles per field (TR94) and 100 (I3D95) correspond to 30.0 and 55.8 us. Code that
+/// fits into the cache takes a third of the time.
 #[test]
 fn presets_have_the_boards_and_times_that_were_published() {
     let expected = [
@@ -34,7 +36,8 @@ fn an_unknown_preset_names_the_nearest() {
     assert_eq!(error.to_string(), "there is no machine `larg`; did you mean `large`? (`pxpl5 machines` lists all)");
 }
 
-/// Slats lights by Gouraud (TR94), Rendering Control by Phong; compiled is the code that did not fit the cache.
+/// Slats uses Gouraud shading (TR94), and Rendering Control uses Phong shading. The compiled code does not fit into the
+/// cache.
 #[test]
 fn times_of_code_are_those_of_the_code_that_a_preset_runs() {
     for preset in PRESETS {
