@@ -142,9 +142,9 @@ pub(super) struct Commands<const N: usize> {
     ///
     /// The last word has room when the command that contains the word one FIFO depth before it has started. `f64::MIN`
     /// if this command is in the previous message.
-    /// Position, counted from the end of the previous message, of the command that must start. Infinite if it is in
-    /// this message.
     room_after: Times<N>,
+    /// Position, counted from the end of the previous message, of the command that must start before the last word has
+    /// room. Infinite if this command is in the same message.
     room_before: Times<N>,
 }
 
