@@ -37,7 +37,7 @@ pub struct Footprint {
     /// Without guard texels, a texel beyond an edge belongs to the neighbouring face. `None` marks a texel beyond a
     /// corner, which is the mean of the other three.
     pub texels: [Option<TexelAddress>; 4],
-    /// Fractions to the right and downwards, in units of 2^-weight_bits, from 0 to 1 inclusive.
+    /// Fractions to the right and downwards, in units of `2^-weight_bits`, from 0 to 1 inclusive.
     pub fractions: [u32; 2],
     /// True if a texel lies on another face.
     pub is_split: bool,
@@ -54,7 +54,7 @@ impl Footprint {
         self.is_split && banks.iter().any(|texels| *texels > 1)
     }
 
-    /// Returns the weights of the four texels, in units of 4^-weight_bits.
+    /// Returns the weights of the four texels, in units of `4^-weight_bits`.
     #[must_use]
     pub const fn weights(&self, weight_bits: u64) -> [u32; 4] {
         let one = 1 << weight_bits;
@@ -89,7 +89,7 @@ impl AddressUnit {
         ((dividend / (2 * forward) as u128) as i64).min(largest)
     }
 
-    /// Returns the position between the middles of texels, in units of 2^-quotient_bits.
+    /// Returns the position between the middles of texels, in units of `2^-quotient_bits`.
     ///
     /// The position is guard + quotient * inner, minus half a texel for interpolation. A quotient rounded down stands
     /// for the middle of its interval, so half of its last bit is added.

@@ -142,7 +142,7 @@ fn whole_part(number: f64) -> i32 {
     (number.floor() + 4_503_599_627_370_496.0).to_bits() as i32
 }
 
-/// Computes positions between the middles of texels, in units of 2^-quotient_bits.
+/// Computes positions between the middles of texels, in units of `2^-quotient_bits`.
 #[inline(always)]
 fn places(out: &mut Each<i32>, unit: &AddressUnit, side: &Each<f64>, forward: &Each<f64>) {
     let q = unit.quotient_bits as u32;

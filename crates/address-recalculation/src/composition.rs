@@ -37,7 +37,7 @@ pub(crate) struct Gathered<'a> {
     pub(crate) memories: &'a [[u64; 4]],
     /// Background colours of the four texels.
     pub(crate) behind: [u32; 4],
-    /// Weights in units of 4^-weight_bits. `None` marks a texel beyond a corner, replaced by the mean of the other
+    /// Weights in units of `4^-weight_bits`. `None` marks a texel beyond a corner, replaced by the mean of the other
     /// three.
     pub(crate) weights: [Option<u32>; 4],
 }
