@@ -1,7 +1,8 @@
-//! Host time of looking 640 x 480 pixels up, interpolated, in four display memories of 512 texels, on one thread.
+//! Measures the host time to look up 640 x 480 pixels with interpolation, in four display memories of 512 texels, on
+//! one thread.
 //!
-//! Goal: at most 8 ms. `a plain loop` is the same look-up pixel by pixel; `reading the texels once` is what the memory costs: all
-//! texels of the front face in all memories, in their order.
+//! The goal is at most 8 ms. `a plain loop` is the same computation pixel by pixel. `reading the texels once` is the
+//! cost of memory: it reads all texels of the front face in all memories in order.
 #![allow(missing_docs, reason = "criterion's macro writes an undocumented function")]
 
 use address_recalculation::{
@@ -10,7 +11,7 @@ use address_recalculation::{
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
 
-/// Four memories of stripes at depths that take turns.
+/// Returns four memories with stripes at alternating depths.
 fn memories(config: &ArpConfig) -> Vec<FaceSet> {
     (0..config.timing.display_memories as u32).map(|memory| striped(config, memory)).collect()
 }
@@ -28,12 +29,12 @@ fn striped(config: &ArpConfig, memory: u32) -> FaceSet {
     faces
 }
 
-/// A head half turned to the right and looking up, so that several faces are in the picture.
+/// Returns the orientation of a head half turned to the right and looking up, so that several faces are visible.
 fn orientation() -> MatrixWords {
     Orientation::from_quaternion([0.2, -0.35, 0.05, 0.9]).expect("a rotation").words(16)
 }
 
-/// The same pixels one by one: footprint, nearest of the memories, weights.
+/// Computes the same pixels one by one: footprint, nearest memory, weights.
 fn plain(table: &LensTable, unit: &AddressUnit, matrix: &MatrixWords, memories: &[FaceSet], out: &mut [u32]) {
     for (place, pixel) in (0_u32..).zip(out) {
         let vector = table.entry(place % table.width(), place / table.width());
@@ -76,7 +77,7 @@ fn field(c: &mut Criterion) {
     assert!(fast == slow, "both show the same picture");
     let mut group = c.benchmark_group("field");
     group.sample_size(20).throughput(Throughput::Elements(pixels as u64));
-    // A look begins anew in each field: nothing is composed yet.
+    // Each field starts with an empty composition.
     group.bench_function("64 pixels at a time", |b| b.iter(|| fresh().run(0, black_box(&matrix), &mut fast)));
     group.bench_function("a plain loop", |b| {
         b.iter(|| plain(&table, &unit, black_box(&matrix), &memories, &mut slow));

@@ -1,23 +1,23 @@
-//! From a direction in words to the four texels that show it and their weights.
+//! Conversion of a direction to the addresses and weights of four texels.
 
 use crate::face::{CubeFace, FaceGeometry, TexelAddress, longest};
 use crate::timing::ArpTiming;
 
-/// Where a direction meets a face: the lengths of its components along the face's axes.
+/// Intersection of a direction with a face, as components along the face's axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Meeting {
-    /// The face that the direction meets.
+    /// The face that the direction hits.
     pub(crate) face: CubeFace,
-    /// Along its axis, above zero.
+    /// Component along the axis of the face, greater than zero.
     pub(crate) forward: i64,
-    /// To its right, at most as long.
+    /// Component to the right. Its magnitude is at most `forward`.
     pub(crate) right: i64,
-    /// Up, at most as long.
+    /// Component upwards. Its magnitude is at most `forward`.
     pub(crate) up: i64,
 }
 
 impl Meeting {
-    /// The face that a direction in words meets; `None` of no direction.
+    /// Returns the face that a direction hits, or `None` for the zero vector.
     pub(crate) fn of(direction: [i64; 3]) -> Option<Self> {
         if direction == [0; 3] {
             return None;
@@ -29,20 +29,22 @@ impl Meeting {
     }
 }
 
-/// The texels that show a direction, and how they are weighed.
+/// The four texels that show a direction, and their weights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Footprint {
-    /// Upper left, upper right, lower left, lower right. Beyond the edge of a face without guard those of the neighbouring
-    /// face; `None` for the one beyond a corner, which is the mean of the other three.
+    /// Upper left, upper right, lower left and lower right texel.
+    ///
+    /// Without guard texels, a texel beyond an edge belongs to the neighbouring face. `None` marks a texel beyond a
+    /// corner, which is the mean of the other three.
     pub texels: [Option<TexelAddress>; 4],
-    /// Fractions to the right and down, in parts of 2^weight_bits; both ends included.
+    /// Fractions to the right and downwards, in units of `2^-weight_bits`, from 0 to 1 inclusive.
     pub fractions: [u32; 2],
-    /// Whether a texel lies on another face.
+    /// True if a texel lies on another face.
     pub is_split: bool,
 }
 
 impl Footprint {
-    /// Whether two of its texels lie in one bank, which costs a second access.
+    /// Returns true if two of the texels lie in one bank, which costs a second access.
     #[must_use]
     pub fn has_conflict(&self) -> bool {
         let banks = self.texels.iter().flatten().fold([0; 4], |mut banks, texel| {
@@ -52,7 +54,7 @@ impl Footprint {
         self.is_split && banks.iter().any(|texels| *texels > 1)
     }
 
-    /// Weights of the four texels, in parts of 4^weight_bits.
+    /// Returns the weights of the four texels, in units of `4^-weight_bits`.
     #[must_use]
     pub const fn weights(&self, weight_bits: u64) -> [u32; 4] {
         let one = 1 << weight_bits;
@@ -61,41 +63,43 @@ impl Footprint {
     }
 }
 
-/// Everything between the matrix and the memories: faces, dividers, addresses.
+/// The stages between the matrix and the memories: face selection, dividers and addresses.
 #[derive(Clone, Copy, Debug)]
 pub struct AddressUnit {
     /// Size of the faces.
     pub geometry: FaceGeometry,
-    /// Bits of a quotient.
+    /// Number of bits of a quotient.
     pub quotient_bits: u64,
-    /// Bits of a fraction, 0 for the nearest texel.
+    /// Number of bits of a fraction. 0 selects the nearest texel.
     pub weight_bits: u64,
 }
 
 impl AddressUnit {
-    /// The unit of a display with these numbers.
+    /// Returns the address unit of a display with the parameters `timing`.
     #[must_use]
     pub const fn new(timing: &ArpTiming) -> Self {
         let geometry = FaceGeometry { texels: timing.face_texels as u32, guard: timing.guard_texels as u32 };
         Self { geometry, quotient_bits: timing.quotient_bits, weight_bits: timing.weight_bits }
     }
 
-    /// (1 + side / forward) / 2 in `quotient_bits` bits, rounded down, all ones for 1.
+    /// Returns (1 + side / forward) / 2 in `quotient_bits` bits, rounded down. The value 1 becomes all ones.
     fn quotient(&self, side: i64, forward: i64) -> i64 {
         let dividend = ((forward + side) as u128) << self.quotient_bits;
         let largest = (1 << self.quotient_bits) - 1;
         ((dividend / (2 * forward) as u128) as i64).min(largest)
     }
 
-    /// Places between the middles of texels, in parts of 2^quotient_bits: guard + quotient x inner, less half a texel for
-    /// four of them. A quotient rounded down stands for the middle of its interval, so half of its last bit is added.
+    /// Returns the position between the middles of texels, in units of `2^-quotient_bits`.
+    ///
+    /// The position is guard + quotient * inner, minus half a texel for interpolation. A quotient rounded down stands
+    /// for the middle of its interval, so half of its last bit is added.
     fn place(&self, quotient: i64) -> i64 {
         let half = if self.weight_bits == 0 { 0 } else { 1 << (self.quotient_bits - 1) };
         let inner = i64::from(self.geometry.inner());
         (i64::from(self.geometry.guard) << self.quotient_bits) + quotient * inner + inner / 2 - half
     }
 
-    /// The fraction of a place in `weight_bits` bits, halves rounded up, up to one.
+    /// Returns the fraction of a position in `weight_bits` bits, from 0 to 1 inclusive. Halves are rounded up.
     pub(crate) const fn fraction(&self, place: i64) -> u32 {
         let below = self.quotient_bits - self.weight_bits;
         let fraction = place & ((1 << self.quotient_bits) - 1);
@@ -103,10 +107,11 @@ impl AddressUnit {
         ((fraction + half) >> below) as u32
     }
 
-    /// The footprint of a direction in words, as [`crate::MatrixWords::turn`] gives it; `None` of no direction.
+    /// Returns the footprint of a direction from [`crate::MatrixWords::turn`], or `None` for the zero vector.
     #[must_use]
     pub fn footprint(&self, direction: [i64; 3]) -> Option<Footprint> {
         let met = Meeting::of(direction)?;
+        // Positions in texels with `quotient_bits` fractional bits.
         let across = self.place(self.quotient(met.right, met.forward));
         let down = self.place(self.quotient(-met.up, met.forward));
         let column = across >> self.quotient_bits;
@@ -119,7 +124,7 @@ impl AddressUnit {
         Some(self.around(met.face, [column, row], fractions))
     }
 
-    /// The four texels from one on, some of which may lie beyond the face's edges.
+    /// Returns the footprint with the given upper left texel. Some of its texels may lie beyond the face's edges.
     pub(crate) fn around(&self, face: CubeFace, [column, row]: [i64; 2], fractions: [u32; 2]) -> Footprint {
         let places = [[column, row], [column + 1, row], [column, row + 1], [column + 1, row + 1]];
         let size = i64::from(self.geometry.texels);
@@ -127,7 +132,10 @@ impl AddressUnit {
         Footprint { texels: places.map(|place| self.texel_or_neighbour(face, place)), fractions, is_split }
     }
 
-    /// A texel of a face; beyond an edge the one of the neighbour that its middle's direction meets, beyond a corner none.
+    /// Returns the texel at a column and row of a face, which may lie beyond its edges.
+    ///
+    /// Beyond an edge, the result is the neighbouring face's texel in the same direction. Beyond a corner, the result
+    /// is `None`.
     fn texel_or_neighbour(&self, face: CubeFace, [column, row]: [i64; 2]) -> Option<TexelAddress> {
         let size = i64::from(self.geometry.texels);
         let inside = [column, row].map(|n| (0..size).contains(&n));
@@ -138,7 +146,7 @@ impl AddressUnit {
         }
     }
 
-    /// The direction of a texel's middle in whole numbers, on the face or beside it.
+    /// Returns the direction of a texel's middle in integers, on the face or beside it.
     fn middle(&self, face: CubeFace, place: [i64; 2]) -> [i64; 3] {
         let inner = i64::from(self.geometry.inner());
         let [u, v] = place.map(|n| 2 * (n - i64::from(self.geometry.guard)) + 1 - inner);
@@ -148,7 +156,7 @@ impl AddressUnit {
         [0, 1, 2].map(|i| inner * forward[i] + u * right[i] - v * up[i])
     }
 
-    /// The nearest texel of a direction in whole numbers, exactly.
+    /// Returns the texel that a direction in integers hits. The computation is exact.
     fn nearest(&self, direction: [i64; 3]) -> Option<TexelAddress> {
         let met = Meeting::of(direction)?;
         let inner = i64::from(self.geometry.inner());

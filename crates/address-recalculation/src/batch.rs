@@ -1,34 +1,37 @@
-//! Runs of pixels, each step a loop over all of them, so that a vector unit takes several at a time.
+//! Address computation for groups of pixels. Each step is a loop over all pixels, so the compiler can vectorize it.
 //!
-//! Directions are sums of three products below 2^53, so doubles hold them exactly. A quotient needs no correction: it is a
-//! multiple of 1/(2F) with F below 2^(v + m - 1), v and m being the bits of vector and matrix, and less than 2^q; a double near
-//! it is at most 2^(q - 54) wrong. With v + m + q <= 53 that is less than 1/(2F), so rounding never reaches the next whole number.
+//! Directions are sums of three products below 2^53, so doubles hold them exactly. Quotients need no correction either:
+//!
+//! - A quotient is a multiple of 1/(2F) and less than 2^q. F is below 2^(v + m - 1), where v and m are the bits of
+//!   vector and matrix.
+//! - A rounded double near the quotient has an error of at most 2^(q - 54).
+//! - With v + m + q <= 53 this error is less than 1/(2F), so rounding never reaches the next integer.
 
 use crate::address::AddressUnit;
 use crate::orientation::MatrixWords;
 use multiversion::multiversion;
 
-/// Pixels that are looked up together: enough to hide what a call costs, few enough to stay in the first cache.
+/// Number of pixels per group: enough to amortize a call, and small enough for the first-level cache.
 pub(crate) const BATCH: usize = 64;
 
 type Each<T> = [T; BATCH];
 
-/// Where the footprints of pixels begin, and their fractions.
+/// Upper left texels and fractions of the footprints of a group of pixels.
 #[derive(Clone, Debug)]
 pub(crate) struct Batch {
-    /// How many pixels there are.
+    /// Number of pixels in the group.
     pub(crate) count: usize,
-    /// The upper left texel of each; the first of all for one that leaves its face.
+    /// Index of the upper left texel of each pixel. 0 for a footprint that leaves its face.
     pub(crate) index: Each<u32>,
     right: Each<u32>,
     down: Each<u32>,
-    /// Not 0 for a footprint that leaves its face, which has no numbers here.
+    /// Nonzero for a footprint that leaves its face. The address unit computes such footprints one by one.
     leaves: Each<i32>,
     is_left: bool,
     met: Met,
 }
 
-/// Viewing vectors, turned; by the axes of the faces that they meet; the places there.
+/// Intermediate values: viewing vectors, rotated vectors, components along the face's axes, and positions.
 #[derive(Clone, Debug)]
 struct Met {
     vectors: [Each<i32>; 3],
@@ -58,31 +61,34 @@ impl Batch {
         Self { count: 0, index: zero, right: zero, down: zero, leaves: [0; BATCH], is_left: false, met }
     }
 
-    /// The upper left texels of those that stay on their face.
+    /// Returns the upper left texels of the footprints that stay on their face.
     pub(crate) fn inside(&self) -> impl Iterator<Item = u32> + '_ {
         (0..self.count).filter(|i| self.leaves[*i] == 0).map(|i| self.index[i])
     }
 
-    /// Whether the footprint of a pixel leaves its face.
+    /// Returns true if the footprint of a pixel leaves its face.
     pub(crate) const fn leaves(&self, pixel: usize) -> bool {
         self.leaves[pixel] != 0
     }
 
-    /// Whether one of them does.
+    /// Returns true if any footprint of the group leaves its face.
     pub(crate) const fn is_left(&self) -> bool {
         self.is_left
     }
 }
 
-/// Looks up to [`BATCH`] directions up. Every step takes all lanes, whose number is known; those behind the last pixel hold what was
-/// there before.
+/// Computes the addresses of up to [`BATCH`] directions.
+///
+/// Every step processes all lanes, so loops have a constant length. Unused lanes hold values of earlier groups.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 pub(crate) fn addresses(batch: &mut Batch, unit: &AddressUnit, vectors: [&[i32]; 3], matrix: &MatrixWords) {
     batch.count = vectors[0].len().min(BATCH);
     let met = &mut batch.met;
+    // Load the vectors into the lanes.
     for (lanes, axis) in met.vectors.iter_mut().zip(vectors) {
         lanes[..batch.count].copy_from_slice(&axis[..batch.count]);
     }
+    // Rotate, select faces, divide, and split positions into texels and fractions.
     for (out, row) in met.turned.iter_mut().zip(&matrix.0) {
         turn(out, &met.vectors, row);
     }
@@ -92,7 +98,7 @@ pub(crate) fn addresses(batch: &mut Batch, unit: &AddressUnit, vectors: [&[i32];
     footprints(batch, unit);
 }
 
-/// A component of all directions, exactly.
+/// Computes one component of all rotated directions, without rounding errors.
 #[inline(always)]
 fn turn(out: &mut Each<f64>, [x, y, z]: &[Each<i32>; 3], row: &[i32; 3]) {
     let [a, b, c] = row.map(f64::from);
@@ -101,11 +107,12 @@ fn turn(out: &mut Each<f64>, [x, y, z]: &[Each<i32>; 3], row: &[i32; 3]) {
     }
 }
 
-/// The face of each direction: its longest component, on ties x before y before z.
+/// Selects the face of each direction by the longest component. On ties, x precedes y, and y precedes z.
 #[inline(always)]
 fn meet(met: &mut Met) {
     let Met { turned: [xs, ys, zs], face, forward, right, down, .. } = met;
     for i in 0..BATCH {
+        // Comparisons without branches keep the loop vectorizable.
         let [x, y, z] = [xs[i], ys[i], zs[i]];
         let [ax, ay, az] = [x.abs(), y.abs(), z.abs()];
         let is_x = (ax >= ay) & (ax >= az);
@@ -115,7 +122,7 @@ fn meet(met: &mut Met) {
         let axis = if is_y { 2 } else { 4 };
         face[i] = (if is_x { 0 } else { axis }) + i32::from(is_negative);
         forward[i] = longest.abs();
-        // To the right lie z, x and -x on the positive faces of x, y and z; below lie -y, -z and -y.
+        // The right axes of the positive faces of x, y and z are z, x and -x. Their downward axes are -y, -z and -y.
         let aside = select(is_x, z, -x);
         right[i] = select(is_y, x, select(is_negative, -aside, aside));
         down[i] = select(is_y, select(is_negative, z, -z), -y);
@@ -127,14 +134,15 @@ const fn select(condition: bool, yes: f64, no: f64) -> f64 {
     if condition { yes } else { no }
 }
 
-/// The whole part of a number of 0 to 2^32: added to 2^52 it is what its lowest bits hold. A cast would ask for each number by itself
-/// whether it is one.
+/// Returns the integer part of a number from 0 to 2^32.
+///
+/// Adding 2^52 puts the integer into the lowest bits of the double. A cast would test each number separately.
 #[inline(always)]
 fn whole_part(number: f64) -> i32 {
     (number.floor() + 4_503_599_627_370_496.0).to_bits() as i32
 }
 
-/// Places between the middles of texels in parts of 2^quotient_bits.
+/// Computes positions between the middles of texels, in units of `2^-quotient_bits`.
 #[inline(always)]
 fn places(out: &mut Each<i32>, unit: &AddressUnit, side: &Each<f64>, forward: &Each<f64>) {
     let q = unit.quotient_bits as u32;
@@ -161,7 +169,7 @@ fn footprints(batch: &mut Batch, unit: &AddressUnit) {
     for i in 0..BATCH {
         let column = met.column[i] >> q;
         let row = met.row[i] >> q;
-        // The sign of a number below 0, or of what is left up to the last.
+        // The sign bit is set if a coordinate is below 0 or above the last texel.
         leaves[i] = (column | row | (last - column) | (last - row)) >> 31;
         index[i] = (((met.face[i] * size + row) * size + column) & !leaves[i]) as u32;
         right[i] = ((met.column[i] as u32 & part) + rounding) >> below;
@@ -170,7 +178,9 @@ fn footprints(batch: &mut Batch, unit: &AddressUnit) {
     batch.is_left = leaves[..*count].iter().fold(0, |any, leaves| any | leaves) != 0;
 }
 
-/// The colours of footprints, weighed; `reach` texels down lies the next row, or none where nothing is interpolated.
+/// Interpolates the colours of all footprints of a group.
+///
+/// `reach` is the distance in texels to the next row, or 0 without interpolation.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 pub(crate) fn mixed(colours: &[u32], batch: &Batch, reach: usize, weight_bits: u32, out: &mut [u32]) {
     if weight_bits == 0 {
@@ -179,6 +189,7 @@ pub(crate) fn mixed(colours: &[u32], batch: &Batch, reach: usize, weight_bits: u
         }
         return;
     }
+    // Gather the four texels of each footprint.
     let count = out.len().min(BATCH);
     let mut four = [[0; BATCH]; 4];
     for (i, first) in batch.index[..count].iter().enumerate() {
@@ -197,11 +208,12 @@ pub(crate) fn mixed(colours: &[u32], batch: &Batch, reach: usize, weight_bits: u
     }
 }
 
-/// Bits of a fraction up to which two parts of a colour, 16 bits apart, are weighed in one product: 255 x 4^4 and half of it are
-/// below 2^16.
+/// Largest number of weight bits for which two colour channels, 16 bits apart, share one product.
+///
+/// The reason is that 255 * 4^4 plus half a unit is below 2^16.
 const WEIGHTS_OF_TWO: u32 = 4;
 
-/// Weighs red and blue together, and green.
+/// Interpolates red and blue in one product, and green in another.
 #[inline(always)]
 fn two(four: &[Each<u32>; 4], batch: &Batch, weight_bits: u32, out: &mut [u32]) {
     let one = 1 << weight_bits;
@@ -210,6 +222,7 @@ fn two(four: &[Each<u32>; 4], batch: &Batch, weight_bits: u32, out: &mut [u32]) 
     for i in 0..count {
         let [right, down] = [batch.right[i], batch.down[i]];
         let weights = [(one - right) * (one - down), right * (one - down), (one - right) * down, right * down];
+        // Red and blue share one word. The added half rounds to nearest.
         let mut outer = half | half << 16;
         let mut green = half;
         for k in 0..4 {
@@ -220,7 +233,7 @@ fn two(four: &[Each<u32>; 4], batch: &Batch, weight_bits: u32, out: &mut [u32]) 
     }
 }
 
-/// Weighs red, green and blue each by itself.
+/// Interpolates red, green and blue separately.
 #[inline(always)]
 fn each(four: &[Each<u32>; 4], batch: &Batch, weight_bits: u32, out: &mut [u32]) {
     let one = 1 << weight_bits;
@@ -231,6 +244,7 @@ fn each(four: &[Each<u32>; 4], batch: &Batch, weight_bits: u32, out: &mut [u32])
         let weights = [(one - right) * (one - down), right * (one - down), (one - right) * down, right * down];
         let mut pixel = 0;
         for shift in [16, 8, 0] {
+            // The added half rounds to nearest.
             let mut sum = half;
             for k in 0..4 {
                 sum += (four[k][i] >> shift & 0xFF) * weights[k];

@@ -1,48 +1,49 @@
-//! Which of several memories a texel shows, and four texels as one pixel.
+//! Composition: selection of the nearest memory, and interpolation of four texels.
 
 use crate::texel::{colour, nearness};
 use serde::{Deserialize, Serialize};
 
-/// What comes first: depths or weights.
+/// Order of depth comparison and interpolation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CompositionOrder {
-    /// Of each texel the nearest of all memories, then the four are interpolated (assumed).
+    /// For each texel, the nearest memory is selected first. Then the four texels are interpolated (assumed).
     #[default]
     DepthFirst,
-    /// Each memory is interpolated, depth too, then the nearest memory is shown.
+    /// Each memory is interpolated first, including its depth. Then the nearest memory is selected.
     InterpolationFirst,
 }
 
 impl CompositionOrder {
-    /// All, by their names on the command line.
+    /// All orders with their names on the command line.
     pub const ALL: [(&str, Self); 2] =
         [("depth-first", Self::DepthFirst), ("interpolation-first", Self::InterpolationFirst)];
 }
 
-/// How memories become pixels.
+/// Rules by which texels of several memories become a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Composition {
-    /// Whether depths or weights come first.
+    /// Order of depth comparison and interpolation.
     pub order: CompositionOrder,
-    /// What empty texels show where there is no background memory: 0x00RRGGBB.
+    /// Colour of empty texels without a background memory, 0x00RRGGBB.
     pub background: u32,
-    /// Bits of a fraction.
+    /// Number of bits of a fraction.
     pub weight_bits: u64,
 }
 
-/// Four texels' words in each memory, and how they are weighed; the colours behind all memories.
+/// Inputs of a pixel: four texels in each memory, their weights and the background.
 pub(crate) struct Gathered<'a> {
-    /// For each memory the words of the upper left, upper right, lower left and lower right texel.
+    /// For each memory, the words of the upper left, upper right, lower left and lower right texel.
     pub(crate) memories: &'a [[u64; 4]],
-    /// Background of the four texels.
+    /// Background colours of the four texels.
     pub(crate) behind: [u32; 4],
-    /// Weights in parts of 4^weight_bits, `None` beyond a corner: the mean of the other three.
+    /// Weights in units of `4^-weight_bits`. `None` marks a texel beyond a corner, replaced by the mean of the other
+    /// three.
     pub(crate) weights: [Option<u32>; 4],
 }
 
 impl Composition {
-    /// The pixel that four texels of all memories make.
+    /// Returns the colour of the pixel.
     pub(crate) fn pixel(&self, gathered: &Gathered<'_>) -> u32 {
         match self.order {
             CompositionOrder::DepthFirst => {
@@ -68,14 +69,14 @@ impl Composition {
         best.1
     }
 
-    /// Colours weighed, rounded to the nearest, halves up.
+    /// Interpolates colours, rounded to nearest with halves up.
     fn mix(&self, four: [u32; 4], weights: [Option<u32>; 4]) -> u32 {
         [16, 8, 0].iter().fold(0, |pixel, shift| {
             pixel | self.weighed(four.map(|colour| colour >> shift & 0xFF), weights, true) << shift
         })
     }
 
-    /// Depths weighed, rounded down.
+    /// Interpolates depths, rounded down.
     fn mixed_nearness(&self, four: [u32; 4], weights: [Option<u32>; 4]) -> u32 {
         self.weighed(four, weights, false)
     }
@@ -93,14 +94,14 @@ impl Composition {
     }
 }
 
-/// The nearer of two texels' words, the first on ties.
+/// Returns the nearer of two texel words. The first one wins a tie.
 #[inline(always)]
 pub(crate) const fn nearer(first: u64, second: u64) -> u64 {
-    // Both are below 2^56: signed comparisons, which vector units have.
+    // Both words are below 2^56, so signed comparisons work. Vector units have signed comparisons.
     if second as i64 > (first | 0xFFFF_FFFF) as i64 { second } else { first }
 }
 
-/// A texel's colour, or what is behind it where it is empty.
+/// Returns the colour of a texel, or the background `behind` if the texel is empty.
 #[inline(always)]
 pub(crate) const fn shown(word: u64, behind: u32) -> u32 {
     if nearness(word) == 0 { behind } else { colour(word) }

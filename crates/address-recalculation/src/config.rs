@@ -1,4 +1,4 @@
-//! What a display is built of.
+//! Configuration of the display.
 
 use crate::address::{AddressUnit, Footprint};
 use crate::composition::{Composition, CompositionOrder};
@@ -11,29 +11,29 @@ use crate::texel::TexelFormat;
 use crate::timing::{ArpTiming, ScanTiming};
 use parameters::check;
 
-/// Numbers, lens and choices of an address recalculation pipeline.
+/// Parameters, lens and options of an address recalculation pipeline.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArpConfig {
-    /// Words, memories and clock.
+    /// Word lengths, memories and clock.
     pub timing: ArpTiming,
-    /// The scan of its picture.
+    /// Timing of the video scan.
     pub scan: ScanTiming,
-    /// What lies between picture and eye.
+    /// Lens between the picture and the eye.
     pub lens: Lens,
-    /// Before what the orientation is latched.
+    /// Rule for the latch of the orientation: once per field, per line or per pixel.
     pub latch: Latch,
-    /// Whether depths or weights come first.
+    /// Order of depth comparison and interpolation.
     pub order: CompositionOrder,
-    /// What empty texels show: 0x00RRGGBB.
+    /// Colour of empty texels, 0x00RRGGBB.
     pub background: u32,
-    /// Whether there is a memory without depth behind all others, with a port of its own, for what never changes.
+    /// True if a memory without depth, with its own port, holds a constant background.
     pub has_background_memory: bool,
-    /// Fields that are remembered, 1 to 1,000; an interlaced picture takes two.
+    /// Number of past fields that can be read, 1 to 1,000. An interlaced picture needs two.
     pub fields_kept: u64,
 }
 
 impl ArpConfig {
-    /// Fed by Pixel-Planes 5: faces of 256 texels, which a port of the ring can fill 25 times a second.
+    /// Configuration for Pixel-Planes 5: faces of 256 texels, which a port of the ring can fill 25 times per second.
     pub const MACHINE: Self = Self {
         timing: ArpTiming::PAPERS,
         scan: ScanTiming::PAPERS,
@@ -45,14 +45,14 @@ impl ArpConfig {
         fields_kept: 2,
     };
 
-    /// Fed by an ideal renderer: faces of 512 texels.
+    /// Configuration for an ideal renderer: faces of 512 texels.
     pub const IDEAL: Self = Self { timing: ArpTiming { face_texels: 512, ..ArpTiming::PAPERS }, ..Self::MACHINE };
 
-    /// Checks that a display can be built: numbers, rules between them, and the lens.
+    /// Checks all parameters, the rules between them, and the lens.
     ///
     /// # Errors
     ///
-    /// [`ArpError`] names the key, what was expected and what was found.
+    /// [`ArpError`] names the parameter, the expected and the found value.
     pub fn check(&self) -> Result<(), ArpError> {
         self.timing.check()?;
         self.scan.check()?;
@@ -60,29 +60,29 @@ impl ArpConfig {
         self.lens.check(&self.picture())
     }
 
-    /// Size and angle of the picture.
     #[must_use]
     pub fn picture(&self) -> Picture {
         let height = self.scan.visible_lines as u32 * 2;
         Picture { width: self.scan.visible_pixels as u32, height, horizontal_deg: self.timing.horizontal_deg }
     }
 
-    /// The table of viewing vectors.
+    /// Returns the table of viewing vectors.
     ///
     /// # Errors
     ///
-    /// As [`ArpConfig::check`].
+    /// Same as [`ArpConfig::check`].
     pub fn table(&self) -> Result<LensTable, ArpError> {
         self.check()?;
         LensTable::new(&self.lens, &self.picture(), self.timing.vector_bits)
     }
 
-    /// Which texels of the faces a pixel is for an orientation of the head, and their weights, as the hardware's words have it; `None`
-    /// beyond the picture.
+    /// Returns the texels and weights of a pixel for an orientation of the head, in the word lengths of the hardware.
+    ///
+    /// Returns `None` for a pixel outside the picture.
     ///
     /// # Errors
     ///
-    /// As [`ArpConfig::check`].
+    /// Same as [`ArpConfig::check`].
     pub fn footprint(&self, x: u32, y: u32, orientation: &Orientation) -> Result<Option<Footprint>, ArpError> {
         self.check()?;
         let picture = self.picture();
@@ -94,28 +94,27 @@ impl ArpConfig {
         Ok(AddressUnit::new(&self.timing).footprint(turned))
     }
 
-    /// When pixels light and latch.
+    /// Returns the scan, which computes the times of light and latch of each pixel.
     ///
     /// # Errors
     ///
-    /// As [`ArpConfig::check`].
+    /// Same as [`ArpConfig::check`].
     pub fn scan(&self) -> Result<Scan, ArpError> {
         Scan::new(self.scan, &self.timing)
     }
 
-    /// Size of the faces.
     #[must_use]
     pub const fn geometry(&self) -> FaceGeometry {
         FaceGeometry { texels: self.timing.face_texels as u32, guard: self.timing.guard_texels as u32 }
     }
 
-    /// What a display memory keeps of a texel.
+    /// Returns the format of the texels in a display memory.
     #[must_use]
     pub const fn format(&self) -> TexelFormat {
         TexelFormat::new(&self.timing)
     }
 
-    /// How memories become pixels.
+    /// Returns the rules by which texels of several memories become a pixel.
     #[must_use]
     pub const fn composition(&self) -> Composition {
         Composition {
@@ -125,7 +124,7 @@ impl ArpConfig {
         }
     }
 
-    /// Ports of one eye: one for each memory, and one for the background memory.
+    /// Returns the number of ports per eye: one per memory, plus one for the background memory.
     #[must_use]
     pub const fn ports_of_an_eye(&self) -> usize {
         self.timing.display_memories as usize + self.has_background_memory as usize

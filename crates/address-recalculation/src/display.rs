@@ -1,4 +1,4 @@
-//! The display on the ring: a port for each memory, an orientation register, a picture for each eye.
+//! The display on the ring: a port for each memory, an orientation register and a picture per eye.
 
 use crate::address::Footprint;
 use crate::config::ArpConfig;
@@ -19,12 +19,12 @@ use pxpl5_wire::{Body, Eye, NodeId, PeriodNumber, RegionPixels, Word};
 use std::collections::VecDeque;
 use std::sync::OnceLock;
 
-/// The memories and the orientation of one eye.
+/// The memories and the orientation latch of one eye.
 #[derive(Debug)]
 struct EyeBoards {
     memories: Vec<DisplayMemory>,
     latch: OrientationLatch,
-    /// What was shown in past fields, the newest last.
+    /// Buffers shown in past fields, newest last.
     scanned: VecDeque<(PeriodNumber, ShownBuffers)>,
 }
 
@@ -33,10 +33,12 @@ impl EyeBoards {
         ShownBuffers { memories: self.memories.iter().map(|memory| (memory.kind(), memory.shown())).collect() }
     }
 
-    /// Swaps what can be swapped: alone, or all memories of a set that are ready at this retrace. Which, and to which buffer.
+    /// Swaps all memories that are ready at a retrace. Returns each swapped memory with its new buffer.
+    ///
+    /// Memories of a set swap only if the whole set is ready.
     fn retrace(&mut self, now: Time) -> Vec<(usize, u8)> {
         let ready: Vec<Option<u8>> = self.memories.iter().map(|memory| memory.is_ready(now)).collect();
-        // An update of another set, or of none, does not stand for the one that this set waits for.
+        // A memory that is ready for another set, or alone, does not count as ready for this set.
         let all_ready = |set: u8| (0..u8::BITS as usize).all(|k| set >> k & 1 == 0 || ready.get(k) == Some(&Some(set)));
         let may_swap: Vec<bool> = ready.iter().map(|set| set.is_some_and(all_ready)).collect();
         let memories = (0..).zip(self.memories.iter_mut().zip(may_swap));
@@ -44,7 +46,7 @@ impl EyeBoards {
     }
 }
 
-/// An address recalculation pipeline and its display memories, for one eye or two.
+/// An address recalculation pipeline with its display memories, for one or two eyes.
 #[derive(Debug)]
 pub struct AddressRecalculationPipeline {
     optics: Optics,
@@ -57,41 +59,43 @@ pub struct AddressRecalculationPipeline {
 }
 
 impl AddressRecalculationPipeline {
-    /// What it is built of.
+    /// Returns the configuration of the display.
     #[must_use]
     pub const fn config(&self) -> &ArpConfig {
         &self.optics.config
     }
 
-    /// The display memories of an eye, the background memory last; none of an eye that it does not have.
+    /// Returns the display memories of an eye, with the background memory last. Empty for an eye that does not exist.
     #[must_use]
     pub fn memories(&self, eye: Eye) -> &[DisplayMemory] {
         self.eyes.get(eye.index()).map_or(&[], |boards| &boards.memories)
     }
 
-    /// Loads an orientation by the host's own port: the rows of the matrix that turns head axes into world axes.
+    /// Loads an orientation through the host's own port: the rows of the matrix from head axes to world axes.
     ///
     /// # Errors
     ///
-    /// [`ArpError::Orientation`] for what is no rotation, which is counted; the last good one stays.
+    /// [`ArpError::Orientation`] if the matrix is not a rotation. The refusal is counted, and the previous matrix stays
+    /// valid.
     pub fn load_orientation(&mut self, eye: Eye, rows: [Vector; 3], now: Time) -> Result<(), ArpError> {
         self.eyes.get_mut(eye.index()).map_or(Ok(()), |boards| boards.latch.load(rows, now))
     }
 
-    /// The matrix that a pixel of a remembered field was looked up with.
+    /// Returns the matrix used for a pixel of a past field, if the field is still held and scans the pixel.
     #[must_use]
     pub fn latched(&self, eye: Eye, x: u32, y: u32, field: PeriodNumber) -> Option<MatrixWords> {
         self.field(eye.index(), field)?.matrix(x, y)
     }
 
-    /// The face and the texels that a pixel of a remembered field was looked up in, with their weights; `None` for a pixel that the
-    /// field does not scan.
+    /// Returns the texels and weights used for a pixel of a past field.
+    ///
+    /// Returns `None` if the field is no longer held or does not scan the pixel.
     #[must_use]
     pub fn footprint(&self, eye: Eye, x: u32, y: u32, field: PeriodNumber) -> Option<Footprint> {
         self.field(eye.index(), field)?.footprint(x, y)
     }
 
-    /// What looking a remembered field up costs besides one access a pixel and memory.
+    /// Returns the extra memory accesses of a past field, beyond one access per pixel and memory.
     #[must_use]
     pub fn look_stats(&self, eye: Eye, field: PeriodNumber) -> Option<LookStats> {
         let mut frame = self.empty_frame();
@@ -113,6 +117,7 @@ impl AddressRecalculationPipeline {
         let at = now + Span::from_ns(self.optics.config.timing.word_ns);
         let kept = self.optics.config.fields_kept;
         let oldest = self.optics.scan.retrace(tick.before(kept).unwrap_or(PeriodNumber::FIRST));
+        // Remember the buffers that the past field showed.
         self.fields += 1;
         for (surface, boards) in self.eyes.iter_mut().enumerate() {
             if let Some(over) = tick.before(1) {
@@ -122,6 +127,7 @@ impl AddressRecalculationPipeline {
                 boards.scanned.pop_front();
             }
             boards.latch.forget_before(Time(oldest.0.saturating_sub(self.optics.config.timing.depth().0)));
+            // Swap the memories that are ready for this retrace.
             for (memory, buffer) in boards.retrace(now) {
                 let port = self.nodes[surface * self.optics.config.ports_of_an_eye() + memory];
                 context.output(at, DisplayOutput::Updated { surface, port, buffer, tick });
@@ -150,6 +156,7 @@ impl AddressRecalculationPipeline {
         let target = pixels.target;
         let last_part_at = context.now();
         let receipt = self.eyes[surface].memories[memory].receive(pixels, last_part_at)?;
+        // Report a complete region one word time after its last message.
         if let PixelReceipt::Region(first_part_at) = receipt {
             let at = last_part_at + Span::from_ns(self.optics.config.timing.word_ns);
             context.output(at, DisplayOutput::RegionArrived { surface, target, first_part_at, last_part_at });
@@ -181,7 +188,7 @@ impl AddressRecalculationPipeline {
     }
 }
 
-/// Its name on the command line.
+/// Name on the command line.
 const NAME: &str = "arp";
 
 impl Display for AddressRecalculationPipeline {
@@ -283,7 +290,7 @@ impl DisplayConfig for ArpConfig {
         vec![("arp", &mut self.timing), ("arp_scan", &mut self.scan)]
     }
 
-    /// One for each memory of each eye.
+    /// Returns the number of ports: one for each memory of each eye.
     fn ports(&self, pictures: usize) -> usize {
         pictures.clamp(1, Eye::BOTH.len()) * self.ports_of_an_eye()
     }
@@ -295,6 +302,7 @@ impl DisplayConfig for ArpConfig {
     fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError> {
         Self::check(self).map_err(refused)?;
         let scan = self.scan().map_err(refused)?;
+        // The number of ports determines the number of eyes.
         let eyes = nodes.len() / self.ports_of_an_eye();
         if nodes.len() != self.ports(eyes) {
             let expected = format!("{} ports for one eye, {} for two", self.ports(1), self.ports(2));

@@ -1,33 +1,33 @@
-//! What can be wrong with what a user hands in.
+//! Errors in the configuration and in input data.
 
 use thiserror::Error;
 
-/// A number, a lens or an orientation that the display cannot use.
+/// A parameter, lens or orientation that the display cannot use.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ArpError {
-    /// A number beyond its limits: its path, what was expected and what was found.
+    /// A parameter is out of range. The text has its path, the expected and the found value.
     #[error("{0}")]
     Number(String),
-    /// A lens that folds the picture over itself, or that cannot have this angle.
+    /// The lens folds the picture over itself or cannot have the requested angle.
     #[error("arp.lens: expected {expected}, found {found}")]
     Lens {
-        /// The rule that it breaks.
+        /// The violated rule.
         expected: String,
-        /// What it is instead.
+        /// The value that violates the rule.
         found: String,
     },
-    /// A file of viewing vectors that cannot be read.
+    /// A file of viewing vectors is invalid.
     #[error("arp.lens table, line {line}: expected {expected}, found {found}")]
     Table {
-        /// Line of the file, from 1; the one after the last where something is missing.
+        /// Line of the file, counted from 1. If data are missing, the line after the last one.
         line: usize,
-        /// What should stand there.
+        /// Description of the expected content.
         expected: String,
-        /// What stands there instead.
+        /// The content found.
         found: String,
     },
-    /// A matrix that turns nothing: not finite, stretched, or a reflection.
+    /// A matrix is not a rotation: not finite, stretched, or a reflection.
     #[error("orientation: expected a rotation within 1e-3, found {0}")]
     Orientation(String),
 }

@@ -1,38 +1,38 @@
-//! The six faces of the cube around the eye, and which texel a direction is, in real numbers.
+//! The six faces of the cube around the eye, and the mapping from directions to texels in floating point.
 
 use serde::{Deserialize, Serialize};
 
-/// A direction or a row of a matrix: x to the right, y up, z towards the viewer.
+/// A direction or a row of a matrix: x points right, y up, z towards the viewer.
 pub type Vector = [f64; 3];
 
-/// A face of the cube, by the axis that it lies on.
+/// A face of the cube, named by the axis it lies on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum CubeFace {
-    /// To the right of a head that is not turned.
+    /// To the right of a head in its initial orientation.
     PosX,
-    /// To the left of that head.
+    /// To the left of a head in its initial orientation.
     NegX,
-    /// Over the head's crown.
+    /// Above the head.
     PosY,
-    /// Under the head's feet.
+    /// Below the head.
     NegY,
-    /// Behind the head's back.
+    /// Behind the head.
     PosZ,
-    /// Straight ahead of the head.
+    /// In front of a head in its initial orientation.
     NegZ,
 }
 
 impl CubeFace {
-    /// All in the order of their indices.
+    /// All faces in the order of their indices.
     pub const ALL: [Self; 6] = [Self::PosX, Self::NegX, Self::PosY, Self::NegY, Self::PosZ, Self::NegZ];
 
-    /// 0 for [`CubeFace::PosX`] to 5 for [`CubeFace::NegZ`].
+    /// Returns the index: 0 for [`CubeFace::PosX`] to 5 for [`CubeFace::NegZ`].
     #[must_use]
     pub const fn index(self) -> usize {
         self as usize
     }
 
-    /// The axis from the eye through the middle of the face.
+    /// Returns the axis from the eye through the middle of the face.
     #[must_use]
     pub const fn forward(self) -> [i64; 3] {
         match self {
@@ -45,7 +45,7 @@ impl CubeFace {
         }
     }
 
-    /// The axis from the face's middle to its upper edge.
+    /// Returns the axis from the face's middle to its upper edge.
     #[must_use]
     pub const fn up(self) -> [i64; 3] {
         match self {
@@ -55,7 +55,7 @@ impl CubeFace {
         }
     }
 
-    /// The axis from the face's middle to its right edge, seen from inside: forward x up.
+    /// Returns the axis from the face's middle to its right edge, seen from inside: forward x up.
     #[must_use]
     pub const fn right(self) -> [i64; 3] {
         let f = self.forward();
@@ -63,7 +63,9 @@ impl CubeFace {
         [f[1] * u[2] - f[2] * u[1], f[2] * u[0] - f[0] * u[2], f[0] * u[1] - f[1] * u[0]]
     }
 
-    /// The face that a direction meets: its longest component, on ties x before y before z; `None` of no direction.
+    /// Returns the face that a direction hits, or `None` for the zero vector.
+    ///
+    /// The longest component selects the face. On ties, x precedes y, and y precedes z.
     #[must_use]
     pub fn of(direction: Vector) -> Option<Self> {
         let is_finite = direction.iter().all(|component| component.is_finite());
@@ -74,14 +76,14 @@ impl CubeFace {
         Some(Self::on(axis, direction[axis] < 0.0))
     }
 
-    /// The face on an axis (0 to 2), on its negative side or not.
+    /// Returns the face on an axis (0 to 2), on its negative or positive side.
     #[must_use]
     pub(crate) const fn on(axis: usize, is_negative: bool) -> Self {
         Self::ALL[2 * axis + is_negative as usize]
     }
 }
 
-/// The longest of three lengths, the first on ties.
+/// Returns the index of the longest of three lengths. The first one wins a tie.
 pub(crate) fn longest<T: PartialOrd>([x, y, z]: [T; 3]) -> usize {
     if x >= y && x >= z {
         0
@@ -92,65 +94,66 @@ pub(crate) fn longest<T: PartialOrd>([x, y, z]: [T; 3]) -> usize {
     }
 }
 
-/// The components of a vector along an axis.
+/// Returns the component of a vector along an axis.
 fn along(vector: Vector, axis: [i64; 3]) -> f64 {
     (0..3).map(|i| vector[i] * axis[i] as f64).sum()
 }
 
-/// Where a texel lies in the six faces of a buffer.
+/// Position of a texel in the six faces of a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct TexelAddress {
-    /// The face that it lies on.
     pub face: CubeFace,
-    /// Column from the left edge of the face, guard texels included.
+    /// Column from the left edge of the face, including guard texels.
     pub column: u32,
-    /// Row from the upper edge of the face, guard texels included.
+    /// Row from the upper edge of the face, including guard texels.
     pub row: u32,
 }
 
 impl TexelAddress {
-    /// The one of four interleaved memories that holds it: two neighbours never share one.
+    /// Returns the bank (0 to 3) that holds the texel. Neighbouring texels lie in different banks.
     #[must_use]
     pub const fn bank(self) -> u32 {
         self.column % 2 + 2 * (self.row % 2)
     }
 
-    /// Its word within the face's part of its bank, for faces of so many texels.
+    /// Returns the word index within the face's part of the bank, for faces of `face_texels` texels.
     #[must_use]
     pub const fn word(self, face_texels: u32) -> u32 {
         self.row / 2 * (face_texels / 2) + self.column / 2
     }
 
-    /// Its place in a buffer that holds face by face and row by row.
+    /// Returns the index in a buffer that stores the texels by face and row.
     #[must_use]
     pub const fn index(self, face_texels: u32) -> usize {
         ((self.face as u32 * face_texels + self.row) * face_texels + self.column) as usize
     }
 }
 
-/// Size of a face and of its guard: which directions its texels show.
+/// Size of a face and of its guard, which define the directions of its texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FaceGeometry {
-    /// Texels along an edge, guard included.
+    /// Texels along an edge, including guard texels.
     pub texels: u32,
     /// Guard texels on each side.
     pub guard: u32,
 }
 
 impl FaceGeometry {
-    /// Texels along an edge without guard: those of 90 degrees.
+    /// Returns the number of texels along an edge without guard texels. They cover 90 degrees.
     #[must_use]
     pub const fn inner(&self) -> u32 {
         self.texels - 2 * self.guard
     }
 
-    /// Tangent of half the angle that a renderer draws a face with: texels / inner.
+    /// Returns the tangent of half the angle with which a renderer draws a face: texels / inner.
     #[must_use]
     pub fn tangent(&self) -> f64 {
         f64::from(self.texels) / f64::from(self.inner())
     }
 
-    /// The face that a direction meets and the place there, from -1 to 1 to the right and down; `None` of no direction.
+    /// Returns the face that a direction hits, and the position there from -1 to 1 to the right and downwards.
+    ///
+    /// Returns `None` for the zero vector.
     #[must_use]
     pub fn place(&self, direction: Vector) -> Option<(CubeFace, [f64; 2])> {
         let face = CubeFace::of(direction)?;
@@ -160,7 +163,7 @@ impl FaceGeometry {
         Some((face, [right, down]))
     }
 
-    /// The nearest texel of a direction, never one of the guard; `None` of no direction.
+    /// Returns the texel that a direction hits, which is never a guard texel. `None` for the zero vector.
     #[must_use]
     pub fn texel(&self, direction: Vector) -> Option<TexelAddress> {
         let (face, place) = self.place(direction)?;
@@ -169,15 +172,17 @@ impl FaceGeometry {
         Some(TexelAddress { face, column, row })
     }
 
-    /// The place of a direction between the middles of texels: face, column and row of the texel to the upper left plus
-    /// the fractions towards its neighbours; `None` of no direction.
+    /// Returns the position of a direction between the middles of texels, or `None` for the zero vector.
+    ///
+    /// The integer parts are column and row of the upper left texel. The fractions lead towards its neighbours.
     #[must_use]
     pub fn between_texels(&self, direction: Vector) -> Option<(CubeFace, [f64; 2])> {
         let (face, place) = self.place(direction)?;
         Some((face, place.map(|p| f64::from(self.guard) + (p + 1.0) / 2.0 * f64::from(self.inner()) - 0.5)))
     }
 
-    /// The direction of a texel's middle, not of unit length. Those of guard texels belong to a neighbouring face.
+    /// Returns the direction of a texel's middle, not of unit length. Directions of guard texels hit a neighbouring
+    /// face.
     #[must_use]
     pub fn direction(&self, texel: TexelAddress) -> Vector {
         let inner = f64::from(self.inner());
@@ -189,7 +194,7 @@ impl FaceGeometry {
         [0, 1, 2].map(|i| forward[i] as f64 + u * right[i] as f64 - v * up[i] as f64)
     }
 
-    /// Solid angle that a texel covers, in steradians; all that are not of the guard cover 4 pi.
+    /// Returns the solid angle of a texel in steradians. All texels except guard texels cover 4 pi together.
     #[must_use]
     pub fn solid_angle(&self, texel: TexelAddress) -> f64 {
         let edge =
@@ -200,7 +205,7 @@ impl FaceGeometry {
     }
 }
 
-/// Solid angle of the rectangle from the middle of a face to a place on it.
+/// Returns the solid angle of the rectangle from the middle of a face to a position on it.
 fn corner_angle(x: f64, y: f64) -> f64 {
     libm::atan2(x * y, libm::sqrt(x * x + y * y + 1.0))
 }

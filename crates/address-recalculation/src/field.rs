@@ -1,4 +1,4 @@
-//! A field that was scanned, ready to be looked at: nothing is computed before.
+//! A scanned field, whose pixels are computed when it is read.
 
 use crate::address::{AddressUnit, Footprint};
 use crate::config::ArpConfig;
@@ -13,30 +13,30 @@ use image::{Rgb, RgbImage};
 use pxpl5_wire::{FieldParity, PeriodNumber};
 use std::sync::{Arc, OnceLock};
 
-/// What all fields of a display have in common.
+/// Data shared by all fields of a display.
 #[derive(Debug)]
 pub(crate) struct Optics {
     pub(crate) config: ArpConfig,
-    /// Computed when somebody looks.
+    /// Table of viewing vectors, computed when a field is first read.
     pub(crate) table: OnceLock<LensTable>,
     pub(crate) scan: Scan,
 }
 
 impl Optics {
-    /// The viewing vectors of the lens, which was checked when the display was built.
+    /// Returns the table of viewing vectors. The lens was checked when the display was built.
     fn table(&self) -> &LensTable {
         let ArpConfig { lens, timing, .. } = &self.config;
         self.table.get_or_init(|| LensTable::of_checked(lens, &self.config.picture(), timing.vector_bits))
     }
 }
 
-/// The buffers that one eye's memories showed, the background memory last.
+/// The buffers that the memories of one eye showed, with the background memory last.
 #[derive(Clone, Debug)]
 pub(crate) struct ShownBuffers {
     pub(crate) memories: Vec<(MemoryKind, Arc<Regions>)>,
 }
 
-/// A run of pixels of a line with one orientation.
+/// A run of pixels in a line that share one orientation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Run {
     x: u32,
@@ -45,7 +45,7 @@ struct Run {
     matrix: MatrixWords,
 }
 
-/// A field of one eye.
+/// One field of one eye.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Field<'a> {
     pub(crate) optics: &'a Optics,
@@ -55,23 +55,24 @@ pub(crate) struct Field<'a> {
 }
 
 impl Field<'_> {
-    /// The orientation that a pixel of the field was looked up with; `None` for one that it does not scan.
+    /// Returns the matrix used for a pixel, or `None` if the field does not scan it.
     pub(crate) fn matrix(&self, x: u32, y: u32) -> Option<MatrixWords> {
         let latch = self.optics.config.latch;
         Some(self.latch.at(self.optics.scan.latches(latch, x, y, self.number)?))
     }
 
-    /// The texels that a pixel of the field was looked up in; `None` for one that it does not scan.
+    /// Returns the texels used for a pixel, or `None` if the field does not scan it.
     pub(crate) fn footprint(&self, x: u32, y: u32) -> Option<Footprint> {
         let turned = self.matrix(x, y)?.turn(self.optics.table().entry(x, y));
         AddressUnit::new(&self.optics.config.timing).footprint(turned)
     }
 
-    /// Writes the lines that the field scans into a frame.
+    /// Computes the lines that the field scans, and writes them into a frame.
     pub(crate) fn draw(&self, frame: &mut RgbImage) -> LookStats {
         let parity = FieldParity::of_field(self.number).first_line();
         let lines = (parity..self.optics.scan.height()).step_by(2);
         let runs: Vec<Run> = lines.flat_map(|y| self.runs(y)).collect();
+        // Compute only the regions that some pixel reads.
         let wanted = self.wanted(&runs);
         let faces: Vec<FaceSet> = self.shown.memories.iter().map(|memory| drawn(memory, &wanted)).collect();
         let mut memories: Vec<&FaceSet> = faces.iter().collect();
@@ -79,6 +80,7 @@ impl Field<'_> {
         let mut lookup = Lookup::new(&self.optics.config, self.optics.table(), memories, background);
         let mut stats = LookStats::default();
         let mut colours = vec![0; self.optics.scan.width() as usize];
+        // Compute the pixels of each run with its own orientation.
         for run in runs {
             let pixels = &mut colours[..run.count as usize];
             stats.add(lookup.run(self.place(&run), &run.matrix, pixels));
@@ -91,7 +93,7 @@ impl Field<'_> {
         run.y as usize * self.optics.scan.width() as usize + run.x as usize
     }
 
-    /// The pieces of the faces that the field's pixels read.
+    /// Returns a flag for each region of the faces: true if a pixel of the field reads it.
     fn wanted(&self, runs: &[Run]) -> Vec<bool> {
         let grid = region_grid(self.optics.config.timing.face_texels as u32);
         let mut wanted = vec![false; grid.regions() as usize];
@@ -102,7 +104,7 @@ impl Field<'_> {
         wanted
     }
 
-    /// A line, cut where the orientation changes.
+    /// Returns a line as runs, split where the orientation changes.
     fn runs(&self, y: u32) -> Vec<Run> {
         let width = self.optics.scan.width();
         let whole = self.matrix(0, y).map(|matrix| Run { x: 0, y, count: width, matrix });
@@ -110,6 +112,7 @@ impl Field<'_> {
         if is_one {
             return whole.into_iter().collect();
         }
+        // With a latch per pixel, start a new run when the matrix changes.
         let mut runs: Vec<Run> = Vec::new();
         for x in 0..width {
             let Some(matrix) = self.matrix(x, y) else { continue };

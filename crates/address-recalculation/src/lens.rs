@@ -1,4 +1,4 @@
-//! The table of viewing vectors: where each pixel of the picture looks, through the lens.
+//! The lens and the table of viewing vectors of all pixels.
 
 use crate::error::ArpError;
 use crate::face::Vector;
@@ -6,52 +6,53 @@ use std::io::BufRead;
 use std::str::FromStr;
 use std::sync::Arc;
 
-/// Widest angle of a flat picture or a radial lens, degrees: as in the other pipelines.
+/// Widest angle of a flat picture or a radial lens in degrees, as in the other pipelines.
 const WIDEST_FLAT_DEG: f64 = 170.0;
 
-/// What lies between the picture and the eye.
+/// The lens between the picture and the eye.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Lens {
-    /// Nothing: pixels lie on a plane.
+    /// No lens: the pixels lie on a plane.
     #[default]
     Flat,
-    /// A radial polynomial: a pixel at distance rho from the middle (1 at the edge of a line) is seen 1 + k1 rho^2 +
-    /// k2 rho^4 times as far out.
+    /// A radial polynomial that scales the distance rho from the middle by 1 + k1 rho^2 + k2 rho^4.
+    ///
+    /// rho is 1 at the edges of the middle line.
     Radial {
         /// Coefficient of the second power.
         k1: f64,
         /// Coefficient of the fourth power.
         k2: f64,
     },
-    /// The angle grows with the distance from the middle; up to 360 degrees wide.
+    /// A lens whose angle is proportional to the distance from the middle. Pictures can be up to 360 degrees wide.
     Equidistant,
-    /// Vectors from a file, row by row, see [`Lens::read`].
+    /// Viewing vectors from a file, in row order (see [`Lens::read`]).
     Table(Arc<[Vector]>),
 }
 
-/// Size and angle of the picture that a lens shows.
+/// Size and angle of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Picture {
-    /// Pixels of a line.
+    /// Number of pixels in a line.
     pub width: u32,
-    /// Lines of the whole frame.
+    /// Number of lines in a frame.
     pub height: u32,
-    /// Horizontal angle, degrees; between the edges of the picture as it is without a lens.
+    /// Angle between the left and the right edge without a lens, in degrees.
     pub horizontal_deg: f64,
 }
 
 impl Picture {
-    /// A pixel's middle from the middle of the picture, in pixels to the right and down.
+    /// Returns the offset of a pixel's middle from the picture's middle, in pixels to the right and downwards.
     fn offset(&self, x: u32, y: u32) -> [f64; 2] {
         [f64::from(x) + 0.5 - f64::from(self.width) / 2.0, f64::from(y) + 0.5 - f64::from(self.height) / 2.0]
     }
 
-    /// Tangent of half the horizontal angle.
+    /// Returns the tangent of half the horizontal angle.
     fn tangent(&self) -> f64 {
         libm::tan(self.horizontal_deg.to_radians() / 2.0)
     }
 
-    /// Square of the distance of a pixel from the middle, 1 at the edges of the middle line.
+    /// Returns the squared distance of a pixel from the middle, 1 at the edges of the middle line.
     fn rho_squared(&self, x: u32, y: u32) -> f64 {
         let [right, down] = self.offset(x, y).map(|p| p / (f64::from(self.width) / 2.0));
         right * right + down * down
@@ -61,11 +62,12 @@ impl Picture {
 impl FromStr for Lens {
     type Err = ArpError;
 
-    /// Reads `flat`, `equidistant`, `radial:K1` or `radial:K1:K2`. Whether a picture can be seen through it is [`Lens::check`]'s to say.
+    /// Parses `flat`, `equidistant`, `radial:K1` or `radial:K1:K2`. [`Lens::check`] decides if a lens suits a picture.
     fn from_str(text: &str) -> Result<Self, ArpError> {
         let wrong = || ArpError::Lens { expected: Self::FORMS.to_owned(), found: excerpt(text) };
         let mut parts = text.split(':');
         let name = parts.next();
+        // All parts after the name must be numbers.
         let numbers: Vec<f64> = parts.map(str::parse).collect::<Result<_, _>>().map_err(|_| wrong())?;
         match (name, numbers.as_slice()) {
             (Some("flat"), []) => Ok(Self::Flat),
@@ -78,14 +80,14 @@ impl FromStr for Lens {
 }
 
 impl Lens {
-    /// The texts that a lens is read from.
+    /// The text forms of a lens.
     pub const FORMS: &str = "flat, equidistant, radial:K1 or radial:K1:K2";
 
-    /// Checks that no two pixels of a picture look through one point of the lens, and that the angle is possible.
+    /// Checks that no two pixels use the same point of the lens, and that the angle is possible.
     ///
     /// # Errors
     ///
-    /// [`ArpError::Lens`] says what was expected and found.
+    /// [`ArpError::Lens`] describes the expected and the found value.
     pub fn check(&self, picture: &Picture) -> Result<(), ArpError> {
         let widest = if matches!(self, Self::Flat | Self::Radial { .. }) { WIDEST_FLAT_DEG } else { 360.0 };
         let angle = picture.horizontal_deg;
@@ -100,7 +102,9 @@ impl Lens {
         }
     }
 
-    /// Where a pixel looks, in head axes (x to the right, y up, the head looks along -z); not of unit length.
+    /// Returns the viewing vector of a pixel in head axes, not of unit length.
+    ///
+    /// x points right and y up. The head looks along -z.
     #[must_use]
     pub fn view(&self, picture: &Picture, x: u32, y: u32) -> Vector {
         let [right, down] = picture.offset(x, y);
@@ -120,12 +124,14 @@ impl Lens {
         }
     }
 
-    /// Reads a table of viewing vectors for a picture: a line of text for each pixel, row by row, with x, y and z between
-    /// blanks; lines that are empty or begin with `#` are skipped. Lengths do not matter.
+    /// Reads a table of viewing vectors for a picture.
+    ///
+    /// The file has one line of text per pixel, in row order, with x, y and z separated by spaces. Empty lines and
+    /// lines that begin with `#` are skipped. Vectors may have any length.
     ///
     /// # Errors
     ///
-    /// [`ArpError::Table`] names the line, what was expected and what was found.
+    /// [`ArpError::Table`] names the line, the expected and the found content.
     pub fn read(reader: impl BufRead, picture: &Picture) -> Result<Self, ArpError> {
         let wanted = picture.width as usize * picture.height as usize;
         let mut vectors = Vec::new();
@@ -134,10 +140,12 @@ impl Lens {
             last = number;
             let wrong =
                 |expected: &str, found: String| ArpError::Table { line: number, expected: expected.to_owned(), found };
+            // Skip empty lines and comments.
             let line = line.map_err(|error| wrong("text in UTF-8", error.to_string()))?;
             if line.trim().is_empty() || line.trim_start().starts_with('#') {
                 continue;
             }
+            // Refuse surplus lines before their content is parsed.
             if vectors.len() == wanted {
                 return Err(wrong(&format!("nothing after {wanted} vectors"), excerpt(&line)));
             }
@@ -153,7 +161,7 @@ impl Lens {
     }
 }
 
-/// A long line is cut: the message stays short.
+/// Returns the first 40 characters of a line, to keep error messages short.
 fn excerpt(line: &str) -> String {
     line.chars().take(40).collect()
 }
@@ -165,7 +173,7 @@ fn vector_of(line: &str) -> Option<Vector> {
     is_direction(vector).then_some(vector)
 }
 
-/// Whether a vector's length is a number above zero and not beyond all squares.
+/// Returns true if a vector's squared length is finite and not zero.
 fn is_direction(vector: Vector) -> bool {
     let square: f64 = vector.iter().map(|component| component * component).sum();
     square.is_normal()
@@ -186,7 +194,7 @@ fn check_table(vectors: &[Vector], picture: &Picture) -> Result<(), ArpError> {
     }
 }
 
-/// The slope of rho (1 + k1 rho^2 + k2 rho^4) is above zero up to the corner.
+/// Checks that the slope of rho (1 + k1 rho^2 + k2 rho^4) is positive up to the corner of the picture.
 fn check_radial(k1: f64, k2: f64, corner: f64) -> Result<(), ArpError> {
     let slope = |square: f64| 1.0 + 3.0 * k1 * square + 5.0 * k2 * square * square;
     let turn = -3.0 * k1 / (10.0 * k2);
@@ -211,27 +219,28 @@ fn equidistant(from_middle: [f64; 2], picture: &Picture) -> Vector {
     [sine * right / distance, -sine * down / distance, -libm::cos(angle)]
 }
 
-/// Viewing vectors as the table's memory holds them: for each pixel a unit vector in signed words, the largest word for 1.
+/// Table of viewing vectors in hardware words. Each pixel has a unit vector in signed words, with the largest word for
+/// 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LensTable {
     width: u32,
     height: u32,
-    /// x, y and z of all pixels, row by row.
+    /// Components x, y and z of all pixels, in row order.
     words: [Vec<i32>; 3],
 }
 
 impl LensTable {
-    /// The table of a lens and a picture, in words of so many bits.
+    /// Creates the table of a lens and a picture, in words of `vector_bits` bits.
     ///
     /// # Errors
     ///
-    /// As [`Lens::check`].
+    /// Same as [`Lens::check`].
     pub fn new(lens: &Lens, picture: &Picture, vector_bits: u64) -> Result<Self, ArpError> {
         lens.check(picture)?;
         Ok(Self::of_checked(lens, picture, vector_bits))
     }
 
-    /// Of a lens that has been checked.
+    /// Creates the table of a lens that has already been checked.
     pub(crate) fn of_checked(lens: &Lens, picture: &Picture, vector_bits: u64) -> Self {
         let mut words = [Vec::new(), Vec::new(), Vec::new()];
         for y in 0..picture.height {
@@ -245,42 +254,43 @@ impl LensTable {
         Self { width: picture.width, height: picture.height, words }
     }
 
-    /// Pixels of a line.
+    /// Returns the number of pixels in a line.
     #[must_use]
     pub const fn width(&self) -> u32 {
         self.width
     }
 
-    /// Lines of the frame.
+    /// Returns the number of lines in a frame.
     #[must_use]
     pub const fn height(&self) -> u32 {
         self.height
     }
 
-    /// The words of a pixel.
+    /// Returns the words of a pixel.
     ///
     /// # Panics
-    /// Beyond the picture.
+    ///
+    /// Panics if the pixel is outside the picture.
     #[must_use]
     pub fn entry(&self, x: u32, y: u32) -> [i32; 3] {
         let place = y as usize * self.width as usize + x as usize;
         [0, 1, 2].map(|axis| self.words[axis][place])
     }
 
-    /// The words of a run of pixels, by axis.
+    /// Returns the words of a run of pixels, by axis.
     pub(crate) fn run(&self, first: usize, count: usize) -> [&[i32]; 3] {
         [0, 1, 2].map(|axis| &self.words[axis][first..first + count])
     }
 }
 
-/// A vector made unit, in signed words of so many bits, rounded to even.
+/// Normalizes a vector and converts it to signed words of `bits` bits, rounded to even.
 #[must_use]
 pub(crate) fn unit_words(vector: Vector, bits: u64) -> [i32; 3] {
     let length = libm::sqrt(vector.iter().map(|component| component * component).sum());
     vector.map(|component| signed_word(component / length, bits))
 }
 
-/// A number from -1 to 1 in a signed word, the largest for 1, rounded to even.
+/// Converts a number from -1 to 1 to a signed word, with the largest word for 1, rounded to even.
 pub(crate) fn signed_word(value: f64, bits: u64) -> i32 {
     let largest = f64::from((1_i32 << (bits - 1)) - 1);
     (value * largest).round_ties_even().clamp(-largest, largest) as i32

@@ -1,4 +1,5 @@
-//! Address recalculation pipeline: a display that decides at scan-out which texel around the head a pixel is.
+//! Address recalculation pipeline: a display that finds the texel of each pixel at scan-out, in six faces around the
+//! head.
 //!
 //! ```text
 //!                     latched orientation
@@ -9,41 +10,46 @@
 //!  host --nine words--> [ orientation register ]                                      +--> background --> [ interpolate ] -> light
 //! ```
 //!
-//! The renderer draws all that surrounds the eye onto six faces of a cube. When a pixel is wanted, its viewing vector is turned by
-//! the newest orientation and made into an address in the faces: a turn of the head needs no rendering.
+//! The renderer draws the surroundings of the eye onto six faces of a cube. For each pixel, the display rotates the
+//! viewing vector by the newest orientation and converts the result to an address in the faces. A rotation of the head
+//! therefore needs no rendering.
 //!
-//! # Behaviour, in the order of the signal
+//! # Stages, in the order of the signal
 //!
-//! 1. **Table.** For each pixel a unit vector in signed words, through the [`Lens`]: flat, radial, equidistant, or from a
-//!    reader. A lens that folds the picture over itself is refused.
-//! 2. **Latch.** [`OrientationLatch`] takes matrices by the host's own port
-//!    ([`AddressRecalculationPipeline::load_orientation`]) or over the ring ([`orientation_message`]); what is no rotation is
-//!    refused and counted, and the last good one stays. It is read all stages before the first visible pixel of a field or line,
-//!    or before each pixel ([`Latch`]).
-//! 3. **Turn.** Nine products and six sums, kept in full.
-//! 4. **Face.** The longest component, on ties x before y before z ([`CubeFace`]).
-//! 5. **Divide.** (1 + u) / 2 and (1 + v) / 2, a bit a stage, rounded down, all ones for 1.
-//! 6. **Address.** Quotient times face, half of the quotient's last bit added, is the place between four texels: the upper bits are
-//!    the texel, the next ones the fractions, rounded. The four lie in four banks, so that one access reads them all. Without guard
-//!    texels one beyond an edge is its neighbour's, and the one beyond a corner the mean of the other three ([`Footprint`]).
-//! 7. **Compose.** Of each texel the nearest of all memories, the lowest memory on ties; what is farthest is empty and shows the
-//!    background memory, or the background colour ([`Composition`]).
-//! 8. **Interpolate.** Weights are products of the two fractions; halves are rounded up.
+//! 1. **Table.** The table has a unit vector for each pixel, in signed words. It contains the [`Lens`]: flat, radial,
+//!    equidistant, or from a file. A lens that folds the picture over itself is refused.
+//! 2. **Latch.** [`OrientationLatch`] accepts matrices from the host's own port
+//!    ([`AddressRecalculationPipeline::load_orientation`]) or over the ring ([`orientation_message`]). A matrix that is
+//!    not a rotation is refused and counted, and the previous one stays valid. The matrix is latched once per field,
+//!    per line or per pixel ([`Latch`]). The latch precedes the light of the first pixel by the duration of all stages.
+//! 3. **Rotate.** Nine products and six sums rotate the vector. No bits are dropped.
+//! 4. **Face.** The longest component selects the face. On ties, x precedes y, and y precedes z ([`CubeFace`]).
+//! 5. **Divide.** Dividers compute (1 + u) / 2 and (1 + v) / 2, one bit per stage. Results are rounded down, and 1
+//!    becomes all ones.
+//! 6. **Address.** The position is the quotient, plus half of its last bit, times the size of the face. The upper bits
+//!    select the texel. The next bits, rounded, are the fractions. The four texels around the position lie in four
+//!    banks, so one access reads all of them. Without guard texels, a texel beyond an edge belongs to the neighbouring
+//!    face, and a texel beyond a corner is the mean of the other three ([`Footprint`]).
+//! 7. **Compose.** For each texel, the nearest of all memories wins, and the lowest memory wins a tie. The farthest
+//!    depth means empty: the background memory or the background colour is visible ([`Composition`]).
+//! 8. **Interpolate.** The weights are products of the two fractions. Halves are rounded up.
 //!
 //! # Updates
 //!
-//! A memory's update begins with a map of the regions that come ([`begin_update`]); the six faces lie one under the other in the
-//! grid of [`region_grid`]. A region comes in 32 messages, its 16,384 colours before its 16,384 depths of 24 bits; with 16 + 16
-//! bits in 16 messages, depth in the upper half of a word. The [`PixelSource`](pxpl5_wire::PixelSource) of a region gives all
-//! these words. A request to swap takes effect at the first retrace after it that finds all of them there, so nothing half-drawn is
-//! ever shown; retraces that an update misses are counted, and how late it was ([`MemoryStats`]). Memories that exchanged objects
-//! swap together or not at all ([`swap_together`]).
+//! An update of a memory begins with a map of the regions that will arrive ([`begin_update`]). The six faces lie one
+//! below the other in the grid of [`region_grid`]. A region arrives in 32 messages: first its 16,384 colours, then its
+//! 16,384 depths of 24 bits. With 16 bits of colour and 16 bits of depth, a region takes 16 messages, with the depth in
+//! the upper half of each word. The [`PixelSource`](pxpl5_wire::PixelSource) of a region supplies all these words.
 //!
-//! Nothing is looked up before somebody looks; then only those regions are computed that the field's pixels read.
+//! A request to swap takes effect at the first later retrace at which all regions have arrived. An incomplete update is
+//! never visible. [`MemoryStats`] counts the retraces that an update missed, and the delay. Memories that have
+//! exchanged objects swap together or not at all ([`swap_together`]).
+//!
+//! Pixels are computed only when a picture is read, and only for the regions that the field's pixels use.
 //!
 //! # Timing
 //!
-//! All numbers stand in [`ArpTiming`] and [`ScanTiming`]; [`Scan`] gives the exact instants.
+//! All numbers are in [`ArpTiming`] and [`ScanTiming`]. [`Scan`] computes the exact instants.
 //!
 //! | instant | time |
 //! |---|---|
@@ -51,21 +57,23 @@
 //! | its texels are read | 2 + ceil(log2 n) stages before, n memories |
 //! | its orientation is latched | 8 + 16 + ceil(log2 n) stages before it, its line's or its field's first pixel: 650 ns for n = 4 |
 //!
-//! # Two of everything
+//! # Reference model and fast model
 //!
-//! [`literal`] is the definition: registers of every stage, clock by clock, partial products, restoring dividers, banks. [`Lookup`]
-//! takes 64 pixels at a time in doubles, which are exact for these words, and gives the same bits; tests/equal.rs holds them
-//! together.
+//! [`literal`] is the reference model. It has registers of every stage, clock by clock, partial products, restoring
+//! dividers and banks. [`Lookup`] is the fast model. It processes 64 pixels at a time in doubles, which are exact for
+//! these word lengths. tests/equal.rs checks that both give identical bits.
 //!
 //! # Not modelled
 //!
-//! Electronics below stages; colours of the lens; a pixel period that four reads of every memory do not fit in (bank conflicts
-//! are counted); blanking so short that the first texels of a field are read before its retrace.
+//! - Electronics below the level of stages, and colour errors of the lens.
+//! - Pixel periods too short for four reads of every memory. Bank conflicts are counted but cost no time.
+//! - Blanking so short that the first texels of a field are read before its retrace.
 //!
 //! # Sources
 //!
-//! RP93 = Regan and Pose, VRAIS 93; RP94 = the same, SIGGRAPH 94; RPM = the same, *Display Memory Access Issues*; CPR05 = Chow,
-//! Pose and Regan, ACSC 2005. Word lengths, stages, face sizes and lenses are not printed and assumed here.
+//! RP93 = Regan and Pose, VRAIS 93; RP94 = Regan and Pose, SIGGRAPH 94; RPM = Regan and Pose, *Display Memory Access
+//! Issues*; CPR05 = Chow, Pose and Regan, ACSC 2005. Word lengths, stages, face sizes and lenses are not printed and
+//! are assumed here.
 
 mod address;
 mod batch;

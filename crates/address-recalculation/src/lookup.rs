@@ -1,9 +1,9 @@
-//! The fast path: runs of pixels looked up together, equal to the hardware's words in every bit.
+//! The fast model: it processes groups of pixels and gives the same bits as the reference model.
 //!
-//! Depths are compared texel by texel and once ([`Composed`]), in pieces of a row, when the first pixel asks: a picture reads each
-//! texel several times. Addresses and weights are computed for a run of pixels together ([`crate::batch`]).
+//! Depths of a texel are compared once, when a pixel first needs the texel ([`Composed`]). A picture reads each texel
+//! several times. Addresses and weights are computed for a group of pixels together ([`crate::batch`]).
 //!
-//! Wider words, and footprints that leave their face, go one by one through the address unit.
+//! The address unit handles wider words, and footprints that leave their face, one by one.
 
 use crate::address::{AddressUnit, Footprint};
 use crate::batch::{BATCH, Batch, addresses, mixed};
@@ -16,17 +16,17 @@ use crate::texel::{FaceSet, nearness};
 use multiversion::multiversion;
 use std::cell::Cell;
 
-/// What a look cost besides one access a pixel and memory.
+/// Extra memory accesses of a picture, beyond one access per pixel and memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LookStats {
-    /// Footprints with a texel on another face.
+    /// Number of footprints with a texel on another face.
     pub split: u64,
-    /// Footprints with two texels in one bank: a second access.
+    /// Number of footprints with two texels in one bank, which need a second access.
     pub conflicts: u64,
 }
 
 impl LookStats {
-    /// Adds those of another look.
+    /// Adds the counts of another picture.
     pub const fn add(&mut self, other: Self) {
         self.split += other.split;
         self.conflicts += other.conflicts;
@@ -38,15 +38,15 @@ impl LookStats {
     }
 }
 
-/// Pixels that are looked up together at least.
+/// Smallest number of pixels for which the group computation is used.
 const FEWEST: usize = 4;
 
-/// Which texels pixels read.
+/// Computes which texels pixels read.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Addressing<'a> {
     table: &'a LensTable,
     unit: AddressUnit,
-    /// Whether doubles are exact for these words.
+    /// True if doubles are exact for these word lengths.
     is_exact: bool,
 }
 
@@ -62,8 +62,10 @@ impl<'a> Addressing<'a> {
         self.unit.footprint(matrix.turn(vector))
     }
 
-    /// Where the footprints of up to [`BATCH`] pixels begin; false, and nothing, for words that are too wide and for so few pixels that
-    /// each by itself is faster.
+    /// Computes the footprints of up to [`BATCH`] pixels, and returns true.
+    ///
+    /// Returns false without computing anything if the words are too wide, or if there are so few pixels that single
+    /// computation is faster.
     fn fill(&self, batch: &mut Batch, vectors: [&[i32]; 3], matrix: &MatrixWords) -> bool {
         let is_worth_it = self.is_exact && vectors[0].len() >= FEWEST;
         if is_worth_it {
@@ -72,17 +74,19 @@ impl<'a> Addressing<'a> {
         is_worth_it
     }
 
-    /// Marks the pieces of 128 x 128 texels that a run of pixels reads, in the order of [`crate::region_grid`].
+    /// Marks the regions of 128 x 128 texels that a run of pixels reads, in the order of [`crate::region_grid`].
     pub(crate) fn mark(&self, first: usize, count: usize, matrix: &MatrixWords, touched: &mut [bool]) {
         let vectors = self.table.run(first, count);
         let mut batch = Batch::new();
         for start in (0..count).step_by(BATCH) {
             let here = start..(start + BATCH).min(count);
             let vectors = vectors.map(|axis| &axis[here.clone()]);
+            // Footprints inside a face come from the group computation.
             let is_filled = self.fill(&mut batch, vectors, matrix);
             if is_filled {
                 batch.inside().for_each(|index| self.mark_square(index, touched));
             }
+            // The others are computed one by one.
             for i in (0..here.len()).filter(|i| !is_filled || batch.leaves(*i)) {
                 self.mark_footprint(vectors.map(|axis| axis[i]), matrix, touched);
             }
@@ -108,7 +112,7 @@ impl<'a> Addressing<'a> {
     }
 }
 
-/// What pixels are made of while orientation and shown buffers stay the same.
+/// Computes pixels from memories while the visible buffers stay the same.
 #[derive(Clone, Debug)]
 pub struct Lookup<'a> {
     addressing: Addressing<'a>,
@@ -120,10 +124,11 @@ pub struct Lookup<'a> {
 }
 
 impl<'a> Lookup<'a> {
-    /// A look through the shown faces of all display memories, and of the background memory where there is one.
+    /// Creates a lookup in the visible faces of all display memories, and of the background memory if there is one.
     ///
     /// # Panics
-    /// For faces of another size than the configuration's.
+    ///
+    /// Panics if faces do not have the size of the configuration.
     #[must_use]
     pub fn new(
         config: &ArpConfig,
@@ -144,10 +149,11 @@ impl<'a> Lookup<'a> {
         }
     }
 
-    /// Looks up pixels from one on, in the order of lines, for one orientation: colours as 0x00RRGGBB.
+    /// Computes consecutive pixels, in the order of lines, for one orientation. Colours are 0x00RRGGBB.
     ///
     /// # Panics
-    /// For a run that does not lie in the table.
+    ///
+    /// Panics if the run exceeds the table.
     pub fn run(&mut self, first: usize, matrix: &MatrixWords, out: &mut [u32]) -> LookStats {
         let mut stats = LookStats::default();
         let vectors = self.addressing.table.run(first, out.len());
@@ -159,10 +165,12 @@ impl<'a> Lookup<'a> {
         stats
     }
 
-    /// The memory that wins the texel of each pixel with the most weight; `None` where all are empty.
+    /// Finds the memory that wins the texel with the largest weight, for each pixel. `None` if all memories are empty
+    /// there.
     ///
     /// # Panics
-    /// As [`Lookup::run`].
+    ///
+    /// Same as [`Lookup::run`].
     pub fn winners(&self, first: usize, matrix: &MatrixWords, out: &mut [Option<u8>]) {
         let vectors = self.addressing.table.run(first, out.len());
         for (i, winner) in out.iter_mut().enumerate() {
@@ -185,12 +193,14 @@ impl<'a> Lookup<'a> {
         let mut stats = LookStats::default();
         let is_filled = self.composition.order == CompositionOrder::DepthFirst
             && self.addressing.fill(&mut self.batch, vectors, matrix);
+        // Group computation for footprints that stay on their face.
         if is_filled {
             self.pixels(out);
             if !self.batch.is_left() {
                 return stats;
             }
         }
+        // Single computation for the remaining pixels.
         for (i, pixel) in out.iter_mut().enumerate().filter(|(i, _)| !is_filled || self.batch.leaves(*i)) {
             let footprint = self.addressing.footprint(vectors.map(|axis| axis[i]), matrix);
             *pixel = footprint.map_or(self.composition.background, |footprint| {
@@ -201,7 +211,7 @@ impl<'a> Lookup<'a> {
         stats
     }
 
-    /// A pixel by its footprint, as it comes.
+    /// Computes a single pixel from its footprint.
     fn pixel(&self, footprint: &Footprint) -> u32 {
         let words = |faces: &FaceSet| footprint.texels.map(|texel| texel.map_or(0, |texel| word(faces, texel)));
         let memories: Vec<[u64; 4]> = self.memories.iter().map(|faces| words(faces)).collect();
@@ -217,6 +227,7 @@ impl<'a> Lookup<'a> {
         let mut last = [usize::MAX; 2];
         for i in 0..self.batch.count {
             let first = self.batch.index[i] as usize;
+            // Compose the pieces that contain the upper and the lower row, if not done yet.
             let pieces = [first / PIECE, (first + reach) / PIECE];
             if pieces != last {
                 last = pieces;
@@ -226,7 +237,7 @@ impl<'a> Lookup<'a> {
         mixed(&self.composed.colours, &self.batch, reach, unit.weight_bits as u32, out);
     }
 
-    /// Composes a piece that nobody has asked for yet.
+    /// Composes a piece unless this was already done.
     fn compose(&mut self, piece: usize) {
         if std::mem::replace(&mut self.composed.is_done[piece], true) {
             return;
@@ -239,15 +250,16 @@ impl<'a> Lookup<'a> {
     }
 }
 
-/// Texels that are composed at once, a part of 128.
+/// Number of texels composed at once. It divides 128.
 const PIECE: usize = 32;
 
-/// What all memories show together, texel by texel, as far as pixels have asked for it: neighbouring pixels share texels, so that
-/// each texel's depths are compared once and not by each of its readers.
+/// Composition of all memories for each texel, computed on demand.
+///
+/// Neighbouring pixels share texels, so the depths of a texel are compared once instead of once per reader.
 #[derive(Clone, Debug)]
 struct Composed {
     colours: Vec<u32>,
-    /// Of each piece, whether its texels and the one after them are there.
+    /// For each piece, true if its texels and the following one are composed.
     is_done: Vec<bool>,
 }
 
@@ -257,7 +269,8 @@ impl Composed {
         Self { colours: vec![0; all], is_done: vec![false; all.div_ceil(PIECE)] }
     }
 
-    /// Room that the last look of this thread has left, where it is as large: what the host would have to fetch page by page is there already.
+    /// Reuses the buffer of the previous lookup of this thread, if the size matches. This avoids new page faults on the
+    /// host.
     fn spare(texels: u32) -> Self {
         let all = 6 * (texels * texels) as usize;
         match SPARE.take().filter(|spare| spare.colours.len() == all) {
@@ -271,7 +284,7 @@ impl Composed {
 }
 
 thread_local! {
-    /// Room for the next look: 4 bytes a texel, 6 MB for faces of 512.
+    /// Buffer for the next lookup: 4 bytes per texel, 6 MB for faces of 512 texels.
     static SPARE: Cell<Option<Composed>> = const { Cell::new(None) };
 }
 
@@ -281,26 +294,29 @@ impl Drop for Lookup<'_> {
             colours: std::mem::take(&mut self.composed.colours),
             is_done: std::mem::take(&mut self.composed.is_done),
         };
-        // Without it only where the thread ends.
+        // The access fails only while the thread ends. Then the buffer is dropped.
         let _ = SPARE.try_with(|spare| spare.set(Some(left)));
     }
 }
 
-/// Composes a piece and the texel after it: the nearest of all memories, what is behind them where all are empty.
+/// Composes a piece and the following texel: the nearest of all memories, or the background if all are empty.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn compose(out: &mut [u32], memories: &[&FaceSet], behind: Option<&[u64]>, background: u32, start: usize) {
     let piece = |words: &[u64]| words[start..].first_chunk::<PIECE>().copied().unwrap_or([0; PIECE]);
     let mut best = [0; PIECE];
+    // Select the nearest texel of all memories.
     for faces in memories {
         let words = piece(faces.words());
         for (best, word) in best.iter_mut().zip(&words) {
             *best = nearer(*best, *word);
         }
     }
+    // Empty texels show the background.
     let far = behind.map_or([0; PIECE], piece);
     for ((out, best), far) in out.iter_mut().zip(&best).zip(&far) {
         *out = shown(*best, shown(*far, background));
     }
+    // The last footprint of a piece also reads the following texel.
     if let Some(after) = out.get_mut(PIECE) {
         let at = |words: &[u64]| words[start + PIECE];
         let nearest = memories.iter().fold(0, |best, faces| nearer(best, at(faces.words())));

@@ -1,4 +1,4 @@
-//! A display memory: two buffers of six faces, of which one is shown, and whole updates alone.
+//! A display memory: two buffers of six faces, of which one is visible. Only complete updates become visible.
 
 use crate::face::{CubeFace, TexelAddress};
 use crate::protocol::region_grid;
@@ -8,39 +8,39 @@ use pxpl5_wire::{Lines, PixelSource, REGION_SIZE, RegionPixels, Word};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, OnceLock};
 
-/// Texels of a region.
+/// Number of texels in a region.
 const REGION_TEXELS: usize = (REGION_SIZE * REGION_SIZE) as usize;
 
-/// Words of a message of pixels.
+/// Number of words in a message of pixels.
 const MESSAGE_WORDS: u32 = 1_024;
 
-/// A region as it came, computed when somebody looks.
+/// A region that has arrived. Its pixels are computed when it is read.
 #[derive(Debug)]
 pub(crate) struct StoredRegion {
     source: Arc<dyn PixelSource>,
     words: OnceLock<Arc<[Word]>>,
 }
 
-/// The valid regions of a buffer; all others are empty.
+/// The valid regions of a buffer. All others are empty.
 pub(crate) type Regions = BTreeMap<u16, Arc<StoredRegion>>;
 
-/// What a memory is like: its faces, its texels, and whether it keeps depths.
+/// Properties of a memory: size of its faces, format of its texels, and presence of depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct MemoryKind {
     pub(crate) face_texels: u32,
     pub(crate) format: TexelFormat,
-    /// Not the background memory: all its texels are nearer than nothing and farther than everything.
+    /// False for the background memory, which lies behind all other memories and covers empty texels.
     pub(crate) has_depth: bool,
 }
 
 impl MemoryKind {
-    /// Messages of a region: 16 of colours, 16 more of depths where they need words of their own.
+    /// Returns the number of messages per region: 16 with colours, and 16 more if depths need their own words.
     fn parts(self) -> u32 {
         let words = if self.has_depth { self.format.words() } else { 1 };
         words * REGION_TEXELS as u32 / MESSAGE_WORDS
     }
 
-    /// Writes some regions of a buffer into faces.
+    /// Writes the wanted regions of a buffer into faces.
     pub(crate) fn draw(self, regions: &Regions, wanted: &[bool], faces: &mut FaceSet) {
         for (number, region) in regions.iter().filter(|(number, _)| wanted[usize::from(**number)]) {
             let words = region.words.get_or_init(|| region.source.pixels());
@@ -54,13 +54,15 @@ impl MemoryKind {
         }
     }
 
-    /// One row of a region; what a source is short of stays empty.
+    /// Writes one row of a region. Missing words of the source leave texels empty.
     fn draw_row(self, words: &[Word], start: usize, first: TexelAddress, faces: &mut FaceSet) {
         let row = start..start + REGION_SIZE as usize;
         let Some(low) = words.get(row.clone()) else { return };
+        // The background memory has no depths.
         if !self.has_depth {
             return faces.set_row(first, low, std::iter::repeat(0));
         }
+        // Colour and depth share a word: colour in the lower half.
         if self.format.words() == 1 {
             let colours: Vec<u32> = low.iter().map(|word| crate::texel::widened(word & 0xFFFF)).collect();
             return faces.set_row(first, &colours, low.iter().map(|word| *word >> 16 << 8));
@@ -80,7 +82,7 @@ struct Arriving {
 
 #[derive(Clone, Debug, Default)]
 struct Buffer {
-    /// Announced and not yet complete.
+    /// Regions that were announced and are not yet complete.
     missing: BTreeSet<u16>,
     arriving: BTreeMap<u16, Arriving>,
     valid: Arc<Regions>,
@@ -91,27 +93,27 @@ struct Buffer {
 struct SwapRequest {
     asked_at: Time,
     buffer: u8,
-    /// Memories that must swap at the same retrace, bit by bit; none for this one alone.
+    /// Bit mask of the memories that must swap at the same retrace. 0 if this memory swaps alone.
     together: u8,
 }
 
-/// What a display memory has counted.
+/// Counters of a display memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct MemoryStats {
-    /// Regions that arrived whole.
+    /// Number of complete regions that arrived.
     pub regions: u64,
-    /// Updates that were shown.
+    /// Number of updates that were shown.
     pub swaps: u64,
-    /// Retraces at which an update that had been asked for was not whole, so that the one before stayed.
+    /// Number of retraces at which a requested update was incomplete, so that the previous one stayed visible.
     pub missed: u64,
-    /// How late those updates were that came too late: from the first retrace that each missed to the one that showed it.
+    /// Total delay of late updates, each from the first missed retrace to the retrace that showed it.
     pub lateness: Span,
 }
 
 /// A double-buffered cube of faces with depth.
 ///
-/// An update begins with a map of the regions that come; it is shown from a retrace on that finds all of them there, and
-/// never before.
+/// An update begins with a map of the regions that will arrive. It becomes visible at the first requested retrace at
+/// which all regions are present.
 #[derive(Clone, Debug)]
 pub struct DisplayMemory {
     kind: MemoryKind,
@@ -122,11 +124,11 @@ pub struct DisplayMemory {
     stats: MemoryStats,
 }
 
-/// What a message of pixels was to a memory.
+/// Effect of a message of pixels.
 pub(crate) enum PixelReceipt {
-    /// The last one of a region, the first of which came at this time.
+    /// The message completed a region. The value is the arrival of the region's first message.
     Region(Time),
-    /// Another one of a region.
+    /// The message is a further part of an incomplete region.
     Part,
 }
 
@@ -136,19 +138,19 @@ impl DisplayMemory {
         Self { kind, buffers: Default::default(), shown: 0, request: None, late_since: None, stats }
     }
 
-    /// What it has counted.
+    /// Returns the counters.
     #[must_use]
     pub const fn stats(&self) -> &MemoryStats {
         &self.stats
     }
 
-    /// The buffer that is shown, 0 or 1.
+    /// Returns the visible buffer, 0 or 1.
     #[must_use]
     pub const fn shown_buffer(&self) -> u8 {
         self.shown
     }
 
-    /// Bytes of both buffers.
+    /// Returns the size of both buffers in bytes.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         let depth = if self.kind.has_depth { self.kind.format.depth_bits } else { 0 };
@@ -156,7 +158,7 @@ impl DisplayMemory {
         2 * 6 * u64::from(self.kind.face_texels).pow(2) * bits / 8
     }
 
-    /// The six faces that are shown now, all their regions computed.
+    /// Returns the six visible faces with all regions computed.
     #[must_use]
     pub fn shown_faces(&self) -> FaceSet {
         let wanted = vec![true; region_grid(self.kind.face_texels).regions() as usize];
@@ -169,12 +171,12 @@ impl DisplayMemory {
         self.kind
     }
 
-    /// The regions that are shown now.
+    /// Returns the visible regions.
     pub(crate) fn shown(&self) -> Arc<Regions> {
         Arc::clone(&self.buffers[usize::from(self.shown)].valid)
     }
 
-    /// Begins an update: all regions of the buffer are empty until they come.
+    /// Begins an update. All regions of the buffer are empty until they arrive.
     pub(crate) fn begin(&mut self, buffer: u8, regions: Vec<u16>) -> Result<(), &'static str> {
         if buffer == self.shown {
             return Err("an update of the buffer that is shown");
@@ -185,15 +187,16 @@ impl DisplayMemory {
         Ok(())
     }
 
-    /// Asks for a buffer from the next retrace on that finds it whole.
+    /// Requests a buffer. It becomes visible at the next retrace at which it is complete.
     pub(crate) fn ask(&mut self, buffer: u8, together: u8, now: Time) {
         self.request = Some(SwapRequest { asked_at: now, buffer, together });
     }
 
-    /// Takes a message of pixels.
+    /// Accepts a message of pixels.
     pub(crate) fn receive(&mut self, pixels: RegionPixels, now: Time) -> Result<PixelReceipt, &'static str> {
         let target = pixels.target;
         let region = target.region.0;
+        // Refuse messages that do not belong to an announced region.
         if target.grid != region_grid(self.kind.face_texels) || target.lines != Lines::Frame {
             return Err("pixels that are not of six faces of this size");
         }
@@ -207,6 +210,7 @@ impl DisplayMemory {
         if !buffer.missing.contains(&region) {
             return Err("a region that no map announced");
         }
+        // Collect the parts of the region. A new target replaces an incomplete region.
         let fresh = Arriving { pixels, parts: BTreeSet::new(), first_part_at: now };
         let part = fresh.pixels.part;
         let arriving = buffer.arriving.entry(region).or_insert_with(|| fresh.clone());
@@ -232,15 +236,18 @@ impl DisplayMemory {
         arriving.first_part_at
     }
 
-    /// At a retrace: the memories that must swap with this one, if it has been asked before this instant and is whole.
+    /// Returns the set of memories that must swap with this one, if a request precedes this retrace and its update is
+    /// complete.
     pub(crate) fn is_ready(&self, now: Time) -> Option<u8> {
         let request = self.request.filter(|request| request.asked_at < now)?;
         self.buffers[usize::from(request.buffer)].missing.is_empty().then_some(request.together)
     }
 
-    /// At a retrace: shows the buffer that was asked for, if this memory may; which.
+    /// Shows the requested buffer at a retrace if `may_swap` is true, and returns it. Otherwise counts a missed
+    /// retrace.
     pub(crate) fn retrace(&mut self, may_swap: bool, now: Time) -> Option<u8> {
         let request = self.request.filter(|request| request.asked_at < now)?;
+        // Remember since when the update is late.
         if !may_swap {
             self.stats.missed += 1;
             self.late_since.get_or_insert(now);
@@ -248,6 +255,7 @@ impl DisplayMemory {
         }
         self.request = None;
         self.stats.swaps += 1;
+        // Count the delay of a late update.
         if let Some(since) = self.late_since.take() {
             self.stats.lateness += now.since(since);
         }

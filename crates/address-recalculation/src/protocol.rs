@@ -1,4 +1,4 @@
-//! The messages that a display memory takes besides pixels.
+//! The messages that a display memory accepts besides pixels.
 //!
 //! ```text
 //! BEGIN    buffer  bit i: region i is coming     clears all valid bits of that buffer
@@ -12,7 +12,7 @@ use crate::face::{CubeFace, Vector};
 use pxpl5_wire::{REGION_SIZE, RegionGrid, RegionId, Word, read_swap_request};
 use std::sync::Arc;
 
-/// First word of the message that begins an update of a buffer.
+/// First word of a message that begins an update of a buffer.
 const BEGIN: Word = 0x0041_5042;
 
 /// First word of a request to swap together with other memories.
@@ -21,14 +21,15 @@ const TOGETHER: Word = 0x0041_5054;
 /// First word of an orientation.
 const MATRIX: Word = 0x0041_504D;
 
-/// How the six faces of a memory are cut: one under the other, in the order of their indices, in pieces of 128 x 128.
+/// Returns the division of six faces into regions of 128 x 128. The faces lie one below the other, in the order of
+/// their indices.
 #[must_use]
 pub const fn region_grid(face_texels: u32) -> RegionGrid {
     let height = face_texels * CubeFace::ALL.len() as u32;
     RegionGrid { width: face_texels, height, region_width: REGION_SIZE, region_height: REGION_SIZE }
 }
 
-/// The piece of a face in that column and row of pieces; `None` beyond the face.
+/// Returns the region in a column and row of a face, or `None` outside the face.
 #[must_use]
 pub const fn face_region(face_texels: u32, face: CubeFace, column: u32, row: u32) -> Option<RegionId> {
     let across = face_texels / REGION_SIZE;
@@ -38,7 +39,7 @@ pub const fn face_region(face_texels: u32, face: CubeFace, column: u32, row: u32
     Some(RegionId(((face as u32 * across + row) * across + column) as u16))
 }
 
-/// The words that begin an update of a buffer in which these regions are coming; all others will be empty.
+/// Returns the words that begin an update of a buffer with the given regions. All other regions will be empty.
 #[must_use]
 pub fn begin_update(face_texels: u32, buffer: u8, regions: &[RegionId]) -> Arc<[Word]> {
     let count = region_grid(face_texels).regions();
@@ -51,35 +52,37 @@ pub fn begin_update(face_texels: u32, buffer: u8, regions: &[RegionId]) -> Arc<[
     words.into()
 }
 
-/// The words of a request to show a buffer from the first retrace on at which every memory of a set (bit k: memory k) can.
+/// Returns the words of a request to show a buffer at the first retrace at which all memories of a set can swap.
+///
+/// Bit k of `memories` stands for memory k.
 #[must_use]
 pub fn swap_together(buffer: u8, memories: u8) -> Arc<[Word]> {
     [TOGETHER, buffer.into(), memories.into()].into()
 }
 
-/// The words of an orientation, given by the rows of its matrix, which turns head axes into world axes.
+/// Returns the words of an orientation, given by the rows of the matrix from head axes to world axes.
 #[must_use]
 pub fn orientation_message(rows: [Vector; 3]) -> Arc<[Word]> {
     let components = rows.into_iter().flatten().map(|component| (component as f32).to_bits());
     [MATRIX].into_iter().chain(components).collect()
 }
 
-/// A message as the display reads it.
+/// A decoded message.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum ArpMessage {
-    /// An update of a buffer begins, with these regions.
+    /// Begins an update of a buffer with these regions.
     Begin { buffer: u8, regions: Vec<u16> },
-    /// Show a buffer, together with other memories or (none) alone.
+    /// Requests a buffer, together with a set of memories, or alone if the set is 0.
     Swap { buffer: u8, together: u8 },
-    /// An orientation, unchecked.
+    /// Sets an orientation, not yet checked.
     Matrix([Vector; 3]),
 }
 
-/// Reads a message for faces of so many texels.
+/// Decodes a message for faces of `face_texels` texels.
 ///
 /// # Errors
 ///
-/// Says what was expected and found.
+/// [`ArpError`] describes the expected and the found content.
 pub(crate) fn read(words: &[Word], face_texels: u32) -> Result<ArpMessage, ArpError> {
     if let Some(buffer) = read_swap_request(words) {
         return Ok(ArpMessage::Swap { buffer: checked_buffer(buffer.into())?, together: 0 });
@@ -110,11 +113,12 @@ fn checked_buffer(buffer: Word) -> Result<u8, ArpError> {
     u8::try_from(buffer).ok().filter(|buffer| *buffer < 2).ok_or_else(|| wrong("buffer 0 or 1", &buffer))
 }
 
-/// The regions of a map, which has exactly one bit for each and none beyond.
+/// Returns the regions of a map, which must have exactly one bit for each region.
 fn announced(map: &[Word], count: u32) -> Result<Vec<u16>, ArpError> {
     if map.len() != count.div_ceil(Word::BITS) as usize {
         return Err(wrong(&format!("a map of {count} regions"), &format!("{} words", map.len())));
     }
+    // Bits are numbered from the lowest bit of the first word.
     let bits = (0..map.len() as u32 * Word::BITS)
         .filter(|bit| map[(bit / Word::BITS) as usize] >> (bit % Word::BITS) & 1 == 1);
     let regions: Vec<u16> = bits.map(|bit| bit as u16).collect();

@@ -1,4 +1,4 @@
-//! When pixels light, exactly, and when they ask for their orientation.
+//! Exact times of light and latch of each pixel.
 
 use crate::error::ArpError;
 use crate::timing::{ArpTiming, ScanTiming};
@@ -6,7 +6,7 @@ use pxpl5_sim::{Clock, Span, Time};
 use pxpl5_wire::{FieldParity, PeriodNumber};
 use serde::{Deserialize, Serialize};
 
-/// Before what the newest orientation is latched.
+/// Event before which the newest orientation is latched.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Latch {
@@ -15,18 +15,19 @@ pub enum Latch {
     Field,
     /// The first visible pixel of each line.
     Line,
-    /// Each pixel by itself.
+    /// Each single pixel.
     Pixel,
 }
 
 impl Latch {
-    /// All, by their names on the command line.
+    /// All variants with their names on the command line.
     pub const ALL: [(&str, Self); 3] = [("field", Self::Field), ("line", Self::Line), ("pixel", Self::Pixel)];
 }
 
-/// Times of retraces, pixels and latches, all computed from zero; field `n` scans the even lines if `n` is even.
+/// Times of retraces, pixels and latches, all computed from time zero. Field `n` scans the even lines if `n` is even.
 ///
-/// They are those of the frame buffer of Pixel-Planes 5 with the same numbers: boards do not know each other.
+/// The times equal those of the Pixel-Planes 5 frame buffer with the same parameters. The code is separate because
+/// crates of boards do not depend on each other.
 #[derive(Clone, Copy, Debug)]
 pub struct Scan {
     timing: ScanTiming,
@@ -37,11 +38,11 @@ pub struct Scan {
 }
 
 impl Scan {
-    /// The scan of these numbers, before a pipeline of those stages.
+    /// Creates a scan for a pipeline with the stages of `arp`.
     ///
     /// # Errors
     ///
-    /// As [`ScanTiming::check`] and [`ArpTiming::check`].
+    /// Same as [`ScanTiming::check`] and [`ArpTiming::check`].
     pub fn new(timing: ScanTiming, arp: &ArpTiming) -> Result<Self, ArpError> {
         arp.check()?;
         timing.check()?;
@@ -49,32 +50,32 @@ impl Scan {
         Ok(Self { timing, pixel: clocks[0], field: clocks[1], depth: arp.depth(), read_ahead: arp.read_ahead() })
     }
 
-    /// Visible pixels of a line.
+    /// Returns the number of visible pixels in a line.
     #[must_use]
     pub const fn width(&self) -> u32 {
         self.timing.visible_pixels as u32
     }
 
-    /// Visible lines of a frame of two fields.
+    /// Returns the number of visible lines in a frame of two fields.
     #[must_use]
     pub const fn height(&self) -> u32 {
         self.timing.visible_lines as u32 * 2
     }
 
-    /// The retrace at which a field starts.
+    /// Returns the retrace at which a field starts.
     #[must_use]
     pub const fn retrace(&self, field: PeriodNumber) -> Time {
         self.field.edge(field.0)
     }
 
-    /// The field that is scanned at an instant; at a retrace the one that begins.
+    /// Returns the field that is scanned at an instant. At a retrace, this is the field that begins.
     #[must_use]
     pub const fn field_at(&self, time: Time) -> PeriodNumber {
         let n = self.field.edge_at_or_after(time);
         PeriodNumber(if self.field.edge(n).0 == time.0 { n } else { n - 1 })
     }
 
-    /// When pixel `x` of line `y` of the frame lights in a field; `None` when that field does not scan it.
+    /// Returns the time at which a pixel of the frame lights in a field, or `None` if the field does not scan it.
     #[must_use]
     pub fn lights(&self, x: u32, y: u32, field: PeriodNumber) -> Option<Time> {
         let parity = FieldParity::of_field(field).first_line();
@@ -87,14 +88,16 @@ impl Scan {
         Some(self.pixel.edge(blanked.saturating_add(u64::from(x))))
     }
 
-    /// When the texels of a pixel are read.
+    /// Returns the time at which the texels of a pixel are read.
     #[must_use]
     pub fn reads(&self, x: u32, y: u32, field: PeriodNumber) -> Option<Time> {
         Some(Time(self.lights(x, y, field)?.0.saturating_sub(self.read_ahead.0)))
     }
 
-    /// When the orientation of a pixel is latched: all stages before the first visible pixel of its field or line, or
-    /// before itself.
+    /// Returns the time at which the orientation of a pixel is latched.
+    ///
+    /// This is the duration of all stages before the light of the pixel, or of the first visible pixel of its line or
+    /// field.
     #[must_use]
     pub fn latches(&self, latch: Latch, x: u32, y: u32, field: PeriodNumber) -> Option<Time> {
         let lit = self.lights(x, y, field)?;

@@ -1,52 +1,55 @@
-//! What a display memory holds for a texel, and six faces of them.
+//! Texels of a display memory, and sets of six faces.
 
 use crate::face::TexelAddress;
 use crate::timing::ArpTiming;
 
-/// The farthest depth, in 24 bits: a texel of that depth is empty.
+/// The farthest depth, in 24 bits. A texel with this depth is empty.
 pub const DEPTH_FARTHEST: u32 = 0x00FF_FFFF;
 
-/// Bits of colour and depth that a display memory keeps.
+/// Numbers of bits that a display memory stores for colour and depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TexelFormat {
-    /// 24, or 16 as 5, 6 and 5.
+    /// 24 bits, or 16 bits as 5, 6 and 5.
     pub colour_bits: u32,
-    /// 24, or 16: the highest of 24.
+    /// 24 bits, or the highest 16 of the 24 bits.
     pub depth_bits: u32,
 }
 
 impl TexelFormat {
-    /// The format of a display with these numbers.
+    /// Returns the format of a display with the parameters `timing`.
     #[must_use]
     pub const fn new(timing: &ArpTiming) -> Self {
         Self { colour_bits: timing.colour_bits as u32, depth_bits: timing.depth_bits as u32 }
     }
 
-    /// Words of the ring that a texel takes: one where colour and depth fit in it, colour in the lower half.
+    /// Returns the number of ring words per texel: 1 if colour and depth fit into 32 bits, otherwise 2.
+    ///
+    /// A shared word has the colour in its lower half.
     #[must_use]
     pub const fn words(&self) -> u32 {
         if self.colour_bits + self.depth_bits <= 32 { 1 } else { 2 }
     }
 
-    /// A colour (0x00RRGGBB) as it is kept and read again: of 16 bits the upper bits are repeated below.
+    /// Returns a colour (0x00RRGGBB) after storage. With 16 bits, the upper bits of each channel are repeated in its
+    /// lower bits.
     #[must_use]
     pub const fn kept_colour(&self, colour: u32) -> u32 {
         if self.colour_bits == 24 { colour & 0x00FF_FFFF } else { widened(narrowed(colour)) }
     }
 
-    /// A depth of 24 bits as it is kept: its highest bits.
+    /// Returns the stored bits of a depth of 24 bits.
     #[must_use]
     pub const fn kept_depth(&self, depth: u32) -> u32 {
         (depth & DEPTH_FARTHEST) >> (24 - self.depth_bits)
     }
 }
 
-/// A colour in 5, 6 and 5 bits.
+/// Converts a colour to 5, 6 and 5 bits.
 pub(crate) const fn narrowed(colour: u32) -> u32 {
     (colour >> 8 & 0xF800) | (colour >> 5 & 0x07E0) | (colour >> 3 & 0x001F)
 }
 
-/// A colour of 5, 6 and 5 bits in 8 bits each.
+/// Converts a colour of 5, 6 and 5 bits to 8 bits per channel.
 pub(crate) const fn widened(colour: u32) -> u32 {
     let red = colour >> 11 & 31;
     let green = colour >> 5 & 63;
@@ -54,10 +57,11 @@ pub(crate) const fn widened(colour: u32) -> u32 {
     (red << 3 | red >> 2) << 16 | (green << 2 | green >> 4) << 8 | (blue << 3 | blue >> 2)
 }
 
-/// Six faces of one buffer, all of them empty at first.
+/// The six faces of one buffer, initially empty.
 ///
-/// A texel is one word: how much nearer than the farthest it is in the upper half, its colour in the lower one, so that of
-/// two texels the nearer one is the larger word, and an empty one is 0. Memory that nothing is drawn to is never touched.
+/// Each texel is one word. The upper half is its nearness, which is the farthest depth minus its depth. The lower half
+/// is its colour. The larger of two words is therefore the nearer texel, and 0 is an empty one. The host allocates no
+/// pages for undrawn parts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FaceSet {
     texels: u32,
@@ -66,37 +70,39 @@ pub struct FaceSet {
 }
 
 impl FaceSet {
-    /// Six empty faces with so many texels along an edge.
+    /// Creates six empty faces with `texels` texels along an edge.
     #[must_use]
     pub fn new(texels: u32, format: TexelFormat) -> Self {
         Self { texels, format, words: vec![0; 6 * (texels * texels) as usize] }
     }
 
-    /// Texels along an edge.
+    /// Returns the number of texels along an edge.
     #[must_use]
     pub const fn texels(&self) -> u32 {
         self.texels
     }
 
-    /// What is kept of colours and depths.
+    /// Returns the stored numbers of bits.
     #[must_use]
     pub const fn format(&self) -> TexelFormat {
         self.format
     }
 
-    /// Writes a texel, whatever was there: colour as 0x00RRGGBB, depth in 24 bits, the farthest for an empty one.
+    /// Overwrites a texel with a colour 0x00RRGGBB and a depth of 24 bits. The farthest depth makes it empty.
     ///
     /// # Panics
-    /// For a column or row beyond the faces.
+    ///
+    /// Panics if column or row exceed the face.
     pub fn set(&mut self, texel: TexelAddress, colour: u32, depth: u32) {
         assert!(texel.column < self.texels && texel.row < self.texels, "{texel:?} in faces of {}", self.texels);
         self.words[texel.index(self.texels)] = word(self.format, colour, depth);
     }
 
-    /// Writes a run of texels of one row from one on, from words of colour and of depth.
+    /// Overwrites consecutive texels of a row, starting at `first`.
     ///
     /// # Panics
-    /// For a run that does not lie in a row.
+    ///
+    /// Panics if the texels exceed the row.
     pub fn set_row(&mut self, first: TexelAddress, colours: &[u32], depths: impl Iterator<Item = u32>) {
         assert!(first.column as usize + colours.len() <= self.texels as usize && first.row < self.texels, "{first:?}");
         let start = first.index(self.texels);
@@ -106,11 +112,13 @@ impl FaceSet {
         }
     }
 
-    /// Draws a run of texels of one row from one on, colour and depth in 24 bits each: where something as near is there already it
-    /// stays.
+    /// Draws consecutive texels of a row with a depth test. A texel of equal depth keeps its old colour.
+    ///
+    /// Colours and depths have 24 bits.
     ///
     /// # Panics
-    /// For a run that does not lie in a row, and for fewer depths than colours.
+    ///
+    /// Panics if the texels exceed the row, or if there are fewer depths than colours.
     #[inline(always)]
     pub fn keep_nearer(&mut self, first: TexelAddress, colours: &[u32], depths: &[u32]) {
         let count = colours.len();
@@ -123,7 +131,7 @@ impl FaceSet {
         }
     }
 
-    /// Colour and kept depth of a texel; `None` of an empty one.
+    /// Returns the colour and the stored depth of a texel, or `None` for an empty one.
     #[must_use]
     pub fn texel(&self, texel: TexelAddress) -> Option<(u32, u32)> {
         let word = self.words[texel.index(self.texels)];
@@ -131,13 +139,13 @@ impl FaceSet {
         (nearness(word) > 0).then(|| (colour(word), farthest - nearness(word)))
     }
 
-    /// All words, face by face and row by row.
+    /// Returns all words, by face and row.
     pub(crate) fn words(&self) -> &[u64] {
         &self.words
     }
 }
 
-/// The word of a texel; 0 where it is empty.
+/// Returns the word of a texel, which is 0 for an empty one.
 #[inline(always)]
 pub(crate) const fn word(format: TexelFormat, colour: u32, depth: u32) -> u64 {
     let farthest = DEPTH_FARTHEST >> (24 - format.depth_bits);
@@ -145,13 +153,12 @@ pub(crate) const fn word(format: TexelFormat, colour: u32, depth: u32) -> u64 {
     if nearness == 0 { 0 } else { (nearness as u64) << 32 | format.kept_colour(colour) as u64 }
 }
 
-/// How much nearer than the farthest a word's texel is; 0 for an empty one.
+/// Returns the nearness of a texel's word: farthest depth minus depth, 0 for an empty texel.
 #[inline(always)]
 pub(crate) const fn nearness(word: u64) -> u32 {
     (word >> 32) as u32
 }
 
-/// A word's colour.
 pub(crate) const fn colour(word: u64) -> u32 {
     word as u32
 }

@@ -1,31 +1,31 @@
-//! Every number of the display.
+//! All parameters of the display.
 
 use crate::error::ArpError;
 use parameters::{MAX, ParameterTable, check};
 use pxpl5_sim::{Clock, Span};
 
 parameters::parameter_table! {
-    /// Words, memories and the clock of the pipeline.
+    /// Word lengths, memories and clock of the pipeline.
     pub struct ArpTiming {
-        /// Display memories of an eye, each a double-buffered cube with depth.
+        /// Display memories per eye, each a double-buffered cube with depth.
         display_memories: 4, "memories", Published, 1..=8, "CPR05 tables 1 and 2: memories 0 to 3";
-        /// Texels along an edge of a face, guard texels included; a multiple of 128.
+        /// Texels along an edge of a face, including guard texels. Must be a multiple of 128.
         face_texels: 256, "texels", Assumed, 128..=2048, "not printed; 256 is what a port of the ring can fill 25 times a second, 512 with ideal faces";
-        /// Texels on each side of a face that show what the neighbouring face shows there.
+        /// Texels on each side of a face that repeat the content of the neighbouring face.
         guard_texels: 1, "texels", Assumed, 0..=8, "not printed; one keeps every footprint on its face";
-        /// Bits of each component of a viewing vector, sign included.
+        /// Bits of each component of a viewing vector, including the sign.
         vector_bits: 16, "bits", Assumed, 8..=24, "not printed; 16 bits err by 0.02 texels of 512";
-        /// Bits of each component of the matrix, sign included.
+        /// Bits of each component of the matrix, including the sign.
         matrix_bits: 16, "bits", Assumed, 8..=24, "not printed; as the vectors";
-        /// Bits of a quotient, each a stage of the divider.
+        /// Bits of a quotient. The divider has one stage per bit.
         quotient_bits: 16, "bits", Assumed, 8..=20, "not printed; 1/128 texel of 512";
-        /// Bits of each of the two fractions that weigh four texels; 0 takes the nearest texel.
+        /// Bits of each of the two fractions that weight four texels. 0 selects the nearest texel.
         weight_bits: 4, "bits", Assumed, 0..=8, "RPM has hardware for it, its words are not printed";
         /// Bits of depth in a display memory: 16 or 24.
         depth_bits: 24, "bits", Derived, 16..=24, "the machine's depth";
         /// Bits of colour in a display memory: 24, or 16 as 5, 6 and 5.
         colour_bits: 24, "bits", Derived, 16..=24, "the machine's colour";
-        /// Time of a stage.
+        /// Duration of one stage.
         stage_ps: 25_000, "ps", Assumed, 1_000..=38_461 in 1..=1_000_000, "RP94: orientation less than 1 us before the first pixel, so below 38.46 ns in 26 stages";
         /// Horizontal angle of the picture.
         horizontal_deg: f64 = 60.0, "deg", Published, 1.0..=360.0, "JITP; above 170 with the equidistant lens or a table alone";
@@ -35,61 +35,62 @@ parameters::parameter_table! {
 }
 
 parameters::parameter_table! {
-    /// The scan: NTSC video, as that of the frame buffer of Pixel-Planes 5.
+    /// Timing of the scan: NTSC video, as in the frame buffer of Pixel-Planes 5.
     pub struct ScanTiming {
-        /// Period of the pixel clock, times `pixel_divisor`.
+        /// Period of the pixel clock, multiplied by `pixel_divisor`.
         pixel_ps: 11_000_000, "ps", Derived, 11000000..=11000000 in 1..=MAX, "NTSC square pixels: 135/11 MHz";
         /// Divisor of the period of the pixel clock.
         pixel_divisor: 135, "1", Derived, 135..=135 in 1..=MAX, "NTSC square pixels: 135/11 MHz";
-        /// Pixel periods in a line.
+        /// Pixel periods in a line, including blanking.
         line_pixels: 780, "pixels", Derived, 780..=780 in 1..=16_384, "(4004/63 us) x (135/11 MHz)";
-        /// Lines in a frame of two fields.
+        /// Lines in a frame of two fields, including blanking.
         frame_lines: 525, "lines", Published, 525..=525 in 2..=16_384, "NTSC: 262.5 lines a field";
-        /// Visible pixels of a line.
+        /// Visible pixels in a line.
         visible_pixels: 640, "pixels", Published, 640..=640 in 1..=4_096, "TR94";
-        /// Visible lines of a field.
+        /// Visible lines in a field.
         visible_lines: 240, "lines", Published, 240..=240 in 1..=4_096, "TR94: 480 lines in two fields";
-        /// Blanked pixel periods before the visible ones of a line.
+        /// Blanked pixel periods before the visible pixels of a line.
         left_blanking: 140, "pixels", Assumed, 0..=140 in 0..=16_384, "as in the frame buffer: all horizontal blanking comes first";
         /// Blanked whole lines after a retrace.
         top_blanking: 22, "lines", Assumed, 0..=22 in 0..=16_384, "as in the frame buffer: all vertical blanking comes first";
     }
 }
 
-/// Stages of one clock each besides those of the divider and the comparators: table, multiply, two adders, face, address,
-/// memory, interpolate.
+/// Number of stages apart from dividers and comparators, one clock each.
+///
+/// They are table, multiply, two adders, face, address, memory and interpolate.
 const FIXED_STAGES: u64 = 8;
 
 impl ArpTiming {
-    /// Stages in which so many memories are compared in pairs.
+    /// Returns the number of stages in which the memories are compared in pairs.
     #[must_use]
     pub const fn compare_stages(&self) -> u64 {
         self.display_memories.next_power_of_two().trailing_zeros() as u64
     }
 
-    /// Stages from the table to the light: 8, the quotient's bits and the comparators; 26 for four memories and 16 bits.
+    /// Returns the number of stages from the table to the light: 26 for four memories and quotients of 16 bits.
     #[must_use]
     pub const fn stages(&self) -> u64 {
         FIXED_STAGES + self.quotient_bits + self.compare_stages()
     }
 
-    /// The time of all stages: how long before its light a pixel's orientation must be known.
+    /// Returns the duration of all stages. The orientation of a pixel must be known this long before its light.
     #[must_use]
     pub const fn depth(&self) -> Span {
         Span(self.stages() * self.stage_ps)
     }
 
-    /// How long before its light a pixel's texels are read: memory, comparators, interpolation.
+    /// Returns how long before its light the texels of a pixel are read: memory, comparators and interpolation.
     #[must_use]
     pub const fn read_ahead(&self) -> Span {
         Span((2 + self.compare_stages()) * self.stage_ps)
     }
 
-    /// Checks every number against its limits, and the rules between them.
+    /// Checks all parameters against their limits, and the rules between them.
     ///
     /// # Errors
     ///
-    /// [`ArpError::Number`] names the number, what was expected and what was found.
+    /// [`ArpError::Number`] names the parameter, the expected and the found value.
     pub fn check(&self) -> Result<(), ArpError> {
         ParameterTable::check(self).map_err(|error| ArpError::Number(format!("arp.{error}")))?;
         rule(self.face_texels.is_multiple_of(128), "face_texels", "a multiple of 128", self.face_texels)?;
@@ -103,17 +104,19 @@ fn rule(holds: bool, name: &'static str, expected: &'static str, found: u64) -> 
 }
 
 impl ScanTiming {
-    /// Checks every number against its limits; visible pixels and lines with their blanking fit in a line and a field.
+    /// Checks all parameters against their limits. Visible pixels and lines with their blanking must fit into a line
+    /// and a field.
     ///
     /// # Errors
     ///
-    /// [`ArpError::Number`] names the number, what was expected and what was found.
+    /// [`ArpError::Number`] names the parameter, the expected and the found value.
     pub fn check(&self) -> Result<(), ArpError> {
         let path = |error| ArpError::Number(format!("arp_scan.{error}"));
         ParameterTable::check(self).map_err(path)?;
         check("pixel_ps", self.pixel_ps, (self.pixel_divisor, MAX)).map_err(path)?;
         check("visible_pixels", self.visible_pixels, (1, self.line_pixels)).map_err(path)?;
         check("left_blanking", self.left_blanking, (0, self.line_pixels - self.visible_pixels)).map_err(path)?;
+        // Each field contains half of the lines of a frame.
         let field_lines = self.frame_lines / 2;
         check("visible_lines", self.visible_lines, (1, field_lines)).map_err(path)?;
         check("top_blanking", self.top_blanking, (0, field_lines - self.visible_lines)).map_err(path)?;
@@ -122,7 +125,7 @@ impl ScanTiming {
         Ok(())
     }
 
-    /// Pixel clock and clock of the fields; `None` where a number is too large.
+    /// Returns the pixel clock and the field clock, or `None` if a parameter is too large.
     pub(crate) fn clocks(&self) -> Option<[Clock; 2]> {
         let pixels = self.frame_lines.checked_mul(self.line_pixels)?;
         let field = Clock::new(self.pixel_ps.checked_mul(pixels)?, self.pixel_divisor.checked_mul(2)?)?;

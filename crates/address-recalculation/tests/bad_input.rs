@@ -1,4 +1,4 @@
-//! What a user can hand in is answered by key, expected and found.
+//! Errors for invalid user input name the parameter, the expected and the found value.
 
 use address_recalculation::{ArpConfig, ArpTiming, Lens, Picture, ScanTiming};
 use proptest::prelude::*;
@@ -29,7 +29,7 @@ fn numbers_are_refused_by_name() {
         refusal(ArpTiming { horizontal_deg: 200.0, ..papers })
             .contains("expected a horizontal angle above 0 and up to 170 deg")
     );
-    // A line has 780 pixels, 640 of them visible; a field 262 whole lines, 240 of them visible.
+    // A line has 780 pixels, of which 640 are visible. A field has 262 whole lines, of which 240 are visible.
     for (scan, expected) in [
         (ScanTiming { left_blanking: 141, ..ScanTiming::PAPERS }, "arp_scan.left_blanking must be 0 to 140, found 141"),
         (ScanTiming { top_blanking: 23, ..ScanTiming::PAPERS }, "arp_scan.top_blanking must be 0 to 22, found 23"),
@@ -74,7 +74,7 @@ fn a_table_has_a_vector_for_each_pixel_row_by_row() {
     assert_eq!(other, "arp.lens: expected 9 vectors for 3 x 3 pixels, found 6 vectors");
 }
 
-/// The corner pixel of a picture of 2 x 1 lies at rho^2 = 1/4, where the slope is 1 + 3 x 1/4 x -4/3 = 0.
+/// The corner pixel of a picture of 2 x 1 pixels lies at rho^2 = 1/4, where the slope is 1 + 3 x 1/4 x -4/3 = 0.
 #[test]
 fn a_lens_without_slope_and_a_picture_without_angle_are_refused() {
     let error = Lens::Radial { k1: -4.0 / 3.0, k2: 0.0 }.check(&TINY).expect_err("flat there").to_string();
@@ -110,7 +110,7 @@ proptest! {
         let _ = Lens::read(Cursor::new(bytes), &TINY);
     }
 
-    /// The least slope found by going out in a thousand steps.
+    /// Compares the check with the smallest slope found in a thousand steps from the middle to the corner.
     #[test]
     fn a_lens_that_folds_before_the_corner_is_refused(
         k1 in -1.5..1.5_f64,

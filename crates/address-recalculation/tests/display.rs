@@ -1,4 +1,4 @@
-//! The display on the ring: updates, swaps, orientations, and what a viewer sees.
+//! The display on the ring: updates, swaps, orientations and the visible picture.
 
 mod support;
 
@@ -41,7 +41,7 @@ fn nothing_is_computed_before_somebody_looks_and_then_only_what_is_read() {
     bench.update(0, 1, &source);
     (1..3).for_each(|field| bench.tick(field));
     assert_eq!(source.asked.load(Ordering::Relaxed), 0);
-    // 60 degrees straight ahead meet one face of the six: one region of 128 texels.
+    // A view of 60 degrees straight ahead hits one face, which has one region of 128 texels.
     assert_eq!(bench.pixel(1, 320, 241), 0x33);
     assert_eq!(source.asked.load(Ordering::Relaxed), 1);
     bench.pixel(1, 5, 5);
@@ -119,7 +119,8 @@ fn memories_that_exchanged_objects_swap_together_or_not_at_all() {
     assert_eq!(missed, [1, 1]);
 }
 
-/// A request that comes at the retrace itself is none of it, so the other memory of the set waits too.
+/// A request that arrives at the retrace itself is too late for this retrace. The other memory of the set must wait as
+/// well.
 #[test]
 fn a_set_of_which_one_is_asked_for_at_a_retrace_waits_for_the_next() {
     let mut bench = Bench::new(&CONFIG);
@@ -134,7 +135,7 @@ fn a_set_of_which_one_is_asked_for_at_a_retrace_waits_for_the_next() {
     assert_eq!(buffers(&bench), [1, 1]);
 }
 
-/// Regions are numbered face by face, row by row; a map has a bit for each, from the lowest of its first word on.
+/// Regions are numbered by face and row. The map has a bit for each, starting at the lowest bit of its first word.
 #[test]
 fn a_map_has_a_bit_for_each_region_of_the_six_faces() {
     for texels in [128, 256, 512] {
@@ -160,7 +161,7 @@ fn a_map_has_a_bit_for_each_region_of_the_six_faces() {
     }
 }
 
-/// Where another update of the first memory stood for the one that belongs to the set, that one would wait for ever.
+/// If another update of the first memory counted as the set's update, the set's real update would wait forever.
 #[test]
 fn an_update_of_another_set_does_not_stand_for_one_of_this() {
     let mut bench = Bench::new(&CONFIG);
@@ -190,7 +191,7 @@ fn memories_are_composed_by_depth_over_the_ring() {
     }
 }
 
-/// Sends a bench something.
+/// A function that sends a message to a bench.
 type Send = fn(&mut Bench);
 
 #[test]
@@ -232,7 +233,7 @@ fn what_cannot_be_used_is_a_counted_fault_without_effect() {
     }
 }
 
-/// Colours alone are 16 messages: a memory with depth takes none of them, the background memory no others.
+/// Colours alone take 16 messages. A memory with depth refuses them, and the background memory accepts nothing else.
 #[test]
 fn a_region_needs_depths_but_in_the_background_memory() {
     let config = ArpConfig { has_background_memory: true, ..CONFIG };
@@ -265,7 +266,7 @@ fn the_background_memory_is_seen_where_nothing_else_is() {
     assert_eq!(bench.pixel(3, 3, 3), 0x88);
 }
 
-/// Six faces of one colour each.
+/// Sends six faces of one colour each.
 fn coloured(bench: &mut Bench) {
     let regions: Vec<u16> = (0..6).collect();
     bench.begin(0, 1, &regions);
@@ -275,7 +276,7 @@ fn coloured(bench: &mut Bench) {
 
 const QUARTER: [[f64; 3]; 3] = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]];
 
-/// Turned a quarter to the left (about +y), a head that looked along -z looks along -x: face 1.
+/// A head that looked along -z looks along -x (face 1) after a rotation of 90 degrees to the left, about +y.
 #[test]
 fn a_turn_of_the_head_needs_no_update() {
     let mut bench = Bench::new(&CONFIG);
@@ -305,7 +306,7 @@ fn an_orientation_is_latched_to_the_picosecond() {
     }
 }
 
-/// Latched by pixel, a matrix that comes in the middle of a line splits it there; by line at the next line; by field not at all.
+/// A matrix arrives in the middle of a line. It takes effect at this pixel, at the next line, or at the next field.
 #[test]
 fn a_picture_is_torn_where_the_latch_lets_it() {
     let split = |latch| {
@@ -352,7 +353,7 @@ fn nonsense_of_a_tracker_is_refused_and_the_last_good_orientation_stays() {
     assert_eq!(bench.display.faults().0, 4, "those that came over the ring");
 }
 
-/// A tracker that falls silent: the last orientation stands for as many fields as one likes.
+/// If a tracker falls silent, the last orientation stays valid for any number of fields.
 #[test]
 fn a_silent_tracker_leaves_the_last_orientation() {
     let mut bench = Bench::new(&CONFIG);

@@ -1,4 +1,4 @@
-//! The fast path gives the literal twin's bits, whatever the words, faces and contents.
+//! The fast model and the reference model give identical bits for all word lengths, faces and contents.
 
 mod support;
 
@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use pxpl5_sim::SplitMix64;
 use support::{noise, texels, turned};
 
-/// 31 x 14 pixels: lines that are no multiple of eight.
+/// A picture of 31 x 14 pixels, whose lines are not a multiple of eight pixels.
 const SMALL: ScanTiming = ScanTiming { visible_pixels: 31, visible_lines: 7, ..ScanTiming::PAPERS };
 
 fn by_lookup(
@@ -27,7 +27,7 @@ fn by_lookup(
     (pixels, [stats.split, stats.conflicts])
 }
 
-/// Every pixel through every stage; a pixel leaves as many clocks after it entered as there are stages.
+/// Computes every pixel through every stage. A pixel leaves after as many clocks as there are stages.
 fn by_registers(
     config: &ArpConfig,
     orientation: &Orientation,
@@ -70,7 +70,7 @@ fn compare(config: &ArpConfig, orientation: &Orientation, memories: &[FaceSet], 
     assert_eq!(fast, literal, "{config:?} {orientation:?}");
 }
 
-/// Words as in the table of numbers.
+/// Returns word lengths within the limits of the parameter table.
 fn words() -> impl Strategy<Value = ArpTiming> {
     let bits = (8_u64..=24, 8_u64..=24, 8_u64..=20, 0_u64..=8);
     let usual = Just((16, 16, 16, 4));
@@ -125,7 +125,7 @@ proptest! {
     }
 }
 
-/// Faces meet along edges and in corners: those are in the picture when the head is turned by eighths.
+/// Rotations by multiples of 45 degrees bring edges and corners of faces into the picture.
 #[test]
 fn they_agree_where_faces_meet() {
     for guard_texels in [0, 1] {
@@ -140,7 +140,7 @@ fn they_agree_where_faces_meet() {
     }
 }
 
-/// Depths that are one apart, of which means are rounded: towards an edge, into a corner of three texels, and on a face.
+/// Depths differ by one, and their means are rounded: near an edge, in a corner of three texels, and inside a face.
 #[test]
 fn they_agree_on_depths_one_apart() {
     let corner = (1.0 / 2_f64.sqrt()).atan();
@@ -165,8 +165,8 @@ fn they_agree_on_depths_one_apart() {
     }
 }
 
-/// Directions in which two or three components are as long as each other lie on the edges: a quotient there is 0 or would be 1, which
-/// its word does not hold.
+/// Directions with two or three equally long components lie on edges. A quotient is 0 there, or 1, which does not fit
+/// into its word.
 #[test]
 fn they_agree_on_directions_that_faces_share() {
     let all = (0..27).map(|n| [n % 3, n / 3 % 3, n / 9].map(|digit| f64::from(digit) - 1.0));
@@ -181,7 +181,7 @@ fn they_agree_on_directions_that_faces_share() {
     }
 }
 
-/// A corner of the bare cube is split; in a guarded one nothing is.
+/// Without guard texels, a footprint in a corner is split. With guard texels, none is.
 #[test]
 fn split_footprints_are_counted_without_a_guard_alone() {
     let corner =
@@ -196,7 +196,8 @@ fn split_footprints_are_counted_without_a_guard_alone() {
     assert_eq!(counts[1], [0, 0]);
 }
 
-/// A run of pixels with an orientation of its own may be of any length: those that are looked up together and those by themselves.
+/// A run of pixels with its own orientation may have any length, which covers both the group and the single
+/// computation.
 #[test]
 fn a_picture_is_the_same_in_runs_of_any_length() {
     for guard_texels in [0, 1] {

@@ -1,4 +1,4 @@
-//! Which texels a pixel reads: beyond an edge, beyond a corner, out of which bank, and of which pieces of the faces.
+//! Texels that a pixel reads: beyond edges and corners, in which banks, and in which regions of the faces.
 
 mod support;
 
@@ -15,29 +15,29 @@ const SIZE: u32 = 128;
 const BARE: ArpTiming = ArpTiming { face_texels: SIZE as u64, guard_texels: 0, ..ArpTiming::PAPERS };
 const FACE: FaceGeometry = FaceGeometry { texels: SIZE, guard: 0 };
 
-/// One on a face's plane, so that words of directions are exact.
+/// The distance of a face's plane, large enough that directions in words are exact.
 const ONE: i64 = 1 << 20;
 
-/// The texel to which the middle of a texel beside a face belongs, in real numbers.
+/// Returns the texel that contains the middle of a texel beside a face, computed in floating point.
 fn neighbour(face: CubeFace, column: f64, row: f64) -> Option<TexelAddress> {
     let [u, v] = [column, row].map(|n| (2.0 * n + 1.0) / f64::from(SIZE) - 1.0);
     let (forward, right, up) = (face.forward(), face.right(), face.up());
     FACE.texel([0, 1, 2].map(|i| forward[i] as f64 + u * right[i] as f64 - v * up[i] as f64))
 }
 
-/// The footprint of a place on a face, in parts of [`ONE`] to the right and down from the middle.
+/// Returns the footprint of a position on a face, in units of 1/[`ONE`] to the right and downwards from the middle.
 fn footprint(face: CubeFace, right: i64, down: i64) -> Footprint {
     let axes = [face.forward(), face.right(), face.up()];
     let direction = [0, 1, 2].map(|i| ONE * axes[0][i] + right * axes[1][i] - down * axes[2][i]);
     AddressUnit::new(&BARE).footprint(direction).expect("a direction")
 }
 
-/// The middle of a row or column, in parts of [`ONE`] from the middle of the face.
+/// Returns the middle of a row or column, in units of 1/[`ONE`] from the middle of the face.
 const fn middle(n: u32) -> i64 {
     (2 * n as i64 + 1 - SIZE as i64) * ONE / SIZE as i64
 }
 
-/// Beside each of four edges of each face, at every row, lies the texel that the neighbour shows there.
+/// Beyond each edge of each face, every row must continue with the texel of the neighbouring face.
 #[test]
 fn texels_beyond_an_edge_are_those_of_the_neighbour() {
     let edge = f64::from(SIZE);
@@ -66,7 +66,7 @@ fn texels_beyond_an_edge_are_those_of_the_neighbour() {
     }
 }
 
-/// Three faces meet in a corner: of the four texels around it one is on none.
+/// Three faces meet in a corner, so one of the four texels around it lies on no face.
 #[test]
 fn the_texel_beyond_a_corner_is_none_and_the_two_beside_it_are_the_neighbours() {
     let (first, last) = (-1.0, f64::from(SIZE));
@@ -89,7 +89,8 @@ fn the_texel_beyond_a_corner_is_none_and_the_two_beside_it_are_the_neighbours() 
     }
 }
 
-/// A bank holds the texels of one parity of columns and rows: two different ones of a footprint in one bank are read one after the other.
+/// A bank holds texels with one parity of column and row. Two different texels of a footprint in one bank need two
+/// accesses.
 #[test]
 fn a_second_access_is_for_two_texels_of_the_same_parity() {
     let mut random = SplitMix64::new(7);
@@ -120,7 +121,7 @@ fn a_second_access_is_for_two_texels_of_the_same_parity() {
     assert!(!nearest.has_conflict(), "the nearest texel is read once");
 }
 
-/// Of two lists of texels drawn one over the other, the nearer of each stays, and of two as near the first.
+/// Of two lists of texels drawn on top of each other, the nearer texel stays, and the first one on ties.
 #[test]
 fn of_what_is_drawn_into_faces_the_nearer_stays_and_the_first_on_ties() {
     let config = ArpConfig { timing: BARE, ..ArpConfig::MACHINE };
@@ -151,23 +152,23 @@ fn of_what_is_drawn_into_faces_the_nearer_stays_and_the_first_on_ties() {
     }
 }
 
-/// Of three texels around a corner the mean of the colours is rounded to the nearest, that of the nearness down, in whole numbers.
+/// For three texels around a corner, the mean colour is rounded to nearest, and the mean nearness is rounded down.
 #[test]
 fn around_a_corner_the_mean_of_three_is_shown_in_either_order() {
     let corner = footprint(CubeFace::NegZ, ONE - 1, 1 - ONE);
     let [a, b, c] = [0, 2, 3].map(|k| corner.texels[k].expect("on a face"));
     for (order, depths, expected) in [
-        // Mean of 10, 20 and 31 is 20.33.
+        // The mean of 10, 20 and 31 is 20.33.
         (0, [[5, 5, 5], [9, 9, 9]], 20),
-        // Texel by texel the nearer: 10, 20 and 93 have the mean 41.
+        // The nearest texels are 10, 20 and 93, whose mean is 41.
         (0, [[5, 5, 9], [9, 9, 5]], 41),
-        // Depths of 5, 5 and 9 have the nearer mean.
+        // The depths 5, 5 and 9 have the nearer mean.
         (1, [[5, 5, 9], [9, 9, 5]], 20),
-        // A mean depth of 5.33 is one of 6; 30, 62 and 93 have the mean 61.67.
+        // A mean depth of 5.33 counts as 6. The mean of 30, 62 and 93 is 61.67.
         (1, [[5, 5, 6], [5, 5, 5]], 62),
-        // 5.67 and 5.33 are both 6, so the first memory shows.
+        // The mean depths 5.67 and 5.33 both count as 6, so the first memory wins.
         (1, [[5, 6, 6], [5, 5, 6]], 20),
-        // Both are 5.33: the same.
+        // Both mean depths are 5.33, so the first memory wins.
         (1, [[5, 5, 6], [5, 6, 5]], 20),
     ] {
         let timing = ArpTiming { display_memories: 2, ..BARE };
@@ -185,7 +186,8 @@ fn around_a_corner_the_mean_of_three_is_shown_in_either_order() {
         });
         let memories: Vec<FaceSet> = memories.collect();
         let table = config.table().expect("valid");
-        // The only pixels of a picture of one column and two lines look straight ahead, nearly: the head turns them into the corner.
+        // A picture of one column and two lines looks almost straight ahead. The head rotates these pixels into the
+        // corner.
         let towards = corner_turn(table.entry(0, 0));
         let mut pixel = [0];
         Lookup::new(&config, &table, memories.iter().collect(), None).run(0, &towards.words(16), &mut pixel);
@@ -193,14 +195,14 @@ fn around_a_corner_the_mean_of_three_is_shown_in_either_order() {
     }
 }
 
-/// The head that brings a viewing vector to the corner right of and above the front face, a little inside of it.
+/// Returns the orientation that rotates a viewing vector to slightly inside the upper right corner of the front face.
 fn corner_turn(vector: [i32; 3]) -> Orientation {
     let from = glam::DVec3::from_array(vector.map(f64::from)).normalize();
     let to = glam::DVec3::new(0.9995, 0.9995, -1.0).normalize();
     turned(DQuat::from_rotation_arc(from, to))
 }
 
-/// The names of faces are their places in a buffer.
+/// The number of a face is its position in a buffer.
 #[test]
 fn faces_are_numbered_as_they_lie_in_a_buffer() {
     let axes: Vec<[i64; 3]> = CubeFace::ALL.into_iter().map(CubeFace::forward).collect();

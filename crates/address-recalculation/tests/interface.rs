@@ -1,4 +1,4 @@
-//! What the machine and a viewer ask of the display, and what its memories hold.
+//! Interface of the display to the machine and the viewer, and contents of its memories.
 
 mod support;
 
@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use support::bench::{Bench, CONFIG};
 use support::{texels, turned};
 
-/// Words of a region, and whether somebody has asked for them.
+/// Words of a region, with a flag that is true after they were read.
 #[derive(Debug)]
 struct Words {
     words: Arc<[Word]>,
@@ -30,7 +30,7 @@ impl PixelSource for Words {
     }
 }
 
-/// Any words in all regions of the first memory, which is shown from field 1 on.
+/// Fills all regions of the first memory with random words. The memory is visible from field 1 on.
 fn filled(config: &ArpConfig, parts: u32, seed: u64) -> (Bench, Vec<Arc<Words>>) {
     let mut bench = Bench::new(config);
     let mut random = SplitMix64::new(seed);
@@ -49,13 +49,14 @@ fn filled(config: &ArpConfig, parts: u32, seed: u64) -> (Bench, Vec<Arc<Words>>)
     (bench, sources)
 }
 
-/// A number of so many bits in eight, its upper bits repeated below.
+/// Extends a number of `bits` bits to eight bits by repeating its upper bits.
 fn widened(number: u32, bits: usize) -> u32 {
     let digits = format!("{number:0bits$b}").repeat(2);
     u32::from_str_radix(&digits[..8], 2).expect("binary")
 }
 
-/// 16 + 16 bits: depth in the upper half, colours of 5, 6 and 5 bits in the lower one; the farthest depth is an empty texel.
+/// With 16 + 16 bits, the depth is in the upper half, and colours of 5, 6 and 5 bits in the lower half. The farthest
+/// depth is empty.
 #[test]
 fn a_word_of_16_and_16_bits_is_a_texel() {
     let timing = ArpTiming { colour_bits: 16, depth_bits: 16, ..CONFIG.timing };
@@ -87,7 +88,7 @@ fn a_word_of_16_and_16_bits_is_a_texel() {
     }
 }
 
-/// The footprints of all pixels of a frame for one orientation, by the address unit.
+/// Returns the footprints of all pixels of a frame for one orientation, computed by the address unit.
 fn footprints(config: &ArpConfig, orientation: &Orientation) -> Vec<Footprint> {
     let table = config.table().expect("valid");
     let matrix = orientation.words(config.timing.matrix_bits);
@@ -100,8 +101,9 @@ fn piece(size: u32, texel: TexelAddress) -> u16 {
     face_region(size, texel.face, texel.column / 128, texel.row / 128).expect("on a face").0
 }
 
-/// With and without guard, for words that doubles hold exactly and for wider ones: just those regions are computed that hold a texel
-/// of a footprint, and the picture is that of faces computed as a whole.
+/// Only regions with a texel of some footprint are computed, and the picture equals that of completely computed faces.
+///
+/// The test covers faces with and without guard texels, and both exact and wider words.
 #[test]
 fn those_regions_are_computed_that_a_pixel_reads() {
     let narrow = ArpTiming { display_memories: 1, horizontal_deg: 9.0, ..ArpTiming::PAPERS };
@@ -114,7 +116,7 @@ fn those_regions_are_computed_that_a_pixel_reads() {
         let timing = ArpTiming { guard_texels: case / 2 % 2, weight_bits: if case % 5 == 4 { 0 } else { 4 }, ..words };
         let config = ArpConfig { timing, scan, ..CONFIG };
         let mut axis = || f64::from(random.unit()) - 0.5;
-        // Towards the edges between pieces, now and then: in the middle of a face four meet.
+        // Some cases look towards borders between regions. In the middle of a face, four regions meet.
         let quaternion = match case / 4 {
             0 => DQuat::IDENTITY,
             1 => DQuat::from_rotation_y(45_f64.to_radians()),
@@ -148,12 +150,13 @@ fn those_regions_are_computed_that_a_pixel_reads() {
     assert!(counts.len() > 2, "{counts:?} regions");
 }
 
-/// A picture that looks at one place alone, beside a border between pieces or across it: texels 127 and 128 lie in two pieces.
+/// The picture looks at one place, near a border between regions or across it. Texels 127 and 128 lie in different
+/// regions.
 #[test]
 fn of_neighbouring_pieces_those_are_computed_on_which_a_texel_lies() {
     let timing = ArpTiming { display_memories: 1, ..ArpTiming::PAPERS };
     let scan = ScanTiming { visible_pixels: 8, visible_lines: 2, ..ScanTiming::PAPERS };
-    // Places of texels on the face ahead, which has 254 of them between its edges and one more on each side.
+    // Positions of texels on the front face, which has 254 texels between its edges and one guard texel on each side.
     let beside = |place: f64| (place - 0.5) / 127.0 - 1.0;
     for (column, row, pieces) in [
         (127.5, 60.5, vec![(0, 0), (1, 0)]),
@@ -174,7 +177,7 @@ fn of_neighbouring_pieces_those_are_computed_on_which_a_texel_lies() {
     }
 }
 
-/// Latched by pixel, a matrix that comes in the middle of a line: what is left of it was looked up with the matrix before.
+/// With a latch per pixel, a matrix arrives in the middle of a line. Pixels before its arrival use the previous matrix.
 #[test]
 fn a_line_of_two_orientations_is_a_part_of_each_picture() {
     let timing = ArpTiming { display_memories: 1, ..ArpTiming::PAPERS };
@@ -196,7 +199,7 @@ fn a_line_of_two_orientations_is_a_part_of_each_picture() {
         pixels
     });
     for (at, pixel) in (0..).zip(seen.pixels()) {
-        // Odd lines are those of the field before.
+        // Odd lines belong to the previous field.
         let is_later = at / 30 % 2 == 0 && (at / 30, at % 30) >= (y, x);
         let expected = pictures[usize::from(is_later)][at as usize];
         assert_eq!(u32::from_be_bytes([0, pixel[0], pixel[1], pixel[2]]), expected, "{}, {}", at % 30, at / 30);
@@ -220,7 +223,7 @@ fn a_remembered_field_says_with_which_matrix_a_pixel_was_looked_up() {
     assert_eq!(bench.arp().look_stats(Eye::Left, PeriodNumber(4)), None);
 }
 
-/// Two buffers of six faces; the background memory keeps colours alone.
+/// There are two buffers of six faces. The background memory stores only colours.
 #[test]
 fn a_memory_has_bits_of_colour_and_depth_for_each_texel_of_two_buffers() {
     for (colour_bits, depth_bits) in [(24, 24), (16, 16), (16, 24)] {

@@ -1,4 +1,4 @@
-//! The specification's numeric cases that concern the display: 640 x 480 pixels, 60 degrees, faces of 512 texels.
+//! Numeric cases of the specification for the display: 640 x 480 pixels, 60 degrees, faces of 512 texels.
 
 use address_recalculation::{
     AddressUnit, ArpConfig, ArpTiming, CubeFace, FaceGeometry, Latch, Lens, Orientation, Picture, TexelAddress, Vector,
@@ -22,7 +22,7 @@ fn texel(geometry: FaceGeometry, direction: Vector) -> (CubeFace, u32, u32) {
     (texel.face, texel.column, texel.row)
 }
 
-/// The same texel by the hardware's words, from a direction of 30 bits.
+/// Returns the texel computed in hardware words, from a direction of 30 bits.
 fn texel_by_words(guard: u64, direction: Vector) -> (CubeFace, u32, u32) {
     let timing = ArpTiming { face_texels: 512, guard_texels: guard, weight_bits: 0, ..ArpTiming::PAPERS };
     let longest = direction.iter().fold(0.0_f64, |most, component| most.max(component.abs()));
@@ -67,7 +67,7 @@ fn case_5_a_lens_that_folds_is_refused() {
     lens(-0.214_081_950).expect("just inside of the limit");
     lens(-0.214_081_952).expect_err("just beyond the limit");
     lens(f64::NAN).expect_err("no number");
-    // 1 - 3 t + 2 t^2 (t = rho^2) is above zero at the corner (t 1.557) after it was below between 0.5 and 1.
+    // With t = rho^2, the slope 1 - 3 t + 2 t^2 is positive at the corner (t = 1.557), but negative between 0.5 and 1.
     let turning = Lens::Radial { k1: -1.0, k2: 0.4 };
     turning.check(&PICTURE).expect_err("folds before the corner");
 }
@@ -84,8 +84,10 @@ fn case_6_an_equidistant_lens_sees_behind_the_head() {
     assert_eq!(Lens::Equidistant.view(&odd, 1, 1), [0.0, 0.0, -1.0], "no distance has no direction");
 }
 
-/// The case lies on the edge between two texels: 1 + (1 + 1/3) / 2 x 510 = 341 exactly. In 16 bits the quotient 2/3 is 43,690,
-/// and 43,690 x 510 + 255 = 22,282,155 is 85 parts of 65,536 less than 340 x 65,536: the texel before.
+/// The case lies exactly on the border between two texels: 1 + (1 + 1/3) / 2 x 510 = 341.
+///
+/// In 16 bits the quotient 2/3 is 43,690. 43,690 x 510 + 255 = 22,282,155 is 85 less than 340 x 65,536, so it selects
+/// the texel before.
 #[test]
 fn case_7_a_direction_has_a_face_and_a_texel() {
     let direction = [0.3, -0.2, -0.9];
@@ -97,7 +99,7 @@ fn case_7_a_direction_has_a_face_and_a_texel() {
     assert_eq!(texel_by_words(1, [0.3001, -0.2, -0.9]), (CubeFace::NegZ, 341, 312));
 }
 
-/// 18.3333 by exact fractions 1/2 and 1/6; 3/16 for 1/6 gives 15 + 20 x 3/16 = 18.75.
+/// Exact fractions 1/2 and 1/6 give 18.3333. Rounded to 3/16, the fraction gives 15 + 20 x 3/16 = 18.75.
 #[test]
 fn case_8_four_texels_in_four_banks() {
     let (_, [a, b]) = GUARDED.between_texels([0.3, -0.2, -0.9]).expect("a direction");
@@ -183,7 +185,7 @@ fn case_14_solid_angles_of_all_texels_are_those_of_a_sphere() {
     }
 }
 
-/// A quaternion that is as likely as any other.
+/// Returns a uniformly distributed random rotation.
 fn any_rotation(random: &mut SplitMix64) -> DQuat {
     let mut uniform = || (random.bits() >> 11) as f64 / (1_u64 << 53) as f64;
     let [u, v, w] = [uniform(), uniform() * std::f64::consts::TAU, uniform() * std::f64::consts::TAU];
@@ -192,8 +194,9 @@ fn any_rotation(random: &mut SplitMix64) -> DQuat {
     DQuat::from_xyzw(short * v.sin(), short * v.cos(), long * w.sin(), long * w.cos())
 }
 
-/// The largest distance in texels between the place by words and the place in real numbers, over 40,000 pairs of a rotation
-/// and a pixel; where both meet the same face.
+/// Returns the largest distance in texels between positions computed in words and in floating point.
+///
+/// It covers 40,000 pairs of a rotation and a pixel for which both computations hit the same face.
 fn worst_address(bits: u64) -> f64 {
     let timing = ArpTiming { face_texels: 512, vector_bits: bits, matrix_bits: bits, ..ArpTiming::PAPERS };
     let config = ArpConfig { timing, ..ArpConfig::IDEAL };
@@ -215,7 +218,7 @@ fn worst_address(bits: u64) -> f64 {
     worst
 }
 
-/// The printed values are those of another sample, so the bound is 1.5 times.
+/// The printed values come from another sample, so the bound is 1.5 times as large.
 #[test]
 fn case_15_addresses_err_by_as_much_as_their_words_are_short() {
     for (bits, printed) in [(8, 5.7), (10, 1.39), (12, 0.33), (14, 0.088), (16, 0.021)] {
@@ -235,7 +238,7 @@ fn case_30_when_a_pixel_lights_and_what_happened_before() {
     assert_eq!(scan.lights(320, 241, field), None, "an odd line");
 }
 
-/// The error of an ideal tracker is the turn between latch and light: f tan(200 deg/s x age).
+/// With an ideal tracker, the error is the rotation between latch and light: f tan(200 deg/s x age).
 #[test]
 fn case_31_a_pan_of_200_degrees_a_second() {
     let scan = ArpConfig::IDEAL.scan().expect("valid");
@@ -251,7 +254,7 @@ fn case_31_a_pan_of_200_degrees_a_second() {
     }
 }
 
-/// A17: the orientation must be known less than 1 us before the first pixel, so stages are shorter than 38.46 ns.
+/// A17 demands an orientation less than 1 us before the first pixel, so a stage takes less than 38.46 ns.
 #[test]
 fn the_pipeline_is_shorter_than_a_microsecond() {
     assert_eq!(ArpTiming::PAPERS.depth().0, 650_000);
@@ -259,12 +262,12 @@ fn the_pipeline_is_shorter_than_a_microsecond() {
     assert!(slowest.depth().0 < 1_000_000);
     let stages = [1, 2, 3, 4, 5, 8].map(|n| ArpTiming { display_memories: n, ..ArpTiming::PAPERS }.stages());
     assert_eq!(stages, [24, 25, 26, 26, 27, 27]);
-    // Memory, interpolation and a level of comparators for each doubling.
+    // The stages after the read are memory, interpolation, and one level of comparators for each doubling of memories.
     let ahead = [1, 2, 3, 4, 5, 8].map(|n| ArpTiming { display_memories: n, ..ArpTiming::PAPERS }.read_ahead().0);
     assert_eq!(ahead, [2, 3, 4, 4, 5, 5].map(|stages| 25_000 * stages));
 }
 
-/// Boards do not know each other; their numbers agree.
+/// Crates of boards do not depend on each other, but their numbers must agree.
 #[test]
 fn the_scan_is_that_of_the_frame_buffer() {
     let video = pxpl5_framebuffer::Video::new(pxpl5_framebuffer::VideoTiming::PAPERS).expect("valid");
@@ -279,7 +282,9 @@ fn the_scan_is_that_of_the_frame_buffer() {
     }
 }
 
-/// tan(half angle) = N/M: 90.2242 degrees for 512 and 1; an NTSC pixel of 60 degrees is 0.1034 degrees in the middle.
+/// The half angle of a face has the tangent N/M: 90.2242 degrees for 512 texels and 1 guard texel.
+///
+/// An NTSC pixel of 60 degrees covers 0.1034 degrees in the middle.
 #[test]
 fn angles_of_faces_and_pixels() {
     let degrees = 2.0 * GUARDED.tangent().atan().to_degrees();
@@ -288,8 +293,11 @@ fn angles_of_faces_and_pixels() {
     assert!((2.0 * across.atan().to_degrees() - 0.1034).abs() < 5e-5);
 }
 
-/// docs/guide/address-recalculation.md follows the upper left pixel of a head that looks 30 degrees to the left: 28,377 is 32,767 cos 30
-/// degrees, 16,383 its sine (in doubles just below 16,383.5); all that follows was computed from these words by hand.
+/// Checks the example of docs/guide/address-recalculation.md: the upper left pixel of a head that looks 30 degrees to
+/// the left.
+///
+/// 28,377 is 32,767 cos 30 degrees, and 16,383 is its sine (in doubles just below 16,383.5). The other values were
+/// computed by hand.
 #[test]
 fn the_life_of_a_pixel_in_the_guide() {
     let half = 15_f64.to_radians();
@@ -307,7 +315,7 @@ fn the_life_of_a_pixel_in_the_guide() {
     assert_eq!(footprint.weights(4), [12, 180, 4, 60]);
 }
 
-/// The life of a pixel in the guide: the upper left pixel before a head that looks 30 degrees to the left.
+/// Checks the same example on a display: the upper left pixel of a head that looks 30 degrees to the left.
 #[test]
 fn a_display_tells_the_texels_of_a_pixel() {
     let half = 15.0_f64.to_radians();

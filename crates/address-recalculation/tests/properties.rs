@@ -1,4 +1,4 @@
-//! What holds for every direction, every turn and every content.
+//! Properties that hold for every direction, rotation and content.
 
 mod support;
 
@@ -23,7 +23,7 @@ fn degrees_between(a: Vector, b: Vector) -> f64 {
     a.cross(b).length().atan2(a.dot(b)).to_degrees()
 }
 
-/// Real-number interpolation of a field on the faces, as an ideal display would do it.
+/// Interpolates a function on the faces in floating point, like an ideal display.
 fn interpolated(geometry: FaceGeometry, direction: Vector, field: impl Fn(Vector) -> f64) -> f64 {
     let (face, [a, b]) = geometry.between_texels(direction).expect("a direction");
     let at = |column: f64, row: f64| {
@@ -37,7 +37,7 @@ fn interpolated(geometry: FaceGeometry, direction: Vector, field: impl Fn(Vector
     top * (1.0 - t) + bottom * t
 }
 
-/// Right and down on a face that the direction need not meet.
+/// Returns the position of a direction in the plane of a face, which the direction need not hit.
 fn on_face(face: CubeFace, direction: Vector) -> [f64; 2] {
     let along = |axis: [i64; 3]| (0..3).map(|i| direction[i] * axis[i] as f64).sum::<f64>();
     [along(face.right()) / along(face.forward()), -along(face.up()) / along(face.forward())]
@@ -60,7 +60,7 @@ proptest! {
         prop_assert_eq!(geometry.texel(direction.map(|c| c * 2_f64.powi(exponent))), Some(texel));
     }
 
-    /// A redraw for the orientation shows a field that is linear on each face exactly.
+    /// For a function that is linear on each face, rotation by lookup equals drawing for the new orientation.
     #[test]
     fn a_turn_shows_what_a_redraw_would(axes in prop::array::uniform4(-1.0..1.0_f64), x in 0_u32..640, y in 0_u32..480) {
         prop_assume!(axes.iter().map(|a| a * a).sum::<f64>() > 1e-3);
@@ -69,12 +69,12 @@ proptest! {
         let face = CubeFace::of(seen).expect("a direction");
         let linear = |direction: Vector| { let [u, v] = on_face(face, direction); 0.3 + 0.5 * u - 0.7 * v };
         prop_assert!((interpolated(GUARDED, seen, linear) - linear(seen)).abs() < 1e-9);
-        // (h^2 / 8) 400 with h = 2/510.
+        // The bound of the interpolation error is (h^2 / 8) 400 with h = 2/510.
         let smooth = |direction: Vector| (20.0 * on_face(face, direction)[0]).sin();
         prop_assert!((interpolated(GUARDED, seen, smooth) - smooth(seen)).abs() <= 7.69e-4);
     }
 
-    /// A quarter turn about any axis moves a direction to another texel of the same place in its face, so words lose nothing.
+    /// A rotation by 90 degrees maps texels to texels at the same position of another face, so words lose nothing.
     #[test]
     fn orientations_along_the_axes_are_exact(index in 0_usize..24, x in 0_u32..640, y in 0_u32..480) {
         let orientation = axis_aligned()[index];
@@ -84,7 +84,7 @@ proptest! {
     }
 }
 
-/// The 24 rotations that bring axes onto axes.
+/// Returns the 24 rotations that map axes to axes.
 fn axis_aligned() -> Vec<Orientation> {
     let axes = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
     let pairs = axes.into_iter().flat_map(|a| axes.into_iter().map(move |b| (a, b))).filter(|(a, b)| a.dot(*b) == 0.0);
@@ -103,7 +103,7 @@ fn every_texel_is_the_texel_of_its_middle() {
     }
 }
 
-/// Half a texel on either side of an edge: the spacing there is 0.1121 of 0.1758 degrees.
+/// The texels are half a texel from the edge on either side. Their spacing is 0.1121 of 0.1758 degrees.
 #[test]
 fn texels_on_both_sides_of_an_edge_are_neighbours() {
     let geometry = FaceGeometry { texels: 512, guard: 0 };
@@ -123,7 +123,7 @@ fn texels_on_both_sides_of_an_edge_are_neighbours() {
     }
 }
 
-/// A guard texel lies on a neighbour, at most half a texel's diagonal from the neighbour's nearest texel.
+/// A guard texel lies on a neighbouring face, within half a texel's diagonal of its nearest texel.
 #[test]
 fn guard_texels_show_what_the_neighbour_shows() {
     let geometry = FaceGeometry { texels: 128, guard: 2 };
@@ -138,7 +138,7 @@ fn guard_texels_show_what_the_neighbour_shows() {
     }
 }
 
-/// f / 510 = 1.0868: half a texel in the middle of a face, in pixels.
+/// Half a texel in the middle of a face is f / 510 = 1.0868 pixels.
 #[test]
 fn the_nearest_texel_is_at_most_1_087_pixels_away_in_the_middle() {
     let focal = 320.0 / 30_f64.to_radians().tan();
@@ -161,14 +161,18 @@ fn look(config: &ArpConfig, orientation: &Orientation, memories: &[FaceSet], beh
     pixels
 }
 
-/// A colour that changes slowly with the direction: at most 100 x 6 a radian, so 100 x 36 / 2 x (texel / 2)^2 of curvature.
+/// Returns a colour that changes slowly with the direction.
+///
+/// The slope is at most 100 x 6 per radian, so the curvature contributes at most 100 x 36 / 2 x (texel / 2)^2.
 fn soft(direction: Vector) -> f64 {
     let d = unit(direction);
     128.0 + 50.0 * (6.0 * d.x + 2.0 * d.y).sin() + 50.0 * (5.0 * d.z).cos()
 }
 
-/// In hardware's words: fractions rounded to 1/16 move the place by 1/32 texel along each axis, a texel in the middle being
-/// 2/510 rad, and the address by another 0.03; colours are rounded in the face and in the pixel.
+/// Bounds the error in hardware words.
+///
+/// Fractions rounded to 1/16 move the position by 1/32 texel along each axis. A texel in the middle covers 2/510 rad.
+/// The address adds 0.03 texels. Colours are rounded in the face and in the pixel.
 #[test]
 fn a_turned_picture_is_a_redraw_for_that_orientation() {
     let grey = |direction: Vector| soft(direction).round() as u32 * 0x01_01_01;
@@ -218,7 +222,7 @@ fn of_several_memories_the_nearest_shows_and_the_lowest_on_ties() {
     }
 }
 
-/// Looks of one thread share their room: faces of another size, or other contents, leave nothing behind.
+/// Lookups of one thread share a buffer. Faces of another size or with other contents must leave no traces.
 #[test]
 fn a_look_does_not_depend_on_the_looks_before() {
     let looks = [(128, 1), (256, 2), (128, 3), (128, 1), (256, 2)].map(|(face_texels, seed)| {
@@ -250,7 +254,8 @@ fn behind_empty_texels_lies_the_background_memory_and_before_it_everything_else(
     assert_eq!(upper_half(&look(&config, &Orientation::IDENTITY, &near, Some(&behind))), (0x99, 0x99));
 }
 
-/// E2's rule: objects dealt to memories, drawn from one place, show what one memory with all of them shows, bit for bit.
+/// Rule of E2: objects distributed over memories, drawn from one position, equal a single memory with all objects, bit
+/// by bit.
 #[test]
 fn memories_together_show_what_one_memory_shows() {
     let timing = ArpTiming { face_texels: 128, ..ArpTiming::PAPERS };
@@ -272,8 +277,9 @@ fn memories_together_show_what_one_memory_shows() {
     }
 }
 
-/// A straight edge in the world, seen through the lens's table, is straight on a flat picture: the place that a texel shows on the
-/// flat picture does not depend on the lens (RP93; E9).
+/// A straight edge in the world, seen through the lens, is straight on a flat picture (RP93; E9).
+///
+/// The position of a texel on the flat picture does not depend on the lens.
 #[test]
 fn a_straight_edge_through_the_lens_and_back_is_straight() {
     let picture = ArpConfig::IDEAL.picture();
@@ -287,7 +293,7 @@ fn a_straight_edge_through_the_lens_and_back_is_straight() {
         let stretch = 1.0 + 0.32 * rho.powi(2) + 0.05 * rho.powi(4);
         let back = [seen[0] * focal / stretch, -seen[1] * focal / stretch];
         assert!((back[0] - right).abs() < 1e-9 && (back[1] - down).abs() < 1e-9);
-        // The world's line through three pixels of a line of the flat picture stays a plane through the eye.
+        // Three pixels of a line on the flat picture stay in one plane through the eye.
         let [left, middle, far] = [0, 300, 639].map(|x| DVec3::from_array(Lens::Flat.view(&picture, x, y)));
         assert!(left.cross(far).dot(middle).abs() < 1e-12);
     }

@@ -1,4 +1,4 @@
-//! Who takes part.
+//! Configuration of the boards and of the faces they draw.
 
 use crate::update::FaceUpdate;
 use crate::warped_lists::WarpedLists;
@@ -7,65 +7,64 @@ use pphigs::{Picture, Share};
 use pxpl5_wire::{CopyContent, CopyTarget, Lines, NodeId, RegionGrid, RegionId};
 use std::sync::Arc;
 
-/// The boards that take part, and the kind of faces that they make.
+/// The boards that run Cube control, and the kind of faces they draw.
 #[derive(Clone, Debug)]
 pub struct CubeControlConfig {
-    /// Node of the host interface, which sends updates.
+    /// Port of the host interface, which sends updates.
     pub host: NodeId,
-    /// Node of the GP that begins every stage.
+    /// Port of the GP that starts every stage.
     pub master: NodeId,
-    /// Nodes of the slave GPs, at least one.
+    /// Ports of the slave GPs, at least one.
     pub slaves: Vec<NodeId>,
-    /// Nodes of the renderers, at least one.
+    /// Ports of the renderers, at least one.
     pub renderers: Vec<NodeId>,
-    /// What they draw, and where it goes.
+    /// Format and destination of the faces.
     pub faces: Faces,
-    /// What slaves keep for each other of updates that are warped; empty at first.
+    /// Display lists of warped updates, shared by all slaves. Empty at first.
     pub warped: WarpedLists,
 }
 
-/// The kind of faces that a display's memories take.
+/// Format of the faces in a display's memories.
 #[derive(Clone, Debug)]
 pub struct Faces {
-    /// The port of each display memory.
+    /// Port of each display memory.
     pub memories: Vec<NodeId>,
-    /// What is drawn of each face.
+    /// Viewport and shading of each face.
     pub picture: Picture,
-    /// What of a texel goes to a memory.
+    /// The parts of a texel that are copied to a memory.
     pub content: CopyContent,
 }
 
 impl Faces {
-    /// Texels along an edge of a face.
+    /// Returns the number of texels along an edge of a face.
     #[must_use]
     pub const fn face_texels(&self) -> u32 {
         self.picture.viewport.grid().width
     }
 
-    /// All six faces, one under the other.
+    /// Returns the grid of all six faces, one below the other.
     #[must_use]
     pub const fn grid(&self) -> RegionGrid {
         region_grid(self.face_texels())
     }
 
-    /// Regions of one face.
     pub(crate) const fn face_regions(&self) -> u16 {
         self.picture.viewport.grid().regions() as u16
     }
 
-    /// Regions of all faces.
+    /// Returns the number of regions of all six faces.
     #[must_use]
     pub const fn regions(&self) -> u16 {
         self.face_regions() * CubeFace::ALL.len() as u16
     }
 
-    /// The face that a region of all is on, and its number there.
+    /// Returns the face of a region, and the number of the region within this face.
     #[must_use]
     pub const fn on_face(&self, region: RegionId) -> (usize, RegionId) {
         ((region.0 / self.face_regions()) as usize, RegionId(region.0 % self.face_regions()))
     }
 
-    /// Where a region of an update goes.
+    /// Returns the destination of an update's region.
     #[must_use]
     pub fn target(&self, update: &FaceUpdate, region: RegionId) -> CopyTarget {
         CopyTarget {
@@ -80,7 +79,7 @@ impl Faces {
 }
 
 impl CubeControlConfig {
-    /// The primitives that slave `index` holds.
+    /// Returns the primitives that slave `index` holds.
     #[must_use]
     pub fn share(&self, list: &Arc<pphigs::DisplayList>, index: usize) -> Share {
         Share::new(Arc::clone(list), index, self.slaves.len())

@@ -11,8 +11,9 @@ use pxpl5_wire::{PictureNumber, RegionId};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// What an eye that is not turned sees through a face: the same view, turned to the face's axes. Structures that are fixed to the head
-/// are where they are before a head that is not turned.
+/// Returns the view through a face: the view of an eye in its initial orientation, rotated to the face's axes.
+///
+/// Structures fixed to the head are placed as for a head in its initial orientation.
 #[must_use]
 pub fn face_view(ahead: &EyeView, face: CubeFace) -> EyeView {
     let turn = to_face(face);
@@ -23,36 +24,39 @@ pub fn face_view(ahead: &EyeView, face: CubeFace) -> EyeView {
     }
 }
 
-/// World axes to the axes of a face: to the right, up, and out of the picture.
+/// Returns the rotation from world axes to the axes of a face: right, up, and backwards.
 fn to_face(face: CubeFace) -> Mat4 {
     let [right, up, forward] = [face.right(), face.up(), face.forward()].map(|axis| axis.map(|i| i as f32));
     let column = |i: usize| Vec4::new(right[i], up[i], -forward[i], 0.0);
     Mat4::from_cols(column(0), column(1), column(2), Vec4::W)
 }
 
-/// Bins of an update: for each region of six faces the screen primitives of one slave that touch it.
+/// Bins of an update: for each region of six faces, the screen primitives of one slave that touch it.
 #[derive(Clone, Debug)]
 pub struct CubePass {
     update: Arc<FaceUpdate>,
-    /// Its bin context, 0 or 1.
+    /// Bin context of the update, 0 or 1.
     context: u8,
     faces: Vec<Arc<Pass>>,
-    /// The beginning of the pass: the structures of the update, for each face.
+    /// Cost of beginning the pass: the structures of the update, for each face.
     begin: TransformCost,
     transformed: PrimitiveCounts,
 }
 
 impl CubePass {
-    /// One TRANSFORM of the primitives of a share that the update's memory holds, for six faces, with its vertices where
-    /// [`CubePass::placed`] has them.
+    /// Transforms the primitives of a share that the update's memory holds, for six faces.
+    ///
+    /// Vertices have the positions of [`CubePass::placed`].
     #[must_use]
     pub fn new(config: &CubeControlConfig, share: &Share, update: &Arc<FaceUpdate>) -> Self {
         let ahead = update.view.eyes.first();
         let faces = CubeFace::ALL.iter().flat_map(|face| ahead.map(|ahead| face_view(ahead, *face)));
         let view = FrameView { eyes: faces.collect(), ..update.view.clone() };
+        // Transform for each face.
         let share = &Self::placed(config, share, update);
         let pass = |face: usize| share.transform_chosen(&view, face, config.faces.picture, &update.structures);
         let faces: Vec<Arc<Pass>> = (0..view.eyes.len()).map(pass).collect();
+        // Count the transformations and the structures, for the time that the pass takes.
         let held = share.chosen_counts(&update.structures);
         let transformed = PrimitiveCounts {
             triangles: transformed(&faces, 0, held.triangles),
@@ -63,13 +67,13 @@ impl CubePass {
         Self { update: Arc::clone(update), context: context_of(update.number) as u8, faces, begin, transformed }
     }
 
-    /// The share with its vertices where the update wants them.
+    /// Returns the share with the vertices moved as the update demands.
     #[must_use]
     pub fn placed(config: &CubeControlConfig, share: &Share, update: &FaceUpdate) -> Share {
         if update.warp.is_none() { share.clone() } else { share.with_list(config.warped.placed(share.list(), update)) }
     }
 
-    /// The update that they are of.
+    /// Returns the update to which the bins belong.
     #[must_use]
     pub fn update(&self) -> &FaceUpdate {
         &self.update
@@ -79,7 +83,7 @@ impl CubePass {
         self.faces.get(face)
     }
 
-    /// Entries of each region's bin, in the order of all six faces.
+    /// Returns the number of entries in each region's bin, in the order of all six faces.
     #[must_use]
     pub fn entries(&self, config: &CubeControlConfig) -> Vec<u32> {
         let entries = |region: RegionId| {
@@ -89,7 +93,9 @@ impl CubePass {
         (0..config.faces.regions()).map(|region| entries(RegionId(region))).collect()
     }
 
-    /// Primitives that are transformed, each counted once for each face that it touches, and once if it touches none.
+    /// Returns the numbers of transformed primitives.
+    ///
+    /// A primitive counts once for each face that it touches, and once if it touches none.
     #[must_use]
     pub const fn transformed(&self) -> PrimitiveCounts {
         self.transformed
@@ -108,12 +114,13 @@ impl CubePass {
     }
 }
 
-/// The bin context of an update.
+/// Returns the bin context of an update.
 pub(crate) const fn context_of(update: PictureNumber) -> usize {
     (update.0 % 2) as usize
 }
 
-/// Transformations of so many held primitives of a kind (triangles 0, spheres 1).
+/// Returns the number of transformations of a kind of primitive (0 for triangles, 1 for spheres), of which `held` are
+/// held.
 fn transformed(faces: &[Arc<Pass>], kind: usize, held: u32) -> u32 {
     let touching = || faces.iter().filter_map(|pass| Some(&pass.touching()?[kind]));
     let anywhere: BTreeSet<u32> = touching().flatten().copied().collect();
@@ -122,8 +129,9 @@ fn transformed(faces: &[Arc<Pass>], kind: usize, held: u32) -> u32 {
 }
 
 impl Work for CubePass {
-    /// The pass over the display list, with its structures in their places for each face, each primitive once for each face that it
-    /// touches, and each entry in a bin.
+    /// Returns the time by the table.
+    ///
+    /// It covers the structures for each face, each primitive once per face that it touches, and each bin entry.
     fn by_table(&self, timing: &GpTiming) -> Span {
         let PrimitiveCounts { triangles, spheres } = self.transformed;
         let primitives = TransformCost { triangles: triangles.into(), spheres: spheres.into(), ..self.begin };

@@ -1,4 +1,4 @@
-//! The host: which update is next, and SEND.
+//! The host program: choice of the next update, and SEND.
 
 use crate::config::CubeControlConfig;
 use crate::protocol::UpdateOrder;
@@ -7,23 +7,25 @@ use pxpl5_gp::{Fault, Gp, HostTiming, Stage};
 use pxpl5_sim::Time;
 use pxpl5_wire::PictureNumber;
 
-/// What a host that is ready for an update does.
+/// The host's next action when it is ready for an update.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Planned {
-    /// It sends this one now.
+    /// Send this update now.
     Send(FaceUpdate),
-    /// It asks again at a later instant.
+    /// Call the plan again at this instant.
     Wait(Time),
-    /// It never sends any more.
+    /// Send no more updates.
     Nothing,
 }
 
-/// Sends update after update over the link and the ring to all GPs. SEND of an update may not begin before EDIT of the one before has
-/// finished (TR94). `plan` is asked with the number of the next update whenever the host is ready for it, in the order of time.
+/// Runs the host program, which sends updates over the link and the ring to all GPs.
+///
+/// SEND of an update begins after EDIT of the previous update has finished (TR94). `plan` is called with the number of
+/// the next update whenever the host is ready, in the order of time.
 ///
 /// # Errors
 ///
-/// [`Fault::Protocol`] when something else than the master's answer arrives.
+/// [`Fault::Protocol`] if a message other than the master's answer arrives.
 pub async fn host(
     gp: Gp,
     config: CubeControlConfig,
@@ -32,6 +34,7 @@ pub async fn host(
 ) -> Result<(), Fault> {
     let mut next = PictureNumber::FIRST;
     loop {
+        // Choose the next update.
         let update = match plan(next, gp.now()) {
             Planned::Send(update) => update,
             Planned::Wait(until) => {
@@ -40,6 +43,7 @@ pub async fn host(
             }
             Planned::Nothing => return Ok(()),
         };
+        // Send it, and wait until all slaves have applied its edits.
         send(&gp, &config, timing, update).await;
         let received = gp.receive().await;
         if UpdateOrder::read(&received, gp.node())? != UpdateOrder::EditsDone(next) {

@@ -1,4 +1,4 @@
-//! Cube control: Rendering Control's firmware for six faces around an eye, regions with depth and display memories.
+//! Cube control: the firmware of Rendering Control, adapted to six faces around an eye, depth and display memories.
 //!
 //! ```text
 //!   host:    which memory, which structures, where the eye is: SEND u   (wait for EDIT u)   SEND u+1 ...
@@ -8,34 +8,39 @@
 //!   renderers, display memories:              COPY u: colours, then depths          swap at a retrace that finds all there
 //! ```
 //!
-//! The shape is that of Rendering Control (TR94): one GP is the [`master`](fn@master), the others are slaves with two programs
-//! each, a token for each region walks from slave to slave, and what a stage waits for are its rules with a drawing for each update. Here
-//! a drawing is an *update* of one display memory: all six faces, in the grid of [`address_recalculation::region_grid`].
+//! The structure is that of Rendering Control (TR94). One GP is the [`master`](fn@master). The others are slaves with
+//! two programs each. A token for each region moves from slave to slave. The rules of TR94 decide when a stage may
+//! begin, with a drawing for each update. A drawing is an *update* of one display memory: all six faces, in the grid of
+//! [`address_recalculation::region_grid`].
 //!
-//! # What is different
+//! # Differences from Rendering Control
 //!
-//! - **Faces.** The host sends the eye's position and never an orientation. Each slave makes the six axis-aligned views of it
-//!   ([`face_view`]), and transforms a primitive once for each face that it touches. What lies beyond a side of a face is dropped by
-//!   comparisons of coordinates: the table charges no time for them (assumed), by code they take theirs ([`pphigs::Surrounding`]).
-//! - **Depth.** A pixel's depth is what the renderers hold for it: z/w along the axis of the face, 24 bits, 0 at the near plane, all
-//!   ones where nothing is drawn. Near and far plane are the same in all views, so depths of different memories compare. A region is
-//!   copied as two words a texel in 32 messages, through two blocks of the backing store; or as 16 + 16 bits in 16 messages.
-//! - **Empty regions** get no token and are not copied; the map that begins an update leaves them out. Of an update without any
-//!   primitive one region is copied, so that its end is seen.
-//! - **Memories** are served in the order of the host's updates. Each has a double buffer of its own: an update may be
-//!   copied when the one before it in the same memory is shown. The swap is asked for when the update begins: the display shows it at
-//!   the first retrace at which it is whole, and counts those that it missed. Updates of a group name each other and swap together.
-//!
-//! - **Warping.** An update may say how its vertices are moved ([`FaceWarp`]): each slave moves those that it transforms, so that on
-//!   the border to a slower memory they are seen in the direction from which that one was drawn. Spheres and what moves by itself stay
-//!   where they are.
+//! - **Faces.** The host sends the eye's position but no orientation. Each slave derives six axis-aligned views
+//!   ([`face_view`]). A primitive is transformed once for each face that it touches. Comparisons of coordinates discard
+//!   primitives outside a face. The table of times charges nothing for them (assumed). At the cycle level they take the
+//!   time of their code ([`pphigs::Surrounding`]).
+//! - **Depth.** The depth of a pixel is the renderers' depth: z/w along the axis of the face, in 24 bits. The near
+//!   plane is 0, and empty pixels have all bits set. All views have the same near and far plane, so depths of different
+//!   memories can be compared. A region is copied as two words per texel in 32 messages, through two blocks of the
+//!   backing store. Alternatively, 16 + 16 bits take 16 messages.
+//! - **Empty regions** get no token and are not copied. The map that begins an update omits them. An update without
+//!   primitives still copies one region, so that its end is detected.
+//! - **Memories** are served in the order of the host's updates. Each memory has its own double buffer. An update may
+//!   be copied when the previous update of the same memory is visible. The swap is requested at the begin of the
+//!   update. The display swaps at the first retrace at which the update is complete, and counts missed retraces.
+//!   Updates of a group swap together.
+//! - **Warping.** An update may move its vertices ([`FaceWarp`]). Each slave moves the vertices that it transforms.
+//!   Vertices on the border to a slower memory then appear in the direction from which that memory was drawn. Spheres
+//!   and moving objects are not warped.
 //!
 //! # Not modelled
 //!
-//! Attribute traversal beyond a cost per edit; the time of moving vertices, some twenty floating-point operations beside the thousand
-//! of a triangle, for which there is no code either.
+//! - Traversal of attributes beyond a cost per edit.
+//! - The time to move vertices: about twenty floating-point operations, compared with a thousand for a triangle. No
+//!   i860 code exists for it either.
 //!
-//! Sources: TR94 for the firmware; Chow, Pose and Regan 2005 for memories, updates and groups. Nobody has built the whole.
+//! Sources: TR94 for the firmware; Chow, Pose and Regan 2005 for memories, updates and groups. No such machine was ever
+//! built.
 
 mod config;
 mod faces;

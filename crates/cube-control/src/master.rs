@@ -1,4 +1,4 @@
-//! The master GP: it synchronises host, slaves, renderers and display memories.
+//! The master GP, which synchronizes host, slaves, renderers and display memories.
 
 use crate::config::CubeControlConfig;
 use crate::protocol::{Token, UpdateOrder};
@@ -9,35 +9,36 @@ use pxpl5_gp::{Account, Fault, Gp, Received, Stage};
 use pxpl5_wire::{Body, CopyOrder, CopyTarget, CopyWay, PictureNumber, RegionId, SurfaceId};
 use std::collections::VecDeque;
 
-/// What a renderer is doing, as far as the master knows.
+/// State of a renderer, as known to the master.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RendererUse {
     Idle,
-    /// A token for it is with the slaves.
+    /// The slaves hold a token for this renderer.
     Receiving,
-    /// It holds a finished region in pixel memory that waits for a memory.
+    /// The renderer holds a finished region in pixel memory, and waits until the display memory is available.
     Holding(CopyTarget),
 }
 
-/// An update on its way.
+/// State of an update that is in progress.
 #[derive(Debug)]
 struct UnderWay {
     update: FaceUpdate,
-    /// How many updates of the same memory came before it: that many swaps make its buffer free.
+    /// Number of earlier updates of the same memory. After as many swaps, the buffer is free.
     before: u64,
-    /// Slaves that have applied its edits, and slaves that have transformed it.
+    /// Number of slaves that have applied the edits.
     edited: usize,
+    /// Number of slaves that have transformed the update.
     transformed: usize,
-    /// Entries of each region's bin, of all slaves that have transformed it.
+    /// Number of entries in each region's bin, summed over the slaves that have transformed the update.
     entries: Vec<u64>,
-    /// Whether its memory has been told which regions come.
+    /// True if the display memory has received the map of regions.
     announced: bool,
-    /// Regions that have not arrived; `None` before it is known which come.
+    /// Number of regions that have not arrived. `None` before RENDER.
     missing: Option<u64>,
 }
 
 impl UnderWay {
-    /// Its regions, the heaviest first: those with primitives, or one.
+    /// Returns the regions with primitives, heaviest first. An update without primitives has one region.
     fn regions(&self) -> VecDeque<RegionId> {
         let mut regions: Vec<usize> = (0..self.entries.len()).filter(|region| self.entries[*region] > 0).collect();
         if regions.is_empty() {
@@ -48,15 +49,15 @@ impl UnderWay {
     }
 }
 
-/// RENDER of one update.
+/// State of RENDER for one update.
 #[derive(Debug)]
 struct Rendering {
     number: PictureNumber,
-    /// Regions without a renderer yet, heaviest first.
+    /// Regions that no renderer has yet, heaviest first.
     unassigned: VecDeque<RegionId>,
-    /// All its regions.
+    /// Number of regions of the update.
     regions: u16,
-    /// Tokens that are with the slaves.
+    /// Number of tokens that the slaves hold.
     tokens_out: u16,
 }
 
@@ -64,24 +65,24 @@ struct CubeMaster {
     gp: Gp,
     config: CubeControlConfig,
     completed: Completed,
-    /// The update whose EDIT comes next.
+    /// The next update to EDIT.
     next_edit: PictureNumber,
-    /// Updates from `completed.copied` on.
+    /// Updates from number `completed.copied` on.
     under_way: VecDeque<UnderWay>,
-    /// Updates of each memory so far.
+    /// Number of updates of each memory so far.
     of_memories: Vec<u64>,
     rendering: Option<Rendering>,
     renderers: Vec<RendererUse>,
     next_slave: usize,
-    /// Swaps at the last look.
+    /// Number of swaps when the master last checked.
     swaps_known: u64,
 }
 
-/// Runs the master.
+/// Runs the master program.
 ///
 /// # Errors
 ///
-/// [`Fault::Protocol`] for a message that no board sends, [`Fault::Memory`] if the program does not fit.
+/// [`Fault::Protocol`] for an invalid message, and [`Fault::Memory`] if the program does not fit into memory.
 pub async fn master(gp: Gp, config: CubeControlConfig) -> Result<(), Fault> {
     gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
     let mut master = CubeMaster::new(gp, config);
@@ -110,12 +111,12 @@ impl CubeMaster {
         }
     }
 
-    /// Waits for a message or for a memory to swap.
+    /// Waits for a message or for a swap of a display memory.
     async fn wait(&self) -> Option<Received> {
         self.gp.until("a message or a swap", || self.message_or_swap()).await
     }
 
-    /// `Some(Some(message))`, or `Some(None)` when memories have swapped since the last look.
+    /// Returns `Some(Some(message))` for a message, and `Some(None)` if a memory has swapped since the last check.
     fn message_or_swap(&self) -> Option<Option<Received>> {
         match self.gp.take_message() {
             Some(received) => Some(Some(received)),
@@ -140,9 +141,10 @@ impl CubeMaster {
         update.0.checked_sub(self.completed.copied).map(|place| place as usize)
     }
 
-    /// Begins the most urgent thing that the rules allow; false when there is none.
+    /// Starts the most urgent action that the rules permit. Returns false if there is none.
     async fn begin_one(&mut self) -> bool {
         self.swaps_known = self.swaps();
+        // Order of urgency: announce, copy, token, edit.
         self.begin_render();
         if let Some(place) = self.update_to_announce() {
             self.announce(place).await;
@@ -165,7 +167,7 @@ impl CubeMaster {
         self.gp.send_batch(self.config.slaves.iter().map(|node| (*node, words, body.clone())).collect()).await;
     }
 
-    /// The first update that is transformed, and whose memory shows the one before it.
+    /// Returns the first update that is transformed, and whose memory shows its previous update.
     fn update_to_announce(&self) -> Option<usize> {
         self.under_way.iter().position(|one| {
             let is_known = one.transformed == self.config.slaves.len();
@@ -174,7 +176,7 @@ impl CubeMaster {
         })
     }
 
-    /// Tells a memory which regions come, and asks it to show them when they are there.
+    /// Tells a display memory which regions will arrive, and requests the swap.
     async fn announce(&mut self, place: usize) {
         let texels = self.config.faces.face_texels();
         let one = &mut self.under_way[place];
@@ -185,7 +187,7 @@ impl CubeMaster {
         self.gp.send_groups(vec![(port, messages.into())]).await;
     }
 
-    /// Sorts the regions of the next update, heaviest first.
+    /// Begins RENDER of the next update if the rules permit it, with its regions sorted by weight.
     fn begin_render(&mut self) {
         let number = PictureNumber(self.completed.rendered);
         if self.rendering.is_some() || !self.completed.may_render(number) {
@@ -205,7 +207,7 @@ impl CubeMaster {
         Some((renderer, region))
     }
 
-    /// Gives the token of a region to the next slave in turn.
+    /// Sends the token of a region to the next slave in turn.
     async fn send_token(&mut self, renderer: usize, region: RegionId) {
         let Some(rendering) = &mut self.rendering else { return };
         rendering.unassigned.pop_front();
@@ -213,9 +215,11 @@ impl CubeMaster {
         let update = rendering.number;
         let of = rendering.regions;
         self.renderers[renderer] = RendererUse::Receiving;
+        // Slaves take turns to receive a token first, which balances their load.
         let slave = self.config.slaves[self.next_slave];
         self.next_slave = (self.next_slave + 1) % self.config.slaves.len();
         let slaves_left = self.config.slaves.len() as u16;
+        // If the memory is available, the last slave adds the copy command.
         let copies = self.is_announced(update);
         let token = Token { update, region, renderer: renderer as u16, slaves_left, of, copies };
         let (words, body) = UpdateOrder::Token(token).message();
@@ -226,7 +230,7 @@ impl CubeMaster {
         self.under_way(update).is_none_or(|one| one.announced)
     }
 
-    /// A region that a renderer holds, whose memory is available now.
+    /// Returns a region that a renderer holds and whose memory is now available.
     fn copy_that_may_begin(&self) -> Option<(usize, CopyTarget)> {
         self.renderers.iter().enumerate().find_map(|(renderer, state)| match state {
             RendererUse::Holding(target) => self.is_announced(target.picture).then_some((renderer, *target)),
@@ -234,7 +238,7 @@ impl CubeMaster {
         })
     }
 
-    /// Sends the copy command of a region whose memory was not available in time for the last slave.
+    /// Sends the copy command of a region whose memory was not available when the last slave had the token.
     async fn copy(&mut self, renderer: usize, target: CopyTarget) {
         self.renderers[renderer] = RendererUse::Idle;
         let order = copy_order(&self.config, target);
@@ -287,10 +291,12 @@ impl CubeMaster {
     fn note_accepted(&mut self, token: Token) {
         let renderer = usize::from(token.renderer);
         let target = self.under_way(token.update).map(|one| self.config.faces.target(&one.update, token.region));
+        // Without a copy command, the renderer holds the region.
         let held = target.filter(|_| !token.copies);
         self.renderers[renderer] = held.map_or(RendererUse::Idle, RendererUse::Holding);
         let Some(rendering) = &mut self.rendering else { return };
         rendering.tokens_out -= 1;
+        // RENDER ends with the last token.
         if rendering.tokens_out == 0 && rendering.unassigned.is_empty() {
             self.gp.end(Stage::Render, rendering.number, Some(SurfaceId(0)));
             self.completed.rendered += 1;
@@ -299,7 +305,7 @@ impl CubeMaster {
         }
     }
 
-    /// A region of an update, whose number ends so, has arrived.
+    /// Records the arrival of a region. `low` is the low word of the update's number.
     fn note_copied(&mut self, low: u32) {
         let of_update = |one: &&mut UnderWay| one.update.number.to_words()[0] == low;
         if let Some(missing) = self.under_way.iter_mut().find(of_update).and_then(|one| one.missing.as_mut()) {
@@ -308,7 +314,7 @@ impl CubeMaster {
         self.forget_copied();
     }
 
-    /// Updates whose last region has arrived are over when their last commands have been accepted too.
+    /// Removes updates whose regions have all arrived and whose commands have all been accepted.
     fn forget_copied(&mut self) {
         while self.completed.rendered > self.completed.copied
             && self.under_way.front().is_some_and(|one| one.missing == Some(0))
@@ -332,7 +338,7 @@ mod tests {
     use pxpl5_sim::Span;
     use pxpl5_wire::NodeId;
 
-    /// The last region may arrive before the master hears that its commands were accepted.
+    /// The last region may arrive before the master learns that its commands were accepted.
     #[test]
     fn an_update_is_over_when_its_regions_have_arrived_and_its_commands_were_accepted() {
         for accepted_first in [true, false] {
@@ -342,7 +348,7 @@ mod tests {
             master.note_transformed(PictureNumber::FIRST, &[1, 0, 0, 0, 0, 0]);
             master.begin_render();
             let rendering = master.rendering.as_mut().expect("it is transformed");
-            // As after the token of its one region.
+            // This is the state after the token of the update's single region was sent.
             (rendering.unassigned, rendering.tokens_out) = (VecDeque::new(), 1);
             for is_token in [accepted_first, !accepted_first] {
                 assert_eq!((master.completed.copied, master.under_way.len()), (0, 1), "{accepted_first}");

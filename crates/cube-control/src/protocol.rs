@@ -1,4 +1,4 @@
-//! The messages between host, master and slaves, as words.
+//! The messages between host, master and slaves, encoded as words.
 
 use crate::update::FaceUpdate;
 use pxpl5_gp::{Fault, Received};
@@ -12,45 +12,46 @@ const TOKEN: Word = 0x106;
 const ACCEPTED: Word = 0x107;
 const EDITS_DONE: Word = 0x108;
 
-/// A token: who holds it may send commands of one region to one renderer.
+/// A token, which permits its holder to send commands of one region to one renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Token {
     pub(crate) update: PictureNumber,
-    /// Among those of all six faces.
+    /// Index of the region, counted over all six faces.
     pub(crate) region: RegionId,
     /// Index of the renderer.
     pub(crate) renderer: u16,
-    /// Slaves that have not had it yet, this one included.
+    /// Number of slaves that have not sent their bins yet, including the receiver.
     pub(crate) slaves_left: u16,
-    /// Tokens of this update.
+    /// Number of tokens of this update.
     pub(crate) of: u16,
-    /// Whether the last slave adds the copy command; else the region stays in pixel memory, and the renderer waits.
+    /// True if the last slave adds the copy command. Otherwise the region stays in pixel memory, and the renderer
+    /// waits.
     pub(crate) copies: bool,
 }
 
-/// Everything that host, master, slaves and renderers tell each other.
+/// The messages between host, master, slaves and renderers.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum UpdateOrder {
-    /// Host to all: an update.
+    /// Host to all GPs: an update.
     Send(FaceUpdate),
     /// Master to slaves: apply the edits of an update, and transform.
     Edit(PictureNumber),
-    /// Slave to master: edits of an update applied.
+    /// Slave to master: the edits of an update are applied.
     Edited(PictureNumber),
-    /// Master to host: all edits of an update applied.
+    /// Master to host: all slaves have applied the edits of an update.
     EditsDone(PictureNumber),
-    /// Slave to master: transformed; entries of each region's bin.
+    /// Slave to master: the update is transformed, with the number of entries in each region's bin.
     Transformed(PictureNumber, Vec<u32>),
-    /// A token on its way.
+    /// Master to slave, or slave to slave: a token.
     Token(Token),
     /// Last slave to master: a region's commands were accepted.
     Accepted(Token),
-    /// Renderer to master: a region of an update (the low word of its number) has arrived.
+    /// Renderer to master: a region of an update has arrived. `update` is the low word of the update's number.
     Copied { update: Word },
 }
 
 impl UpdateOrder {
-    /// Length in words and body.
+    /// Returns the length in words, and the body.
     pub(crate) fn message(&self) -> (u32, Body) {
         let words = self.words();
         (words.len() as u32, Body::Words(words.into()))
@@ -69,7 +70,7 @@ impl UpdateOrder {
         }
     }
 
-    /// Reads a received message.
+    /// Decodes a received message.
     pub(crate) fn read(received: &Received, at: NodeId) -> Result<Self, Fault> {
         let Body::Words(words) = &received.body else {
             return Err(Fault::Protocol { node: at, found: "of commands or pixels at a processor".to_owned() });
@@ -78,13 +79,14 @@ impl UpdateOrder {
             .ok_or_else(|| Fault::Protocol { node: at, found: format!("{words:x?} from node {}", received.source.0) })
     }
 
-    /// `None` for words that are no order.
+    /// Decodes a message, or returns `None` for invalid words.
     fn from_words(words: &[Word]) -> Option<Self> {
         match *words.first()? {
             SEND => FaceUpdate::from_words(&words[1..]).map(Self::Send),
             EDIT => number_of(words).map(Self::Edit),
             EDITED => number_of(words).map(Self::Edited),
             EDITS_DONE => number_of(words).map(Self::EditsDone),
+            // The entries of bins follow the tag and the number.
             TRANSFORMED => number_of(words).map(|update| Self::Transformed(update, words[3..].to_vec())),
             TOKEN => Token::read(words).map(Self::Token),
             ACCEPTED => Token::read(words).map(Self::Accepted),
@@ -94,13 +96,13 @@ impl UpdateOrder {
     }
 }
 
-/// A message of a tag and the number of an update.
+/// Returns a message that consists of a tag and the number of an update.
 fn numbered(tag: Word, update: PictureNumber) -> Vec<Word> {
     let [low, high] = update.to_words();
     vec![tag, low, high]
 }
 
-/// The number of a [`numbered`] message.
+/// Returns the update number of a [`numbered`] message.
 fn number_of(words: &[Word]) -> Option<PictureNumber> {
     let [_, low, high] = *words.first_chunk()?;
     Some(PictureNumber::from_words(low, high))

@@ -1,28 +1,33 @@
-//! When a stage of an update may begin: Rendering Control's rules for mono frames (TR94), with updates for frames.
+//! Rules that decide when a stage of an update may begin.
+//!
+//! They are the rules of Rendering Control for mono frames (TR94), with updates instead of frames.
 
 use pxpl5_wire::PictureNumber;
 
-/// How many updates have passed each stage. All stages work in order.
+/// Number of updates that have passed each stage. All stages process updates in order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Completed {
     pub(crate) sent: u64,
-    /// Updates that all slaves have transformed.
+    /// Number of updates that all slaves have transformed.
     pub(crate) transformed: u64,
-    /// Updates whose last commands were accepted.
+    /// Number of updates whose last commands were accepted.
     pub(crate) rendered: u64,
-    /// Updates of which, and of all before, every region has arrived.
+    /// Number of updates whose regions have all arrived, like those of all earlier updates.
     pub(crate) copied: u64,
 }
 
 impl Completed {
-    /// EDIT of an update needs SEND of it, TRANSFORM of the one before, RENDER of the 2nd before (two bin contexts) and COPY of
-    /// the 3rd before.
+    /// Returns true if EDIT of an update may begin.
+    ///
+    /// EDIT needs SEND of the same update, TRANSFORM of the previous one, RENDER of the second previous one (two bin
+    /// contexts) and COPY of the third previous one.
     pub(crate) const fn may_edit(&self, update: PictureNumber) -> bool {
         let n = update.0;
         self.sent > n && self.transformed >= n && self.rendered + 1 >= n && self.copied + 2 >= n
     }
 
-    /// RENDER of an update needs its TRANSFORM by all slaves, and RENDER of the one before.
+    /// Returns true if RENDER of an update may begin. RENDER needs TRANSFORM by all slaves, and RENDER of the previous
+    /// update.
     pub(crate) const fn may_render(&self, update: PictureNumber) -> bool {
         self.transformed > update.0 && self.rendered >= update.0
     }

@@ -1,4 +1,4 @@
-//! A slave GP: EDIT and TRANSFORM for six faces in the foreground, tokens in the background.
+//! A slave GP: EDIT and TRANSFORM run in the foreground, and tokens in interrupts.
 
 use crate::config::CubeControlConfig;
 use crate::faces::{CubePass, context_of};
@@ -13,19 +13,20 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// What both programs of a slave share.
+/// State shared by both programs of a slave.
 #[derive(Debug, Default)]
 struct SlaveState {
     updates: VecDeque<FaceUpdate>,
     /// The first update whose EDIT may not begin yet.
     next_edit: PictureNumber,
-    /// The two bin contexts, and how many tokens have been here for each.
+    /// The two bin contexts.
     bins: [Option<CubePass>; 2],
+    /// Number of tokens that this slave has seen for each context.
     tokens: [u16; 2],
 }
 
 impl SlaveState {
-    /// A token of a context has been here; whether it was the last, and the context is empty now.
+    /// Counts a token of a context. After the last token, empties the context and returns true.
     fn is_emptied(&mut self, context: usize, of: u16) -> bool {
         self.tokens[context] += 1;
         let is_last = self.tokens[context] == of;
@@ -39,10 +40,10 @@ impl SlaveState {
 
 type SharedSlaveState = Rc<RefCell<SlaveState>>;
 
-/// The programs of slave number `index`, for both levels of its board.
+/// Returns the two programs of slave `index`, with their priorities.
 ///
-/// Each fails with [`Fault::Memory`] when display list, commands or bins do not fit, and with [`Fault::Protocol`] for
-/// a message that no board sends.
+/// A program fails with [`Fault::Memory`] if display list, commands or bins do not fit into memory. It fails with
+/// [`Fault::Protocol`] if it receives an invalid message.
 pub fn slave(
     gp: &Gp,
     config: &CubeControlConfig,
@@ -50,6 +51,7 @@ pub fn slave(
     index: usize,
 ) -> [(Priority, impl Future<Output = Result<(), Fault>> + use<>); 2] {
     let state = SharedSlaveState::default();
+    // Tokens interrupt TRANSFORM.
     [Priority::Interrupt, Priority::Foreground].map(|level| {
         let gp = gp.at_priority(level);
         let config = config.clone();
@@ -71,6 +73,7 @@ async fn transform_program(
     share: Share,
     state: SharedSlaveState,
 ) -> Result<(), Fault> {
+    // Reserve memory for the program and the display list.
     gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
     gp.reserve(Account::DisplayList, share.bytes(), None)?;
     gp.install(|processor| share.install(processor))?;
@@ -82,7 +85,7 @@ async fn transform_program(
     }
 }
 
-/// Vertices of a warped update stand in the board's memory where it wants them; moving them takes no time.
+/// Installs the moved vertices of a warped update in the board's memory. Moving them takes no simulated time.
 fn place_vertices(gp: &Gp, share: &Share, installed: &mut Arc<DisplayList>) -> Result<(), Fault> {
     if !Arc::ptr_eq(installed, share.list()) {
         gp.install(|processor| share.install(processor))?;
@@ -91,7 +94,7 @@ fn place_vertices(gp: &Gp, share: &Share, installed: &mut Arc<DisplayList>) -> R
     Ok(())
 }
 
-/// EDIT: applies the edits of the next update and tells the master.
+/// Applies the edits of the next update, and reports to the master (EDIT).
 async fn edit(gp: &Gp, config: &CubeControlConfig, state: &SharedSlaveState) -> Result<FaceUpdate, Fault> {
     let update = gp.until("SEND of an update and leave to EDIT", || next_edit(&mut state.borrow_mut())).await;
     let number = update.number;
@@ -107,8 +110,10 @@ fn next_edit(state: &mut SlaveState) -> Option<FaceUpdate> {
     if may_begin { state.updates.pop_front() } else { None }
 }
 
-/// TRANSFORM: makes commands of all held primitives of the update for each face that they touch and puts them into bins, when there is
-/// room for them: where the bins of two updates do not fit side by side, this waits until RENDER of the one before has freed its own.
+/// Transforms the primitives of an update into commands and bins for each face that they touch (TRANSFORM).
+///
+/// If the bins of two updates do not fit into memory, TRANSFORM waits until RENDER of the previous update has freed its
+/// bins.
 async fn transform(
     gp: &Gp,
     config: &CubeControlConfig,
@@ -123,10 +128,12 @@ async fn transform(
     let account = context as u8;
     let other_is_empty = || state.borrow().bins[context ^ 1].is_none();
     let has_room = || gp.has_room_for_bins(account, pass.bin_bytes()) || other_is_empty();
+    // Wait for memory, or until the other context is empty.
     gp.until("room in the bins", || has_room().then_some(())).await;
     gp.begin(Stage::Transform, number, surface);
     gp.reserve(Account::Commands(account), pass.command_bytes(), None)?;
     gp.reserve(Account::Bins(account), pass.bin_bytes(), None)?;
+    // Do the work, then publish the bins and report to the master.
     gp.work(&pass).await?;
     let entries = pass.entries(config);
     state.borrow_mut().bins[context] = Some(pass);
@@ -135,11 +142,12 @@ async fn transform(
     Ok(())
 }
 
-/// Keeps the updates and the leave that arrive, and walks with every token.
+/// Receives messages: stores updates and permissions to edit, and processes every token.
 async fn token_program(gp: Gp, config: CubeControlConfig, index: usize, state: SharedSlaveState) -> Result<(), Fault> {
     loop {
         let received = gp.next_message().await;
         let order = UpdateOrder::read(&received, gp.node());
+        // `walk` charges the cost of receiving a token. Other messages are paid for below.
         if let Ok(UpdateOrder::Token(token)) = order {
             walk(&gp, &config, index, &state, &received, token).await?;
             continue;
@@ -162,6 +170,7 @@ async fn walk(
     received: &Received,
     token: Token,
 ) -> Result<(), Fault> {
+    // Send the bin to the renderer, then pass the token on.
     let renderer = config.renderers[usize::from(token.renderer)];
     let bin = TokenBin::of(config, state, token);
     let lists = bin.as_ref().map_or_else(Vec::new, TokenBin::messages);
@@ -171,7 +180,7 @@ async fn walk(
     free_bins(gp, state, token)
 }
 
-/// A slave's bin of a token's region, with what its messages begin and end.
+/// A slave's bin of a token's region, with the commands that begin and end the region.
 struct TokenBin {
     pass: Arc<Pass>,
     context: usize,
@@ -181,7 +190,7 @@ struct TokenBin {
 }
 
 impl TokenBin {
-    /// `None` where this slave has nothing of the region's face.
+    /// Returns the bin, or `None` if this slave has nothing on the region's face.
     fn of(config: &CubeControlConfig, state: &SharedSlaveState, token: Token) -> Option<Self> {
         let context = context_of(token.update);
         let (face, region) = config.faces.on_face(token.region);
@@ -202,7 +211,7 @@ impl TokenBin {
     }
 }
 
-/// The first slave begins the region, the last one ends it.
+/// Returns the commands around a bin. The first slave begins the region, and the last one ends it.
 fn envelope(config: &CubeControlConfig, update: &FaceUpdate, token: Token) -> RegionEnvelope {
     let last = token.slaves_left == 1;
     let target = config.faces.target(update, token.region);
@@ -213,7 +222,7 @@ fn envelope(config: &CubeControlConfig, update: &FaceUpdate, token: Token) -> Re
     }
 }
 
-/// What tells the next slave, or the master, of a token.
+/// Returns the message that passes a token to the next slave, or reports to the master after the last one.
 fn passed_on(config: &CubeControlConfig, index: usize, token: Token) -> (NodeId, u32, Body) {
     let last = token.slaves_left == 1;
     let next = Token { slaves_left: token.slaves_left - 1, ..token };
@@ -226,7 +235,7 @@ fn passed_on(config: &CubeControlConfig, index: usize, token: Token) -> (NodeId,
     (receiver, words, body)
 }
 
-/// Frees an update's commands and bins when all its tokens have been here.
+/// Frees an update's commands and bins when this slave has seen all its tokens.
 fn free_bins(gp: &Gp, state: &SharedSlaveState, token: Token) -> Result<(), Fault> {
     let context = context_of(token.update);
     if state.borrow_mut().is_emptied(context, token.of) {

@@ -1,4 +1,4 @@
-//! What is drawn at a time: an update of one display memory.
+//! An update of one display memory.
 
 use crate::warp::{FaceWarp, WARP_WORDS};
 use address_recalculation::{begin_update, swap_together};
@@ -6,33 +6,33 @@ use pphigs::FrameView;
 use pxpl5_wire::{PictureNumber, RegionId, Word, swap_request};
 use std::sync::Arc;
 
-/// An update of a display memory: what the host asks for.
+/// An update of a display memory, as requested by the host.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FaceUpdate {
-    /// Its number among all updates, from 0.
+    /// Number of the update over all memories, counted from 0.
     pub number: PictureNumber,
-    /// The memory that it is for.
+    /// Index of the display memory.
     pub memory: u8,
-    /// The memory's buffer that it goes to, 0 or 1.
+    /// Buffer of the memory that receives the update, 0 or 1.
     pub buffer: u8,
-    /// Memories that may only swap together with this one, bit by bit; 0 for this one alone.
+    /// Bit mask of the memories that must swap together with this one. 0 if this memory swaps alone.
     pub together: u8,
-    /// The one view of an eye that is not turned, with the projection of a face; edits.
+    /// The view of an eye in its initial orientation, with the projection of a face, and the edits.
     pub view: FrameView,
-    /// Structures of the display list that the memory holds.
+    /// Flag for each structure of the display list: true if the memory holds it.
     pub structures: Vec<bool>,
-    /// How its vertices are moved to meet the slower memory; `None` where they stay.
+    /// Displacement of vertices towards the slower memory. `None` if vertices stay.
     pub warp: Option<FaceWarp>,
 }
 
-/// The bit that says that a warp follows the structures.
+/// Flag bit of an encoded update: a warp follows the structures.
 const WARPED: Word = 1 << 24;
 
-/// Words before the structures.
+/// Number of words before the structures.
 const HEADER: usize = 4;
 
 impl FaceUpdate {
-    /// What its memory is told of it, for faces of so many texels: which regions come, and that they are to be shown when they are there.
+    /// Returns the two messages that announce the update to its memory: the map of regions, and the swap request.
     #[must_use]
     pub fn announcement(&self, face_texels: u32, regions: &[RegionId]) -> [Arc<[Word]>; 2] {
         let map = begin_update(face_texels, self.buffer, regions);
@@ -41,8 +41,10 @@ impl FaceUpdate {
         [map, request]
     }
 
-    /// Number (two words), memory with buffer and group, count of structures; a bit for each structure; the warp, if any;
-    /// the view.
+    /// Encodes the update.
+    ///
+    /// The order is: number (two words), memory with buffer and group, number of structures, a bit per structure, warp
+    /// if any, view.
     pub(crate) fn to_words(&self) -> Vec<Word> {
         let [low, high] = self.number.to_words();
         let place = u32::from(self.memory) | u32::from(self.buffer) << 8 | u32::from(self.together) << 16;
@@ -54,9 +56,10 @@ impl FaceUpdate {
         words
     }
 
-    /// `None` for words that are no update.
+    /// Decodes an update, or returns `None` for invalid words.
     pub(crate) fn from_words(words: &[Word]) -> Option<Self> {
         let [low, high, place, count] = *words.first_chunk::<HEADER>()?;
+        // Split the words after the header: bits of structures, warp if any, view.
         let rest = &words[HEADER..];
         let (map, rest) = rest.split_at_checked((count as usize).div_ceil(32))?;
         let warp_words = if place & WARPED == 0 { 0 } else { WARP_WORDS };

@@ -1,33 +1,35 @@
-//! Region warping: what a slave moves before it transforms.
+//! Region warping: vertices are moved before a slave transforms them.
 
 use glam::DVec3;
 use priority_rendering::{Cell, Dealing, Falloff, PriorityError, RegionWarp};
 use pxpl5_wire::Word;
 
-/// How the vertices of an update are moved so that it meets the slower memory, which was drawn from another place.
+/// Displacement of an update's vertices towards the slower memory, which was drawn from another position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaceWarp {
-    /// How cells are dealt to memories.
+    /// Assignment of cells to memories.
     pub dealing: Dealing,
-    /// How the displacement falls with the distance from the border to the slower memory.
+    /// Decrease of the displacement with the distance from the border to the slower memory.
     pub falloff: Falloff,
-    /// Distance from the border within which vertices are moved, m.
+    /// Distance from the border within which vertices are moved, in metres.
     pub length_m: f64,
-    /// Where this update is drawn from.
+    /// Eye position from which this update is drawn.
     pub drawn_from: DVec3,
-    /// Where the slower memory was drawn from.
+    /// Eye position from which the slower memory was drawn.
     pub slower_from: DVec3,
 }
 
-/// Words of a warp: home cell, rings (inner ones, growth in the upper half), memories, falloff, two lengths, two places.
+/// Number of words of a warp.
+///
+/// They are home cell, rings (growth in the upper half), memories, falloff, two lengths and two positions.
 pub(crate) const WARP_WORDS: usize = 7 + 2 * (2 + 6);
 
 impl FaceWarp {
-    /// Where a vertex of a memory is drawn.
+    /// Returns the position at which a vertex of a memory is drawn.
     ///
     /// # Errors
     ///
-    /// [`PriorityError`] for a falloff without a length.
+    /// [`PriorityError`] if the falloff has no length.
     pub fn moved(&self, vertex: DVec3, memory: usize) -> Result<DVec3, PriorityError> {
         let warp = RegionWarp::new(self.falloff, self.length_m, self.drawn_from, self.slower_from)?;
         Ok(warp.moved(vertex, self.dealing.to_slower(vertex, memory)))
@@ -44,9 +46,10 @@ impl FaceWarp {
         cell.into_iter().chain(counts).chain(reals).collect()
     }
 
-    /// `None` for words that are no warp.
+    /// Decodes a warp, or returns `None` for invalid words.
     pub(crate) fn from_words(words: &[Word; WARP_WORDS]) -> Option<Self> {
         let (whole, reals) = words.split_first_chunk::<7>()?;
+        // Integers come first, then floating-point numbers in two words each.
         let [x_low, x_high, z_low, z_high, rings, memories, falloff] = *whole;
         let cell = |low: Word, high: Word| joined(low, high) as i64;
         let reals: Vec<f64> = reals.chunks_exact(2).map(|pair| f64::from_bits(joined(pair[0], pair[1]))).collect();
@@ -67,7 +70,7 @@ impl FaceWarp {
     }
 }
 
-/// The low word first.
+/// Splits a number into two words, low word first.
 const fn halves(number: u64) -> [Word; 2] {
     [number as Word, (number >> 32) as Word]
 }

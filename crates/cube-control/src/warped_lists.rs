@@ -1,4 +1,4 @@
-//! Display lists whose vertices stand where an update wants them.
+//! Display lists with moved vertices.
 
 use crate::update::FaceUpdate;
 use pphigs::{DisplayList, ModelFrame};
@@ -6,29 +6,33 @@ use pxpl5_wire::PictureNumber;
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Display lists with moved vertices. All slaves move the same ones alike; only the host's time is saved by keeping them.
+/// A cache of display lists with moved vertices. All slaves use equal lists, so the cache only saves time on the host
+/// computer.
 #[derive(Clone, Debug, Default)]
 pub struct WarpedLists(Arc<Mutex<Kept>>);
 
-/// Lists by the update that they are of, the newest first.
+/// Lists by update number, newest first.
 type Kept = VecDeque<(PictureNumber, Arc<DisplayList>)>;
 
-/// Updates whose lists are kept: one that is transformed while a slower slave is at the one before.
+/// Number of lists in the cache: a fast slave can be one update ahead of a slow one.
 const KEPT: usize = 2;
 
 impl WarpedLists {
-    /// The list of an update, in which vertices of the structures that are still stand where the update wants them.
+    /// Returns the display list of an update. Vertices of structures that do not move are displaced by the update's
+    /// warp.
     #[must_use]
     pub fn placed(&self, list: &Arc<DisplayList>, update: &FaceUpdate) -> Arc<DisplayList> {
         let Some(warp) = &update.warp else { return Arc::clone(list) };
         let (number, memory) = (update.number, usize::from(update.memory));
         let is_edited = |place: usize| update.view.edits.iter().any(|edit| edit.structure as usize == place);
         let is_still = |place: usize| update.structures.get(place) == Some(&true) && !is_edited(place);
+        // Another slave may have computed the list already.
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, warped)) = kept.iter().find(|(known, _)| *known == number) {
             return Arc::clone(warped);
         }
         let mut warped = DisplayList::clone(list);
+        // Move each vertex of the chosen structures once.
         let structures = list.structures.iter().enumerate();
         let still = structures.filter(|(place, structure)| structure.frame == ModelFrame::World && is_still(*place));
         let corners = still.flat_map(|(_, structure)| list.triangles[structure.triangles.clone()].iter().flatten());
@@ -54,7 +58,7 @@ mod tests {
     use pxpl5_geometry::Culling;
     use pxpl5_wire::ViewNumber;
 
-    /// A triangle for each structure, half a metre inside the border to the slower memory at x = 10 m.
+    /// Returns structures of one triangle each, half a metre inside the border to the slower memory at x = 10 m.
     fn list() -> Arc<DisplayList> {
         let mut list = DisplayList::default();
         let frames = [ModelFrame::World, ModelFrame::Head, ModelFrame::World, ModelFrame::World, ModelFrame::World];
@@ -75,7 +79,7 @@ mod tests {
         Arc::new(list)
     }
 
-    /// It holds all structures but the third, and moves the fourth.
+    /// Returns an update whose memory holds all structures but the third. An edit moves the fourth structure.
     fn update(number: u64) -> FaceUpdate {
         let dealing = Dealing { home: Cell { x: 0, z: 0 }, side_m: 10.0, inner_rings: 0, ring_growth: 1, memories: 2 };
         let eye = EyeView { world_to_eye: Mat4::IDENTITY, head_to_eye: Mat4::IDENTITY, projection: Mat4::IDENTITY };

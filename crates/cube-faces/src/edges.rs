@@ -1,8 +1,8 @@
-//! A triangle as linear functions over a face: three edges and the reciprocal of the distance along the axis.
+//! A triangle as linear functions over a face: three edges, and the reciprocal of the distance along the axis.
 
 use glam::DVec3;
 
-/// A function a x + b y + c over a face, x to the right and y down in tangents from its middle.
+/// A function a x + b y + c over a face. x points right and y down, in tangents from the face's middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Linear {
     pub(crate) x: f64,
@@ -19,13 +19,13 @@ impl Linear {
         DVec3::new(self.x, self.y, self.c)
     }
 
-    /// The constant part along a row.
+    /// Returns the part of the function that is constant along a row.
     #[inline(always)]
     pub(crate) fn row(self, y: f64) -> f64 {
         self.y * y + self.c
     }
 
-    /// The sum of some, each times a number.
+    /// Returns the weighted sum of three functions.
     pub(crate) fn sum(parts: [Self; 3], times: [f64; 3]) -> Self {
         Self::of(parts[0].vector() * times[0] + parts[1].vector() * times[1] + parts[2].vector() * times[2])
     }
@@ -34,14 +34,18 @@ impl Linear {
 /// A triangle on a face.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Edges {
-    /// Positive inside of each edge; each opposite to the corner of its number, whose share divided by w it is, times `determinant`.
+    /// Edge functions, positive inside. Function i belongs to the edge opposite to corner i.
+    ///
+    /// Divided by `determinant`, each equals the barycentric coordinate of its corner divided by w.
     pub(crate) edges: [Linear; 3],
-    /// Twice the area that the triangle's pyramid spans.
+    /// Triple product of the corners: six times the volume of the pyramid from the eye to the triangle.
     pub(crate) determinant: f64,
 }
 
 impl Edges {
-    /// Of corners in a face's axes: x to the right, y down, z along the face's axis. `None` of a triangle that is seen edge-on.
+    /// Creates the functions from corners in a face's axes: x right, y down, z along the face's axis.
+    ///
+    /// Returns `None` for a triangle that is seen edge-on.
     pub(crate) fn new(corners: [DVec3; 3]) -> Option<Self> {
         let [a, b, c] = corners;
         let edges = [b.cross(c), c.cross(a), a.cross(b)];
@@ -53,20 +57,21 @@ impl Edges {
         Some(Self { edges: edges.map(|edge| Linear::of(edge * sign)), determinant: determinant.abs() })
     }
 
-    /// 1/w, where the plane of the triangle is met.
+    /// Returns 1/w in the plane of the triangle.
     pub(crate) fn reciprocal(&self) -> Linear {
         Linear::sum(self.edges, [1.0 / self.determinant; 3])
     }
 }
 
-/// An edge, and about where it crosses a row.
+/// An edge, and constants to find its crossing with a row.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Crossing {
     pub(crate) edge: Linear,
-    /// Whether the edge itself belongs to the inner side: that of the larger x, then of the larger y.
+    /// True if points on the edge count as inside. They do if the inside has larger x, or equal x and larger y.
     has_edge: bool,
-    /// Columns for each unit of the row's constant part, and the column of the middle.
+    /// Factor from the row's constant part to columns.
     columns_of: f64,
+    /// Column of the face's middle.
     middle: f64,
 }
 
@@ -76,30 +81,32 @@ impl Crossing {
         Self { edge, has_edge, columns_of: -1.0 / (edge.x * columns.step), middle: -columns.first / columns.step }
     }
 
-    /// Whether a middle at x of a row belongs to the inner side.
+    /// Returns true if a texel middle at `x` counts as inside.
     #[inline(always)]
     fn takes(&self, x: f64, row: f64) -> bool {
         let value = self.edge.x * x + row;
         value > 0.0 || (value == 0.0 && self.has_edge)
     }
 
-    /// Narrows a range of columns to those that this edge takes; columns have their middles at `first + column * step`.
+    /// Restricts a range of columns to the columns inside this edge.
     ///
-    /// `takes` is monotone along a row, also as it is rounded: the crossing is found to within a column or two, and the
-    /// function itself decides.
+    /// The rounded value of `takes` is monotone along a row. A quotient finds the crossing approximately, and `takes`
+    /// determines the exact column.
     #[inline(always)]
     pub(crate) fn narrow(&self, row: f64, columns: Columns, range: &mut [i64; 2]) {
+        // A horizontal edge accepts the whole row or nothing.
         if self.edge.x == 0.0 {
             if !self.takes(0.0, row) {
                 range[1] = range[0];
             }
             return;
         }
+        // Estimate the crossing, then test the two nearest columns.
         let at = (row * self.columns_of + self.middle).clamp(range[0] as f64 - 1.0, range[1] as f64 + 1.0);
         let border = at.floor() as i64 + 1;
         let is_left = self.edge.x > 0.0;
         let sides = [border - 1, border].map(|column| self.takes(columns.middle(column), row));
-        // Nearly always the border lies between these two.
+        // The estimate is nearly always exact.
         let border = if sides == [!is_left, is_left] { border } else { self.search(border, row, columns, *range) };
         if is_left {
             range[0] = range[0].max(border);
@@ -108,7 +115,7 @@ impl Crossing {
         }
     }
 
-    /// The border from a column on, within a range.
+    /// Finds the exact border within a range, starting at an estimated column.
     #[cold]
     #[inline(never)]
     fn search(&self, from: i64, row: f64, columns: Columns, range: [i64; 2]) -> i64 {

@@ -1,4 +1,4 @@
-//! The six faces of the cube around an eye, drawn exactly and in no simulated time: an ideal source for address recalculation.
+//! Renders the six faces of the cube around an eye in no simulated time: an ideal source for address recalculation.
 //!
 //! ```text
 //!  triangles --> [ seen from the eye, axes of a face ] --> [ three edges, 1/w: planes over the face ] --> rows of texels --> FaceSet
@@ -7,22 +7,27 @@
 //!
 //! # Behaviour
 //!
-//! - [`CubeView::draw`] draws triangles as an eye at a place sees them, into faces that may hold other triangles already: of two
-//!   on a texel the nearer one stays, the first on ties. No orientation: the faces lie on the world's axes.
-//! - A texel takes what its middle meets, in the guard as well: a face is drawn with a tangent of texels / inner texels.
-//! - Triangles are not clipped. Edges and 1/w are linear over a face, whatever lies behind the eye: a corner there is no case of
-//!   its own. Nearer than near and farther than far nothing is drawn.
-//! - Depth is z/w along the axis of the face, 24 bits rounded down, the same near and far for all faces and memories, so that
-//!   memories can be compared.
-//! - A middle on an edge that two triangles share belongs to exactly one of them: both compute the edge from the same two corners,
-//!   to the same number with opposite signs. Where corners are the same in every bit, there are no cracks.
+//! - [`CubeView::draw`] draws triangles as seen from an eye position. The faces may already contain other triangles.
+//!   The nearest triangle of a texel wins, and the first one wins a tie. The faces are parallel to the world's axes,
+//!   independent of orientation.
+//! - A texel shows the triangle at its middle. This holds for guard texels as well: the half angle of a face has the
+//!   tangent texels / inner texels.
+//! - Triangles are not clipped. Edges and 1/w are linear functions over a face, even for corners behind the eye. Parts
+//!   nearer than the near plane or beyond the far plane are not drawn.
+//! - Depth is z/w along the axis of the face, 24 bits, rounded down. All faces and memories have the same near and far
+//!   plane, so their depths can be compared.
+//! - If two triangles share an edge, each texel middle on this edge belongs to exactly one of them. Both triangles
+//!   compute the edge from the same two corners, with opposite signs. Bit-identical corners therefore leave no cracks.
 //! - Colours are those of the corners, interpolated in the plane of the triangle.
 //!
-//! Everything is computed in double precision with additions, products, quotients and roundings: all hosts agree in every bit.
+//! All computations are additions, products, quotients and roundings in double precision, so results are bit-identical
+//! on all hosts.
 //!
 //! # Not here
 //!
-//! Light and materials: corners come shaded. Spheres. What is due, and when: `priority-rendering`.
+//! - Lighting and materials. Corners have shaded colours.
+//! - Spheres.
+//! - The decision when a face is drawn (see `priority-rendering`).
 
 mod depth;
 mod edges;

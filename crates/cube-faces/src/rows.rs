@@ -1,18 +1,18 @@
-//! The rows of a triangle on a face: which texels it takes, and their colours and depths, several at a time.
+//! Rasterization of a triangle's rows on a face: covered texels, colours and depths, several texels at a time.
 
 use crate::edges::{Columns, Crossing, Linear};
 use address_recalculation::{CubeFace, DEPTH_FARTHEST, FaceSet, TexelAddress};
 use multiversion::multiversion;
 
-/// Texels whose colours and depths are computed before they are kept.
+/// Number of texels that are computed together before they are written.
 const RUN: usize = 64;
 
-/// Texels are computed in multiples of this: the doubles in a vector.
+/// Texels are computed in multiples of this number: the doubles in a vector register.
 const LANES: usize = 4;
 
-/// Colours over a face.
+/// Colours of a triangle on a face.
 pub(crate) enum Shade {
-    /// The same everywhere.
+    /// A constant colour.
     Flat(u32),
     /// Red, green and blue, each divided by w.
     Smooth([Linear; 3]),
@@ -22,12 +22,12 @@ pub(crate) enum Shade {
 pub(crate) struct OnFace {
     pub(crate) face: CubeFace,
     pub(crate) columns: Columns,
-    /// Texels of a row.
+    /// Number of texels in a row.
     pub(crate) texels: i64,
     pub(crate) crossings: [Crossing; 3],
-    /// 1/w.
+    /// 1/w as a function over the face.
     pub(crate) reciprocal: Linear,
-    /// Depth of what lies at 1/w: a + b/w, between 0 and 1 where something is drawn.
+    /// Coefficients (a, b) of the depth a + b/w, which is between 0 and 1 for drawn texels.
     pub(crate) depth: [f64; 2],
     pub(crate) shade: Shade,
 }
@@ -38,13 +38,14 @@ struct Run {
     depths: [u32; RUN],
 }
 
-/// Draws the rows from one to another; how many texels they took.
+/// Draws a range of rows, and returns the number of covered texels.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 pub(crate) fn draw(triangle: &OnFace, rows: [i64; 2], faces: &mut FaceSet) -> u64 {
     let mut run = Run { colours: [0; RUN], depths: [0; RUN] };
     let mut texels = 0;
     for row in rows[0]..rows[1] {
         let y = triangle.columns.middle(row);
+        // Find the columns inside all three edges.
         let mut range = [0, triangle.texels];
         for crossing in &triangle.crossings {
             crossing.narrow(crossing.edge.row(y), triangle.columns, &mut range);
@@ -52,6 +53,7 @@ pub(crate) fn draw(triangle: &OnFace, rows: [i64; 2], faces: &mut FaceSet) -> u6
                 break;
             }
         }
+        // Compute and write the texels in runs.
         let mut first = range[0];
         while first < range[1] {
             let count = ((range[1] - first) as usize).min(RUN);
@@ -65,14 +67,16 @@ pub(crate) fn draw(triangle: &OnFace, rows: [i64; 2], faces: &mut FaceSet) -> u6
     texels
 }
 
-/// Colours and depths from a column on; a few more than asked for.
+/// Computes colours and depths from a column on, rounded up to a multiple of [`LANES`] texels.
 #[inline(always)]
 fn compute(triangle: &OnFace, y: f64, first: i64, count: usize, run: &mut Run) {
     let whole = count.next_multiple_of(LANES).min(RUN);
     let mut places = [0.0; RUN];
+    // Positions of the texel middles.
     for (i, place) in places[..whole].iter_mut().enumerate() {
         *place = triangle.columns.first + (first as i32 + i as i32) as f64 * triangle.columns.step;
     }
+    // 1/w and the depth are linear along a row.
     let along = [triangle.reciprocal.x, triangle.reciprocal.row(y)];
     let [near, scale] = triangle.depth;
     let depth = [along[0] * scale, near + along[1] * scale];
@@ -84,6 +88,7 @@ fn compute(triangle: &OnFace, y: f64, first: i64, count: usize, run: &mut Run) {
         Shade::Smooth(parts) => {
             let rows = parts.map(|part| part.row(y));
             for (colour, x) in run.colours[..whole].iter_mut().zip(&places[..whole]) {
+                // Divide the interpolated colours by the interpolated 1/w.
                 let distance = 1.0 / (along[0] * x + along[1]);
                 let red = byte((parts[0].x * x + rows[0]) * distance);
                 let green = byte((parts[1].x * x + rows[1]) * distance);
@@ -94,21 +99,22 @@ fn compute(triangle: &OnFace, y: f64, first: i64, count: usize, run: &mut Run) {
     }
 }
 
-/// The whole part of a number of 0 to 2^32: added to 2^52 it is what its lowest bits hold. A cast would ask for each number by itself
-/// whether it is one.
+/// Returns the integer part of a number from 0 to 2^32.
+///
+/// Adding 2^52 puts the integer into the lowest bits of the double. A cast would test each number separately.
 #[inline(always)]
 fn whole_part(number: f64) -> u32 {
     (number.floor() + 4_503_599_627_370_496.0).to_bits() as u32
 }
 
-/// A depth in 24 bits; the farthest, which draws nothing, beyond near and far.
+/// Returns a depth in 24 bits. Outside the near and far plane, returns the farthest depth, which draws nothing.
 #[inline(always)]
 fn depth_word(depth: f64) -> u32 {
     let word = whole_part(depth * f64::from(DEPTH_FARTHEST));
     if (0.0..1.0).contains(&depth) { word } else { DEPTH_FARTHEST }
 }
 
-/// A part of a colour, rounded to the nearest.
+/// Returns a colour component, clamped to 0 to 255 and rounded to nearest.
 #[inline(always)]
 fn byte(part: f64) -> u32 {
     let part = if part > 0.0 { part } else { 0.0 };

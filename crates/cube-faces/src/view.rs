@@ -1,4 +1,4 @@
-//! Drawing into six faces.
+//! Drawing of triangles into six faces.
 
 use crate::depth::DepthRange;
 use crate::edges::{Columns, Crossing, Edges, Linear};
@@ -9,25 +9,26 @@ use glam::DVec3;
 /// A corner of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
-    /// Its place in the world, m.
+    /// Position in the world in metres.
     pub place: DVec3,
-    /// Its colour, shaded: 0x00RRGGBB.
+    /// Shaded colour, 0x00RRGGBB.
     pub colour: u32,
 }
 
-/// What was drawn.
+/// Statistics of a drawing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Drawing {
-    /// Triangles that were handed in.
+    /// Number of triangles passed to the drawing.
     pub triangles: u64,
-    /// Faces that triangles may reach, all triangles together: a renderer transforms a triangle once for each.
+    /// Number of faces that triangles may touch, summed over all triangles. A renderer transforms a triangle once per
+    /// face.
     pub on_faces: u64,
-    /// Texels that triangles took, hidden or not.
+    /// Number of texels that triangles cover, including hidden ones.
     pub texels: u64,
 }
 
 impl Drawing {
-    /// Adds another drawing.
+    /// Adds the counts of another drawing.
     pub const fn add(&mut self, other: Self) {
         self.triangles += other.triangles;
         self.on_faces += other.on_faces;
@@ -35,16 +36,16 @@ impl Drawing {
     }
 }
 
-/// The size of faces and the depths that they show.
+/// Size of the faces and range of depths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CubeView {
-    /// Texels and guard.
+    /// Number of texels and guard texels.
     pub geometry: FaceGeometry,
-    /// Near and far.
+    /// Near and far plane.
     pub depth: DepthRange,
 }
 
-/// A face with its axes, and what all triangles on it share.
+/// A face with its axes, and the values that all triangles on it share.
 struct FaceView {
     face: CubeFace,
     axes: [DVec3; 3],
@@ -56,10 +57,12 @@ struct FaceView {
 }
 
 impl CubeView {
-    /// Draws triangles as an eye sees them; of two on a texel the nearer one stays, the first on ties.
+    /// Draws triangles as seen from an eye position. The nearest triangle of a texel wins, and the first one wins a
+    /// tie.
     ///
     /// # Panics
-    /// For faces of another size.
+    ///
+    /// Panics if the faces have another size than `geometry`.
     pub fn draw(&self, eye: DVec3, triangles: impl IntoIterator<Item = [Corner; 3]>, faces: &mut FaceSet) -> Drawing {
         assert_eq!(faces.texels(), self.geometry.texels, "faces of another size");
         let views = CubeFace::ALL.map(|face| self.face(face));
@@ -68,6 +71,7 @@ impl CubeView {
             drawing.triangles += 1;
             let seen = corners.map(|corner| corner.place - eye);
             let colours = corners.map(|corner| corner.colour);
+            // Draw the triangle on every face that it may touch.
             for view in &views {
                 if let Some(places) = view.in_sight(seen) {
                     drawing.on_faces += 1;
@@ -81,6 +85,7 @@ impl CubeView {
     fn face(&self, face: CubeFace) -> FaceView {
         let axis = |axis: [i64; 3]| DVec3::from_array(axis.map(|component| component as f64));
         let inner = f64::from(self.geometry.inner());
+        // Texel middles, in tangents from the face's middle.
         let columns = Columns { first: (1.0 - 2.0 * f64::from(self.geometry.guard)) / inner - 1.0, step: 2.0 / inner };
         FaceView {
             face,
@@ -95,7 +100,7 @@ impl CubeView {
 }
 
 impl FaceView {
-    /// Corners in the face's axes, unless all lie beyond one side of what the face shows.
+    /// Returns the corners in the face's axes, or `None` if all lie beyond one side of the face's pyramid.
     fn in_sight(&self, seen: [DVec3; 3]) -> Option<[DVec3; 3]> {
         let places = seen.map(|v| DVec3::from_array(self.axes.map(|axis| v.dot(axis))));
         let all = |is_out: &dyn Fn(&DVec3) -> bool| places.iter().all(is_out);
@@ -107,14 +112,16 @@ impl FaceView {
         (!is_out && places.iter().all(|p| p.is_finite())).then_some(places)
     }
 
-    /// The rows that a triangle may reach: those of its part before the near plane, and one more on each side.
+    /// Returns the rows that a triangle may touch: those of its part beyond the near plane, and one more on each side.
     fn rows(&self, places: [DVec3; 3]) -> [i64; 2] {
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
         for (i, place) in places.iter().enumerate() {
             let next = places[(i + 1) % 3];
+            // Corners beyond the near plane project directly.
             if place.z >= self.near_m {
                 include(&mut range, place.y / place.z);
             }
+            // Edges through the near plane contribute their intersection with it.
             if (place.z >= self.near_m) != (next.z >= self.near_m) {
                 let share = (self.near_m - place.z) / (next.z - place.z);
                 include(&mut range, (place.y + (next.y - place.y) * share) / self.near_m);
@@ -125,7 +132,7 @@ impl FaceView {
         [(row(range[0]) - 1.0).clamp(0.0, last).floor() as i64, (row(range[1]) + 2.0).clamp(0.0, last).ceil() as i64]
     }
 
-    /// Draws a triangle; how many texels it took.
+    /// Draws a triangle, and returns the number of covered texels.
     fn triangle(&self, places: [DVec3; 3], colours: [u32; 3], faces: &mut FaceSet) -> u64 {
         let Some(edges) = Edges::new(places) else { return 0 };
         let triangle = OnFace {

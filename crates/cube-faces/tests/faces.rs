@@ -1,4 +1,4 @@
-//! Faces against an independent model: for each texel a ray, and for each triangle its plane.
+//! Faces, compared with an independent model that casts a ray for each texel.
 
 use address_recalculation::{CubeFace, FaceGeometry, FaceSet, TexelAddress, TexelFormat};
 use cube_faces::{Corner, CubeView, DepthRange, Drawing};
@@ -29,7 +29,8 @@ fn triangle(places: [[f64; 3]; 3], colour: u32) -> [Corner; 3] {
     places.map(|place| Corner { place: DVec3::from_array(place), colour })
 }
 
-/// What a ray meets of a triangle: how sure it is (the least share of a corner), the distance along the axis, the shares.
+/// Returns the intersection of a ray with a triangle: smallest barycentric coordinate, distance along the axis, all
+/// coordinates.
 fn met(ray: DVec3, corners: [DVec3; 3]) -> Option<(f64, f64, DVec3)> {
     let [a, b, c] = corners;
     let normal = (b - a).cross(c - a);
@@ -40,7 +41,7 @@ fn met(ray: DVec3, corners: [DVec3; 3]) -> Option<(f64, f64, DVec3)> {
     distance.is_finite().then_some((shares.min_element(), distance, shares))
 }
 
-/// Compares every texel that is not within a hair of an edge or of near and far.
+/// Compares every texel except those very close to an edge or to the near and far plane.
 fn agrees(view: &CubeView, eye: DVec3, triangles: &[[Corner; 3]]) {
     let (faces, _) = drawn(view, eye, triangles);
     for texel in all_texels(view.geometry.texels) {
@@ -70,7 +71,7 @@ fn agrees(view: &CubeView, eye: DVec3, triangles: &[[Corner; 3]]) {
             let found = faces.texel(texel);
             assert_eq!(found.map(|(colour, _)| colour), expected.map(|(colour, _)| colour), "{texel:?}");
             if let (Some((_, word)), Some((_, distance))) = (found, expected) {
-                // z/w from 0 at near to 1 at far, in 24 bits, rounded down.
+                // The depth z/w is 0 at the near plane and 1 at the far plane, in 24 bits, rounded down.
                 let depth = FAR / (FAR - NEAR) * (1.0 - NEAR / distance) * 16_777_215.0;
                 assert!((depth - 0.5 - f64::from(word)).abs() < 0.51, "{texel:?}: {depth} {word}");
             }
@@ -101,7 +102,7 @@ proptest! {
     fn a_closed_surface_around_the_eye_takes_every_texel_exactly_once(
         tip in place(0.9), corners in [0.5..2.0_f64, 0.5..2.0, 0.5..2.0, 0.5..2.0, 0.5..2.0, 0.5..2.0], on_axis in any::<bool>(),
     ) {
-        // An octahedron; its edges run through middles of texels where the eye is on its axes.
+        // The edges of this octahedron pass through texel middles if the eye is on its axes.
         let axes = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
         let points: Vec<DVec3> = axes.iter().zip(corners).map(|(axis, size)| *axis * size * 4.0).collect();
         let eye = if on_axis { DVec3::ZERO } else { DVec3::from_array(tip) * 0.1 };
@@ -146,12 +147,12 @@ fn on_ties_the_first_one_stays() {
 
 #[test]
 fn guard_texels_show_what_the_neighbour_shows_in_their_direction() {
-    // A hall in one colour a side: the guard column to the right of NegZ looks at PosX's side.
+    // Each side of the hall has one colour. The guard column to the right of NegZ shows the side of PosX.
     let wall = |x: f64, colour: u32| vec![triangle([[x, -90.0, -90.0], [x, 90.0, -90.0], [x, 0.0, 90.0]], colour)];
     let (faces, _) = drawn(&view(64, 1), DVec3::ZERO, &wall(5.0, 0x77));
     let guard = TexelAddress { face: CubeFace::NegZ, column: 63, row: 32 };
     let inner = TexelAddress { face: CubeFace::NegZ, column: 62, row: 32 };
-    // u = 63/62 meets x = 5 at z = -4.92; u = 61/62 meets it as well, at -5.08: the same plane, unbroken.
+    // u = 63/62 meets x = 5 at z = -4.92, and u = 61/62 meets it at -5.08. Both lie on the same plane.
     assert_eq!([guard, inner].map(|texel| faces.texel(texel).map(|texel| texel.0)), [Some(0x77); 2]);
     let distances = [guard, inner].map(|texel| faces.texel(texel).map(|texel| view(64, 1).depth.distance_m(texel.1)));
     assert!((distances[0].expect("drawn") - 5.0 * 62.0 / 63.0).abs() < 1e-4, "{distances:?}");

@@ -1,4 +1,4 @@
-//! Policy `cells`: square cells of full height, dealt to memories by their distance from the user's.
+//! The policy `cells`: square cells of unlimited height, assigned to memories by their distance from the user's cell.
 
 use crate::config::PriorityTiming;
 use crate::update::Update;
@@ -7,35 +7,37 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
-/// A square of the floor, counted along x and z.
+/// A square of the floor, identified by its column and row along x and z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Cell {
-    /// Whole sides along x, rounded down.
+    /// x coordinate of the cell's lower border, divided by the side of a cell.
     pub x: i64,
-    /// Whole sides along z, rounded down.
+    /// z coordinate of the cell's lower border, divided by the side of a cell.
     pub z: i64,
 }
 
 impl Cell {
-    /// The cell of a place in the world, with cells of this side, m. Borders belong to the cell on their positive side.
+    /// Returns the cell of a position, with cells of side `side_m`. A border belongs to the cell on its positive side.
     #[must_use]
     pub fn of(x: f64, z: f64, side_m: f64) -> Self {
         Self { x: column(x, side_m), z: column(z, side_m) }
     }
 
-    /// Rings between two cells: 0 for the same, 1 for its eight neighbours.
+    /// Returns the ring of one cell around another: 0 for the same cell, 1 for its eight neighbours.
     #[must_use]
     pub fn ring(self, other: Self) -> u64 {
         self.x.abs_diff(other.x).max(self.z.abs_diff(other.z))
     }
 }
 
-/// Where a column of cells begins, m.
+/// Returns the coordinate at which a column of cells begins, in metres.
 pub(crate) fn border(number: i64, side_m: f64) -> f64 {
     number as f64 * side_m
 }
 
-/// The column of cells of a coordinate: the last one that begins at or before it, whatever a division would round to.
+/// Returns the column of cells that contains a coordinate: the last column that begins at or before it.
+///
+/// The comparisons correct rounding errors of the division.
 pub(crate) fn column(coordinate: f64, side_m: f64) -> i64 {
     let near = (coordinate / side_m).floor() as i64;
     let after = i64::from(border(near.saturating_add(1), side_m) <= coordinate);
@@ -43,31 +45,33 @@ pub(crate) fn column(coordinate: f64, side_m: f64) -> i64 {
     near.saturating_add(after - before)
 }
 
-/// How cells are dealt around the one that counts as the user's.
+/// Assignment of cells to memories, by rings around the home cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dealing {
-    /// The cell around which they are dealt.
+    /// The home cell, around which cells are assigned.
     pub home: Cell,
-    /// Side of a cell, m.
+    /// Side of a cell in metres.
     pub side_m: f64,
-    /// Rings around the home cell that memory 0 holds besides it.
+    /// Number of rings around the home cell in memory 0.
     pub inner_rings: u64,
-    /// Rings of each memory relative to the next faster one: memory 1 holds one, memory 2 holds `ring_growth`, and so on.
+    /// Ratio of the rings of neighbouring memories: memory 1 holds one ring, memory 2 holds `ring_growth` rings, and so
+    /// on.
     pub ring_growth: u64,
-    /// Memories among which they are dealt.
+    /// Number of memories.
     pub memories: usize,
 }
 
 impl Dealing {
-    /// The memory of a cell.
+    /// Returns the memory of a cell.
     #[must_use]
     pub fn memory(&self, cell: Cell) -> usize {
         let ring = self.home.ring(cell);
         (0..self.memories - 1).find(|memory| ring <= self.last_ring(*memory)).unwrap_or(self.memories - 1)
     }
 
-    /// The outermost ring of memory k, unless it is the slowest one: the inner rings, then 1 + g + g^2 + ... + g^(k-1) more, g being
-    /// [`Dealing::ring_growth`].
+    /// Returns the outermost ring of memory k, unless k is the slowest memory, which has no outer limit.
+    ///
+    /// The result is the inner rings plus 1 + g + g^2 + ... + g^(k-1), where g is [`Dealing::ring_growth`].
     #[must_use]
     pub fn last_ring(&self, memory: usize) -> u64 {
         let next = |(rings, of_memory): (u64, u64)| {
@@ -76,21 +80,24 @@ impl Dealing {
         (0..memory).fold((self.inner_rings, 1), |rings, _| next(rings)).0
     }
 
-    /// Distance of a place from the border behind which memory k begins, m: from inside, 0 outside or on it. Memory 0 begins
-    /// at the eye.
+    /// Returns the distance of a position to the border behind which memory k begins, in metres.
+    ///
+    /// The distance is 0 on the border and outside. Memory 0 begins at the eye.
     #[must_use]
     pub fn distance(&self, place: DVec3, memory: usize) -> f64 {
         if memory == 0 { 0.0 } else { self.inside_block(place, self.last_ring(memory - 1)) }
     }
 
-    /// Horizontal distance of a place from the border between memory k and k + 1, m, from inside; `None` for the slowest
-    /// memory, which has no such border.
+    /// Returns the horizontal distance of a position to the border between memory k and k + 1, in metres, measured from
+    /// inside.
+    ///
+    /// Returns `None` for the slowest memory, which has no such border.
     #[must_use]
     pub fn to_slower(&self, place: DVec3, memory: usize) -> Option<f64> {
         (memory + 1 < self.memories).then(|| self.inside_block(place, self.last_ring(memory)))
     }
 
-    /// Horizontal distance of a place from a cell, m; 0 inside.
+    /// Returns the horizontal distance of a position to a cell in metres, 0 inside the cell.
     fn to_cell(self, place: DVec3, cell: Cell) -> f64 {
         let along = |place: f64, number: i64| {
             (border(number, self.side_m) - place).max(place - border(number.saturating_add(1), self.side_m)).max(0.0)
@@ -98,7 +105,7 @@ impl Dealing {
         libm::hypot(along(place.x, cell.x), along(place.z, cell.z))
     }
 
-    /// Distance to the border of the block of so many rings around home.
+    /// Returns the distance of a position to the border of the block of `rings` rings around the home cell, 0 outside.
     fn inside_block(&self, place: DVec3, rings: u64) -> f64 {
         let across = |place: f64, home: i64| {
             let low = (home as f64 - rings as f64) * self.side_m;
@@ -109,7 +116,7 @@ impl Dealing {
     }
 }
 
-/// The state of the policy: which cells are in which memory, and where each memory was drawn from.
+/// State of the policy: the assignment of cells, and the position each memory was drawn from.
 #[derive(Clone, Debug)]
 pub struct Cells {
     dealing: Dealing,
@@ -117,16 +124,18 @@ pub struct Cells {
     has_cascade: bool,
     to_held_cells: bool,
     occupied: BTreeSet<Cell>,
-    /// Where each memory was last drawn from; `None` before its first update.
+    /// Eye position of each memory's last update. `None` before its first update.
     drawn_from: Vec<Option<DVec3>>,
 }
 
 impl Cells {
-    /// The policy for a world with something in these cells. With `has_cascade` an update of a memory makes all faster ones
-    /// due, as warping needs it.
+    /// Creates the policy for a world with the given occupied cells.
+    ///
+    /// With `has_cascade`, an update of a memory makes all faster memories due. Warping needs this.
     #[must_use]
     pub fn new(timing: &PriorityTiming, occupied: impl IntoIterator<Item = Cell>, has_cascade: bool) -> Self {
         let memories = timing.memories as usize;
+        // The first frame assigns the cells around the real home cell.
         let dealing = Dealing {
             home: Cell { x: 0, z: 0 },
             side_m: timing.cell_m,
@@ -144,26 +153,28 @@ impl Cells {
         }
     }
 
-    /// How cells are dealt now.
+    /// Returns the current assignment of cells to memories.
     #[must_use]
     pub const fn dealing(&self) -> &Dealing {
         &self.dealing
     }
 
-    /// Where a memory was last drawn from.
+    /// Returns the eye position of a memory's last update.
     #[must_use]
     pub fn drawn_from(&self, memory: usize) -> Option<DVec3> {
         self.drawn_from.get(memory).copied().flatten()
     }
 
-    /// How far the eye may be from where a memory was drawn, m, before it is due; infinite for a memory without cells, where
-    /// distances are those of cells that hold something.
+    /// Returns how far the eye may move away from the position of a memory's last update, in metres, before the memory
+    /// is due.
+    ///
+    /// Infinite for a memory without occupied cells, if distances are measured to occupied cells.
     #[must_use]
     pub fn way(&self, eye: DVec3, memory: usize) -> f64 {
         self.threshold.way(self.distances(eye).get(memory).copied().unwrap_or(0.0))
     }
 
-    /// The distance that counts for each memory, m.
+    /// Returns the relevant distance of each memory in metres.
     fn distances(&self, eye: DVec3) -> Vec<f64> {
         if !self.to_held_cells {
             return (0..self.dealing.memories).map(|memory| self.dealing.distance(eye, memory)).collect();
@@ -177,18 +188,20 @@ impl Cells {
         distances
     }
 
-    /// A frame: what is drawn for this place of the eye.
+    /// Simulates a frame with the eye at a position, and returns the memories to draw.
     pub fn frame(&mut self, eye: DVec3) -> Update {
         let memories = self.dealing.memories;
         let is_first = self.drawn_from[0].is_none();
+        // Find the memories whose images are wrong.
         let ways: Vec<f64> = self.distances(eye).into_iter().map(|distance| self.threshold.way(distance)).collect();
         let is_due = |(from, way): (&Option<DVec3>, &f64)| from.is_none_or(|from| eye.distance(from) > *way);
         let mut due: Vec<bool> = self.drawn_from.iter().zip(&ways).map(is_due).collect();
-        // A memory without cells is right from everywhere: it is never due, and it does not hold back a new dealing.
+        // A memory without cells is right from every position: it is never due and does not delay a new assignment.
         for (from, _) in self.drawn_from.iter_mut().zip(&ways).filter(|(from, way)| from.is_some() && way.is_infinite())
         {
             *from = Some(eye);
         }
+        // Assign cells anew if the eye has left the home cell.
         let cell = Cell::of(eye.x, eye.z, self.dealing.side_m);
         let slowest_may_deal = due[memories - 1] || ways[memories - 1].is_infinite();
         let deals_anew = cell != self.dealing.home && slowest_may_deal;
@@ -199,6 +212,7 @@ impl Cells {
                 *due |= changed;
             }
         }
+        // With a cascade, all memories faster than a due one are due.
         if self.has_cascade
             && let Some(slowest) = due.iter().rposition(|due| *due)
         {
@@ -210,7 +224,7 @@ impl Cells {
         Update { due, together, deals_anew: deals_anew && !is_first }
     }
 
-    /// Deals around another cell; the memories whose cells are others now.
+    /// Assigns cells around another home cell. Returns a flag for each memory whose cells have changed.
     fn deal(&mut self, home: Cell) -> Vec<bool> {
         let before = self.dealing;
         self.dealing.home = home;

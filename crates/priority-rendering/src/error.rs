@@ -1,11 +1,11 @@
-//! What can be wrong with what a user hands in.
+//! Error of the policies.
 
 use thiserror::Error;
 
-/// A number that the policies cannot use: its key, what was expected and what was found.
+/// A parameter or scene that the policies cannot use.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{0}")]
 pub struct PriorityError(
-    /// Key, expected and found, for people.
+    /// Text with the parameter, the expected and the found value.
     pub String,
 );

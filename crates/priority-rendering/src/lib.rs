@@ -1,4 +1,5 @@
-//! Priority rendering: what around the head must be redrawn when, and how pieces of different age are joined.
+//! Priority rendering: policies that decide when parts of the scene must be redrawn, and warping that joins parts of
+//! different age.
 //!
 //! ```text
 //!  objects --> [ validity period ] --> level --> Objects --+
@@ -10,31 +11,37 @@
 //!
 //! # Behaviour
 //!
-//! - **Validity** ([`Threshold::period`]): an image is wrong when a point of it is off by more than an angle, because the eye
-//!   went on (chord or sine), because the object grew (disc or sphere), because it is animated or turns. A turn of the head
-//!   never makes it wrong; a face out of sight can wait ([`until_in_sight_s`]).
-//! - **Objects** ([`Objects`]): an object is in the slowest memory in which its image stays right; memory k is drawn every 2^k
-//!   frames. It changes memories only in a frame that draws both, and both are shown together.
-//! - **Cells** ([`Cells`]): the world is cut in square columns. A cell's ring around the home cell decides its memory. Memory 0 holds
-//!   the inner rings, memory 1 one ring, and each further memory `ring_growth` times as many as the one before. A memory is due when
-//!   the eye has gone farther than its nearest cell allows. That cell is the nearest of its block, or the nearest that holds
-//!   something (`to_held_cells`). When the eye has left the home cell and the slowest memory is due, cells are dealt anew, and the
-//!   memories whose cells are others are shown together. With warping an update of a memory makes all faster ones due (cascade).
-//! - **Segmentation** ([`Segmentation`]): meshes are cut at the borders of cells, each line once for all who share it, so that parts
-//!   meet in the same vertices bit for bit. A segment is what a mesh has in a cell.
-//! - **Warping** ([`RegionWarp`]): a vertex on the border to the slower memory is moved by the difference of the places that both
-//!   were drawn from, so that it has the same direction and depth in both.
+//! - **Validity** ([`Threshold::period`]): an image is wrong when the direction of a point is off by more than an
+//!   angle. The causes are: the eye has moved (chord or sine), the object appears larger (disc or sphere), the object
+//!   is animated, or the object rotates. A rotation of the head never makes an image wrong. A face that is out of sight
+//!   can wait ([`until_in_sight_s`]).
+//! - **Objects** ([`Objects`]): each object is in the slowest memory that keeps its image right. Memory k is drawn
+//!   every 2^k frames. An object changes memories only in a frame that draws both, and both are shown together.
+//! - **Cells** ([`Cells`]): the world is cut into square columns. The ring of a cell around the home cell determines
+//!   its memory. Memory 0 holds the inner rings, and memory 1 holds one ring. Each further memory holds `ring_growth`
+//!   times as many rings as the previous one.
+//! - **Due memories**: a memory is due when the eye has moved farther than the memory's nearest cell permits. The
+//!   nearest cell is that of its block, or the nearest occupied cell (`to_held_cells`). With warping, an update of a
+//!   memory makes all faster ones due (cascade).
+//! - **New home cell**: when the eye has left the home cell and the slowest memory is due, cells are assigned anew.
+//!   Memories with changed cells are then shown together.
+//! - **Segmentation** ([`Segmentation`]): meshes are cut at the borders of cells. Each line is cut once for all
+//!   triangles that share it, so parts have bit-identical vertices along a cut. A segment is the part of a mesh in one
+//!   cell.
+//! - **Warping** ([`RegionWarp`]): a vertex on the border to the slower memory is moved by the difference of both eye
+//!   positions. The vertex then has the same direction and depth in both memories.
 //!
-//! Units: metres, seconds, radians unless a name says degrees. Axes right-handed, y up. Same input, same bits on every host.
+//! Units are metres, seconds and radians unless a name says degrees. Axes are right-handed with y up. Results are
+//! bit-identical on every host.
 //!
 //! # Not here
 //!
-//! Faces and their source, and what happens to updates that come too late: those belong to the pipeline that draws.
+//! The pipeline that draws contains the faces, their source, and the handling of late updates.
 //!
 //! # Sources
 //!
-//! CPR05 = Chow, Pose and Regan, ACSC 2005; Regan and Pose, SIGGRAPH 94; US patent 5,841,439 (validity periods). Cell size, falloff
-//! and threshold are not printed.
+//! CPR05 = Chow, Pose and Regan, ACSC 2005; Regan and Pose, SIGGRAPH 94; US patent 5,841,439 (validity periods). Cell
+//! size, falloff and threshold are not printed.
 
 mod account;
 mod cells;

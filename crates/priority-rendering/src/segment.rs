@@ -1,51 +1,52 @@
-//! Segmentation: a mesh cut at the borders of cells, once, so that only near parts are drawn often.
+//! Segmentation: a mesh is cut at the borders of cells, once, so that only near parts need frequent drawing.
 
 use crate::cells::{Cell, Dealing, border, column};
 use crate::error::PriorityError;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Farthest coordinate of a world that is cut, m.
+/// Largest coordinate of a world that can be cut, in metres.
 const FARTHEST_M: f64 = 1e6;
 
-/// Most pieces of triangles that one mesh may be cut into.
+/// Largest number of pieces of triangles in one mesh.
 const MOST_PIECES: f64 = 1e7;
 
-/// A vertex that a cut made: on the line between two others, which may have been made by cuts themselves.
+/// A vertex created by a cut on the line between two other vertices, which may come from cuts themselves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CutVertex {
-    /// The ends of the line, the lower number first.
+    /// Indices of the two vertices, in ascending order.
     pub between: [u32; 2],
-    /// How far it lies from the first to the second, 0 to 1.
+    /// Position on the line, from 0 at the first vertex to 1 at the second.
     pub share: f64,
 }
 
 /// A mesh cut at the borders of cells.
 ///
-/// A line is cut once for all triangles that share it, and every part that meets a cut holds the same vertex: there are no
-/// cracks and no vertices in the middle of another part's edge.
+/// A line is cut once for all triangles that share it, and all parts at a cut use the same vertices. The result has no
+/// cracks and no T-junctions.
 #[derive(Clone, Debug)]
 pub struct Segmentation {
-    /// The mesh's vertices, then those that cuts made.
+    /// The vertices of the mesh, followed by the vertices created by cuts.
     pub vertices: Vec<DVec3>,
-    /// What the vertices after the mesh's own lie between, in their order: for colours and normals.
+    /// Origin of each vertex created by a cut, in the same order. Used to interpolate colours and normals.
     pub cuts: Vec<CutVertex>,
-    /// The triangles in each cell, with corners in the order of the mesh's: the segment that the mesh has there.
+    /// The triangles in each cell, with the orientation of the original triangles.
     pub segments: BTreeMap<Cell, Vec<[u32; 3]>>,
 }
 
 impl Segmentation {
-    /// Cuts triangles at x = i a and z = i a, a being the side of a cell.
+    /// Cuts triangles at x = i a and z = i a, where a is the side of a cell.
     ///
     /// # Errors
     ///
-    /// [`PriorityError`] for a side that is none, a coordinate beyond 1e6 m, a corner without a vertex, or more than ten million
-    /// pieces.
+    /// [`PriorityError`] if the side is not positive and finite, a coordinate exceeds 1e6 m, an index has no vertex, or
+    /// there would be more than ten million pieces.
     pub fn new(vertices: &[DVec3], triangles: &[[u32; 3]], side_m: f64) -> Result<Self, PriorityError> {
         check(vertices, triangles, side_m)?;
         let mut cutter = Cutter { side_m, vertices: vertices.to_vec(), cuts: Vec::new(), made: BTreeMap::new() };
         let mut segments: BTreeMap<Cell, Vec<[u32; 3]>> = BTreeMap::new();
         for triangle in triangles {
+            // Cut into strips along x, and each strip into pieces along z.
             for strip in cutter.slabs(triangle.to_vec(), Axis::X) {
                 for piece in cutter.slabs(strip, Axis::Z) {
                     let fan = (1..piece.len() - 1).map(|i| [piece[0], piece[i], piece[i + 1]]);
@@ -56,8 +57,7 @@ impl Segmentation {
         Ok(Self { vertices: cutter.vertices, cuts: cutter.cuts, segments })
     }
 
-    /// The memory in which all of the mesh is drawn when its segments are not drawn by themselves: the fastest of any of its
-    /// cells; `None` of an empty mesh.
+    /// Returns the memory of an uncut mesh: the fastest memory of all its cells. `None` for an empty mesh.
     #[must_use]
     pub fn fastest_memory(&self, dealing: &Dealing) -> Option<usize> {
         self.segments.keys().map(|cell| dealing.memory(*cell)).min()
@@ -77,6 +77,7 @@ fn check(vertices: &[DVec3], triangles: &[[u32; 3]], side_m: f64) -> Result<(), 
     if let Some(corner) = triangles.iter().flatten().find(|corner| **corner as usize >= vertices.len()) {
         return refused(format!("scene: expected corners below {}, found {corner}", vertices.len()));
     }
+    // Limit the number of pieces before cutting, to bound time and memory.
     let pieces: f64 =
         triangles.iter().map(|triangle| most_pieces(triangle.map(|i| vertices[i as usize]), side_m)).sum();
     if pieces > MOST_PIECES {
@@ -85,14 +86,14 @@ fn check(vertices: &[DVec3], triangles: &[[u32; 3]], side_m: f64) -> Result<(), 
     Ok(())
 }
 
-/// Cells of the rectangle around a triangle.
+/// Returns the number of cells in the bounding rectangle of a triangle.
 fn most_pieces(corners: [DVec3; 3], side_m: f64) -> f64 {
     let [a, b, c] = corners;
     let size = (a.max(b).max(c) - a.min(b).min(c)) / side_m;
     (size.x.ceil() + 1.0) * (size.z.ceil() + 1.0)
 }
 
-/// The direction across cuts.
+/// The axis perpendicular to the cuts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Axis {
     X,
@@ -113,7 +114,7 @@ struct Cutter {
     side_m: f64,
     vertices: Vec<DVec3>,
     cuts: Vec<CutVertex>,
-    /// The vertex of each line and border that has been cut.
+    /// Vertices created so far, by line, axis and border.
     made: BTreeMap<([u32; 2], Axis, i64), u32>,
 }
 
@@ -135,10 +136,11 @@ impl Cutter {
         Cell { x, z }
     }
 
-    /// A convex polygon cut at every border that it crosses, in rising order.
+    /// Cuts a convex polygon at every border that it crosses. The pieces are in ascending order.
     fn slabs(&mut self, polygon: Vec<u32>, axis: Axis) -> Vec<Vec<u32>> {
         let mut pieces = Vec::new();
         let mut rest = polygon;
+        // The first border lies after the smallest coordinate.
         let mut number = column(self.least(&rest, axis), self.side_m) + 1;
         while self.greatest(&rest, axis) > border(number, self.side_m) {
             let [below, above] = self.cut(&rest, axis, number);
@@ -150,19 +152,21 @@ impl Cutter {
         pieces
     }
 
-    /// The parts of a polygon below and above a border that it crosses.
+    /// Returns the parts of a polygon below and above a border that it crosses.
     fn cut(&mut self, polygon: &[u32], axis: Axis, number: i64) -> [Vec<u32>; 2] {
         let at = border(number, self.side_m);
         let mut parts = [Vec::new(), Vec::new()];
         for (i, vertex) in polygon.iter().enumerate() {
             let next = polygon[(i + 1) % polygon.len()];
             let [here, there] = [*vertex, next].map(|vertex| self.along(vertex, axis));
+            // A vertex on the border belongs to both parts.
             if here <= at {
                 parts[0].push(*vertex);
             }
             if here >= at {
                 parts[1].push(*vertex);
             }
+            // An edge that crosses the border gets a new vertex, shared by both parts.
             if (here < at && there > at) || (here > at && there < at) {
                 let made = self.vertex([*vertex, next], axis, number);
                 parts.iter_mut().for_each(|part| part.push(made));
@@ -171,8 +175,9 @@ impl Cutter {
         parts
     }
 
-    /// The vertex of a line on a border, the same whichever polygon asks.
+    /// Returns the vertex of a line on a border. All polygons get the same vertex.
     fn vertex(&mut self, line: [u32; 2], axis: Axis, number: i64) -> u32 {
+        // The order of the ends must not matter, so sort them.
         let between = [line[0].min(line[1]), line[0].max(line[1])];
         if let Some(made) = self.made.get(&(between, axis, number)) {
             return *made;
@@ -181,6 +186,7 @@ impl Cutter {
         let at = border(number, self.side_m);
         let share = (at - axis.of(from)) / (axis.of(to) - axis.of(from));
         let mut place = from + (to - from) * share;
+        // Set the coordinate exactly to the border, without rounding errors.
         match axis {
             Axis::X => place.x = at,
             Axis::Z => place.z = at,

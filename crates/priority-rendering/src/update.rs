@@ -1,23 +1,24 @@
-//! What is drawn in a frame.
+//! The result of a policy for one frame.
 
-/// The memories that a frame draws, in rising order of their numbers, and those that must be shown together.
+/// The memories that a frame draws, and the memories that must be shown together.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Update {
-    /// Whether each memory is drawn.
+    /// Flag for each memory: true if it is drawn.
     pub due: Vec<bool>,
-    /// Whether each memory gave or took something, so that it may only be shown together with the others that did.
+    /// Flag for each memory: true if it exchanged content, so that it must be shown together with the other such
+    /// memories.
     pub together: Vec<bool>,
-    /// Whether cells were dealt anew around another home.
+    /// True if cells were assigned anew around another home cell.
     pub deals_anew: bool,
 }
 
 impl Update {
-    /// The memories that are drawn, the most urgent first.
+    /// Returns the memories to draw, most urgent first.
     pub fn memories(&self) -> impl Iterator<Item = usize> {
         self.due.iter().enumerate().filter(|(_, due)| **due).map(|(memory, _)| memory)
     }
 
-    /// The memories that swap together, bit k for memory k, as the display takes it.
+    /// Returns the memories that swap together as a bit mask for the display, with bit k for memory k.
     #[must_use]
     pub fn together_bits(&self) -> u8 {
         (0..).zip(&self.together).map(|(memory, together)| u8::from(*together) << memory).sum()

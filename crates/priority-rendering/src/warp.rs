@@ -4,27 +4,27 @@ use crate::error::PriorityError;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// How the displacement falls with the distance from the border.
+/// Decrease of the displacement with the distance from the border.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Falloff {
-    /// No vertex is moved: cuts tear.
+    /// No displacement, so that cuts tear.
     None,
-    /// It falls evenly to nothing.
+    /// Linear decrease to 0.
     #[default]
     Linear,
-    /// With a smooth beginning and end.
+    /// Smooth decrease to 0, with slope 0 at both ends.
     Smoothstep,
-    /// Whole up to the distance of the falloff, and nothing beyond.
+    /// Full displacement up to the length of the falloff, and none beyond.
     Step,
 }
 
 impl Falloff {
-    /// All, by their names on the command line.
+    /// All variants with their names on the command line.
     pub const ALL: [(&str, Self); 4] =
         [("none", Self::None), ("linear", Self::Linear), ("smoothstep", Self::Smoothstep), ("step", Self::Step)];
 
-    /// The share of the displacement at a distance from the border, with a falloff of this length.
+    /// Returns the fraction of the displacement at a distance from the border, for a falloff of length `length_m`.
     #[must_use]
     pub fn weight(self, distance_m: f64, length_m: f64) -> f64 {
         let left = (1.0 - distance_m / length_m).clamp(0.0, 1.0);
@@ -46,11 +46,11 @@ pub struct RegionWarp {
 }
 
 impl RegionWarp {
-    /// For a memory drawn from one place and its slower neighbour drawn from another.
+    /// Creates the warp of a memory from its own eye position and that of its slower neighbour.
     ///
     /// # Errors
     ///
-    /// [`PriorityError`] for a falloff that has no length.
+    /// [`PriorityError`] if the falloff has no length.
     pub fn new(falloff: Falloff, length_m: f64, drawn_from: DVec3, slower_from: DVec3) -> Result<Self, PriorityError> {
         if !(length_m > 0.0 && length_m.is_finite()) {
             return Err(PriorityError(format!("priority.falloff_m: expected a length above 0, found {length_m}")));
@@ -58,9 +58,11 @@ impl RegionWarp {
         Ok(Self { falloff, length_m, displacement: drawn_from - slower_from })
     }
 
-    /// Where a vertex is drawn that lies at a distance from the border to the slower memory (`None`: there is no such border).
+    /// Returns the position at which a vertex is drawn. `to_slower_m` is its distance to the border of the slower
+    /// memory.
     ///
-    /// On the border it is moved by the whole displacement, and so has the same direction and depth from both places.
+    /// On the border, the vertex moves by the whole displacement, so its direction and depth are the same from both eye
+    /// positions. `None` means that there is no slower memory.
     #[must_use]
     pub fn moved(&self, vertex: DVec3, to_slower_m: Option<f64>) -> DVec3 {
         to_slower_m.map_or(vertex, |distance| vertex + self.displacement * self.falloff.weight(distance, self.length_m))

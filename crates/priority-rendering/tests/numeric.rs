@@ -1,4 +1,4 @@
-//! The specification's numeric cases that concern the policies: theta = 90/512 degrees, 60 frames a second.
+//! Numeric cases of the specification for the policies: theta = 90/512 degrees, 60 frames per second.
 
 use glam::{DVec3, Vec3Swizzles};
 use priority_rendering::{
@@ -29,7 +29,7 @@ fn case_16_translation_and_levels() {
     }
 }
 
-/// d = 2^k/60 s x 1 m/s / (2 sin(theta / 2)).
+/// The distances are d = 2^k/60 s x 1 m/s / (2 sin(theta / 2)).
 #[test]
 fn case_17_distances_of_levels() {
     for (k, distance) in [(1, 10.8650), (2, 21.7300), (3, 43.4599)] {
@@ -51,13 +51,14 @@ fn cases_18_and_19_size() {
     for (c, r, ms) in [(5.0, 1.0, 74.0137), (5.0, 4.0, 11.4550), (2.0, 1.9, 2.00535)] {
         near(1e3 * sphere.way_of_size(c, r), ms, 1e-4);
     }
-    // The angle reaches 90 degrees: the way that is left.
+    // The angle reaches 90 degrees, so the limit is the remaining distance.
     near(disc.way_of_size(1e-3, 5.0), 1e-3, 0.0);
     near(sphere.way_of_size(5.000_001, 5.0), 1e-6, 1e-12);
     near(sphere.way_of_size(4.0, 5.0), 0.0, 0.0);
 }
 
-/// A8: with a disc size never decides; with a sphere from 2 r > 1.411 c on. Neither gives the printed 10.
+/// A8: with a disc, size never decides. With a sphere, it decides for 2 r > 1.411 c. Neither gives the printed factor
+/// of 10.
 #[test]
 fn size_never_decides_with_a_disc_and_from_1_411_distances_on_with_a_sphere() {
     let decides = |size: SizeRule, diameter: f64| {
@@ -90,7 +91,7 @@ fn case_21_faces_out_of_sight() {
     near(angle_to_face(DVec3::new(0.3, 0.2, -1.0), DVec3::NEG_Z), 0.0, 0.0);
 }
 
-/// The nearest direction of a face, by trying many.
+/// Searches the nearest direction of a face by trying many directions.
 #[test]
 fn the_angle_to_a_face_is_the_least_of_all_its_directions() {
     for view in [DVec3::new(0.3, 0.9, -0.5), DVec3::new(-1.0, 0.1, 0.2), DVec3::new(1.0, 1.0, 1.0)] {
@@ -104,15 +105,17 @@ fn the_angle_to_a_face_is_the_least_of_all_its_directions() {
     }
 }
 
-/// The corners of the cube, the middles of its edges and of its faces, as places.
+/// Returns the corners of the cube, the middles of its edges and the middles of its faces, as positions.
 fn places_of_the_cube() -> impl Iterator<Item = DVec3> {
     let steps = [-1.0, 0.0, 1.0];
     let all = steps.into_iter().flat_map(move |x| steps.map(|y| steps.map(|z| DVec3::new(x, y, z))).concat());
     all.filter(|place| *place != DVec3::ZERO)
 }
 
-/// From a corner, the middle of an edge or that of a face the nearest direction of any face is one of the same kinds, as the cube is
-/// symmetric. From the middle of an edge the faces opposite to it are a right angle away, whose edges lie across the view.
+/// Checks angles that follow from the symmetry of the cube.
+///
+/// From a corner, an edge's middle or a face's middle, the nearest direction of any face is again one of these. From an
+/// edge's middle, the opposite faces are 90 degrees away.
 #[test]
 fn angles_from_places_that_the_symmetry_of_the_cube_tells() {
     for view in places_of_the_cube() {
@@ -143,7 +146,7 @@ fn case_22_borders_ways_and_periods() {
         near((way * 60.0).ceil(), frames, 0.0);
     }
     assert_eq!(dealing().distance(eye, 0), 0.0);
-    // A memory ends where the slower one begins.
+    // A memory ends at the border where the slower memory begins.
     assert_eq!([0, 1, 2, 3].map(|k| dealing().to_slower(eye, k)), [Some(6.0), Some(11.0), Some(16.0), None]);
     assert_eq!(dealing().to_slower(at(99.0, 1.0), 1), Some(0.0), "outside");
     assert_eq!(dealing().distance(at(99.0, 1.0), 2), 0.0, "outside");
@@ -159,7 +162,7 @@ fn cases_23_and_24_cells_and_their_memories() {
     assert_eq!(dealing().memory(far), 3);
 }
 
-/// Memory k begins behind q + 1 + g + ... + g^(k-2) rings: with g = 2 behind 1, 2 and 4 of them.
+/// Memory k begins behind q + 1 + g + ... + g^(k-2) rings. With g = 2 these are 1, 2 and 4 rings.
 #[test]
 fn rings_that_double_begin_one_two_and_four_rings_away() {
     let doubling = Dealing { ring_growth: 2, ..dealing() };
@@ -192,7 +195,7 @@ fn case_25_a_warped_vertex_has_one_direction_and_depth() {
     near(torn * 512.0 / 90.0, 0.660, 5e-4);
 }
 
-/// Chords of 5 m: 2 asin(D / 10).
+/// The angle of a chord at 5 m is 2 asin(D / 10).
 #[test]
 fn case_26_the_worst_tear_five_metres_away() {
     let way = threshold().way(5.0);
@@ -235,7 +238,7 @@ fn case_29_faces_touched() {
     near(mean_faces_touched(0.0), 1.0, 0.0);
 }
 
-/// The chord exceeds the sine by 1.2e-6 of itself.
+/// The chord exceeds the sine by a relative 1.2e-6.
 #[test]
 fn chord_and_sine() {
     let sine = Threshold { translation: Translation::Sine, ..threshold() };
@@ -255,7 +258,8 @@ fn periods_of_objects() {
     assert_eq!(threshold().period(&SeenObject { distance_m: 1.0, ..still }).least(), 0.0, "on its surface");
 }
 
-/// Validity periods of the specification (3.6): the distance that counts for the eye's way, and an object that turns at its nearest point.
+/// Checks the validity periods of the specification (3.6): the relevant distance for translation, and for a rotating
+/// object.
 #[test]
 fn the_distance_of_an_object_is_that_of_its_nearest_point_or_of_its_middle() {
     let seen = SeenObject { distance_m: 5.0, radius_m: 0.5, speed: -2.0, turn: -0.5, animation_s: f64::INFINITY };
@@ -269,7 +273,7 @@ fn the_distance_of_an_object_is_that_of_its_nearest_point_or_of_its_middle() {
     }
 }
 
-/// Infinite from argument 1 on, and where there is nothing to turn.
+/// The period is infinite from argument 1 on, and for objects that do not rotate or have no size.
 #[test]
 fn what_turns_unseen_is_right_for_ever() {
     let right_angle = Threshold::of_degrees(90.0);
@@ -292,7 +296,7 @@ fn memories_that_were_shown_together_are_bits() {
     assert_eq!(Update { together: vec![true; 8], ..update }.together_bits(), 0xFF);
 }
 
-/// A vertex that no border is near stays, and so does one beyond the falloff; half-way it is moved half.
+/// A vertex far from any border, or beyond the falloff, does not move. Half-way, it moves by half of the displacement.
 #[test]
 fn vertices_are_moved_by_their_distance_from_the_border() {
     let displacement = DVec3::new(0.2, -0.1, 0.4);
@@ -309,7 +313,7 @@ fn vertices_are_moved_by_their_distance_from_the_border() {
 }
 
 proptest::proptest! {
-    /// Whatever a division rounds to, and just beside a border too.
+    /// The result is exact regardless of rounding in the division, even next to a border.
     #[test]
     fn a_place_lies_between_the_borders_of_its_cell(number in -1_000_000i64..1_000_000, side in 1e-3..1e3_f64, beside in -2i8..3) {
         let border = number as f64 * side;

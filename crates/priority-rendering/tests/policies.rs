@@ -1,10 +1,10 @@
-//! Policies over many frames: what is drawn when, and what is never wrong.
+//! Policies over many frames: updates of memories, and bounds of the error.
 
 use glam::DVec3;
 use priority_rendering::{Cell, Cells, Falloff, Objects, PriorityTiming, RegionWarp, Threshold, level};
 use proptest::prelude::*;
 
-/// The interpretation that the specification's numbers are of: equal rings of cells of 5 m, a threshold of 90/512 degrees.
+/// The rules of the specification's numbers: equal rings of cells of 5 m, and a threshold of 90/512 degrees.
 const EQUAL_RINGS: PriorityTiming =
     PriorityTiming { theta_deg: 90.0 / 512.0, ring_growth: 1, cell_m: 5.0, falloff_m: 5.0, ..PriorityTiming::PAPERS };
 const FRAME_M: f64 = 1.0 / 60.0;
@@ -17,7 +17,7 @@ fn at(x: f64, z: f64) -> DVec3 {
     DVec3::new(x, 1.7, z)
 }
 
-/// Updates of each memory and re-deals over a path, after the first frame.
+/// Returns the updates of each memory and the new assignments of cells along a path, after the first frame.
 fn walk(cells: &mut Cells, path: impl Iterator<Item = DVec3>) -> (Vec<u64>, u64) {
     let mut updates = vec![0; 8];
     let mut deals = 0;
@@ -29,7 +29,7 @@ fn walk(cells: &mut Cells, path: impl Iterator<Item = DVec3>) -> (Vec<u64>, u64)
     (updates, deals)
 }
 
-/// Rates of the memories over two minutes of a straight walk at 1 m/s, in a direction and a lane.
+/// Returns the rates of the memories over two minutes of straight walking at 1 m/s, for a heading and a lane.
 fn rates(side_m: f64, heading: f64, lane_m: f64) -> [f64; 4] {
     let timing = PriorityTiming { cell_m: side_m, ..EQUAL_RINGS };
     let mut cells = Cells::new(&timing, square(60), false);
@@ -42,9 +42,11 @@ fn rates(side_m: f64, heading: f64, lane_m: f64) -> [f64; 4] {
     [0, 1, 2, 3].map(|k| updates[k] as f64 / 120.0)
 }
 
-/// E5's shape: printed are 60.00, 39.25, 28.21 and 16.15 (table 1) of a path that is not. With cells of 5 m, fitted to the second
-/// rate, the specification's own simulation has 37 to 41, 24 to 30 and 17 to 20, and misses the printed ones by 10 to 14 percent
-/// (root mean square); so do walks that cross cells slantwise.
+/// Compares rates with E5. Table 1 prints 60.00, 39.25, 28.21 and 16.15 Hz, but not the path.
+///
+/// With cells of 5 m, fitted to the second rate, the specification's simulation gives 37 to 41, 24 to 30 and 17 to 20
+/// Hz. It misses the printed rates by 10 to 14 percent (root mean square). Walks that cross cells diagonally do the
+/// same.
 #[test]
 fn the_second_rate_is_fitted_and_the_others_miss_by_about_a_tenth() {
     for heading in [0.2, 0.4, 0.785] {
@@ -58,8 +60,10 @@ fn the_second_rate_is_fitted_and_the_others_miss_by_about_a_tenth() {
     }
 }
 
-/// Along a row of cells the way that is left to the border's nearest side decides: in its middle half no lane differs, near its edge
-/// the second memory is drawn in every frame, for 2 x 5.3 m x sin(theta / 2) are less than a frame's way.
+/// Along a row of cells, the distance to the nearest side of the border decides.
+///
+/// In the middle half of the row, all lanes have equal rates. Near its edge, the second memory is drawn in every frame,
+/// because 2 x 5.3 m x sin(theta / 2) is less than the distance walked in a frame.
 #[test]
 fn a_walk_along_cells_depends_on_its_lane_only_near_their_edges() {
     let middle = rates(5.0, 0.0, 2.5);
@@ -78,7 +82,8 @@ fn a_still_eye_needs_nothing_whatever_the_head_does() {
     }
 }
 
-/// The margin before a re-deal lies between 0 and D_3; at a = 5 m that is at least 46.0 mm (15 m x 2 sin(theta / 2)).
+/// The margin before a new assignment lies between 0 and D_3. For a = 5 m, D_3 is at least 46.0 mm (15 m x 2 sin(theta
+/// / 2)).
 #[test]
 fn to_and_fro_across_a_border_deals_once_at_most() {
     let threshold = Threshold::of_degrees(EQUAL_RINGS.theta_deg);
@@ -103,7 +108,7 @@ fn a_jump_of_a_kilometre_deals_once_and_leaves_no_tear() {
     assert_eq!(cells.frame(at(1_001.0, 2.0)).due, [false; 4]);
 }
 
-/// theta so small that everything is drawn in every frame, and so large that nothing is redrawn within a cell.
+/// With the smallest theta everything is drawn in every frame. With the largest, nothing is redrawn within a cell.
 #[test]
 fn thresholds_at_their_ends() {
     let walk_with = |theta_deg| {
@@ -126,7 +131,7 @@ fn one_memory_and_eight() {
     }
 }
 
-/// With the cascade a faster memory is never older than a slower one, so what warping joined stays joined.
+/// With the cascade, a faster memory is never older than a slower one, so warped borders stay closed.
 #[test]
 fn a_warped_border_is_closed_in_every_frame() {
     let mut cells = Cells::new(&EQUAL_RINGS, square(10), true);
@@ -155,7 +160,8 @@ fn a_warped_border_is_closed_in_every_frame() {
 }
 
 proptest! {
-    /// Nothing in memory k is off by more than asin(D_k / d_k), which is theta but for the chord, when updates take no time.
+    /// If updates take no time, nothing in memory k is off by more than asin(D_k / d_k). This is theta, except for the
+    /// chord rule.
     #[test]
     fn no_point_is_ever_wrong_by_more_than_the_threshold(
         steps in prop::collection::vec((-0.05..0.05_f64, -0.05..0.05_f64), 1..200),
@@ -177,7 +183,7 @@ proptest! {
         }
     }
 
-    /// An object is in one memory in every frame and changes only when both are drawn and shown together.
+    /// An object is in one memory in every frame. It changes only when both memories are drawn and shown together.
     #[test]
     fn objects_change_memories_only_together(periods in prop::collection::vec(prop::collection::vec(0.0..0.3_f64, 5), 1..80)) {
         let mut policy = Objects::new(&EQUAL_RINGS, 5);
@@ -196,7 +202,7 @@ proptest! {
     }
 }
 
-/// An object whose image stays right for T is never shown longer than that: it is drawn again before.
+/// An object whose image is right for T is redrawn before T has passed.
 #[test]
 fn images_are_drawn_again_before_they_are_wrong() {
     for period in [0.01, 0.0334, 0.05, 0.0667, 0.1, 0.1334, 0.3] {
@@ -213,7 +219,7 @@ fn images_are_drawn_again_before_they_are_wrong() {
     }
 }
 
-/// 64 frames a second, so that times are exact: an image that is right for two frames, in the only memory, is drawn every second one.
+/// With 64 frames per second, times are exact. An image that is right for two frames is drawn every second frame.
 #[test]
 fn a_memory_rests_while_its_images_are_right_until_its_next_frame() {
     let timing = PriorityTiming { frame_hz: 64.0, memories: 1, ..EQUAL_RINGS };
@@ -223,7 +229,8 @@ fn a_memory_rests_while_its_images_are_right_until_its_next_frame() {
     assert_eq!(policy.counts(), [0, 3 * 2], "no object moved; both were drawn three times");
 }
 
-/// An object that comes near leaves memory 1 for memory 0 in the next even frame, and is alone in what is shown together.
+/// An approaching object moves from memory 1 to memory 0 in the next even frame. Only these two memories are shown
+/// together.
 #[test]
 fn an_object_moves_when_both_memories_are_drawn() {
     let mut policy = Objects::new(&PriorityTiming { memories: 2, ..EQUAL_RINGS }, 2);
@@ -237,7 +244,7 @@ fn an_object_moves_when_both_memories_are_drawn() {
     assert_eq!(policy.memory(1), Some(1));
 }
 
-/// From the middle of a cell of 5 m the slowest memory begins 17.5 m away, and 17.5 m x 2 sin(theta / 2) are 53.7 mm.
+/// From the middle of a cell of 5 m, the slowest memory begins 17.5 m away. 17.5 m x 2 sin(theta / 2) is 53.7 mm.
 #[test]
 fn cells_are_dealt_anew_when_the_home_cell_is_left_and_the_slowest_memory_is_due() {
     let mut cells = Cells::new(&EQUAL_RINGS, square(8), false);
@@ -257,8 +264,10 @@ fn cells_are_dealt_anew_when_the_home_cell_is_left_and_the_slowest_memory_is_due
     assert_eq!(cells.dealing().home, Cell { x: 3, z: 2 });
 }
 
-/// The eye walks through the middle of a hall of seven cells of 5 m. From its middle cell the hall reaches three rings: the slowest of four
-/// memories holds nothing, and does not hold back a new dealing.
+/// The eye walks through the middle of a hall of seven cells of 5 m.
+///
+/// From the middle cell, the hall reaches three rings. The slowest of four memories is empty, and must not delay a new
+/// assignment.
 #[test]
 fn a_memory_without_cells_is_never_due_and_does_not_hold_back_a_dealing() {
     let timing = PriorityTiming { to_held_cells: 1, ..EQUAL_RINGS };
@@ -275,8 +284,10 @@ fn a_memory_without_cells_is_never_due_and_does_not_hold_back_a_dealing() {
     assert_eq!(cells.dealing().home, Cell { x: 3, z: 4 });
 }
 
-/// Only one side of the hall has cells: those behind the eye. Seven cells in a row along z, the eye in the last of them, 2 m from the
-/// border to the next: the ring 2 cell begins 5 m + 3 m behind it. The block's border before it is 7 m away (7.5 m to the sides), where no cell is.
+/// The hall has seven cells in a row along z, and the eye is in the last one, 2 m from the border to the next.
+///
+/// The nearest cell of ring 2 begins 5 m + 3 m behind the eye. The block's border in front is 7 m away (7.5 m to the
+/// sides), where no cell is occupied.
 #[test]
 fn distances_may_be_those_of_cells_that_hold_something() {
     let row = || (0..7).map(|z| Cell { x: 0, z });
@@ -291,7 +302,7 @@ fn distances_may_be_those_of_cells_that_hold_something() {
     }
 }
 
-/// The only cell with something in it is two rings before the eye, in memory 1, and then one ring: in memory 0.
+/// The only occupied cell is two rings away in memory 1, and later one ring away in memory 0.
 #[test]
 fn memories_whose_cells_are_the_same_need_not_be_shown_together() {
     let mut cells = Cells::new(&EQUAL_RINGS, [Cell { x: 2, z: 0 }], false);
@@ -301,14 +312,15 @@ fn memories_whose_cells_are_the_same_need_not_be_shown_together() {
     assert_eq!((update.together, cells.dealing().memory(Cell { x: 2, z: 0 })), (vec![true, true, false, false], 0));
 }
 
-/// E4: point objects, uniform on a disc of 100 m around a walker: 60 x objects / draws = 6.01 at 1 m/s with four memories, 13.40 at
-/// 0.37 m/s with five.
+/// E4 has point objects, uniform on a disc of 100 m around a walker.
+///
+/// 60 x objects / draws is 6.01 at 1 m/s with four memories, and 13.40 at 0.37 m/s with five.
 #[test]
 fn far_objects_are_drawn_seldom() {
     let threshold = Threshold::of_degrees(EQUAL_RINGS.theta_deg);
     for (speed, memories, expected) in [(1.0, 4, 6.01), (0.37, 5, 13.40)] {
         let objects = 20_000;
-        // The n-th of so many equal rings of area.
+        // Distance of the n-th of many rings with equal area.
         let periods: Vec<f64> = (0..objects)
             .map(|n| threshold.way(100.0 * ((f64::from(n) + 0.5) / f64::from(objects)).sqrt()) / speed)
             .collect();

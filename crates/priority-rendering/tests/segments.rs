@@ -1,4 +1,4 @@
-//! Meshes cut at cells: nothing is lost, nothing is twice, and cuts are shared bit for bit.
+//! Meshes cut at cells: nothing is lost or duplicated, and cuts are shared bit by bit.
 
 use glam::DVec3;
 use priority_rendering::{Cell, Dealing, Segmentation};
@@ -13,12 +13,13 @@ fn total(vertices: &[DVec3], triangles: impl IntoIterator<Item = [u32; 3]>) -> f
     triangles.into_iter().map(|triangle| area(triangle.map(|i| vertices[i as usize]))).sum()
 }
 
-/// A closed surface: an octahedron of any corners.
+/// A closed surface: an octahedron with arbitrary corners.
 const OCTAHEDRON: [[u32; 3]; 8] =
     [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
 
-/// Every directed edge of the pieces is there once, and once the other way: no crack, no overlap, no vertex in the middle of a
-/// neighbour's edge.
+/// Returns true if every directed edge of the pieces occurs once, and once in the opposite direction.
+///
+/// Such a mesh has no cracks, overlaps or T-junctions.
 fn is_closed(cut: &Segmentation) -> bool {
     let mut edges: BTreeMap<[u32; 2], i32> = BTreeMap::new();
     for [a, b, c] in cut.segments.values().flatten().copied() {
@@ -65,7 +66,7 @@ proptest! {
         }
     }
 
-    /// Whoever cuts the line, from whichever end: the same bits.
+    /// A line gives the same bits, independent of the triangle and of the direction in which it is cut.
     #[test]
     fn a_shared_line_is_cut_at_the_same_places_by_both_sides(
         ends in prop::array::uniform2((-12.0..12.0_f64, -3.0..3.0_f64, -12.0..12.0_f64)),
@@ -81,7 +82,7 @@ proptest! {
     }
 }
 
-/// A wall of 12 m along x in cells of 5 m from x = 1: 4, 5 and 3 m of it.
+/// A wall of 12 m along x starts at x = 1. Cells of 5 m cut it into 4, 5 and 3 m.
 #[test]
 fn a_wall_is_cut_in_three() {
     let corners = [(1.0, 0.0), (13.0, 0.0), (13.0, 3.0), (1.0, 3.0)].map(|(x, y)| DVec3::new(x, y, 2.0));
@@ -92,7 +93,7 @@ fn a_wall_is_cut_in_three() {
     for ((_, found), expected) in areas.iter().zip([12.0, 15.0, 9.0]) {
         assert!((found - expected).abs() < 1e-12);
     }
-    // The bottom, the top and the diagonal, each at x = 5 and x = 10.
+    // The bottom, the top and the diagonal are each cut at x = 5 and x = 10.
     assert_eq!(cut.cuts.len(), 6);
     let dealing = Dealing { home: Cell { x: 4, z: 0 }, side_m: 5.0, inner_rings: 1, ring_growth: 1, memories: 4 };
     assert_eq!(cut.fastest_memory(&dealing), Some(1), "as its nearest cell, two rings away");
@@ -107,13 +108,13 @@ fn what_lies_in_a_border_belongs_to_its_positive_side() {
     let before =
         Segmentation::new(&[1.0, 4.0, 5.0].map(|x| DVec3::new(x, x * x, 2.0)), &[[0, 1, 2]], 5.0).expect("cut");
     assert_eq!(before.segments.keys().copied().collect::<Vec<_>>(), [Cell { x: 0, z: 0 }], "it ends at the border");
-    // 3 x 0.1 is more than 0.3: borders are multiples, not quotients.
+    // 3 x 0.1 exceeds 0.3 in floating point. Borders must be products, not quotients.
     for n in -1_000..1_000_i64 {
         assert_eq!(Cell::of(n as f64 * 0.1, 0.0, 0.1).x, n);
     }
 }
 
-/// A corner on the border is a corner of both parts; the line opposite to it is cut.
+/// A corner on the border belongs to both parts. The opposite line is cut.
 #[test]
 fn a_corner_on_a_border_is_not_made_again() {
     let corners = [(5.0, 0.0), (1.0, 3.0), (9.0, 2.0)].map(|(x, y)| DVec3::new(x, y, 1.0));
@@ -136,12 +137,13 @@ fn an_empty_mesh_is_in_no_memory() {
     assert_eq!(Segmentation::new(&[], &[], 5.0).expect("nothing").fastest_memory(&dealing), None);
 }
 
-/// Pieces are at most the cells of the rectangle around a triangle, borders included: 3,125 x 3,200 are ten million, which is allowed.
+/// The number of pieces is bounded by the cells of a triangle's bounding rectangle. 3,125 x 3,200 is ten million, the
+/// limit.
 #[test]
 fn ten_million_pieces_are_the_most() {
     let from = DVec3::new(100.0, 0.0, -300.0);
     let cut = |columns: f64, rows: f64| {
-        // A triangle without a surface, which has few pieces: what is counted is the rectangle.
+        // A triangle without area has few pieces, but the bounding rectangle counts.
         let to = from + DVec3::new((columns - 1.0) * 0.5, 7.0, (rows - 1.0) * 0.5);
         Segmentation::new(&[from, to], &[[0, 1, 1]], 0.5)
     };

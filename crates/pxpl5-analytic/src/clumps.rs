@@ -1,10 +1,12 @@
-//! TRANSFORM and RENDER of Slats on one GP: clumps on their way to the renderers, on some machines at once.
+//! TRANSFORM and RENDER of Slats on one GP, for several configurations at once.
 
 use super::model::{MOST_CHANNELS, PerTriangle, REGIONS, SlatsModel};
 use super::renderer::{Array, Commands, Costs, Fifos, Times};
 use slats::CLUMP;
 
-/// All clumps; returns when the last one was accepted, and when the processor had handed it over.
+/// Computes all clumps of a field.
+///
+/// Returns the time at which the last clump was accepted, and the time at which the processor had handed it over.
 #[inline(always)]
 pub(super) fn render<const N: usize>(
     models: &[SlatsModel; N],
@@ -17,14 +19,14 @@ pub(super) fn render<const N: usize>(
     let sending = Sending::of(models);
     let message = Times::each(|i| models[i].message_ns);
     let mut clump = Clump::first(models, &sending, size(0), each);
-    // Once a field the host's next view comes, which the processor receives while it transforms.
+    // The processor receives the host's next view once per field, during TRANSFORM.
     let mut chain = Chain::begin(Times::each(|i| models[i].begin_ns + models[i].message_ns));
     for n in 0..clumps {
-        // All between the first and the last are alike.
+        // All clumps between the first and the last are equal.
         if n == 1 || n > 1 && size(n) != size(n - 1) {
             clump = clump.next(models, &sending, size(n), each);
         }
-        // The one clump buffer is written again when all renderers have begun with what was in it.
+        // The single clump buffer can be reused after all renderers have started to receive its content.
         let transformed = chain.cpu.later(chain.draining) + clump.transform;
         chain.cpu = transformed.later(chain.accepted) + message;
         chain.send(arrays, &sending, &clump);
@@ -33,7 +35,7 @@ pub(super) fn render<const N: usize>(
     [chain.accepted, chain.cpu]
 }
 
-/// What messages cost that does not depend on what they hold.
+/// The part of a message's cost that does not depend on its content.
 struct Sending<const N: usize> {
     source_channels: usize,
     overhead: Times<N>,
@@ -61,24 +63,25 @@ impl<const N: usize> Sending<N> {
         }
     }
 
-    /// The message of a clump that goes to a region.
+    /// Returns the message that sends a clump to a region.
     #[inline(always)]
     fn commands(&self, head: Costs<N>, triangles: f64, each: PerTriangle) -> Commands<N> {
         Commands::new(&self.fifos, &head, triangles * each.entries / 10.0, &self.command)
     }
 }
 
-/// A clump: select, and clear in the first messages of a field, then its triangles.
+/// A clump. Each message selects a region, clears it if it is the field's first, and draws triangles.
 struct Clump<const N: usize> {
     transform: Times<N>,
     message: Commands<N>,
-    /// [Room](Commands::room_behind) of a message behind the clump before and behind others of this one.
+    /// Delay until a message has [room](Commands::room_behind) behind a message of the previous clump.
     behind_last: Times<N>,
+    /// Delay until a message has room behind another message of the same clump.
     behind_itself: Times<N>,
 }
 
 impl<const N: usize> Clump<N> {
-    /// The first one of a field.
+    /// Returns the first clump of a field.
     #[inline(always)]
     fn first(models: &[SlatsModel; N], sending: &Sending<N>, triangles: f64, each: PerTriangle) -> Self {
         let message = sending.commands(sending.select + sending.clear, triangles, each);
@@ -87,7 +90,7 @@ impl<const N: usize> Clump<N> {
         Self { transform, message, behind_last: Times::all(f64::NEG_INFINITY), behind_itself }
     }
 
-    /// A later one, behind this one.
+    /// Returns a later clump that follows this one.
     #[inline(always)]
     fn next(&self, models: &[SlatsModel; N], sending: &Sending<N>, triangles: f64, each: PerTriangle) -> Self {
         let message = sending.commands(sending.select, triangles, each);
@@ -97,13 +100,13 @@ impl<const N: usize> Clump<N> {
     }
 }
 
-/// Clumps on their way.
+/// State of the clumps that are being sent.
 struct Chain<const N: usize> {
-    /// When the processor is done with what it did last.
+    /// Time at which the processor has finished its last work.
     cpu: Times<N>,
-    /// When the last message of the last clump was accepted.
+    /// Time at which the last message of the last clump was accepted.
     accepted: Times<N>,
-    /// When every renderer had accepted its first message of that clump.
+    /// Time at which every renderer had accepted its first message of the last clump.
     draining: Times<N>,
 }
 
@@ -112,23 +115,25 @@ impl<const N: usize> Chain<N> {
         Self { cpu, accepted: Times::all(0.0), draining: Times::all(0.0) }
     }
 
-    /// The messages of one clump, as many at a time as a port drives channels.
+    /// Sends the messages of one clump. A port sends on several channels at a time.
     #[inline(always)]
     fn send(&mut self, arrays: &mut [Array<N>], sending: &Sending<N>, clump: &Clump<N>) {
         let mut channels = Channels::new(sending.source_channels);
         let mut granted = self.cpu;
         let mut accepted = self.cpu;
         let mut behind = clump.behind_last;
-        // A round is a region of every renderer.
+        // In each round, every renderer receives one region.
         for round in (0..REGIONS).step_by(arrays.len()) {
             for (renderer, array) in arrays.iter_mut().enumerate().take(REGIONS - round) {
                 let latency = sending.hop * Times::all((renderer + 1) as f64);
+                // A message is granted when the renderer's port and a channel are free.
                 granted = granted.later(array.released).later(channels.soonest);
                 let first = array.take(granted + sending.overhead + latency, &clump.message, behind);
                 array.released = first - latency;
                 channels.give_back(array.released);
                 accepted = accepted.later(first);
             }
+            // After the first round, every renderer has accepted one message.
             if round == 0 {
                 self.draining = accepted;
             }
@@ -138,7 +143,7 @@ impl<const N: usize> Chain<N> {
     }
 }
 
-/// When the channels of a port are free: the soonest one, which is taken next, and as many others as there are, in their order.
+/// Times at which the channels of a port are free: the earliest one, then the others in ascending order.
 struct Channels<const N: usize> {
     soonest: Times<N>,
     others: [Times<N>; MOST_CHANNELS - 1],
@@ -151,7 +156,7 @@ impl<const N: usize> Channels<N> {
         Self { soonest: free, others: [free; MOST_CHANNELS - 1], number: number - 1 }
     }
 
-    /// Gives the channel back that was taken: it goes before all that are free later.
+    /// Returns a used channel, and sorts it into the others by the time at which it is free.
     #[inline(always)]
     fn give_back(&mut self, free: Times<N>) {
         let mut here = free;

@@ -1,8 +1,8 @@
-//! Frame-buffer ports: one region at a time, in order of arrival.
+//! Frame-buffer ports: each receives one region at a time, in order of arrival.
 
 use super::renderer::{Array, Times};
 
-/// A loop over the lanes that compilers turn into one operation on all of them.
+/// A loop over all lanes that the compiler turns into vector instructions.
 macro_rules! lanes {
     ($i:ident => $lane:expr) => {{
         let mut all = [Default::default(); N];
@@ -13,10 +13,12 @@ macro_rules! lanes {
     }};
 }
 
-/// Renderers that are looked at one by one; more than there are field regions never hold one.
+/// Largest number of renderers that are modelled. There are 20 field regions, so further renderers would be idle.
 pub(super) const MOST_RENDERERS: usize = 20;
 
-/// Copies that a renderer has to make, by frame buffer, the first one in the lowest two bits: [`Queue::ONE`], and which of the two boards.
+/// Copies that a renderer has to make, two bits each, with the first copy in the lowest bits.
+///
+/// [`Queue::ONE`] marks a copy, and `Queue::RIGHT` selects the right frame buffer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Queue(u64);
 
@@ -29,19 +31,23 @@ impl Queue {
         (u64::BITS - self.0.leading_zeros()).div_ceil(Self::BITS)
     }
 
-    /// Adds a copy behind the others.
+    /// Adds a copy at the end.
     pub(super) const fn push(&mut self, to_right: bool) {
         let board = if to_right { Self::RIGHT } else { 0 };
         self.0 |= (Self::ONE | board) << (Self::BITS * self.len());
     }
 
-    /// The same copies to left and right by turns, as long as there are both: the first one's board first, or the right one.
+    /// Returns the same copies, alternating between left and right as long as both remain.
+    ///
+    /// The first copy is a right one if `begins_right` is true and there is one. Otherwise its side is unchanged.
     pub(super) fn by_turns(self, begins_right: bool) -> Self {
         let copies = (0..self.len()).map(|n| self.0 >> (Self::BITS * n) & Self::RIGHT != 0);
         let mut left = [0; 2];
+        // Count the copies of each side.
         copies.for_each(|to_right| left[usize::from(to_right)] += 1);
         let mut next = if begins_right { left[1] > 0 } else { self.0 & Self::RIGHT != 0 };
         let mut all = Self::default();
+        // Alternate, and skip a side without remaining copies.
         while left != [0; 2] {
             if left[usize::from(next)] > 0 {
                 left[usize::from(next)] -= 1;
@@ -53,26 +59,26 @@ impl Queue {
     }
 }
 
-/// First word and last word of all copies.
+/// Times of the first and the last word of a set of copies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CopyTimes {
-    /// First word of the first one.
+    /// Time of the first word of the first copy.
     pub begin_ns: f64,
-    /// Last word of the last one.
+    /// Time of the last word of the last copy.
     pub end_ns: f64,
 }
 
-/// The ports of some machines at once, while copies are made.
+/// The two ports of several configurations while copies are made.
 struct Ports<const N: usize> {
     free: [Times<N>; 2],
     begins: Times<N>,
     ends: Times<N>,
 }
 
-/// Makes all copies of some renderers, each of `region` nanoseconds: the renderer that is ready first goes first, of several the one with
-/// the lowest number. A renderer is free for good when its last copy has ended.
+/// Makes all copies of the renderers. Each copy takes `region` nanoseconds.
 ///
-/// As long as the same renderer is first on all machines nothing has to be chosen for each of them.
+/// The renderer that is ready first goes first, and the lowest number wins a tie. The free time of a renderer becomes
+/// the end of its last copy. While the same renderer is first in all configurations, no lane needs its own choice.
 #[inline(always)]
 pub(super) fn make<const N: usize>(
     arrays: &mut [Array<N>],
@@ -81,25 +87,31 @@ pub(super) fn make<const N: usize>(
 ) -> [CopyTimes; N] {
     let mut left = *queues;
     let mut ports = Ports::new();
+    // While all configurations agree on the first renderer, copy for all lanes at once.
     while let Some(first) = first_of_all(arrays, &left) {
         let to_right = left[first].0 & Queue::RIGHT != 0;
         left[first].0 >>= Queue::BITS;
         arrays[first].free = ports.copy(arrays[first].free, to_right, region);
     }
+    // Then copy for each lane in its own order.
     ports.copy_apart(arrays, &left, region);
     std::array::from_fn(|i| CopyTimes { begin_ns: ports.begins.0[i], end_ns: ports.ends.0[i] })
 }
 
-/// The renderer that goes first on all machines; `None` where they are not one, or all copies have been made.
+/// Returns the renderer that goes first in all configurations.
+///
+/// Returns `None` if the configurations differ, or if all copies are done.
 #[inline(always)]
 fn first_of_all<const N: usize>(arrays: &[Array<N>], left: &[Queue; MOST_RENDERERS]) -> Option<usize> {
     let waiting = || (0..arrays.len()).filter(|r| left[*r].0 != 0);
     let there = |r: usize| arrays[r].free.0[0];
+    // Candidate: the first renderer of configuration 0.
     let first = waiting().reduce(|first, r| if there(r) < there(first) { r } else { first })?;
     if N == 1 {
         return Some(first);
     }
     let own = arrays[first].free.0;
+    // Check that no other renderer precedes the candidate in any configuration.
     let mut not_first = [0; N];
     for r in waiting() {
         let other = arrays[r].free.0;
@@ -114,7 +126,7 @@ impl<const N: usize> Ports<N> {
         Self { free: [Times::all(f64::MIN); 2], begins: Times::all(f64::INFINITY), ends: Times::all(f64::MIN) }
     }
 
-    /// A copy to one of the two ports from an instant on; its end.
+    /// Makes a copy to one of the two ports, starting at `ready` or later, and returns its end.
     #[inline(always)]
     fn copy(&mut self, ready: Times<N>, to_right: bool, region: Times<N>) -> Times<N> {
         let begin = self.free[usize::from(to_right)].later(ready);
@@ -124,23 +136,24 @@ impl<const N: usize> Ports<N> {
         end
     }
 
-    /// A later copy may begin sooner, on the other port.
+    /// Records a copy. A later copy may begin earlier if it uses the other port.
     #[inline(always)]
     fn note(&mut self, begin: Times<N>, end: Times<N>) {
         self.begins = self.begins.sooner(begin);
         self.ends = self.ends.later(end);
     }
 
-    /// The copies that are left, in an order of their own on each machine.
+    /// Makes the remaining copies in an order that may differ between configurations.
     #[inline(always)]
     fn copy_apart(&mut self, arrays: &mut [Array<N>], queues: &[Queue; MOST_RENDERERS], region: Times<N>) {
         let never = [f64::INFINITY; N];
         let mut left = queues.map(|queue| [queue.0; N]);
-        // When each renderer could begin: never where nothing is left to do.
+        // Earliest start of each renderer's next copy, infinite if it has none.
         let mut next = [never; MOST_RENDERERS];
         let waiting = arrays.iter().zip(&mut next).zip(queues).filter(|(_, queue)| queue.0 != 0);
         waiting.for_each(|((array, next), _)| *next = array.free.0);
         for _ in 0..queues.iter().map(|queue| queue.len()).sum::<u32>() {
+            // Choose the first renderer of each configuration.
             let (mut first, mut chosen, mut copy) = (never, [0; N], [0; N]);
             for r in 0..arrays.len() {
                 let sooner = where_less(next[r], first);
@@ -148,6 +161,7 @@ impl<const N: usize> Ports<N> {
                 chosen = select(sooner, [r as u64; N], chosen);
                 copy = select(sooner, left[r], copy);
             }
+            // Make its copy, and update only its lanes.
             let end = self.copy_where(Times(first), where_set(copy, Queue::RIGHT), region);
             for r in 0..arrays.len() {
                 let is_chosen = where_equal(chosen, [r as u64; N]);
@@ -160,7 +174,7 @@ impl<const N: usize> Ports<N> {
         }
     }
 
-    /// A copy to the right port where the mask says so, and else to the left one; its end.
+    /// Makes a copy to the right port where the mask is set, otherwise to the left port. Returns its end.
     #[inline(always)]
     fn copy_where(&mut self, ready: Times<N>, to_right: Mask<N>, region: Times<N>) -> Times<N> {
         let [left, right] = self.free;
@@ -172,7 +186,7 @@ impl<const N: usize> Ports<N> {
     }
 }
 
-/// All bits of a lane where something holds of it.
+/// A condition per lane: all bits set if it holds, otherwise 0.
 type Mask<const N: usize> = [u64; N];
 
 #[inline(always)]

@@ -1,24 +1,25 @@
-//! The analytic level: the stage rules of both pipelines as recurrences over clumps, regions and pictures.
+//! The analytic level: closed forms of Slats and Rendering Control, as recurrences over clumps, regions and pictures.
 //!
 //! ```text
 //!   MachineConfig + Load --> SlatsModel::field  --> times of one field   (clumps x regions)
-//!                        --> StereoModel::steady --> times of a frame     (pictures x regions)
+//!                        --> StereoModel::frames --> times of a frame     (pictures x regions)
 //! ```
 //!
-//! There are no events, no programs and no pixels: a configuration is a few hundred additions and maxima, so that
-//! sweeps over many thousand configurations take seconds. What it takes from the rules of the boards:
+//! The closed forms have no events, programs or pixels. A configuration takes a few hundred additions and maxima, so a
+//! sweep over many thousand configurations takes seconds. They use these rules of the boards:
 //!
-//! - the DMA chain of a clump goes out in order; a message is held up by the input FIFO of its renderer;
-//! - a renderer executes in order and is held by the copy of a region;
-//! - a frame-buffer port takes one region at a time, in order of arrival.
+//! - The messages of a clump leave in order. The input FIFO of a renderer can delay a message.
+//! - A renderer executes commands in order. The copy of a region blocks it.
+//! - A frame-buffer port receives one region at a time, in order of arrival.
 //!
-//! Slats on several GPs goes through its messages one by one, in the order in which the ring grants them (`senders`). Other
-//! pipelines, displays that are not NTSC, and heads with a tracker are refused.
+//! Slats on several GPs processes each message in the order in which the ring grants channels (`senders`). Other
+//! pipelines, displays other than NTSC, and heads with a tracker are refused.
 //!
-//! **Not modelled:** channels that pixels take, interrupts of a GP by messages of others, the words of the last clump's messages beside its
-//! primitives, the host's own messages (a rate instead), views after the first one (Slats), memory.
+//! **Not modelled:** channels used by pixels; interrupts of a GP by messages of other boards; words of a clump's last
+//! message besides its primitives; the host's own messages (replaced by a rate); views after the first one (Slats);
+//! memory.
 //!
-//! Times are nanoseconds in f64; an error of 1 ns is far below everything that is compared.
+//! Times are nanoseconds in f64. Rounding errors are far below 1 ns, and all comparisons are much coarser.
 
 mod clumps;
 mod copies;
@@ -40,13 +41,13 @@ use pxpl5_scene::Scene;
 use std::any::Any;
 use std::sync::Arc;
 
-/// Adds the closed forms to the pipelines that have one.
+/// Registers the closed forms of the pipelines that have one.
 pub fn add_closed_forms(registry: &mut Registry) {
     registry.closed_form("rendering-control", rendering_control::CLOSED_FORM);
     registry.closed_form("slats", slats::CLOSED_FORM);
 }
 
-/// Checks an experiment and gives its pipeline, of which there is a closed form.
+/// Checks an experiment and returns its pipeline, if the pipeline is `P`.
 fn pipeline_of<P: Pipeline + Copy>(experiment: &Experiment) -> Result<P, ExperimentError> {
     experiment.config().check()?;
     if experiment.tracked_head().is_some() {
@@ -57,14 +58,18 @@ fn pipeline_of<P: Pipeline + Copy>(experiment: &Experiment) -> Result<P, Experim
     found.ok_or_else(|| no_form(experiment.pipeline().name()).into())
 }
 
-/// Fields that an estimate looks at: enough for a steady state, and for some of the views of a head that moves.
+/// Smallest and largest number of fields that an estimate simulates.
+///
+/// They suffice for a steady state and for some views of a moving head.
 const ESTIMATED_FIELDS: (u64, u64) = (24, 60);
 
-/// About the most primitives to which an experiment's scene can be decimated so that all is in time; with them it is.
-/// A head with a tracker is left out: the scene's own motion stands for it.
+/// Estimates the largest number of primitives to which the scene can be decimated so that all pictures are in time.
 ///
-/// While it searches, what is already too much is thinned further, not the whole scene each time: what comes out differs a little
-/// from the scene that the whole one is decimated to, of which at last it is asked whether it is in time.
+/// With the returned number, all pictures are in time. The tracker is ignored, and the head follows the scene's own
+/// motion.
+///
+/// The search decimates the last scene that was too heavy, instead of the whole scene. The result differs slightly from
+/// a direct decimation of the whole scene, so the final number is tested with a direct one.
 fn triangles_in_time(
     experiment: &Experiment,
     summary: fn(&Experiment) -> Result<Summary, ExperimentError>,
@@ -75,6 +80,7 @@ fn triangles_in_time(
     let whole = Arc::clone(plain.scene());
     let mut denser = Arc::clone(&whole);
     let mut in_time = 0;
+    // Bisection between a number that is in time and one that is too many.
     let mut too_many = primitives(&whole) + 1;
     while too_many - in_time > 1 {
         let middle = in_time + (too_many - in_time) / 2;
@@ -84,11 +90,12 @@ fn triangles_in_time(
             continue;
         }
         too_many = middle;
-        // It can have fewer, where no edge is left that can go: then others are thinned from what came before it.
+        // Decimation may return fewer primitives if no further edge can be removed. Then keep the denser scene.
         if primitives(&thinned) == middle {
             denser = thinned;
         }
     }
+    // Test the result with a direct decimation of the whole scene.
     while in_time > 0 && !is_in_time(&Arc::new(whole.decimated(in_time).ok()?))? {
         in_time -= in_time.div_ceil(100);
     }
@@ -107,7 +114,7 @@ fn no_form(what: &str) -> ConfigError {
     ConfigError::Board(format!("the analytic level has no closed form of {what}"))
 }
 
-/// Retraces and beam of a machine's first display, which the closed forms know only as NTSC.
+/// Returns retraces and beam of the first display, which must be NTSC.
 fn video_of(config: &MachineConfig) -> Result<Video, ConfigError> {
     let display: Option<&FrameBufferConfig> =
         config.displays.first().and_then(|display| (display.as_ref() as &dyn Any).downcast_ref());

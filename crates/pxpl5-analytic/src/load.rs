@@ -1,4 +1,4 @@
-//! What a scene asks of the machine, as numbers.
+//! The load that a scene puts on the machine, as numbers.
 
 use pphigs::{Picture, PrimitiveCounts, RegionBinning, Shading, Share, TransformCost};
 use pxpl5_geometry::Viewport;
@@ -9,58 +9,61 @@ use pxpl5_sim::Time;
 use pxpl5_wire::{RegionId, ViewNumber};
 use std::sync::Arc;
 
-/// One eye's picture of a scene.
+/// The load of one eye's picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Load {
-    /// Triangles held by all GPs together.
+    /// Number of triangles, summed over all GPs.
     pub triangles: f64,
-    /// Spheres held by all GPs together.
+    /// Number of spheres, summed over all GPs.
     pub spheres: f64,
-    /// Of the triangles, those that the clipper cuts.
+    /// Number of triangles that the clipper cuts.
     pub clipped: f64,
-    /// Structures of the display list.
+    /// Number of structures in the display list.
     pub structures: f64,
-    /// Of these, those that have spheres.
+    /// Number of structures that contain spheres.
     pub sphere_views: f64,
-    /// Triangles and spheres in the bin of each region.
+    /// Numbers of triangles and spheres in the bin of each region.
     pub bins: Vec<[f64; 2]>,
 }
 
 impl Load {
-    /// Triangles of one structure that every region gets, none of them cut by the clipper.
+    /// Returns a load of one structure whose triangles lie in every region and are never clipped.
     #[must_use]
     pub fn full_screen(triangles: u32, regions: usize) -> Self {
         let triangles = f64::from(triangles);
         Self { triangles, structures: 1.0, bins: vec![[triangles, 0.0]; regions], ..Self::default() }
     }
 
-    /// Entries of all bins.
+    /// Returns the number of entries in all bins.
     #[must_use]
     pub fn entries(&self) -> f64 {
         self.bins.iter().map(|[triangles, spheres]| triangles + spheres).sum()
     }
 
-    /// Triangles and spheres in a region's bin together.
+    /// Returns the number of triangles and spheres in a region's bin.
     pub(crate) fn primitives_in(&self, region: usize) -> f64 {
         let [triangles, spheres] = self.bins[region];
         triangles + spheres
     }
 
-    /// The scene of an experiment from views of its own head motion at some times (ps): both eyes of each.
+    /// Returns the loads of an experiment's scene, both eyes for each time in `times` (ps).
+    ///
+    /// The views follow the head motion of the scene.
     ///
     /// # Errors
     ///
-    /// [`ExperimentError::Scene`] for a scene without primitives.
+    /// [`ExperimentError::Scene`] if the scene has no primitives.
     ///
     /// # Panics
     ///
-    /// Never: the papers' head-mounted display is in range.
+    /// Never, because the head-mounted display of the papers is in range.
     pub fn of_views(
         experiment: &Experiment,
         viewport: Viewport,
         binning: RegionBinning,
         times: &[u64],
     ) -> Result<Vec<Self>, ExperimentError> {
+        // All GPs together hold the whole scene, so a single share suffices.
         let list = Arc::new(display_list(experiment.scene()).map_err(ExperimentError::Scene)?);
         let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is valid");
         let (views, _) = views(experiment.scene(), experiment.seed_of_motion(), hmd, 2);
@@ -90,7 +93,7 @@ impl Load {
     }
 }
 
-/// Triangles and spheres of a bin.
+/// Returns the numbers of triangles and spheres of a bin.
 fn bin(counts: PrimitiveCounts) -> [f64; 2] {
     [f64::from(counts.triangles), f64::from(counts.spheres)]
 }

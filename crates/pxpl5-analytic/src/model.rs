@@ -12,25 +12,25 @@ use pxpl5_scene::Scene;
 use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, RegionGrid};
 
-/// Field regions of both eyes.
+/// Number of field regions of both eyes.
 pub(super) const REGIONS: usize = 20;
 
-/// Channels that a ring can have.
+/// Largest number of channels of a ring.
 pub(super) const MOST_CHANNELS: usize = 8;
 
 /// Channels that copies to two frame buffers need.
 const COPY_CHANNELS: u64 = 2;
 
-/// Eyes, for each of which a structure is put in its place.
+/// Number of eyes. Each structure is placed once per eye.
 const EYES: f64 = 2.0;
 
-/// The beginning of a pass over so many structures, of which some have spheres, for both eyes.
+/// Returns the time to begin a pass over structures, of which some have spheres, for both eyes.
 fn begin_ns(gp: &GpTiming, structures: usize, sphere_views: usize) -> f64 {
     let [structures, sphere_views] = [structures, sphere_views].map(|n| EYES * n as f64);
     TransformCost { passes: 1.0, structures, sphere_views, ..TransformCost::default() }.ns(gp)
 }
 
-/// Slats on a machine, reduced to numbers.
+/// The parameters of Slats on a machine, as used by the closed form.
 #[derive(Clone, Debug)]
 pub struct SlatsModel {
     pub(super) fifo_words: f64,
@@ -38,7 +38,7 @@ pub struct SlatsModel {
     pub(super) overhead_ns: f64,
     pub(super) hop_ns: f64,
     pub(super) gp: GpTiming,
-    /// The beginning of a pass.
+    /// Time to begin a pass.
     pub(super) begin_ns: f64,
     pub(super) message_ns: f64,
     pub(super) command: Cost,
@@ -47,46 +47,48 @@ pub struct SlatsModel {
     pub(super) clear: Cost,
     pub(super) region_ns: f64,
     pub(super) field_ns: f64,
-    /// From a retrace to the scan of the first line of the bottom regions.
+    /// Time from a retrace to the scan of the first line of the bottom regions.
     bottom_ns: f64,
     pub(super) renderers: usize,
     pub(super) gps: usize,
     pub(super) source_channels: usize,
-    /// Channels that messages to renderers may occupy.
+    /// Largest number of channels that messages to renderers may occupy.
     pub(super) fifo_channels: usize,
     pub(super) split: bool,
 }
 
-/// When things happened, in nanoseconds after the retrace at which the field's view was taken.
+/// Times of a field, in nanoseconds after the retrace at which its view was taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldTimes {
-    /// The last clump was accepted.
+    /// Acceptance of the last clump.
     pub rendered_ns: f64,
-    /// Copy of the top regions, or of all.
+    /// Copy of the top regions, or of all regions if copies are not split.
     pub top: CopyTimes,
-    /// Copy of the bottom regions of a split copy, after the retrace.
+    /// Copy of the bottom regions after the retrace, if copies are split.
     pub bottom: Option<CopyTimes>,
-    /// Whether everything came before its deadline.
+    /// True if all copies met their deadlines.
     pub in_time: bool,
 }
 
-/// What a triangle is for one eye, in the mean.
+/// Mean properties of a triangle for one eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PerTriangle {
-    /// Entries in bins.
+    /// Number of bin entries.
     pub entries: f64,
-    /// Part of the triangles that the clipper cuts, 0 to 1.
+    /// Fraction of triangles that the clipper cuts, 0 to 1.
     pub clipped: f64,
 }
 
 impl SlatsModel {
-    /// Reduces a machine; the program's code is applied first. Triangles are of one structure.
+    /// Derives the model from a machine, with the times of the program's i860 code if it names any. Triangles form one
+    /// structure.
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] for too few renderers, and for messages that leave split copies fewer than two channels: both then wait for each
-    /// other, which this level does not model.
+    /// [`ConfigError`] if there are too few renderers. Also if messages to renderers leave fewer than two channels for
+    /// split copies: both would wait for each other, which the analytic level does not model.
     pub fn new(config: &MachineConfig, program: Slats) -> Result<Self, ConfigError> {
+        // Each renderer holds as many regions as its memory layout permits.
         let contexts = usize::from(program.layout().plan().contexts.max(1));
         if config.n_renderers < REGIONS.div_ceil(contexts) {
             let error = slats::SlatsConfigError::TooFewRenderers {
@@ -98,6 +100,7 @@ impl SlatsModel {
         if program.code.is_some() {
             return Self::new(&program.adapt(config.clone()), Slats { code: None, ..program });
         }
+        // Split copies need channels that messages to renderers leave free.
         let ring = &config.ring;
         let to_renderers = ring.fifo_channels.min(ring.source_channels.saturating_mul(config.n_gps as u64));
         if program.copy.is_split() && to_renderers.saturating_add(COPY_CHANNELS) > ring.channels {
@@ -108,6 +111,7 @@ impl SlatsModel {
             );
             return Err(no_form(&what));
         }
+        // Geometry of the video scan.
         let video = video_of(config)?;
         let field_ns = video.retrace(PeriodNumber(1)).since(Time::ZERO).as_ms() * 1e6;
         let even = PeriodNumber(2);
@@ -139,35 +143,37 @@ impl SlatsModel {
         })
     }
 
-    /// The same for the structures of a scene.
+    /// Returns the model adapted to the number of structures in a scene.
     #[must_use]
     pub fn over(self, scene: &Scene) -> Self {
         let sphere_views = scene.structures().iter().filter(|structure| !structure.spheres.is_empty()).count();
         Self { begin_ns: begin_ns(&self.gp, scene.structures().len(), sphere_views), ..self }
     }
 
-    /// What decides how many messages there are, and in which order they go.
+    /// Returns the properties that determine the number and order of messages.
     pub(super) const fn structure(&self) -> (usize, usize, usize, bool) {
         (self.renderers, self.gps, self.source_channels, self.split)
     }
 
-    /// Field after field like this one: one is begun at every retrace at which the one before is done with its commands.
+    /// Returns the pictures due, if all fields have the times `times`.
+    ///
+    /// A field begins at each retrace at which the previous field has finished its commands.
     pub(super) fn due(&self, times: FieldTimes, fields: u64) -> Option<DuePictures> {
         let copied_ns = times.bottom.unwrap_or(times.top).end_ns;
-        // A field is scanned during the one after that in which it is drawn.
+        // A field is drawn in one field and scanned in the next, so its scan ends two fields after its view was taken.
         let end = PictureEnd::of(copied_ns <= 2.0 * self.field_ns, times.in_time);
         let messages = if self.split { 2.0 } else { 1.0 };
         let apart = ((times.rendered_ns + messages * self.message_ns) / self.field_ns).ceil().max(1.0);
-        // Those before the window fill the pipeline.
+        // Fields before the window fill the pipeline.
         let begun = (WARM_UP_PERIODS % apart as u64..fields).step_by(apart as usize);
         DuePictures::count(begun.map(|field| (PeriodNumber(field), end)), 1, PeriodNumber(fields))
     }
 
-    /// The copies that each renderer makes, of the regions for which `wanted` holds.
+    /// Returns the copies that each renderer makes, for the regions that `wanted` selects.
     pub(super) fn layout(&self, wanted: impl Fn(usize) -> bool) -> [Queue; MOST_RENDERERS] {
         let mut queues = [Queue::default(); MOST_RENDERERS];
         let per_half = REGIONS / 4;
-        // Left and right eye by turns; the odd renderers of a split copy begin right if they can.
+        // Alternate between left and right eye. Odd renderers of a split copy begin with the right eye if possible.
         let regions = (0..REGIONS).zip((0..self.renderers).cycle());
         for (region, renderer) in regions.filter(|(region, _)| wanted(*region)) {
             let right = (region / per_half) % 2 == 1;
@@ -179,13 +185,13 @@ impl SlatsModel {
         queues
     }
 
-    /// Whether what ends then is in time.
+    /// Returns the times of a field, and compares them with the deadlines.
     pub(super) fn times(&self, rendered_ns: f64, top: CopyTimes, bottom: Option<CopyTimes>) -> FieldTimes {
         let bottom_in_time = bottom.is_none_or(|times| times.end_ns <= self.field_ns + self.bottom_ns);
         FieldTimes { rendered_ns, top, bottom, in_time: top.end_ns <= self.field_ns && bottom_in_time }
     }
 
-    /// TRANSFORM of a clump of so many triangles for both eyes.
+    /// Returns the time of TRANSFORM for a clump of `triangles` triangles and both eyes.
     pub(super) fn clump_ns(&self, triangles: f64, each: PerTriangle) -> f64 {
         let both_eyes = EYES * triangles;
         let [entries, clipped] = [each.entries, each.clipped].map(|n| both_eyes * n);

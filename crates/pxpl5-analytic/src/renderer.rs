@@ -1,21 +1,21 @@
-//! A renderer's input FIFO and array, a message at a time.
+//! A renderer's input FIFO and pixel array, one message at a time.
 
 use pxpl5_renderer::{CommandKind, RendererTiming};
 use std::ops::{Add, Mul, Sub};
 
-/// The later of two times. (`f64::max` has to look for a NaN; there is none.)
+/// Returns the later of two times. Faster than `f64::max`, because no time is NaN.
 #[inline]
 pub(super) fn later(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// The sooner of two times.
+/// Returns the earlier of two times.
 #[inline]
 pub(super) fn sooner(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
-/// Words and time of what is sent.
+/// Number of words and execution time of a command or message.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Cost {
     pub(super) words: f64,
@@ -23,15 +23,16 @@ pub(super) struct Cost {
 }
 
 impl Cost {
-    /// Words and time of one command on a renderer.
+    /// Returns the words and the time of one command on a renderer.
     pub(super) fn of_command(timing: &RendererTiming, kind: CommandKind) -> Self {
         let ns = timing.span(kind).map_or(0.0, |span| span.as_ms() * 1e6);
         Self { words: f64::from(kind.words()), ns }
     }
 }
 
-/// Times of some configurations at once, nanoseconds: everything is done to each by itself, so that each is what it would be alone.
-/// A register's width apart in memory: what lies across two lines of the cache takes twice as long, and the stack is as it comes.
+/// Times of several configurations in nanoseconds, one per lane. Operations treat each lane separately.
+///
+/// The alignment is that of a vector register, because vectors that cross a cache line take twice as long.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Times<const N: usize>(pub(super) [f64; N]);
@@ -43,7 +44,7 @@ impl<const N: usize> Times<N> {
 
     #[inline(always)]
     pub(super) fn each(ns: impl Fn(usize) -> f64) -> Self {
-        // A loop, because `from_fn` is not always inlined, and then compiled for any processor.
+        // Use a loop: `from_fn` is not always inlined, and its code would then lack the vector instructions.
         let mut all = [0.0; N];
         for (i, lane) in all.iter_mut().enumerate() {
             *lane = ns(i);
@@ -51,13 +52,13 @@ impl<const N: usize> Times<N> {
         Self(all)
     }
 
-    /// [`later`] of each.
+    /// Applies [`later`] to each lane.
     #[inline(always)]
     pub(super) fn later(self, other: Self) -> Self {
         Self::each(|i| later(self.0[i], other.0[i]))
     }
 
-    /// [`sooner`] of each; of two that are the same the other one.
+    /// Applies [`sooner`] to each lane. Equal times give `other`.
     #[inline(always)]
     pub(super) fn sooner(self, other: Self) -> Self {
         Self::each(|i| sooner(self.0[i], other.0[i]))
@@ -88,14 +89,14 @@ impl<const N: usize> Mul for Times<N> {
     }
 }
 
-/// Depth and speed of the FIFOs of some configurations.
+/// Depth and speed of the FIFOs in several configurations.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fifos<const N: usize> {
     pub(super) depth_words: Times<N>,
     pub(super) word_ns: Times<N>,
 }
 
-/// Words and times of what is sent on some configurations.
+/// Words and times of a command or message in several configurations.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Costs<const N: usize> {
     pub(super) words: Times<N>,
@@ -117,39 +118,46 @@ impl<const N: usize> Add for Costs<N> {
     }
 }
 
-/// A message of equal commands in a row, with all of its times that do not depend on when it comes.
+/// A message with equal commands in a row, and all its times that do not depend on its arrival.
 ///
-/// Of a message's first word everything else is sums and the latest of some: `max(a, b) + c` is exactly `max(a + c, b + c)`, whatever is
-/// rounded, so sums are taken before maxima where fewer then wait for each other.
+/// All other times follow from the first word by sums and maxima. `max(a, b) + c` equals `max(a + c, b + c)` exactly,
+/// even with rounding. Sums are therefore computed before maxima, which shortens the chain of dependent operations.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Commands<const N: usize> {
-    /// Words before the commands on the channel, and the time that they take: selection, clearing.
+    /// Time on the channel of the words before the commands, such as selection and clearing.
     head_wire: Times<N>,
+    /// Execution time of the words before the commands.
     head: Times<N>,
-    /// From the head's last word to the start of the first command, if the array is free.
+    /// Time from the head's last word to the start of the first command, if the array is free.
     lead: Times<N>,
-    /// How many commands, and the time of one.
+    /// Number of commands.
     count: f64,
+    /// Execution time of one command.
     each: Times<N>,
-    /// The whole message on the channel.
+    /// Time of the whole message on the channel.
     wire: Times<N>,
-    /// From the start of the first command to the end of the last one, with the words at their heels.
+    /// Time from the start of the first command to the end of the last one, limited by execution and by arriving words.
     drawing: Times<N>,
-    /// When the last word finds room: the command that holds the word a FIFO's depth before must have started. Either it is in the
-    /// message itself, this long after its first one; or it is in the message before, at this place from its end. What is not so is
-    /// before all times, and behind all places.
+    /// Delay until the last word has room in the FIFO, counted from the start of this message's first command.
+    ///
+    /// The last word has room when the command that contains the word one FIFO depth before it has started. `f64::MIN`
+    /// if this command is in the previous message.
     room_after: Times<N>,
+    /// Position, counted from the end of the previous message, of the command that must start before the last word has
+    /// room. Infinite if this command is in the same message.
     room_before: Times<N>,
 }
 
 impl<const N: usize> Commands<N> {
-    /// So many commands behind a head.
+    /// Creates a message of `count` commands after a head.
     #[inline(always)]
     pub(super) fn new(fifos: &Fifos<N>, head: &Costs<N>, count: f64, each: &Costs<N>) -> Self {
         let (word_ns, counts) = (fifos.word_ns, Times::all(count));
         let total = head.words + counts * each.words;
+        // A command needs at least the time of its words on the channel.
         let first_wire = each.words * word_ns;
         let slowest = each.ns.later(first_wire);
+        // Word that must have left before the last word has room, counted from the first command.
         let before_last = total - Times::all(1.0) - fifos.depth_words - head.words;
         let room_after = Times::each(|i| {
             let command = sooner((before_last.0[i] / each.words.0[i]).floor(), count);
@@ -174,8 +182,10 @@ impl<const N: usize> Commands<N> {
         }
     }
 
-    /// From the start of the first command of the message before to when its room is there for the last word of this one; before all
-    /// times where no room of that message is waited for.
+    /// Returns the delay until this message's last word has room behind the message `before`.
+    ///
+    /// The delay counts from the start of the first command of `before`. It is negative infinity if no room of `before`
+    /// is needed.
     #[inline(always)]
     pub(super) fn room_behind(&self, before: &Self) -> Times<N> {
         Times::each(|i| {
@@ -185,25 +195,27 @@ impl<const N: usize> Commands<N> {
     }
 }
 
-/// What is known of a renderer between messages.
+/// State of a renderer between messages.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Array<const N: usize> {
-    /// When everything sent to it so far has been executed, or the copy that holds it has ended.
+    /// Time at which everything sent so far was executed, or at which the current copy has ended.
     pub(super) free: Times<N>,
-    /// When its port was free again.
+    /// Time at which the renderer's port was free again.
     pub(super) released: Times<N>,
-    /// When the last message's first command started.
+    /// Start of the last message's first command.
     last_start: Times<N>,
 }
 
 impl<const N: usize> Array<N> {
-    /// An array without anything to do.
+    /// Returns an array that has nothing to do.
     pub(super) const fn idle() -> Self {
         Self { free: Times::all(0.0), released: Times::all(0.0), last_start: Times::all(0.0) }
     }
 
-    /// A message whose first word begins at `first_word`, behind one that leaves room [so long](Commands::room_behind) after its first
-    /// command: when its last word has entered.
+    /// Receives a message whose first word begins at `first_word`, and returns the time at which its last word has
+    /// entered.
+    ///
+    /// `behind` is the [delay](Commands::room_behind) until the previous message leaves room.
     #[inline(always)]
     pub(super) fn take(&mut self, first_word: Times<N>, commands: &Commands<N>, behind: Times<N>) -> Times<N> {
         let start = (first_word + commands.head_wire + commands.lead).later(self.free + commands.head);

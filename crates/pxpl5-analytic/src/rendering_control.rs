@@ -1,4 +1,4 @@
-//! Rendering Control: frame after frame.
+//! Rendering Control, frame after frame.
 
 use super::load::Load;
 use super::renderer::Cost;
@@ -15,10 +15,10 @@ use pxpl5_run::{
 use pxpl5_sim::{Time, mix};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, PeriodNumber, RegionGrid, RegionId};
 
-/// Words of a token, and of the other messages between master and slaves.
+/// Number of words of a token, and of other messages between master and slaves.
 const ORDER_WORDS: f64 = 6.0;
 
-/// Rendering Control on a machine, reduced to numbers.
+/// The parameters of Rendering Control on a machine, as used by the closed form.
 #[derive(Clone, Debug)]
 pub struct StereoModel {
     eyes: usize,
@@ -39,44 +39,45 @@ pub struct StereoModel {
     fifo_words: f64,
     store_ns: f64,
     backing_regions: usize,
-    /// Finished regions that a renderer keeps while their frame buffer is not available.
+    /// Number of finished regions that a renderer stores while their frame buffer is busy.
     regions_stored: usize,
     field_ns: f64,
-    /// Port time of each region.
+    /// Time of each region at a frame-buffer port.
     copy_ns: Vec<f64>,
 }
 
-/// One frame, in nanoseconds from switching on.
+/// Times of one frame, in nanoseconds from the start of the machine.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StereoTimes {
-    /// TRANSFORM of each eye begins.
+    /// Start of TRANSFORM for each eye.
     pub transform_ns: [f64; 2],
-    /// First word of the first copy and last word of the last copy of each eye.
+    /// First word of the first copy and last word of the last copy, for each eye.
     pub copy_ns: [(f64, f64); 2],
     /// The retrace at which the frame is shown.
     pub shown_ns: f64,
 }
 
 impl StereoTimes {
-    /// From the first word of an eye's copy to its last one.
+    /// Returns the time from the first to the last word of an eye's copy.
     fn copy_length_ns(&self, eye: usize) -> f64 {
         self.copy_ns[eye].1 - self.copy_ns[eye].0
     }
 }
 
-/// Mean of a time in nanoseconds over frames, in milliseconds.
+/// Returns the mean of a time in nanoseconds over frames, in milliseconds.
 fn mean_ms(frames: &[&StereoTimes], ns: impl Fn(&StereoTimes) -> f64) -> f64 {
     frames.iter().map(|frame| ns(frame)).sum::<f64>() / frames.len().max(1) as f64 * 1e-6
 }
 
-/// How far each stage has come; pictures before the first are done at time 0.
+/// Completion times of each stage for all pictures so far. Pictures before the first one count as complete at time 0.
 #[derive(Debug, Default)]
 struct History {
     transformed: Vec<f64>,
     rendered: Vec<f64>,
     copied: Vec<f64>,
-    /// Bytes of a slave's bins for the drawing before, and how long before the others the first slave has freed them.
+    /// Bytes of a slave's bins for the previous picture.
     bin_bytes: f64,
+    /// Time by which the first slave has freed its bins before the last slave.
     first_free_ns: f64,
     edited_ns: f64,
     swapped_ns: f64,
@@ -85,15 +86,17 @@ struct History {
 
 #[derive(Debug, Default)]
 struct Renderers {
-    /// When the master may give each one a region, and when its array is free.
+    /// Time at which the master may assign a region to each renderer.
     idle_ns: Vec<f64>,
+    /// Time at which each renderer's array is free.
     free_ns: Vec<f64>,
-    /// When each one's regions had been copied.
+    /// Times at which the regions of each renderer had been copied.
     sent_ns: Vec<Vec<f64>>,
-    /// When the frame buffers of the regions that each one keeps become available.
+    /// Times at which the frame buffers of each renderer's stored regions become available.
     stored_until_ns: Vec<Vec<f64>>,
-    /// Words sent to each, and of its latest regions: words before it, when its first command started, of which time.
+    /// Number of words sent to each renderer.
     words: Vec<f64>,
+    /// For each renderer's latest regions: words sent before, start of the first command, and cost of all commands.
     started: Vec<Vec<(f64, f64, Cost)>>,
     ports_ns: [f64; 2],
 }
@@ -102,7 +105,7 @@ fn back(times: &[f64], picture: usize, by: usize) -> f64 {
     picture.checked_sub(by).and_then(|i| times.get(i)).copied().unwrap_or(0.0)
 }
 
-/// Time that a region's messages take at a frame buffer's port.
+/// Returns the time of a region's messages at a frame buffer's port.
 fn copy_ns(grid: RegionGrid, region: RegionId, word_ns: f64, overhead_ns: f64) -> f64 {
     let [_, _, width, height] = grid.rectangle(region);
     let pixels = width * height;
@@ -110,16 +113,17 @@ fn copy_ns(grid: RegionGrid, region: RegionId, word_ns: f64, overhead_ns: f64) -
 }
 
 impl StereoModel {
-    /// Reduces a machine.
+    /// Derives the model from a machine.
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] for a machine without slaves.
+    /// [`ConfigError`] if the machine has no slaves.
     pub fn new(config: &MachineConfig, program: RenderingControl) -> Result<Self, ConfigError> {
         if config.n_gps < 2 {
             let what = "n_gps of Rendering Control (a master and slaves)".to_owned();
             return Err(ConfigError::Value { what, expected: (2, 1_000), found: config.n_gps as u64 });
         }
+        // Timing of messages and commands.
         let video = video_of(config)?;
         let phong = program.shading == Shading::Phong;
         let word_ns = config.ring.word_ns as f64;
@@ -158,7 +162,7 @@ impl StereoModel {
         })
     }
 
-    /// Frames whose eyes have these loads, one after the other.
+    /// Computes consecutive frames. `loads` has one load per eye and frame.
     #[must_use]
     pub fn frames(&self, loads: &[Load]) -> Vec<StereoTimes> {
         let mut history = History::default();
@@ -171,12 +175,12 @@ impl StereoModel {
         loads.chunks(self.eyes).enumerate().map(|(frame, eyes)| self.frame(&mut history, frame, eyes)).collect()
     }
 
-    /// Time of a short message on the ring.
+    /// Returns the time of a short message on the ring.
     fn transit_ns(&self) -> f64 {
         self.overhead_ns + ORDER_WORDS * self.word_ns + self.hop_ns * self.slaves / 2.0
     }
 
-    /// A message from one processor to another, with both software costs.
+    /// Returns the time of a message between two processors, including the software cost of both.
     fn order_ns(&self) -> f64 {
         2.0 * self.message_ns + self.transit_ns()
     }
@@ -184,9 +188,10 @@ impl StereoModel {
     fn frame(&self, history: &mut History, frame: usize, eyes: &[Load]) -> StereoTimes {
         let mut times = StereoTimes::default();
         let first = frame * self.eyes;
-        // SEND begins when the host knows of the EDIT before, and its application has taken its time.
+        // SEND begins when the host knows that the previous EDIT is done, and its application has finished.
         let application_ns = self.host.application_span(mix(frame as u64)).as_ms() * 1e6;
         let sent_ns = history.edited_ns + self.order_ns() + application_ns + self.host_ns;
+        // EDIT of the first eye also needs earlier pictures to have passed TRANSFORM, RENDER and COPY.
         let ready =
             [back(&history.transformed, first, 1), back(&history.rendered, first, 2), back(&history.copied, first, 3)];
         let mut begin_ns = ready.into_iter().fold(sent_ns, f64::max) + self.order_ns();
@@ -198,6 +203,7 @@ impl StereoModel {
                 let ready = [back(&history.rendered, picture, 2), back(&history.copied, picture, 3), history.edited_ns];
                 begin_ns = begin_ns.max(ready.into_iter().fold(0.0, f64::max) + self.order_ns());
             }
+            // TRANSFORM waits if the bins of two pictures do not fit.
             let bin_bytes = self.bin_bytes(load);
             times.transform_ns[eye] = begin_ns;
             if history.bin_bytes + bin_bytes > self.gp.bin_bytes as f64 {
@@ -208,10 +214,10 @@ impl StereoModel {
             history.bin_bytes = bin_bytes;
             history.first_free_ns = self.first_free_ns(load);
             begin_ns += self.transform_ns(load);
-            // The master hears all slaves one after the other.
+            // The master receives the answers of all slaves one after the other.
             let known_ns = begin_ns + self.message_ns + self.transit_ns() + self.slaves * self.message_ns;
             history.transformed.push(known_ns);
-            // COPY needs the frame buffer, and COPY of the eye before.
+            // COPY needs the frame buffer, and the completed COPY of the previous eye.
             let available_ns = history.swapped_ns.max(back(&history.copied, picture, 1));
             let start_ns = known_ns.max(back(&history.rendered, picture, 1));
             let (rendered_ns, copy) = self.render(&mut history.rendering, load, eye, start_ns, available_ns);
@@ -225,7 +231,7 @@ impl StereoModel {
         times
     }
 
-    /// Entries in the bins of the slave with the largest share.
+    /// Returns the number of bin entries of the slave with the largest share.
     fn entries(&self, load: &Load) -> f64 {
         let primitives = self.largest_share(load.triangles) + self.largest_share(load.spheres);
         load.entries() * primitives / (load.triangles + load.spheres).max(1.0)
@@ -235,15 +241,16 @@ impl StereoModel {
         self.entries(load) * BIN_ENTRY_BYTES as f64
     }
 
-    /// How long before the last slave the first one has had the last tokens of a drawing. They begin with one slave each, in turn, and
-    /// reach slave after slave as the renderers take the commands: with fewer renderers than slaves, one slave has had all of them when
-    /// each has been at so many slaves as there are renderers.
+    /// Returns how much earlier the first slave has seen all tokens of a picture than the last slave.
+    ///
+    /// Tokens start at one slave each, in turn, and move on as fast as renderers accept commands. With fewer renderers
+    /// than slaves, one slave has seen all tokens when each token has visited as many slaves as there are renderers.
     fn first_free_ns(&self, load: &Load) -> f64 {
         let drawing_ns = load.entries() / load.bins.len().max(1) as f64 * self.triangle.ns;
         drawing_ns * (1.0 - self.renderers as f64 / self.slaves).max(0.0)
     }
 
-    /// TRANSFORM of the slave with the largest share.
+    /// Returns the time of TRANSFORM of the slave with the largest share.
     fn transform_ns(&self, load: &Load) -> f64 {
         let triangles = self.largest_share(load.triangles);
         let spheres = self.largest_share(load.spheres);
@@ -253,12 +260,15 @@ impl StereoModel {
         TransformCost { passes: 1.0, structures, sphere_views, triangles, spheres, clipped, entries }.ns(&self.gp)
     }
 
-    /// Primitives that the slave with the most of them holds.
+    /// Returns the number of primitives of the slave that holds the most.
     fn largest_share(&self, primitives: f64) -> f64 {
         (primitives / self.slaves).ceil()
     }
 
-    /// RENDER and COPY of an eye: when the master knows that the last commands were accepted; first and last word.
+    /// Computes RENDER and COPY of an eye.
+    ///
+    /// Returns the time at which the master knows that the last commands were accepted, and the copy's first and last
+    /// word.
     fn render(
         &self,
         all: &mut Renderers,
@@ -267,12 +277,14 @@ impl StereoModel {
         start_ns: f64,
         available_ns: f64,
     ) -> (f64, (f64, f64)) {
+        // The heaviest regions go first.
         let mut regions: Vec<usize> = (0..load.bins.len()).collect();
         regions.sort_by(|a, b| load.primitives_in(*b).total_cmp(&load.primitives_in(*a)));
         let mut rendered_ns = start_ns;
         let mut copy = (f64::INFINITY, 0.0_f64);
         let mut master_ns = start_ns;
         for region in regions {
+            // Send the token to the renderer that is idle first.
             let r = earliest(&all.idle_ns);
             let token_ns = master_ns.max(all.idle_ns[r]).max(start_ns) + self.message_ns;
             master_ns = token_ns;
@@ -281,6 +293,7 @@ impl StereoModel {
             let (accepted_ns, executed_ns) = self.execute(all, r, token_ns, arrived_ns, &load.bins[region]);
             let heard_ns = accepted_ns + self.transit_ns() + self.message_ns;
             rendered_ns = rendered_ns.max(heard_ns);
+            // The copy begins later if the frame buffer is not available yet.
             let is_late = token_ns >= available_ns;
             all.stored_until_ns[r].retain(|until| *until > token_ns);
             let is_stored = !is_late && all.stored_until_ns[r].len() < self.regions_stored;
@@ -291,7 +304,8 @@ impl StereoModel {
             }
             let waits = !is_late && !is_stored;
             all.idle_ns[r] = if waits { heard_ns.max(available_ns + self.message_ns) } else { heard_ns };
-            // Into the backing store, which holds a few regions, and from there to the frame buffer, one after the other.
+            // Finished regions go to the backing store, which holds a few regions, and from there to the frame buffer,
+            // one by one.
             all.free_ns[r] =
                 ready_ns.max(back(&all.sent_ns[r], all.sent_ns[r].len(), self.backing_regions)) + self.store_ns;
             let sent_ns = all.sent_ns[r].last().copied().unwrap_or(0.0);
@@ -303,24 +317,27 @@ impl StereoModel {
         (rendered_ns, copy)
     }
 
-    /// A token's way through all slaves.
+    /// Returns the time of a token's way through all slaves.
     fn walk_ns(&self, bin: &[f64; 2]) -> f64 {
         let senders = (bin[0] + bin[1]).min(self.slaves).max(2.0_f64.min(self.slaves));
         let handed_over_ns = self.gp.token_entry_ns as f64 * (bin[0] + bin[1]);
         self.slaves * (2.0 * self.message_ns + self.transit_ns()) + senders * self.message_ns + handed_over_ns
     }
 
-    /// When the region's last word was accepted, and when its commands were executed.
+    /// Returns the time at which a region's last word was accepted, and the time at which its commands were executed.
     fn execute(&self, all: &mut Renderers, r: usize, token_ns: f64, arrived_ns: f64, bin: &[f64; 2]) -> (f64, f64) {
         let [triangles, spheres] = *bin;
+        // Commands of the region: clear, draw, shade and copy.
         let drawing_ns = triangles * self.triangle.ns + spheres * self.sphere.ns;
         let drawing_words = triangles * self.triangle.words + spheres * self.sphere.words;
         let words = self.clear.words + drawing_words + self.shade.words + self.copy_words;
+        // The first word follows the token through two message routines.
         let first_ns = token_ns + self.transit_ns() + 2.0 * self.message_ns;
         let start_ns = first_ns.max(all.free_ns[r]);
         let rate = Cost { words: words.max(1.0), ns: self.clear.ns + drawing_ns };
         all.started[r].push((all.words[r], start_ns, rate));
         all.words[r] += words;
+        // The last word enters when it has arrived and the FIFO has room.
         let wire_ns = arrived_ns.max(first_ns + words * self.word_ns);
         let accepted_ns = wire_ns.max(self.room_ns(all, r));
         let last_ns = if triangles > 0.0 { self.triangle.ns } else { self.clear.ns };
@@ -328,7 +345,9 @@ impl StereoModel {
         (accepted_ns, executed_ns)
     }
 
-    /// When there was room for the last word sent: the command that holds the word a FIFO's depth before had started.
+    /// Returns the time at which the FIFO had room for the last word sent.
+    ///
+    /// This is the start of the command that contains the word one FIFO depth before it.
     fn room_ns(&self, all: &mut Renderers, r: usize) -> f64 {
         let word = all.words[r] - 1.0 - self.fifo_words;
         let started = &mut all.started[r];
@@ -344,11 +363,11 @@ fn earliest(times: &[f64]) -> usize {
     (1..times.len()).fold(0, |best, i| if times[i] < times[best] { i } else { best })
 }
 
-/// The loads of both eyes, frame after frame; the views are those of frames that begin every second field.
+/// Returns the loads of both eyes, frame after frame. A frame begins every second field.
 ///
 /// # Errors
 ///
-/// [`ExperimentError::Scene`] for a scene without primitives.
+/// [`ExperimentError::Scene`] if the scene has no primitives.
 pub fn stereo_loads(experiment: &Experiment) -> Result<Vec<Load>, ExperimentError> {
     let still = experiment.scene().structures().iter().all(|s| s.frame == pxpl5_scene::Frame::Head);
     let frames = (experiment.length() / 2).max(1);
@@ -362,7 +381,7 @@ pub fn stereo_loads(experiment: &Experiment) -> Result<Vec<Load>, ExperimentErro
     Ok(loads)
 }
 
-/// An experiment with Rendering Control at the analytic level.
+/// Closed form of experiments with Rendering Control.
 pub(super) const CLOSED_FORM: ClosedForm =
     ClosedForm { summary: closed_form, estimates: Estimates { fields_needed, triangles_in_time } };
 
@@ -375,7 +394,7 @@ fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {
     Ok(model.summary(&frames, experiment.length()))
 }
 
-/// A frame is shown at the retrace that begins the last of these fields.
+/// Returns the number of fields until the first frame after warm-up is shown.
 fn fields_needed(experiment: &Experiment) -> Option<u64> {
     let first_frames = experiment.clone().fields(2 * (WARM_UP_PICTURES as u64 + 1));
     let (model, frames) = frames_of(&first_frames).ok()?;
@@ -395,9 +414,10 @@ fn frames_of(experiment: &Experiment) -> Result<(StereoModel, Vec<StereoTimes>),
 }
 
 impl StereoModel {
-    /// Frames shown before the end, without the warm-up.
+    /// Returns the summary of the frames shown before the end, without warm-up.
     #[must_use]
     pub fn summary(&self, frames: &[StereoTimes], fields: u64) -> Summary {
+        // Frames of the warm-up do not count.
         let end_ns = fields as f64 * self.field_ns;
         let shown: Vec<_> = frames.iter().filter(|frame| frame.shown_ns < end_ns).skip(WARM_UP_PICTURES).collect();
         let due = self.due(frames, fields);
@@ -418,21 +438,21 @@ impl StereoModel {
         }
     }
 
-    /// From the beginning of TRANSFORM to the last word of COPY, for each eye.
+    /// Returns the time from the start of TRANSFORM to the last word of COPY, for each eye.
     fn eye_latencies_ms(&self, frame: &StereoTimes) -> Vec<f64> {
         (0..self.eyes).map(|eye| (frame.copy_ns[eye].1 - frame.transform_ns[eye]) * 1e-6).collect()
     }
 
-    /// From the beginning of TRANSFORM to the retrace at which the frame is shown, for each eye.
+    /// Returns the time from the start of TRANSFORM to the retrace that shows the frame, for each eye.
     fn eye_swap_latencies_ms(&self, frame: &StereoTimes) -> Vec<f64> {
         (0..self.eyes).map(|eye| (frame.shown_ns - frame.transform_ns[eye]) * 1e-6).collect()
     }
 
-    /// A frame is due as often as COPY of all eyes lets it.
+    /// Returns the pictures due. Frames are due at the rate that COPY of all eyes permits.
     fn due(&self, frames: &[StereoTimes], fields: u64) -> Option<DuePictures> {
         let every = (self.eyes as f64 * self.copy_ns.iter().sum::<f64>() / self.field_ns).ceil() as u64;
         let field_of = |frame: &StereoTimes| PeriodNumber((frame.shown_ns / self.field_ns).round() as u64);
-        // Frames are given for so many fields; what comes behind the last one is not known.
+        // Frames after the last computed one are unknown.
         let known = frames.last().map_or(PeriodNumber::FIRST, |last| field_of(last).next()).min(PeriodNumber(fields));
         DuePictures::count(frames.iter().map(|frame| (field_of(frame), PictureEnd::Shown)), every, known)
     }

@@ -1,4 +1,5 @@
-//! TRANSFORM and RENDER of Slats on any number of GPs: each message by itself, in the order in which the ring grants channels.
+//! TRANSFORM and RENDER of Slats on any number of GPs. Messages are processed in the order in which the ring grants
+//! channels.
 //!
 //! ```text
 //!   clumps of GP 0 --chain--+
@@ -6,10 +7,12 @@
 //!   ...                     |
 //! ```
 //!
-//! One GP alone is limited by its own code, so the mean of a clump is enough ([`super::clumps`]). Many GPs are limited by what they share:
-//! a renderer's port takes one message at a time, and a message that waits for room in a full FIFO keeps its channel, of which there are
-//! [`fifo_channels`](pxpl5_ring::RingTiming::fifo_channels) for all renderers. Which renderers work at the same time is decided by the order of
-//! grants, so the model goes through all messages in that order. It computes times with the rules of ring, FIFO and firmware, without their code.
+//! A single GP is limited by its own code, so the mean of a clump suffices ([`super::clumps`]). Several GPs are limited
+//! by shared resources: a renderer's port accepts one message at a time, and a message that waits for room in a full
+//! FIFO occupies its channel. All renderers share [`fifo_channels`](pxpl5_ring::RingTiming::fifo_channels) channels.
+//!
+//! The order of grants decides which renderers work at the same time, so the model processes all messages in this
+//! order. It uses the timing rules of ring, FIFO and firmware, but not their code.
 
 use super::copies::MOST_RENDERERS;
 use super::model::{PerTriangle, REGIONS, SlatsModel};
@@ -29,31 +32,33 @@ use std::sync::Arc;
 /// A clump of one GP.
 #[derive(Clone, Debug, PartialEq)]
 struct Clump {
-    /// TRANSFORM for both eyes.
+    /// Time of TRANSFORM for both eyes.
     transform_ns: f64,
-    /// Triangles and spheres that each region gets, in the order of sending.
+    /// Numbers of triangles and spheres for each region, in the order of sending.
     bins: [[f64; 2]; REGIONS],
 }
 
-/// The clumps of every GP, and the words of the view that the first one sends to the others.
+/// The clumps of every GP, and the length of the view that the first GP sends to the others.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Clumps {
     of_gps: Vec<Vec<Clump>>,
     view_words: f64,
 }
 
-/// Words of a view of two eyes without edits: number, counts and three matrices an eye.
+/// Number of words of a view of two eyes without edits: number, counts and three matrices per eye.
 const VIEW_WORDS: f64 = 4.0 + 2.0 * 3.0 * 16.0;
 
 impl Clumps {
-    /// So many equal triangles, dealt to the GPs in turn, of which every region gets the same part.
+    /// Creates clumps of equal triangles, distributed evenly over the GPs and the regions.
     pub(super) fn uniform(model: &SlatsModel, triangles: f64, each: PerTriangle) -> Self {
         let all = triangles.round() as usize;
+        // Distribute the triangles evenly over the GPs.
         let of_gp = |gp: usize| {
             let share = (all + model.gps - 1 - gp) / model.gps;
             let clumps = share.div_ceil(CLUMP).max(1);
             let clump = |n: usize| {
                 let size = (share - n * CLUMP).min(CLUMP) as f64;
+                // The first clump includes the begin of the pass.
                 let begin_ns = if n == 0 { model.begin_ns } else { 0.0 };
                 let bins = [[size * each.entries / 10.0, 0.0]; REGIONS];
                 Clump { transform_ns: begin_ns + model.clump_ns(size, each), bins }
@@ -63,20 +68,21 @@ impl Clumps {
         Self { of_gps: (0..model.gps).map(of_gp).collect(), view_words: VIEW_WORDS }
     }
 
-    /// The primitives of an experiment's scene as its first view sees them.
+    /// Creates clumps from an experiment's scene in its first view.
     ///
     /// # Errors
     ///
-    /// [`ExperimentError::Scene`] for a scene without primitives.
+    /// [`ExperimentError::Scene`] if the scene has no primitives.
     ///
     /// # Panics
     ///
-    /// Never: the papers' head-mounted display is in range.
+    /// Never, because the head-mounted display of the papers is in range.
     pub(super) fn of_scene(
         model: &SlatsModel,
         experiment: &Experiment,
         binning: RegionBinning,
     ) -> Result<Self, ExperimentError> {
+        // Transform the scene for the first view.
         let list = Arc::new(display_list(experiment.scene()).map_err(ExperimentError::Scene)?);
         let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is valid");
         let (views, _) = views(experiment.scene(), experiment.seed_of_motion(), hmd, 2);
@@ -86,13 +92,14 @@ impl Clumps {
         let of_gp = |gp: usize| {
             let share = Share::new(Arc::clone(&list), gp, model.gps);
             let mut clumps: Vec<Share> = share.clumps(CLUMP).collect();
+            // A GP without primitives still begins its pass.
             if clumps.is_empty() {
                 clumps.push(share);
             }
             let clump = |(n, share): (usize, &Share)| {
                 let passes = [0, 1].map(|eye| share.transform(&view, eye, picture));
                 let work = Transforming { passes: &passes, context: 0, begins: n == 0 };
-                // All columns of a half of one eye, then of the other eye, then the same of the other half.
+                // Order: all columns of the upper half for one eye and the other, then the same for the lower half.
                 let bins = std::array::from_fn(|region| {
                     let (kind, column) = (region / COLUMNS, region % COLUMNS);
                     let counts = passes[kind % 2].counts(RegionId((kind / 2 * COLUMNS + column) as u16));
@@ -106,17 +113,20 @@ impl Clumps {
     }
 }
 
-/// Field regions of an eye beside each other.
+/// Number of field regions of an eye side by side.
 const COLUMNS: usize = REGIONS / 4;
 
-/// Sends all clumps to renderers that are free as `arrays` says; returns when the last one was accepted, and when
-/// the first GP has nothing else to do and knows it.
+/// Sends all clumps to renderers with the state `arrays`.
+///
+/// Returns the time at which the last clump was accepted, and the time at which the first GP knows this and is free.
 pub(super) fn render(model: &SlatsModel, arrays: &mut [Array<1>], clumps: &Clumps) -> [f64; 2] {
     let mut ring = Ring::new(model, arrays);
     let mut senders = ring.begin(clumps);
+    // Grant messages in the order of the ring's arbiter.
     while let Some(place) = ring.first_head(&senders) {
         ring.grant(&mut senders[place]);
     }
+    // Report the final state of the renderers.
     for (array, renderer) in arrays.iter_mut().zip(&ring.renderers) {
         array.free = Times::all(renderer.free_ns);
         array.released = Times::all(renderer.released_ns);
@@ -125,7 +135,7 @@ pub(super) fn render(model: &SlatsModel, arrays: &mut [Array<1>], clumps: &Clump
     [accepted_ns, ring.all_done_ns(&senders)]
 }
 
-/// Commands in a FIFO's past: their words made room for the words a FIFO's depth behind them.
+/// Commands that have left a FIFO. Their departure made room for words one FIFO depth later.
 #[derive(Clone, Copy, Debug)]
 struct Departure {
     first_word: f64,
@@ -143,14 +153,16 @@ struct Renderer {
 }
 
 impl Renderer {
-    /// Takes a command whose words come one after the other from an instant on; returns when the last one has entered.
+    /// Receives a command whose words arrive without gaps from an instant on. Returns the time at which the last word
+    /// has entered.
     ///
-    /// A word enters when the word a FIFO's depth before it has left; the words of a command leave when it starts; it starts when its words
-    /// are there and the command before it has ended.
+    /// A word enters when the word one FIFO depth before it has left. The words of a command leave when the command
+    /// starts. A command starts when all its words have arrived and the previous command has ended.
     fn take(&mut self, from_ns: f64, command: Cost, depth_words: f64, word_ns: f64) -> f64 {
         let first = self.words_in;
         let last = first + command.words - 1.0;
         let mut complete = from_ns + command.words * word_ns;
+        // Departures make room for words one FIFO depth later.
         while let Some(room) = self.departures.front() {
             let made_room_for = room.first_word + depth_words;
             if made_room_for > last {
@@ -170,7 +182,7 @@ impl Renderer {
     }
 }
 
-/// A message to a renderer: so many of each command, in the order of sending.
+/// A message to a renderer: counts of each command, in the order of sending.
 #[derive(Clone, Copy, Debug)]
 struct Message {
     region: usize,
@@ -182,17 +194,18 @@ struct Message {
 struct Sender<'a> {
     gp: usize,
     clumps: &'a [Clump],
-    /// Clumps that are sent or being sent.
+    /// Number of clumps that were sent or are being sent.
     begun: usize,
-    /// The messages of the chain that have not been granted; none at its end.
+    /// Messages of the chain that have not been granted. Empty after the last clump.
     messages: VecDeque<Message>,
-    /// When that message came to the head of the queue.
+    /// Time at which the next message reached the head of the queue.
     since_ns: f64,
-    /// When each channel of its port is free.
+    /// Time at which each channel of the port is free.
     channels_ns: Vec<f64>,
     cpu_ns: f64,
-    /// Acceptance of the last message of the chain, and of the latest of the first messages to each renderer.
+    /// Acceptance of the chain's last message.
     accepted_ns: f64,
+    /// Latest acceptance among the first messages to each renderer.
     draining_ns: f64,
     served: [bool; MOST_RENDERERS],
 }
@@ -203,13 +216,13 @@ impl Sender<'_> {
     }
 }
 
-/// What all senders share.
+/// State that all senders share.
 struct Ring<'a> {
     model: &'a SlatsModel,
     renderers: Vec<Renderer>,
-    /// When each channel is free that messages to renderers may use.
+    /// Time at which each channel for messages to renderers is free.
     channels_ns: Vec<f64>,
-    /// Whether the first message to a region clears it.
+    /// True if the first message to a region clears it.
     clears: bool,
 }
 
@@ -224,23 +237,27 @@ impl<'a> Ring<'a> {
         }
     }
 
-    /// The senders with their first clumps. One GP alone clears in its first clump. Of several the first one clears all regions by a chain
-    /// of its own, then sends the view to the others.
+    /// Returns the senders with their first clumps.
+    ///
+    /// A single GP clears regions in its first clump. With several GPs, the first one clears all regions by its own
+    /// chain of messages, and then sends the view to the others.
     fn begin<'c>(&mut self, clumps: &'c Clumps) -> Vec<Sender<'c>> {
         let model = self.model;
         let mut begin_ns = vec![0.0; model.gps];
-        // The host's next view, which the first GP receives while it transforms.
+        // The first GP receives the host's next view during TRANSFORM.
         begin_ns[0] = model.message_ns;
         let mut accepted_ns = 0.0;
+        // With several GPs, the first one clears all regions and then sends the view.
         if !self.clears {
             accepted_ns = self.clear_all();
             let words_ns = model.overhead_ns + (clumps.view_words + 3.0) * model.word_ns;
             for (gp, begin) in begin_ns.iter_mut().enumerate().skip(1) {
+                // A port sends on `source_channels` channels at a time.
                 let round = (gp - 1) / model.source_channels + 1;
                 let arrives = later(accepted_ns, 2.0 * model.message_ns) + round as f64 * words_ns;
                 *begin = arrives + gp as f64 * model.hop_ns + model.message_ns;
             }
-            // The first GP goes on when it has paid for both chains, and sends when both have been accepted.
+            // The first GP continues after the software cost of both chains, and sends when both have been accepted.
             accepted_ns = begin_ns[1..].iter().fold(accepted_ns, |last, begin| later(last, begin - model.message_ns));
             begin_ns[0] += 2.0 * model.message_ns;
         }
@@ -263,8 +280,9 @@ impl<'a> Ring<'a> {
         clumps.of_gps.iter().enumerate().map(sender).collect()
     }
 
-    /// Sends the messages that clear all regions; returns when the last one has been accepted.
+    /// Sends the messages that clear all regions. Returns the acceptance of the last one.
     fn clear_all(&mut self) -> f64 {
+        // A clump without primitives produces only the messages that clear.
         let nothing = Clump { transform_ns: 0.0, bins: [[0.0; 2]; REGIONS] };
         let mut sender = Sender {
             gp: 0,
@@ -287,10 +305,10 @@ impl<'a> Ring<'a> {
         sender.accepted_ns
     }
 
-    /// Transforms clumps until there is one that goes to a region, or none is left.
+    /// Transforms clumps until one produces messages, or none is left.
     fn next_clump(&self, sender: &mut Sender<'_>) {
         while let Some(clump) = sender.clumps.get(sender.begun) {
-            // The one clump buffer is written again when all renderers have begun with what was in it.
+            // The single clump buffer can be reused after all renderers have started to receive its content.
             let transformed = later(sender.cpu_ns, sender.draining_ns) + clump.transform_ns;
             sender.cpu_ns = later(transformed, sender.accepted_ns);
             sender.begun += 1;
@@ -305,7 +323,8 @@ impl<'a> Ring<'a> {
         }
     }
 
-    /// The messages of a clump: a region's selection, its clearing in the first clump of a field, and as many primitives as each holds.
+    /// Returns the messages of a clump. Each selects a region, clears it if needed, and holds as many primitives as
+    /// fit.
     fn messages_of(&self, clump: &Clump, clears: bool) -> VecDeque<Message> {
         let SlatsModel { select, clear, command, sphere, .. } = *self.model;
         let mut messages = VecDeque::new();
@@ -313,6 +332,7 @@ impl<'a> Ring<'a> {
             let mut left = *bin;
             let mut clearing = if clears { 1.0 } else { 0.0 };
             while clearing > 0.0 || left != [0.0; 2] {
+                // Fill the message with triangles, then with spheres.
                 let mut room = f64::from(MAX_MESSAGE_WORDS) - select.words - clearing * clear.words;
                 let held = [(command, 0), (sphere, 1)].map(|(command, kind)| {
                     let count = left[kind].min((room / command.words).floor());
@@ -328,7 +348,8 @@ impl<'a> Ring<'a> {
         messages
     }
 
-    /// When the next message of a sender can be granted, and since when it waits.
+    /// Returns the time at which a sender's next message can be granted, and the time since which the message has
+    /// waited.
     fn head(&self, sender: &Sender<'_>) -> (f64, f64) {
         let region = sender.messages.front().map_or(0, |message| message.region);
         let port = &self.renderers[region % self.renderers.len()];
@@ -336,14 +357,16 @@ impl<'a> Ring<'a> {
         (later(later(since, port.released_ns), soonest(&self.channels_ns).1), since)
     }
 
-    /// The sender whose message is granted next: of several at one instant the one that waits longest, then the first one.
+    /// Returns the sender whose message is granted next.
+    ///
+    /// Of several at one instant, the sender that waits longest goes first, then the one with the lowest number.
     fn first_head(&self, senders: &[Sender<'_>]) -> Option<usize> {
         let waiting = senders.iter().enumerate().filter(|(_, sender)| !sender.is_done());
         let heads = waiting.map(|(place, sender)| (self.head(sender), place));
         heads.reduce(|first, head| if head.0 < first.0 { head } else { first }).map(|(_, place)| place)
     }
 
-    /// Grants the next message of a sender: it holds port and channels until its last word is in the FIFO.
+    /// Grants the next message of a sender. It occupies port and channels until its last word is in the FIFO.
     fn grant(&mut self, sender: &mut Sender<'_>) {
         let model = self.model;
         let (granted, _) = self.head(sender);
@@ -351,6 +374,7 @@ impl<'a> Ring<'a> {
         let number = message.region % self.renderers.len();
         let latency = model.hop_ns * (model.gps - sender.gp + number) as f64;
         let accepted = self.take(&message, number, granted + model.overhead_ns + latency);
+        // Port and channels are free when the last word has entered the FIFO.
         let released = accepted - latency;
         self.renderers[number].released_ns = released;
         for channels in [&mut sender.channels_ns, &mut self.channels_ns] {
@@ -358,6 +382,7 @@ impl<'a> Ring<'a> {
             channels[place] = released;
         }
         sender.accepted_ns = later(sender.accepted_ns, accepted);
+        // The clump buffer is free when every renderer has accepted its first message.
         if !std::mem::replace(&mut sender.served[number], true) {
             sender.draining_ns = later(sender.draining_ns, accepted);
         }
@@ -367,7 +392,7 @@ impl<'a> Ring<'a> {
         }
     }
 
-    /// The words of a message enter a FIFO from an instant on; returns when the last one has entered.
+    /// Receives a message's words from an instant on. Returns the time at which the last word has entered the FIFO.
     fn take(&mut self, message: &Message, number: usize, from_ns: f64) -> f64 {
         let (depth, word) = (self.model.fifo_words, self.model.word_ns);
         let renderer = &mut self.renderers[number];
@@ -375,7 +400,7 @@ impl<'a> Ring<'a> {
         for (command, count) in message.runs {
             let mut left = count;
             while left > 0.0 {
-                // Means need not be whole numbers.
+                // Mean counts need not be integers.
                 let part = left.min(1.0);
                 let some = Cost { words: command.words * part, ns: command.ns * part };
                 entered = renderer.take(entered, some, depth, word);
@@ -385,27 +410,31 @@ impl<'a> Ring<'a> {
         entered
     }
 
-    /// When the first GP knows that all clumps have been accepted: each other one tells it by a message, which its software takes.
+    /// Returns the time at which the first GP knows that all clumps have been accepted.
+    ///
+    /// Each other GP reports by a message, which costs software time at the first GP.
     fn all_done_ns(&self, senders: &[Sender<'_>]) -> f64 {
         let model = self.model;
         let (Some(first), others) = (senders.first(), senders.get(1..).unwrap_or_default()) else { return 0.0 };
         let message_ns = model.overhead_ns + 3.0 * model.word_ns;
         let ports = 1 + model.gps + self.renderers.len() + FRAME_BUFFERS;
+        // Each GP reports after its last message was accepted.
         let arrival = |sender: &Sender<'_>| {
             let sent = later(sender.cpu_ns + model.message_ns, sender.accepted_ns);
             sent + message_ns + model.hop_ns * (ports - sender.gp) as f64
         };
         let mut arrivals: Vec<f64> = others.iter().map(arrival).collect();
         arrivals.sort_by(f64::total_cmp);
+        // The first GP handles the reports one by one.
         let told = arrivals.into_iter().fold(0.0, |done, arrival| later(done, arrival) + model.message_ns);
         later(first.cpu_ns, told)
     }
 }
 
-/// Ports of the two frame buffers.
+/// Number of ports of the two frame buffers.
 const FRAME_BUFFERS: usize = 2;
 
-/// The soonest of some times, and its place.
+/// Returns the earliest time and its index.
 fn soonest(times: &[f64]) -> (usize, f64) {
     let all = times.iter().copied().enumerate();
     all.reduce(|first, time| if time.1 < first.1 { time } else { first }).unwrap_or((0, f64::MIN))

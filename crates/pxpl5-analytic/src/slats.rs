@@ -1,4 +1,4 @@
-//! Slats: one field.
+//! Closed form of Slats for one field.
 
 use super::clumps;
 use super::copies::{self, CopyTimes, MOST_RENDERERS, Queue};
@@ -13,7 +13,8 @@ use pxpl5_run::{
 };
 
 impl SlatsModel {
-    /// A field in the steady state: renderers begin with the bottom regions of the field before.
+    /// Returns the times of a field in the steady state, in which renderers first copy the bottom regions of the
+    /// previous field.
     #[must_use]
     pub fn field(&self, triangles: f64, each: PerTriangle) -> FieldTimes {
         if self.gps > 1 {
@@ -23,7 +24,7 @@ impl SlatsModel {
         times
     }
 
-    /// A field in the steady state with each clump as it is.
+    /// Returns the times of a field in the steady state, with given clumps.
     fn field_of(&self, clumps: &Clumps) -> FieldTimes {
         let models = std::array::from_ref(self);
         let mut arrays = [Array::idle(); MOST_RENDERERS];
@@ -34,8 +35,10 @@ impl SlatsModel {
         times
     }
 
-    /// The same of many machines, in their order: exactly what [`field`](Self::field) gives of each. Sixteen after another that have as
-    /// many boards and channels and the same program go through it together, which is faster.
+    /// Returns the times for many machines, in their order, identical to those of [`field`](Self::field).
+    ///
+    /// Sixteen consecutive machines are computed together if they have equal numbers of boards and channels and the
+    /// same program. This is faster.
     #[must_use]
     pub fn fields(models: &[Self], triangles: f64, each: PerTriangle) -> Vec<FieldTimes> {
         let mut all = Vec::with_capacity(models.len());
@@ -51,17 +54,18 @@ impl SlatsModel {
     }
 }
 
-/// Configurations that are computed together: two registers of 512 bits, or four of 256. Each step waits for the one before, so twice as
-/// many as fit one register go together in little more time.
+/// Number of configurations computed together: two registers of 512 bits, or four of 256 bits.
+///
+/// Each step depends on the previous one, so twice the width of a register takes little more time than one register.
 const TOGETHER: usize = 16;
 
-/// As wide as the processor is.
+/// Computes fields with the widest vector instructions of the processor.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn fields_together(models: &[SlatsModel; TOGETHER], triangles: f64, each: PerTriangle) -> [FieldTimes; TOGETHER] {
     fields_at_once(models, triangles, each)
 }
 
-/// Fields of machines of the same structure with one GP.
+/// Computes fields of machines with one GP and the same structure.
 #[inline(always)]
 fn fields_at_once<const N: usize>(models: &[SlatsModel; N], triangles: f64, each: PerTriangle) -> [FieldTimes; N] {
     let mut arrays = [Array::idle(); MOST_RENDERERS];
@@ -71,7 +75,7 @@ fn fields_at_once<const N: usize>(models: &[SlatsModel; N], triangles: f64, each
     end(models, arrays, done)
 }
 
-/// Renderers begin with the bottom regions of the field before, where copies are split.
+/// Starts renderers with the bottom regions of the previous field, if copies are split.
 #[inline(always)]
 fn begin<const N: usize>(models: &[SlatsModel; N], arrays: &mut [Array<N>]) {
     if models[0].split {
@@ -80,7 +84,8 @@ fn begin<const N: usize>(models: &[SlatsModel; N], arrays: &mut [Array<N>]) {
     }
 }
 
-/// The copies of a field whose last clump was accepted at an instant, and whose first GP had nothing else to do from another one on.
+/// Computes the copies of a field. `rendered` is the acceptance of the last clump, and `cpu` the time at which the
+/// first GP is free.
 #[inline(always)]
 fn end<const N: usize>(
     models: &[SlatsModel; N],
@@ -91,10 +96,10 @@ fn end<const N: usize>(
     let of_top = models[0].layout(|region| !is_split || region < REGIONS / 2);
     let of_bottom = models[0].layout(|region| is_split && region >= REGIONS / 2);
     let message = Times::each(|i| models[i].message_ns);
-    // The chain of orders is made while the clumps go out, and follows them.
+    // The copy commands are prepared while the clumps are sent, and follow them.
     let ordered = rendered.later(cpu + message);
     let top = copy(models, arrays, ordered, &of_top);
-    // No closure around lanes: what is not inlined is compiled for any processor.
+    // No closure here: a closure that is not inlined would lack the vector instructions.
     let bottom = if is_split {
         let retrace = Times::each(|i| models[i].field_ns);
         Some(copy(models, arrays, retrace.later(ordered + message), &of_bottom))
@@ -104,7 +109,7 @@ fn end<const N: usize>(
     std::array::from_fn(|i| models[i].times(rendered.0[i], top[i], bottom.map(|times| times[i])))
 }
 
-/// Copies by renderers to which the commands for them go out one after the other from an instant on.
+/// Computes copies by renderers that receive their commands one after the other, starting at `from`.
 #[inline(always)]
 fn copy<const N: usize>(
     models: &[SlatsModel; N],
@@ -112,6 +117,7 @@ fn copy<const N: usize>(
     from: Times<N>,
     queues: &[Queue; MOST_RENDERERS],
 ) -> [CopyTimes; N] {
+    // A message with two copies has 22 words: SelectRegion and CopyRegion take 11 words per region.
     let each = Times::<N>::each(|i| models[i].overhead_ns + 2.0 * 11.0 * models[i].word_ns);
     for (renderer, array) in arrays.iter_mut().enumerate() {
         let commanded = from + each * Times::all((renderer + 1) as f64);
@@ -120,7 +126,7 @@ fn copy<const N: usize>(
     copies::make(arrays, queues, Times::each(|i| models[i].region_ns))
 }
 
-/// An experiment with Slats at the analytic level.
+/// Closed form of experiments with Slats.
 pub(super) const CLOSED_FORM: ClosedForm =
     ClosedForm { summary: closed_form, estimates: Estimates { fields_needed, triangles_in_time } };
 
@@ -133,18 +139,21 @@ fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {
     Ok(summary(experiment.length(), &model, times))
 }
 
-/// Fields before the first picture in the window of results. Start-up's pictures, the field in which the host's first view is under way,
-/// and the one in which it is drawn are over by then.
+/// Number of fields before the first picture in the result window.
+///
+/// It covers start-up, the field in which the host's first view is sent, and the field in which this view is drawn.
 const FIELDS_BEFORE: u64 = WARM_UP_PERIODS;
 const _: () = assert!(FIELDS_BEFORE >= WARM_UP_PICTURES as u64 + 2);
 
-/// A field that comes too late does so always.
+/// Returns the number of fields needed, or `None` if fields are late. In the steady state all fields are equally late.
 fn fields_needed(experiment: &Experiment) -> Option<u64> {
     let (_, times) = steady_field(experiment).ok()?;
     times.in_time.then_some(FIELDS_BEFORE + 1)
 }
 
-/// Where all clumps of one GP are alike their mean is exact; else each is taken as the first view sees it.
+/// Returns the steady state of an experiment.
+///
+/// If all clumps of a GP are equal, their mean is exact. Otherwise each clump is computed for the first view.
 fn steady_field(experiment: &Experiment) -> Result<(SlatsModel, FieldTimes), ExperimentError> {
     let pipeline: Slats = pipeline_of(experiment)?;
     let scene = experiment.scene();
@@ -188,7 +197,7 @@ mod tests {
     use pxpl5_gp::GpTiming;
     use pxpl5_machine::MachineConfig;
 
-    /// A machine for Slats with some of its numbers changed.
+    /// Returns the model of a machine for Slats with changed parameters.
     fn model(gps: usize, renderers: usize, numbers: [u64; 5], split: bool) -> SlatsModel {
         let mut config = MachineConfig { n_gps: gps, n_renderers: renderers, ..MachineConfig::slats() };
         let [triangle_ns, message_ns, fifo_words, word_ns, hop_ns] = numbers;
@@ -203,7 +212,10 @@ mod tests {
         SlatsModel::new(&config, program).expect("in range")
     }
 
-    /// The Mig has six structures, without spheres; molecules are one, with spheres. Nothing but the processor is waited for.
+    /// Compares times with and without the cost of structures.
+    ///
+    /// The scene `mig` has six structures without spheres. The scene `molecules` has one structure with spheres. Only
+    /// the processor limits the time.
     #[test]
     fn a_structure_takes_its_time_for_both_eyes() {
         let rendered_ns = |scene: &str, gp: GpTiming| {
@@ -226,7 +238,7 @@ mod tests {
     }
 
     proptest! {
-        /// To the last bit, in any number, and where not all are of the same structure.
+        /// Results are bit-identical for any number of machines, including machines with different structures.
         #[test]
         fn machines_that_are_computed_together_are_what_they_are_alone(
             gps in 1usize..5,

@@ -1,4 +1,4 @@
-//! Policies and warps beside each other: one scene, one walk.
+//! Comparison of all policies and warps over one walk through one scene.
 
 use crate::experiment::WalkOutcome;
 use crate::plan::Plan;
@@ -7,7 +7,7 @@ use crate::tears::Percentiles;
 use pxpl5_scene::Scene;
 use serde::Serialize;
 
-/// Variants and what they set; what their names do not say is as in the plan.
+/// Name and settings of each variant. All other settings come from the plan.
 const VARIANTS: [(&str, &[(&str, &str)]); 9] = [
     ("full", &[("policy", "full")]),
     ("objects", &[("policy", "objects"), ("segment", "off")]),
@@ -20,55 +20,53 @@ const VARIANTS: [(&str, &[(&str, &str)]); 9] = [
     ("cells, no cascade", &[("policy", "cells"), ("segment", "on"), ("warp", "linear"), ("priority.cascade", "off")]),
 ];
 
-/// How many rows [`compare`] gives.
+/// Returns the number of variants that [`compare`] runs.
 #[must_use]
 pub const fn variant_count() -> u64 {
     VARIANTS.len() as u64
 }
 
-/// What a variant costs and how wrong it is.
+/// Cost and image error of one variant.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ComparedRow {
-    /// Policy, cuts, warp.
+    /// Name of the variant: policy, segmentation, warp.
     pub variant: &'static str,
-    /// Pictures a second of each memory.
+    /// Updates per second of each memory.
     pub rates_hz: Vec<f64>,
-    /// Segments drawn a second.
+    /// Segments drawn per second.
     pub draws_per_s: f64,
-    /// Triangles drawn a second.
+    /// Triangles drawn per second.
     pub triangles_per_s: f64,
-    /// Of drawing all in every frame, percent.
+    /// Draws saved relative to drawing everything in every frame, in percent.
     pub saved_percent: f64,
-    /// How far the eye was from where memories were drawn, mean over memories, mm.
+    /// Distance between the eye and the position a memory was drawn from, mean over memories, in mm.
     pub eye_age_mm: f64,
-    /// Widths of cuts as drawn, texels; null where no memories meet in a cut.
+    /// Widths of tears as drawn, in texels. Null in JSON if no memories meet in a cut.
     pub tears: Option<Percentiles>,
-    /// By how much warping turns vertices, texels; null without warping.
+    /// Angles by which warping moves vertices, in texels. Null in JSON without warping.
     pub stretch: Option<Percentiles>,
-    /// Cells dealt anew, or objects that changed memories.
+    /// Number of new assignments of cells to memories, or of objects that changed memories.
     pub changes: u64,
-    /// Retraces at which an update was not whole, all memories together.
+    /// Retraces at which an update was incomplete, summed over all memories.
     pub missed: u64,
 }
 
-/// All variants, and those that could not be walked with the reason: what is done is kept.
+/// Results of all variants, including variants that failed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ArpComparison {
-    /// Name and version of the record's layout.
     pub schema: &'static str,
-    /// Name of the scene.
     pub scene: String,
-    /// Length of the walk, frames.
+    /// Length of the walk in frames.
     pub frames: u64,
-    /// Speed of the walk.
+    /// Speed of the walk in m/s.
     pub m_per_s: f64,
-    /// Variants that were walked.
+    /// Results of the variants that succeeded.
     pub rows: Vec<ComparedRow>,
-    /// The others: variant and reason.
+    /// Variants that failed, with the reason.
     pub failed: Vec<(&'static str, String)>,
 }
 
-/// Walks with every variant; `finished` hears how many of them are done.
+/// Walks with every variant. Calls `finished` with the number of variants done and the total.
 #[must_use]
 pub fn compare(scene: &Scene, plan: &Plan, finished: impl Fn(u64, u64)) -> ArpComparison {
     let mut comparison = ArpComparison {
@@ -80,6 +78,7 @@ pub fn compare(scene: &Scene, plan: &Plan, finished: impl Fn(u64, u64)) -> ArpCo
         failed: Vec::new(),
     };
     for (done, (variant, choices)) in (1..).zip(VARIANTS) {
+        // Failed variants are reported, and the comparison continues.
         let mut plan = plan.clone();
         let chosen = choices.iter().try_for_each(|(path, value)| plan.set(path, value, variant));
         match chosen.and_then(|()| WalkOutcome::of(scene, &plan, |_, _| {})) {

@@ -1,4 +1,4 @@
-//! What a display memory shows.
+//! Contents of a display memory.
 
 use crate::world::World;
 use address_recalculation::FaceSet;
@@ -6,21 +6,21 @@ use cube_faces::{CubeView, Drawing};
 use glam::DVec3;
 use priority_rendering::{Dealing, PriorityError, RegionWarp};
 
-/// What a display memory was drawn from: enough to draw its faces when somebody looks.
+/// The data a display memory was drawn from. Its faces can be drawn later when they are read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Content {
-    /// The place of the eye.
+    /// Position of the eye.
     pub eye: DVec3,
-    /// The frame at whose beginning the eye was there.
+    /// Frame at whose start the eye had this position.
     pub frame: u64,
-    /// The segments in it.
+    /// Indices of the segments in the memory.
     pub segments: Vec<usize>,
-    /// How vertices are moved, where they are: the warp, how cells were dealt, and which memory this is.
+    /// Displacement of vertices, if any: the warp, the assignment of cells, and the number of this memory.
     pub warp: Option<(RegionWarp, Dealing, usize)>,
 }
 
 impl Content {
-    /// Where a vertex is drawn.
+    /// Returns the position at which a vertex is drawn, after warping.
     #[must_use]
     pub fn place(&self, vertex: DVec3) -> DVec3 {
         self.warp
@@ -28,25 +28,25 @@ impl Content {
             .map_or(vertex, |(warp, dealing, memory)| warp.moved(vertex, dealing.to_slower(vertex, *memory)))
     }
 
-    /// The direction in which a vertex is drawn, not of unit length.
+    /// Returns the direction in which a vertex is drawn. The vector does not have unit length.
     #[must_use]
     pub fn direction(&self, vertex: DVec3) -> DVec3 {
         self.place(vertex) - self.eye
     }
 
-    /// Draws it into faces.
+    /// Draws the memory's segments into faces.
     pub fn draw(&self, world: &World, view: &CubeView, faces: &mut FaceSet) -> Drawing {
         view.draw(self.eye, world.triangles(&self.segments, |vertex| self.place(vertex)), faces)
     }
 
-    /// Triangles of an update.
+    /// Returns the number of triangles of one update.
     #[must_use]
     pub fn triangles(&self, world: &World) -> u64 {
         self.segments.iter().map(|segment| world.segments[*segment].triangles.len() as u64).sum()
     }
 }
 
-/// The warp of a memory towards its slower neighbour; `None` where there is no displacement.
+/// Returns the warp of a memory towards its slower neighbour, between the two eye positions `places`.
 pub(crate) fn warp(
     settings: &crate::settings::Settings,
     dealing: &Dealing,
@@ -57,7 +57,7 @@ pub(crate) fn warp(
     Ok(Some((warp, *dealing, memory)))
 }
 
-/// Angle between two directions, radians; small ones as exact as large ones.
+/// Returns the angle between two directions in radians. The formula is accurate for small angles too.
 pub(crate) fn angle(a: DVec3, b: DVec3) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
 }

@@ -1,4 +1,4 @@
-//! What can be wrong with an experiment.
+//! Errors in the definition of an experiment.
 
 use address_recalculation::ArpError;
 use cube_faces::DepthError;
@@ -6,61 +6,61 @@ use priority_rendering::PriorityError;
 use thiserror::Error;
 use tracking::SettingError;
 
-/// Why an experiment cannot be made.
+/// The reason why an experiment cannot run.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ExperimentError {
-    /// A scene with something that faces cannot show.
+    /// The scene contains something that faces cannot show.
     #[error("scene {scene}: expected {expected}, found {found}")]
     Scene {
-        /// Its name.
+        /// Name of the scene.
         scene: String,
-        /// What every part of it must be.
+        /// The requirement for every part of the scene.
         expected: &'static str,
-        /// The part that is something else.
+        /// The part that violates the requirement.
         found: String,
     },
-    /// A number of the policies.
+    /// A parameter of a policy is invalid.
     #[error(transparent)]
     Priority(#[from] PriorityError),
-    /// A number of the display, its lens or an orientation.
+    /// A parameter of the display, its lens or an orientation is invalid.
     #[error(transparent)]
     Display(#[from] ArpError),
-    /// Near and far.
+    /// The near or far distance is invalid.
     #[error(transparent)]
     Depth(#[from] DepthError),
-    /// A walk that there cannot be.
+    /// The walk is impossible, for example because its path is too short.
     #[error(transparent)]
     Motion(#[from] SettingError),
-    /// A renderer that draws nothing.
+    /// The source's rate is not positive.
     #[error("source.triangles_per_s: expected more than 0, found {0}")]
     Rate(f64),
-    /// There is no setting of this path.
+    /// No setting has the requested path.
     #[error("{place}: there is no key `{found}`; did you mean `{nearest}`?")]
     UnknownKey {
-        /// The option or file that named it.
+        /// The option or file that contains the path.
         place: String,
-        /// The path that nobody knows.
+        /// The requested path.
         found: String,
-        /// The nearest valid one.
+        /// The valid path that is most similar to the requested one.
         nearest: String,
     },
-    /// A setting was given a value that it cannot have.
+    /// A setting has an invalid value.
     #[error("{place}: {key}: expected {expected}, found {found}")]
     Value {
-        /// The option or file that gave it.
+        /// The option or file that contains the value.
         place: String,
         /// Path of the setting.
         key: String,
-        /// What values it takes, in words.
+        /// Description of the valid values.
         expected: String,
-        /// The value that was given.
+        /// The invalid value.
         found: String,
     },
 }
 
 impl ExperimentError {
-    /// Whether the scene is at fault and not what was asked for.
+    /// Returns true if the error lies in the scene.
     #[must_use]
     pub const fn is_of_scene(&self) -> bool {
         matches!(self, Self::Scene { .. })

@@ -1,4 +1,4 @@
-//! A walk through a scene, and what is seen at its end.
+//! A complete experiment: a walk through a scene, and the view at its end.
 
 use crate::error::ExperimentError;
 use crate::hall::{path_of, scaled};
@@ -14,48 +14,47 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use tracking::motion::Walk;
 
-/// A report with what it is of.
+/// A report together with the scene and settings of the walk.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WalkReport {
-    /// What was counted and seen.
+    /// Counters of the walk, and results of the view at its end.
     #[serde(flatten)]
     pub report: Report,
-    /// Name of the scene that was walked through.
     pub scene: String,
-    /// Triangles of all segments.
+    /// Number of triangles in all segments.
     pub triangles: u64,
-    /// Segments that cells cut the scene into.
+    /// Number of segments into which cells cut the scene.
     pub segments: u64,
-    /// Length of the walk, frames of the fastest memory.
+    /// Length of the walk in frames of the fastest memory.
     pub frames: u64,
-    /// Speed of the walk.
+    /// Speed of the walk in m/s.
     pub m_per_s: f64,
-    /// Paths that were set, and to what.
+    /// Settings that were given explicitly, by path.
     pub settings: BTreeMap<String, String>,
 }
 
-/// A walk that was taken.
+/// Inputs and results of a completed walk.
 #[derive(Clone, Debug)]
 pub struct WalkOutcome {
-    /// The scene as it was cut.
+    /// The scene after cutting.
     pub world: World,
-    /// The way through it.
+    /// Path through the scene.
     pub path: Walk,
-    /// What was drawn.
     pub settings: Settings,
-    /// What was counted, frame by frame.
+    /// Counters of the walk.
     pub tally: WalkTally,
-    /// The same as a report, with a look at the end along the path.
+    /// Report of the walk, including a view along the path at its end.
     pub report: WalkReport,
 }
 
 impl WalkOutcome {
-    /// Walks; `finished` hears how many of all frames are done.
+    /// Runs a walk. Calls `finished` with the number of frames done and the total.
     ///
     /// # Errors
     ///
-    /// [`ExperimentError`] for settings or a scene that do not suit.
+    /// [`ExperimentError`] if a setting is invalid or the scene is not supported.
     pub fn of(scene: &Scene, plan: &Plan, finished: impl Fn(u64, u64)) -> Result<Self, ExperimentError> {
+        // Prepare the scene, the path and the segments.
         let settings = plan.settings()?;
         let scaled = (plan.walk.hall_scale != 1.0).then(|| scaled(scene, plan.walk.hall_scale)).transpose()?;
         let scene = scaled.as_ref().unwrap_or(scene);
@@ -63,6 +62,7 @@ impl WalkOutcome {
         let world = World::new(scene, settings.numbers.cell_m)?;
         let frames = plan.walk.frames;
         let eye = at_frames(&path, plan.walk.m_per_s, settings.numbers.frame_hz);
+        // Walk, and draw the view at the end.
         let (simulation, tally) = walked(&world, &settings, frames, |frame| {
             finished(frame + 1, frames);
             eye(frame)
@@ -71,6 +71,7 @@ impl WalkOutcome {
         let (_, stats) =
             faces.seen(ahead(&path, plan.walk.m_per_s * (frames - 1) as f64 / settings.numbers.frame_hz))?;
         let looked = Looked { stats, drawing: faces.drawing };
+        // Collect the report.
         let report = WalkReport {
             report: Report::of(&world, &settings, &tally, Some(&looked)),
             scene: scene.name().to_owned(),
@@ -84,7 +85,7 @@ impl WalkOutcome {
         Ok(Self { path, settings, tally, report, world })
     }
 
-    /// Triangles drawn a second, all memories together.
+    /// Returns the number of triangles drawn per second, summed over all memories.
     #[must_use]
     pub fn triangles_per_s(&self) -> f64 {
         let drawn: u64 = self.tally.memories.iter().map(|memory| memory.triangles_drawn).sum();

@@ -1,4 +1,4 @@
-//! Halls of another size, and other routes through them.
+//! Scaling of a hall, and routes through it.
 
 use crate::error::ExperimentError;
 use glam::{DVec3, Vec3};
@@ -6,36 +6,37 @@ use pxpl5_scene::Scene;
 use serde::{Deserialize, Serialize};
 use tracking::motion::Walk;
 
-/// The way through a hall.
+/// A route through a hall.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Route {
-    /// The scene's own path.
+    /// The path of the scene.
     #[default]
     Scene,
-    /// To and fro along z through the middle of the scene.
+    /// Back and forth along z through the middle of the scene.
     Straight,
-    /// To and fro from corner to corner.
+    /// Back and forth from corner to corner.
     Diagonal,
-    /// Around the middle, halfway to the sides.
+    /// Around the middle, halfway to the walls.
     Round,
 }
 
 impl Route {
-    /// All, by their names on the command line.
+    /// All routes with their names on the command line.
     pub const ALL: [(&str, Self); 4] =
         [("scene", Self::Scene), ("straight", Self::Straight), ("diagonal", Self::Diagonal), ("round", Self::Round)];
 }
 
-/// A part of the hall's side that routes keep from its walls.
+/// Distance between routes and walls, as a fraction of the hall's side.
 const MARGIN: f64 = 0.015;
 
-/// The path through a scene on a route.
+/// Returns the path of a route through a scene.
 ///
 /// # Errors
 ///
-/// [`ExperimentError::Scene`] for a scene without a path, which tells the height of the eye.
+/// [`ExperimentError::Scene`] if the scene has no path of its own, which defines the height of the eye.
 pub fn path_of(scene: &Scene, route: Route) -> Result<Walk, ExperimentError> {
+    // The scene's own path defines the height of the eye.
     let own: Vec<DVec3> = scene.path().iter().map(|corner| corner.as_dvec3()).collect();
     if own.len() < 2 {
         return Err(ExperimentError::Scene {
@@ -44,6 +45,7 @@ pub fn path_of(scene: &Scene, route: Route) -> Result<Walk, ExperimentError> {
             found: "none".to_owned(),
         });
     }
+    // All other routes are derived from the bounding box of the scene.
     let places = || scene.vertices().iter().map(|vertex| vertex.position.as_dvec3());
     let low = places().fold(DVec3::INFINITY, DVec3::min);
     let high = places().fold(DVec3::NEG_INFINITY, DVec3::max);
@@ -58,18 +60,19 @@ pub fn path_of(scene: &Scene, route: Route) -> Result<Walk, ExperimentError> {
     Ok(Walk::new(&corners, 1.0)?)
 }
 
-/// A scene whose plan is so many times as large, path included; heights stay.
+/// Returns a scene whose length, width and path are multiplied by `factor`. Heights stay the same.
 ///
 /// # Errors
 ///
-/// [`ExperimentError::Scene`] for what is no scene any more, such as coordinates that are too large.
+/// [`ExperimentError::Scene`] if the result is invalid, for example because coordinates are too large.
 pub fn scaled(scene: &Scene, factor: f64) -> Result<Scene, ExperimentError> {
     let mut parts = scene.clone().into_parts();
     let factor = factor as f32;
     let on_plan = |place: Vec3| Vec3::new(place.x * factor, place.y, place.z * factor);
+    // Scale the vertices, spheres and path in x and z.
     for vertex in &mut parts.vertices {
         vertex.position = on_plan(vertex.position);
-        // A normal stays upright on its surface: it is scaled by the inverse.
+        // Normals scale by the inverse, so that they stay perpendicular to the surface.
         let normal = Vec3::new(vertex.normal.x / factor, vertex.normal.y, vertex.normal.z / factor);
         vertex.normal = normal.normalize_or(vertex.normal);
     }
@@ -89,7 +92,7 @@ mod tests {
     use super::*;
     use pxpl5_scene::builtin;
 
-    /// The gallery is 40 m wide and 4 m high; its path begins at (-16, -15).
+    /// The built-in gallery is 40 m wide and 4 m high. Its path begins at (-16, -15).
     #[test]
     fn a_scaled_hall_keeps_its_height_and_its_eyes() {
         let scene = builtin("gallery").expect("built in");
@@ -113,7 +116,7 @@ mod tests {
                 );
             }
         }
-        // To and fro between 0.6 m before both walls.
+        // The path leads back and forth between points 0.6 m from both walls.
         let straight = path_of(&scene, Route::Straight).expect("a path");
         assert!((straight.length_m() - 2.0 * 38.8).abs() < 1e-6, "{}", straight.length_m());
         assert!(path_of(&builtin("mig").expect("built in"), Route::Straight).is_err(), "no eyes");

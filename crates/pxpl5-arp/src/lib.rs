@@ -1,4 +1,4 @@
-//! Experiments on address recalculation fed by an ideal renderer: a walk, its report, the papers' figures, pictures.
+//! Experiments on address recalculation with an ideal renderer: walks, reports, the papers' figures and pictures.
 //!
 //! ```text
 //!  Scene ---------> World --+                     +--> WalkTally --> Report, comparison, figures
@@ -8,22 +8,25 @@
 //!
 //! # Behaviour
 //!
-//! - [`Plan`] holds settings by path (`priority.cell_m=5`), with what follows from others where it is not said.
+//! - [`Plan`] holds settings by path (`priority.cell_m=5`). Settings that are not given follow from the others.
 //! - [`World`] cuts a scene at the borders of cells, once.
-//! - [`Simulation::frame`] asks the policy what is due for a place of the eye, and hands it to the source: an ideal one has drawn it
-//!   in the same frame; one that needs time serves memories in rising order, shows what was whole at the retrace in the frame after,
-//!   and counts what was not.
-//! - A memory holds what it was drawn from ([`Content`]); faces are drawn when somebody looks ([`Faces`]).
-//! - [`walk()`] counts updates, draws and tears of a whole walk, [`Report`] says them as JSON; [`WalkOutcome`] is all of it
-//!   for a plan, [`compare()`] for every policy and warp.
-//! - [`figures`] has the papers' figures beside ours, [`pictures`] what people look at.
+//! - [`Simulation::frame`] asks the policy which memories are due for a position of the eye, and passes the work to the
+//!   source.
+//! - An ideal source draws within the same frame. A timed source serves memories in ascending order. It shows complete
+//!   updates in the next frame and counts incomplete ones.
+//! - A memory holds the data it is drawn from ([`Content`]). Its faces are drawn only when they are read ([`Faces`]).
+//! - [`walk()`] counts the updates, draws and tears of a whole walk. [`Report`] writes them as JSON.
+//! - [`WalkOutcome`] holds the results of one plan. [`compare()`] walks with every policy and warp.
+//! - [`figures`] compares the papers' figures with the simulated ones. [`pictures`] draws pictures.
 //!
-//! Units: metres, seconds, radians unless a name says otherwise. A frame is 1/60 s. The same input gives the same bits on every host.
+//! Units are metres, seconds and radians unless a name says otherwise. A frame is 1/60 s. Results are bit-identical on
+//! every host.
 //!
 //! # Not here
 //!
-//! Trackers and hosts: the eye is known at the beginning of each frame, its orientation at the latch. Latencies begin there; those of
-//! `pxpl5 run` have a tracker and a host. Pixel-Planes 5 as a source.
+//! Trackers and the host: the eye's position is known at the start of each frame, and its orientation at the latch.
+//! Latencies begin there, while latencies of `pxpl5 run` include a tracker and a host. Pixel-Planes 5 is not available
+//! as a source.
 
 mod compare;
 mod content;

@@ -1,4 +1,4 @@
-//! What the eye sees: faces of what memories show, looked up through the display.
+//! The view of the eye: faces are drawn from memories and then sampled by the display.
 
 use crate::error::ExperimentError;
 use crate::simulation::Simulation;
@@ -7,28 +7,29 @@ use cube_faces::Drawing;
 use glam::DQuat;
 use image::{Rgb, RgbImage};
 
-/// Faces of all memories, drawn because somebody looks.
+/// Faces of all memories, drawn on demand.
 #[derive(Clone, Debug)]
 pub struct Faces {
-    /// Of each memory, empty before its first picture.
+    /// Faces of each memory, empty before its first update.
     pub memories: Vec<FaceSet>,
-    /// What was drawn.
+    /// Statistics of the drawing.
     pub drawing: Drawing,
     config: ArpConfig,
     background: u32,
 }
 
 impl Faces {
-    /// Draws what memories show.
+    /// Draws the current contents of all memories.
     ///
     /// # Errors
     ///
-    /// As [`crate::Settings::view`].
+    /// Same as [`crate::Settings::view`].
     pub fn of(simulation: &Simulation<'_>) -> Result<Self, ExperimentError> {
         let settings = simulation.settings();
         let view = settings.view()?;
         let mut drawing = Drawing::default();
         let mut memories = Vec::new();
+        // Memories without an update stay empty.
         for content in simulation.shown() {
             let mut faces = FaceSet::new(view.geometry.texels, settings.display.format());
             if let Some(content) = content {
@@ -40,24 +41,24 @@ impl Faces {
         Ok(Self { memories, drawing, config: ArpConfig { background, ..settings.display.clone() }, background })
     }
 
-    /// Colour of what nothing is drawn on.
+    /// Returns the background colour, 0x00RRGGBB.
     #[must_use]
     pub const fn background(&self) -> u32 {
         self.background
     }
 
-    /// The display with another lens.
+    /// Returns the same faces viewed through another lens.
     #[must_use]
     pub fn through(mut self, lens: address_recalculation::Lens) -> Self {
         self.config.lens = lens;
         self
     }
 
-    /// The picture for an orientation, latched once for all of it.
+    /// Returns the picture for one orientation, which is latched once for the whole picture.
     ///
     /// # Errors
     ///
-    /// [`ExperimentError::Display`] for a lens or an orientation that there cannot be.
+    /// [`ExperimentError::Display`] if the lens or the orientation is invalid.
     pub fn seen(&self, orientation: DQuat) -> Result<(RgbImage, LookStats), ExperimentError> {
         let table = self.config.table()?;
         let words = Orientation::from_quaternion(orientation.to_array())?.words(self.config.timing.matrix_bits);
@@ -66,11 +67,12 @@ impl Faces {
         Ok((picture(table.width(), &pixels, |colour| *colour), stats))
     }
 
-    /// Which memory won each pixel, row by row; `None` where all are empty.
+    /// Returns the picture's width and, for each pixel by rows, the memory that won. `None` if all memories are empty
+    /// there.
     ///
     /// # Errors
     ///
-    /// As [`Faces::seen`].
+    /// Same as [`Faces::seen`].
     pub fn winners(&self, orientation: DQuat) -> Result<(u32, Vec<Option<u8>>), ExperimentError> {
         let table = self.config.table()?;
         let words = Orientation::from_quaternion(orientation.to_array())?.words(self.config.timing.matrix_bits);
@@ -84,13 +86,13 @@ impl Faces {
     }
 }
 
-/// A picture of rows of this width.
+/// Returns a picture of the given width from pixels in row order.
 pub(crate) fn picture<T>(width: u32, pixels: &[T], colour: impl Fn(&T) -> u32) -> RgbImage {
     let height = pixels.len() as u32 / width;
     RgbImage::from_fn(width, height, |x, y| rgb(colour(&pixels[(y * width + x) as usize])))
 }
 
-/// A colour 0x00RRGGBB.
+/// Converts a colour from 0x00RRGGBB.
 pub(crate) fn rgb(colour: u32) -> Rgb<u8> {
     let [_, red, green, blue] = colour.to_be_bytes();
     Rgb([red, green, blue])

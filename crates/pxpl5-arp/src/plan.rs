@@ -1,4 +1,4 @@
-//! What a walk is made of, by path.
+//! Settings of a walk, by path.
 
 use crate::error::ExperimentError;
 use crate::hall::Route;
@@ -9,18 +9,18 @@ use priority_rendering::Falloff;
 use std::collections::BTreeMap;
 
 parameters::parameter_table! {
-    /// How fast and how long somebody walks.
+    /// Speed and length of a walk.
     pub struct WalkNumbers {
         /// Speed along the scene's path.
         m_per_s: f64 = 1.0, "m/s", Published, 0.0..=3.0 in 0.0..=100.0, "CPR05 4.2: a walker";
         /// Length of the walk.
         frames: 1_800, "frames", Assumed, 60..=100_000 in 1..=1_000_000, "half a minute; table 1 is compared over two minutes";
-        /// Factor of the length and the width of scene and path; heights stay.
+        /// Factor of the length and the width of scene and path. Heights stay the same.
         hall_scale: f64 = 1.0, "1", Assumed, 0.25..=4.0 in 0.01..=100.0, "not printed; 0.5 makes the gallery 20 m wide, eight cells of 2.5 m";
     }
 }
 
-/// Paths of choices, which stand in no table.
+/// Paths of settings that are choices instead of numbers.
 const CHOICES: [&str; 10] = [
     "policy",
     "segment",
@@ -34,13 +34,13 @@ const CHOICES: [&str; 10] = [
     "arp.order",
 ];
 
-/// A walk that can be taken: settings by path over defaults that depend on each other.
+/// Settings of a walk by path, with defaults that depend on each other.
 ///
-/// What is not said follows: cascade is on where cells are warped, objects are cut under `cells` alone.
-/// `priority.threshold` in pixels or texels goes before `priority.theta_deg`.
+/// A walk with warped cells has a cascade by default. Only the policy `cells` cuts objects by default.
+/// `priority.threshold` in pixels or texels overrides `priority.theta_deg`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// How fast and how long.
+    /// Speed and length of the walk.
     pub walk: WalkNumbers,
     chosen: Settings,
     is_segmented: Option<bool>,
@@ -50,12 +50,12 @@ pub struct Plan {
     said: BTreeMap<String, String>,
 }
 
-/// A threshold in pixels, which becomes an angle when the display is known.
+/// A threshold in pixels or texels. It becomes an angle when the display is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum ThresholdChoice {
-    /// Of the display: its horizontal angle over its pixels, mean over a line.
+    /// Pixels of the display. One pixel is the horizontal angle divided by the number of pixels of a line.
     Pixels(f64),
-    /// Of a face: 90 degrees over those of its edge, in the mean.
+    /// Texels of a face. One texel is 90 degrees divided by the texels of an edge.
     Texels(f64),
 }
 
@@ -68,7 +68,7 @@ impl ThresholdChoice {
     }
 }
 
-/// `2px` or `2texels`.
+/// Parses a threshold such as `2px` or `2texels`.
 fn threshold(text: &str) -> Result<ThresholdChoice, String> {
     let expected = || "pixels of the display as 2px, or texels of a face as 2texels".to_owned();
     let number = |text: &str| text.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
@@ -79,11 +79,11 @@ fn threshold(text: &str) -> Result<ThresholdChoice, String> {
     texels.and_then(number).map(ThresholdChoice::Texels).ok_or_else(expected)
 }
 
-/// A table and the first part of its paths.
+/// A parameter table and the prefix of its paths.
 type NamedTable<'a> = (&'static str, &'a dyn ParameterTable);
 
 impl Plan {
-    /// Cells, cut and warped, an ideal renderer, half a minute at 1 m/s.
+    /// Returns the default plan: cells, cut and warped, an ideal renderer, half a minute at 1 m/s.
     #[must_use]
     pub fn usual() -> Self {
         Self {
@@ -106,14 +106,14 @@ impl Plan {
         ]
     }
 
-    /// All paths that [`Self::set`] knows.
+    /// Returns all paths that [`Self::set`] accepts.
     #[must_use]
     pub fn keys(&self) -> Vec<String> {
         let numbers = self.numbers().into_iter().map(|(path, _)| path);
         CHOICES.iter().map(|key| (*key).to_owned()).chain(numbers).collect()
     }
 
-    /// All numbers with their paths, as they are now.
+    /// Returns all numeric settings by path, with their current values.
     #[must_use]
     pub fn numbers(&self) -> Vec<(String, Entry)> {
         let tables = self.tables().into_iter();
@@ -121,17 +121,17 @@ impl Plan {
         all.map(|(prefix, entry)| (format!("{prefix}.{}", entry.info.name), entry)).collect()
     }
 
-    /// What was said, by path.
+    /// Returns the settings that were given explicitly, by path.
     #[must_use]
     pub const fn said(&self) -> &BTreeMap<String, String> {
         &self.said
     }
 
-    /// Sets a path to a value; `place` says in errors where it was given, such as `--set`.
+    /// Sets the setting at a path. `place` names the source of the value in errors, such as `--set`.
     ///
     /// # Errors
     ///
-    /// [`ExperimentError::UnknownKey`] with the nearest path, or [`ExperimentError::Value`].
+    /// [`ExperimentError::UnknownKey`], with the most similar path, or [`ExperimentError::Value`].
     pub fn set(&mut self, path: &str, text: &str, place: &str) -> Result<(), ExperimentError> {
         let done = match path {
             "policy" => choose(&mut self.chosen.policy, &PolicyKind::ALL, text),
@@ -147,15 +147,16 @@ impl Plan {
             _ => self.set_number(path, text, place)?,
         };
         done.map_err(|expected| wrong(path, text, place, expected))?;
+        // Record the setting for the report.
         self.said.insert(path.to_owned(), text.to_owned());
         Ok(())
     }
 
-    /// Sets `path=value`, as after `--set`.
+    /// Sets a setting from text of the form `path=value`, as after `--set`.
     ///
     /// # Errors
     ///
-    /// As [`Self::set`], and [`ExperimentError::Value`] without an equals sign.
+    /// Same as [`Self::set`], and [`ExperimentError::Value`] without an equals sign.
     pub fn assign(&mut self, assignment: &str, place: &str) -> Result<(), ExperimentError> {
         match assignment.split_once('=') {
             Some((path, text)) => self.set(path.trim(), text.trim(), place),
@@ -163,7 +164,7 @@ impl Plan {
         }
     }
 
-    /// The same behind a lens that was read from a file of this name.
+    /// Returns the plan with a lens that was read from the file `name`.
     #[must_use]
     pub fn behind(mut self, lens: Lens, name: &str) -> Self {
         self.chosen.display.lens = lens;
@@ -171,25 +172,25 @@ impl Plan {
         self
     }
 
-    /// Size and angle of the picture, for which a lens may have a table.
+    /// Returns the size and angle of the picture. A lens table must match them.
     #[must_use]
     pub fn picture(&self) -> Picture {
         self.chosen.display.picture()
     }
 
-    /// The way through the scene.
     #[must_use]
     pub const fn route(&self) -> Route {
         self.route
     }
 
-    /// The settings, with what was not said.
+    /// Returns the complete settings, with defaults for everything that was not given.
     ///
     /// # Errors
     ///
-    /// As [`Settings::check`].
+    /// Same as [`Settings::check`].
     pub fn settings(&self) -> Result<Settings, ExperimentError> {
         let mut settings = self.chosen.clone();
+        // Fill in the defaults that depend on other settings.
         let is_of_cells = settings.policy == PolicyKind::Cells;
         settings.is_segmented = self.is_segmented.unwrap_or(is_of_cells);
         let is_warped = is_of_cells && settings.is_segmented && settings.falloff != Falloff::None;
@@ -204,13 +205,18 @@ impl Plan {
         Ok(settings)
     }
 
-    /// A number of a table, or that there is none of this path; what was expected of a value that it cannot have.
+    /// Sets a number of a table.
+    ///
+    /// # Errors
+    ///
+    /// The outer error reports an unknown path. The inner error describes the valid values.
     fn set_number(&mut self, path: &str, text: &str, place: &str) -> Result<Result<(), String>, ExperimentError> {
         let Some((_, Entry { info, value: now })) = self.numbers().into_iter().find(|(key, _)| key == path) else {
             let keys = self.keys();
             let nearest = nearest(path, keys.iter().map(String::as_str)).unwrap_or_default().to_owned();
             return Err(ExperimentError::UnknownKey { place: place.to_owned(), found: path.to_owned(), nearest });
         };
+        // Parse the value as the type of the parameter.
         let is_real = matches!(now, Value::Real(_));
         let value = if is_real { text.parse().map(Value::Real).ok() } else { text.parse().map(Value::Whole).ok() };
         let Some(value) = value.filter(|value| Entry { info, value: *value }.is_within_limits()) else {
@@ -225,7 +231,7 @@ impl Plan {
             _ => &mut self.chosen.display.scan,
         };
         let done = table.set(name, value).map_err(|_| expected_of(info));
-        // The policy's memories are the display's.
+        // The policy and the display must have the same number of memories.
         if let ("priority.memories" | "arp.display_memories", Value::Whole(memories)) = (path, value) {
             self.chosen = self.chosen.clone().with_memories(memories);
         }
@@ -254,7 +260,7 @@ fn is_on(text: &str) -> Result<bool, String> {
     }
 }
 
-/// `ideal`, or the triangles that are drawn in a second.
+/// Parses `ideal`, or a number of triangles per second.
 fn source(text: &str) -> Result<SourceKind, String> {
     if text == "ideal" {
         return Ok(SourceKind::Ideal);

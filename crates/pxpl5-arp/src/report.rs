@@ -1,4 +1,4 @@
-//! The object `arp` of a report, schema `pxpl5-arp/1`. What was not judged is null.
+//! The object `arp` of a report, with schema `pxpl5-arp/1`. Results that were not evaluated are null.
 
 use crate::settings::{PolicyKind, Settings};
 use crate::tears::Percentiles;
@@ -14,114 +14,117 @@ use std::collections::BTreeMap;
 /// Name and version of the record's layout.
 pub const SCHEMA: &str = "pxpl5-arp/1";
 
-/// What came of a walk.
+/// Results of a walk.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
-    /// [`SCHEMA`].
     pub schema: &'static str,
     /// Texels along the edge of a face.
     pub face_texels: u64,
-    /// Before what the orientation is latched: field, line or pixel.
+    /// Event before which the orientation is latched: `field`, `line` or `pixel`.
     pub latch: &'static str,
-    /// From the latch to the light, ns.
+    /// Time from the latch to the light, in ns.
     pub pipeline_ns: f64,
-    /// Matrices that came; null without a tracker.
+    /// Matrices that arrived. Null without a tracker.
     pub matrix_loads: Option<u64>,
-    /// Matrices that were no rotations; null without a tracker.
+    /// Matrices that were not rotations. Null without a tracker.
     pub matrix_refused: Option<u64>,
-    /// Footprints with a texel on another face; null where nobody looked.
+    /// Footprints with a texel on another face. Null if no view was drawn.
     pub footprints_split: Option<u64>,
-    /// Footprints with two texels in a bank; null where nobody looked.
+    /// Footprints with two texels in one bank. Null if no view was drawn.
     pub bank_conflicts: Option<u64>,
-    /// Each display memory.
     pub memories: Vec<MemoryReport>,
-    /// The policy.
+    /// Results of the policy.
     pub priority: PriorityReport,
-    /// Cuts between memories, in texels of 90 degrees over a face's edge; null where no memories meet.
+    /// Widths of tears between memories, in texels (90 degrees divided by the texels of a face's edge). Null if no
+    /// memories meet.
     pub tears_px: TearsReport,
-    /// From an orientation that is known at the latch to the light, ms, mean over all pixels. A tracker and a host are no part of a walk.
+    /// Time from the latch of a known orientation to the light, in ms, mean over all pixels. Excludes tracker and host.
     pub rotation_latency_ms: Latency,
-    /// From the beginning of the frame in which the eye was there to the light of what memory 0 shows, ms; null without a picture.
+    /// Latency of translation through memory 0, in ms. Null without an update.
+    ///
+    /// It lasts from the start of the frame with the drawn eye position to the light.
     pub translation_latency_ms: Latency,
-    /// Mean difference of the eye's picture from a redraw for the same pose, pixels; null where nobody looked.
+    /// Mean difference between the view and a direct rendering of the same pose, in pixels. Null if no view was drawn.
     pub sampling_error_px: Option<f64>,
 }
 
-/// A display memory.
+/// Results of one display memory.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MemoryReport {
-    /// Pictures a second.
+    /// Updates per second.
     pub updates_hz: f64,
-    /// Frames from one picture to the next in the mean; null without any.
+    /// Mean number of frames between updates. Null without updates.
     pub period_frames: Option<f64>,
-    /// Segments in it, mean over frames.
+    /// Segments in the memory, mean over frames.
     pub segments: f64,
-    /// Triangles of an update, mean; null without any.
+    /// Triangles per update, mean. Null without updates.
     pub triangles: Option<f64>,
-    /// Regions that came over a ring; null with an ideal source, which has none.
+    /// Regions that arrived over a ring. Null with an ideal source, which has no regions.
     pub regions_copied: Option<u64>,
-    /// Retraces at which an update was not whole.
+    /// Retraces at which an update was incomplete.
     pub missed: u64,
-    /// How far the eye was from where it was drawn, mean, mm.
+    /// Mean distance between the eye and the position the memory was drawn from, in mm.
     pub eye_age_mm: f64,
-    /// From the beginning of the frame in which the eye was where it was drawn from to the light, ms, mean over frames.
+    /// Latency of translation in ms, mean over frames.
+    ///
+    /// It lasts from the start of the frame with the drawn eye position to the light.
     pub translation_latency_ms: Latency,
-    /// Bytes of both buffers.
+    /// Size of both buffers, in bytes.
     pub bytes: u64,
 }
 
-/// A policy.
+/// Results of a policy.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PriorityReport {
-    /// full, objects or cells.
+    /// Name of the policy: `full`, `objects` or `cells`.
     pub policy: &'static str,
-    /// The angle by which an image may be wrong, degrees; null where everything is drawn in every frame.
+    /// Largest accepted image error, in degrees. Null if everything is drawn in every frame.
     pub theta_deg: Option<f64>,
-    /// Side of a cell, m; null without cells.
+    /// Side of a cell in metres. Null without cells.
     pub cell_m: Option<f64>,
-    /// Segments drawn a second.
+    /// Segments drawn per second.
     pub draws_per_s: f64,
-    /// Of drawing all in every frame, percent.
+    /// Draws saved relative to drawing everything in every frame, in percent.
     pub saved_percent: f64,
-    /// Objects that changed memories; null without the policy that has them.
+    /// Objects that changed memories. Null unless the policy is `objects`.
     pub moved_objects: Option<u64>,
-    /// How often cells were dealt anew; null without cells.
+    /// Number of new assignments of cells to memories. Null without cells.
     pub redeals: Option<u64>,
-    /// Faces that a triangle reaches, mean of the last pictures; null where nobody looked.
+    /// Faces that a triangle covers, mean of the last updates. Null if no view was drawn.
     pub faces_per_primitive: Option<f64>,
 }
 
 /// Widths of tears.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TearsReport {
-    /// As they would be without warping.
+    /// Widths without warping.
     pub before: Option<Percentiles>,
-    /// As drawn.
+    /// Widths as drawn.
     pub after: Option<Percentiles>,
-    /// By how much warping turns the most turned vertex of a frame.
+    /// Largest angle by which warping moves a vertex in each frame.
     pub stretch: Option<Percentiles>,
 }
 
 /// A latency and its parts.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Latency {
-    /// Sum of all parts, ms.
+    /// Sum of all parts in ms.
     pub total: Option<f64>,
-    /// Parts by name, ms; null what was not simulated.
+    /// Parts by name in ms. Null for parts that were not simulated.
     pub parts: BTreeMap<&'static str, Option<f64>>,
 }
 
-/// What somebody saw who looked at the end.
+/// Statistics of a view at the end of a walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Looked {
-    /// Footprints of the picture.
+    /// Statistics of the footprints in the view.
     pub stats: LookStats,
-    /// What was drawn for it.
+    /// Statistics of the faces drawn for the view.
     pub drawing: Drawing,
 }
 
 impl Report {
-    /// Of a walk, and of what was seen at its end where somebody looked.
+    /// Creates the report of a walk, optionally with the statistics of a view at its end.
     #[must_use]
     pub fn of(world: &World, settings: &Settings, tally: &WalkTally, looked: Option<&Looked>) -> Self {
         let timing = &settings.display.timing;
@@ -131,6 +134,7 @@ impl Report {
             face_texels: timing.face_texels,
             latch: latch(&settings.display),
             pipeline_ns: timing.depth().0 as f64 / 1e3,
+            // A walk has no tracker that sends matrices.
             matrix_loads: None,
             matrix_refused: None,
             footprints_split: looked.map(|looked| looked.stats.split),
@@ -153,12 +157,12 @@ fn latch(display: &ArpConfig) -> &'static str {
     Latch::ALL.iter().find(|(_, latch)| *latch == display.latch).map_or("field", |(name, _)| name)
 }
 
-/// From the latch to the light: all stages, then the scan from the first pixel of what was latched together.
+/// Returns the latency of rotation: all pipeline stages, then the scan from the latch to the pixel.
 fn rotation(display: &ArpConfig) -> Latency {
     Latency::of(vec![("pipeline", Some(ms(display.timing.depth()))), ("scan", scan_ms(display, display.latch))])
 }
 
-/// From a place of the eye to the light: until the picture was drawn and shown, then until it is looked at, then the scan.
+/// Returns the latency of translation: drawing until the update is shown, waiting, then the scan.
 fn translation(memory: Option<&MemoryTally>, settings: &Settings) -> Latency {
     let memory = memory.filter(|memory| memory.shown_frames > 0);
     let mean_ms = |frames: fn(&MemoryTally) -> u64| {
@@ -176,14 +180,13 @@ fn ms(span: Span) -> f64 {
     span.0 as f64 / 1e9
 }
 
-/// Mean time from the first pixel of a field, a line or itself to a pixel's light, ms, over both fields; `None` of a scan that there
-/// cannot be.
+/// Returns the mean time from a latch to a pixel's light over both fields, in ms. `None` if the scan is invalid.
 fn scan_ms(display: &ArpConfig, from: Latch) -> Option<f64> {
     let scan = display.scan().ok()?;
     let mut sum = 0.0;
     for y in 0..scan.height() {
         let field = PeriodNumber(u64::from(y % 2));
-        // All pixels of a line are equally far apart.
+        // All pixels of a line have equal distances, so the first and the last one give the mean.
         for x in [0, scan.width() - 1] {
             let latched = scan.latches(from, x, y, field)?;
             sum += ms(scan.lights(x, y, field)?.since(latched)) - ms(display.timing.depth());
@@ -193,7 +196,7 @@ fn scan_ms(display: &ArpConfig, from: Latch) -> Option<f64> {
 }
 
 impl Latency {
-    /// The sum of parts; none as long as a part is.
+    /// Creates a latency as the sum of its parts. The sum is `None` if a part is `None`.
     fn of(parts: Vec<(&'static str, Option<f64>)>) -> Self {
         Self { total: parts.iter().map(|(_, part)| *part).sum(), parts: parts.into_iter().collect() }
     }

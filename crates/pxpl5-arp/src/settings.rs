@@ -1,4 +1,4 @@
-//! What an experiment is made of.
+//! Settings of an experiment.
 
 use crate::error::ExperimentError;
 use address_recalculation::{ArpConfig, ArpTiming};
@@ -6,24 +6,23 @@ use cube_faces::{CubeView, DepthRange};
 use priority_rendering::{Falloff, PriorityTiming};
 use serde::{Deserialize, Serialize};
 
-/// Who decides what is drawn when.
+/// The policy that decides which segments are drawn when.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PolicyKind {
-    /// One memory, everything in every frame.
+    /// One memory, with everything drawn in every frame.
     Full,
-    /// Every object in the slowest memory in which its image stays right.
+    /// Each object is in the slowest memory that keeps its image error below the threshold.
     Objects,
-    /// Square cells, dealt to memories by their distance from the user's.
+    /// Square cells, assigned to memories by their distance from the user's cell.
     #[default]
     Cells,
 }
 
 impl PolicyKind {
-    /// All, by their names on the command line.
+    /// All policies with their names on the command line.
     pub const ALL: [(&str, Self); 3] = [("full", Self::Full), ("objects", Self::Objects), ("cells", Self::Cells)];
 
-    /// Its name.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -34,45 +33,44 @@ impl PolicyKind {
     }
 }
 
-/// How fast the source of faces draws.
+/// Speed of the renderer that draws the faces.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum SourceKind {
-    /// In no time: what is due in a frame is shown in it.
+    /// Takes no time: updates due in a frame are shown in the same frame.
     #[default]
     Ideal,
-    /// So many triangles a second, one memory after the other; what is due in a frame is shown in the next one at the earliest.
+    /// Draws memories one after the other at a limited rate. Updates are shown in the next frame at the earliest.
     Timed {
-        /// Triangles of an update that it draws in a second, all faces together.
+        /// Triangles per second. A triangle counts once, independent of the number of faces it covers.
         triangles_per_s: f64,
     },
 }
 
-/// Nearest and farthest distance along a face's axis, m. Assumed: nearer than the 1 m of the gallery's path divided by the square root
-/// of 3, farther than its hall; a step of depth is 0.24 mm at 20 m.
+/// Nearest distance along a face's axis, in metres.
+///
+/// Both limits are assumed. The nearest is less than the 1 m of the gallery's path divided by the square root of 3. The
+/// farthest exceeds the hall. A step of depth is 0.24 mm at 20 m.
 const NEAR_M: f64 = 0.1;
 const FAR_M: f64 = 100.0;
 
-/// What an experiment is made of, besides scene and walk.
+/// Settings of an experiment, without the scene and the walk.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Who decides what is drawn when.
     pub policy: PolicyKind,
-    /// Whether objects are cut at the borders of cells.
+    /// True if objects are cut at the borders of cells.
     pub is_segmented: bool,
-    /// How warping falls off from a border to a slower memory; with [`Falloff::None`] cuts tear.
+    /// Decrease of warping from the border to a slower memory. [`Falloff::None`] disables warping, so cuts tear.
     pub falloff: Falloff,
-    /// Whether an update of a memory makes all faster ones due.
+    /// True if an update of a memory makes all faster memories due.
     pub has_cascade: bool,
-    /// The policies' numbers.
+    /// Parameters of the policies.
     pub numbers: PriorityTiming,
-    /// The display.
     pub display: ArpConfig,
-    /// How fast faces are drawn.
     pub source: SourceKind,
 }
 
 impl Settings {
-    /// Cells of table 1's size, cut, drawn in no time, torn.
+    /// Cells with the size fitted to table 1, cut but not warped, drawn by an ideal renderer.
     pub const CELLS: Self = Self {
         policy: PolicyKind::Cells,
         is_segmented: true,
@@ -83,10 +81,10 @@ impl Settings {
         source: SourceKind::Ideal,
     };
 
-    /// The same, warped, with the cascade that warping needs.
+    /// The settings of [`Self::CELLS`] with warping and its cascade.
     pub const WARPED: Self = Self { falloff: Falloff::Linear, has_cascade: true, ..Self::CELLS };
 
-    /// One memory, everything in every frame.
+    /// One memory, with everything drawn in every frame.
     pub const FULL: Self = Self {
         policy: PolicyKind::Full,
         numbers: PriorityTiming { memories: 1, ..PriorityTiming::PAPERS },
@@ -94,10 +92,10 @@ impl Settings {
         ..Self::CELLS
     };
 
-    /// Uncut objects in the slowest memories in which they stay right.
+    /// Uncut objects in the slowest memories that keep their image error below the threshold.
     pub const OBJECTS: Self = Self { policy: PolicyKind::Objects, is_segmented: false, ..Self::CELLS };
 
-    /// The same with so many memories of the policy and of the display.
+    /// Returns the settings with another number of memories, for both the policy and the display.
     #[must_use]
     pub const fn with_memories(mut self, memories: u64) -> Self {
         self.numbers.memories = memories;
@@ -105,18 +103,18 @@ impl Settings {
         self
     }
 
-    /// The same with cells of this side, m.
+    /// Returns the settings with another side of cells, in metres.
     #[must_use]
     pub const fn with_cells(mut self, side_m: f64) -> Self {
         self.numbers.cell_m = side_m;
         self
     }
 
-    /// Checks everything together.
+    /// Checks all settings.
     ///
     /// # Errors
     ///
-    /// [`ExperimentError`] names what was expected and found.
+    /// [`ExperimentError`] describes the expected and the found value.
     pub fn check(&self) -> Result<(), ExperimentError> {
         self.numbers.check()?;
         self.display.check()?;
@@ -128,7 +126,7 @@ impl Settings {
         Ok(())
     }
 
-    /// Memories that are used.
+    /// Returns the number of memories in use.
     #[must_use]
     pub const fn memories(&self) -> usize {
         match self.policy {
@@ -137,16 +135,16 @@ impl Settings {
         }
     }
 
-    /// How faces are drawn.
+    /// Returns the projection with which faces are drawn.
     ///
     /// # Errors
     ///
-    /// As [`DepthRange::new`].
+    /// Same as [`DepthRange::new`].
     pub fn view(&self) -> Result<CubeView, ExperimentError> {
         Ok(CubeView { geometry: self.display.geometry(), depth: DepthRange::new(NEAR_M, FAR_M)? })
     }
 
-    /// Mean angle between texels, degrees: 90 over those of a face's edge.
+    /// Returns the mean angle between texels in degrees: 90 divided by the texels of a face's edge.
     #[must_use]
     pub fn texel_deg(&self) -> f64 {
         90.0 / self.display.timing.face_texels as f64

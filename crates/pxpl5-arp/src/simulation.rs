@@ -1,4 +1,4 @@
-//! Frames of a walk: what is due, what is drawn, what is shown.
+//! Simulation of a walk, frame by frame: due memories, drawing and display.
 
 use crate::content::{Content, warp};
 use crate::error::ExperimentError;
@@ -8,7 +8,7 @@ use crate::world::World;
 use glam::DVec3;
 use priority_rendering::{Cells, Dealing, Falloff, Objects, SeenObject, Threshold, Update};
 
-/// What is drawn and dealt as one: an object, or a segment of one.
+/// The smallest thing that a policy assigns to a memory: an object, or a segment of one.
 #[derive(Clone, Debug)]
 struct Unit {
     segments: std::ops::Range<usize>,
@@ -17,7 +17,7 @@ struct Unit {
 }
 
 impl Unit {
-    /// As an eye sees it that moves at a speed, m/s.
+    /// Returns the unit as an eye moving at `speed` m/s sees it.
     fn seen(&self, eye: DVec3, speed: f64) -> SeenObject {
         let distance_m = self.centre.distance(eye);
         SeenObject { distance_m, radius_m: self.radius, speed, turn: 0.0, animation_s: f64::INFINITY }
@@ -37,18 +37,18 @@ enum Policy {
     Cells(Cells),
 }
 
-/// What happened in a frame.
+/// Events of one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameOutcome {
-    /// The place of the eye.
+    /// Position of the eye.
     pub eye: DVec3,
-    /// The memories that became due.
+    /// Flag for each memory that became due.
     pub due: Vec<bool>,
-    /// The memories whose new picture is shown from this frame (ideal) or from the next one on.
+    /// Flag for each memory with a new update, shown from this frame (ideal source) or from the next frame on.
     pub swapped: Vec<bool>,
-    /// The memories whose update was not whole at the retrace.
+    /// Flag for each memory whose update was incomplete at the retrace.
     pub missed: Vec<bool>,
-    /// Whether cells were dealt anew.
+    /// True if cells were assigned to memories anew.
     pub deals_anew: bool,
 }
 
@@ -66,11 +66,11 @@ pub struct Simulation<'a> {
 }
 
 impl<'a> Simulation<'a> {
-    /// Before the first frame; the world must have been cut with the settings' cells.
+    /// Creates a simulation before its first frame. The world must have been cut with the cells of `settings`.
     ///
     /// # Errors
     ///
-    /// As [`Settings::check`].
+    /// Same as [`Settings::check`].
     pub fn new(world: &'a World, settings: &Settings) -> Result<Self, ExperimentError> {
         settings.check()?;
         let units = units(world, settings.is_segmented);
@@ -92,25 +92,23 @@ impl<'a> Simulation<'a> {
         })
     }
 
-    /// The world that is walked through.
     #[must_use]
     pub const fn world(&self) -> &'a World {
         self.world
     }
 
-    /// What it was made of.
     #[must_use]
     pub const fn settings(&self) -> &Settings {
         &self.settings
     }
 
-    /// What each memory shows; `None` before its first picture.
+    /// Returns the contents of each memory. `None` before its first update.
     #[must_use]
     pub fn shown(&self) -> &[Option<Content>] {
         &self.shown
     }
 
-    /// How cells are dealt now.
+    /// Returns the current assignment of cells to memories, for the policy of cells.
     #[must_use]
     pub const fn dealing(&self) -> Option<&Dealing> {
         match &self.policy {
@@ -119,7 +117,7 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// Objects that changed their memory since the beginning, with the policy that has them.
+    /// Returns the number of objects that changed memories so far, for the policy of objects.
     #[must_use]
     pub const fn moved_objects(&self) -> Option<u64> {
         match &self.policy {
@@ -128,12 +126,13 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// A frame with the eye at a place.
+    /// Simulates a frame with the eye at a position.
     ///
     /// # Errors
     ///
-    /// [`ExperimentError::Priority`] for a falloff that has no length.
+    /// [`ExperimentError::Priority`] if the falloff has no length.
     pub fn frame(&mut self, eye: DVec3) -> Result<FrameOutcome, ExperimentError> {
+        // Ask the policy which memories are due, and collect their contents.
         let update = self.update(eye);
         let contents = self.contents(&update, eye)?;
         let mut outcome = FrameOutcome {
@@ -143,6 +142,7 @@ impl<'a> Simulation<'a> {
             missed: vec![false; update.due.len()],
             deals_anew: update.deals_anew,
         };
+        // Draw: an ideal source shows the contents at once.
         match self.settings.source {
             SourceKind::Ideal => {
                 for (memory, content) in contents {
@@ -164,11 +164,13 @@ impl<'a> Simulation<'a> {
         triangles_per_s: f64,
         outcome: &mut FrameOutcome,
     ) {
+        // Queue the new updates, then draw for one frame.
         for (memory, content) in contents {
             let work_s = content.triangles(self.world) as f64 / triangles_per_s;
             let together = if update.together[memory] { update.together_bits() } else { 0 };
             self.queue.put(memory, Job { content, work_s, left_s: work_s, together });
         }
+        // Draw for the duration of one frame, then show complete updates.
         self.queue.work(self.settings.numbers.frame_s());
         for (memory, shown) in self.queue.retrace().into_iter().enumerate() {
             match shown {
@@ -183,6 +185,7 @@ impl<'a> Simulation<'a> {
     }
 
     fn update(&mut self, eye: DVec3) -> Update {
+        // The validity of an object depends on the eye's speed since the previous frame.
         let speed = self.before.map_or(0.0, |before| before.distance(eye) * self.settings.numbers.frame_hz);
         match &mut self.policy {
             Policy::Full => Update { due: vec![true], together: vec![false], deals_anew: false },
@@ -196,7 +199,7 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// What is drawn into the memories that are due.
+    /// Returns the new contents of the memories that are due.
     fn contents(&self, update: &Update, eye: DVec3) -> Result<Vec<(usize, Content)>, ExperimentError> {
         let mut segments = vec![Vec::new(); update.due.len()];
         for (number, unit) in self.units.iter().enumerate() {
@@ -222,7 +225,7 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// The memory that a unit is in now.
+    /// Returns the memory that a unit currently belongs to.
     fn memory(&self, unit: usize) -> usize {
         match &self.policy {
             Policy::Full => 0,

@@ -1,19 +1,19 @@
-//! A source of faces that needs time: memories are served in rising order, and nothing half-drawn is shown.
+//! A timed source of faces. It draws memories in ascending order and shows only complete updates.
 
 use crate::content::Content;
 
-/// An update on its way into a memory.
+/// An update that is being drawn into a memory.
 #[derive(Clone, Debug)]
 pub(crate) struct Job {
     pub(crate) content: Content,
-    /// Seconds of drawing, and how many of them are left.
+    /// Drawing time of the whole update, in seconds.
     pub(crate) work_s: f64,
     pub(crate) left_s: f64,
-    /// Memories that may only be shown together with this one, bit by bit; 0 for it alone.
+    /// Bit mask of the memories that must be shown together with this one. 0 if the memory is independent.
     pub(crate) together: u8,
 }
 
-/// Updates that are being drawn, and those that wait behind them.
+/// Updates in progress, and updates that wait for them.
 #[derive(Clone, Debug)]
 pub(crate) struct Queue {
     running: Vec<Option<Job>>,
@@ -25,14 +25,14 @@ impl Queue {
         Self { running: vec![None; memories], waiting: vec![None; memories] }
     }
 
-    /// Takes an update in place of one that has not begun; one that has begun is drawn to its end first.
+    /// Adds an update. It replaces an update that has not begun, and waits for one that has begun.
     pub(crate) fn put(&mut self, memory: usize, job: Job) {
         let has_begun = self.running[memory].as_ref().is_some_and(|running| running.left_s < running.work_s);
         let place = if has_begun { &mut self.waiting[memory] } else { &mut self.running[memory] };
         *place = Some(job);
     }
 
-    /// Draws for a frame's time, the fastest memory first.
+    /// Draws for the duration of a frame, starting with the fastest memory.
     pub(crate) fn work(&mut self, mut seconds: f64) {
         for job in self.running.iter_mut().flatten() {
             let spent = job.left_s.min(seconds);
@@ -41,8 +41,9 @@ impl Queue {
         }
     }
 
-    /// At a retrace: what can be shown, by memory; `Err` for an update that is not whole.
+    /// Returns the updates that can be shown at a retrace, by memory. `Err` marks an incomplete update.
     pub(crate) fn retrace(&mut self) -> Vec<Option<Result<Content, ()>>> {
+        // A memory without an update counts as complete, so that it does not delay its group.
         let whole: Vec<bool> =
             self.running.iter().map(|job| job.as_ref().is_none_or(|job| job.left_s == 0.0)).collect();
         let outcomes = (0..self.running.len()).map(|memory| {
@@ -52,6 +53,7 @@ impl Queue {
             Some(if may_swap { Ok(job.content.clone()) } else { Err(()) })
         });
         let outcomes: Vec<Option<Result<Content, ()>>> = outcomes.collect();
+        // The next waiting update takes the place of a shown one.
         for (memory, outcome) in outcomes.iter().enumerate() {
             if matches!(outcome, Some(Ok(_))) {
                 self.running[memory] = self.waiting[memory].take();

@@ -1,4 +1,4 @@
-//! How wide cuts gape between memories that were drawn from different places.
+//! Tears: gaps between memories that were drawn from different positions.
 
 use crate::content::{Content, angle};
 use crate::world::World;
@@ -7,17 +7,17 @@ use serde::Serialize;
 /// Angles at the vertices that memories share, in one frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tears {
-    /// Between both directions of each shared vertex if it were not warped, radians.
+    /// Angles between both directions of each shared vertex without warping, in radians.
     pub before: Vec<f64>,
-    /// The same as it is drawn, radians.
+    /// Angles between both directions of each shared vertex as drawn, in radians.
     pub after: Vec<f64>,
-    /// By how much warping turns each vertex of a warped memory, radians.
+    /// Angle by which warping moves each vertex of a warped memory, in radians.
     pub stretch: Vec<f64>,
-    /// The widest tear as drawn, radians, and the vertex at which it gapes, an index into [`World::vertices`].
+    /// Width in radians of the widest tear as drawn, and its vertex as an index into [`World::vertices`].
     pub widest: Option<(f64, u32)>,
 }
 
-/// What shows each segment: the memory's number.
+/// Returns for each segment the memory that shows it.
 fn holders(world: &World, shown: &[Option<Content>]) -> Vec<Option<usize>> {
     let mut holders = vec![None; world.segments.len()];
     for (memory, content) in shown.iter().enumerate() {
@@ -29,11 +29,12 @@ fn holders(world: &World, shown: &[Option<Content>]) -> Vec<Option<usize>> {
 }
 
 impl Tears {
-    /// Of what memories show.
+    /// Measures the tears between the contents of all memories.
     #[must_use]
     pub fn of(world: &World, shown: &[Option<Content>]) -> Self {
         let holders = holders(world, shown);
         let mut tears = Self::default();
+        // Compare neighbouring memories at each shared vertex.
         for shared in &world.shared {
             let mut memories: Vec<usize> = shared.segments.iter().filter_map(|segment| holders[*segment]).collect();
             memories.sort_unstable();
@@ -49,6 +50,7 @@ impl Tears {
                 }
             }
         }
+        // Measure the displacement of warped vertices.
         for content in shown.iter().flatten().filter(|content| content.warp.is_some()) {
             let vertices =
                 content.segments.iter().flat_map(|segment| world.segments[*segment].triangles.iter().flatten());
@@ -59,19 +61,18 @@ impl Tears {
     }
 }
 
-/// Percentiles, in texels of 90 degrees over a face's edge.
+/// Percentiles of angles, in texels (90 degrees divided by the texels of a face's edge).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Percentiles {
-    /// Half of all are at most so wide.
+    /// Median.
     pub p50: f64,
-    /// Nineteen of twenty.
+    /// 95th percentile.
     pub p95: f64,
-    /// All.
     pub max: f64,
 }
 
 impl Percentiles {
-    /// Of angles in radians, with a texel of so many degrees; `None` of none.
+    /// Computes the percentiles of angles in radians, where a texel has `texel_deg` degrees. `None` without angles.
     #[must_use]
     pub fn of(angles: &[f64], texel_deg: f64) -> Option<Self> {
         let mut sorted = angles.to_vec();

@@ -1,4 +1,4 @@
-//! A whole walk and what is counted of it.
+//! A complete walk and its counters.
 
 use crate::error::ExperimentError;
 use crate::settings::{Settings, SourceKind};
@@ -8,58 +8,57 @@ use crate::world::World;
 use glam::DVec3;
 use tracking::motion::Walk;
 
-/// What a memory has counted.
+/// Counters of one memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MemoryTally {
-    /// Pictures that were shown.
+    /// Updates that were shown.
     pub updates: u64,
-    /// Retraces at which an update was not whole.
+    /// Retraces at which an update was incomplete.
     pub missed: u64,
-    /// Segments of all updates together.
+    /// Segments drawn, summed over all updates.
     pub segments_drawn: u64,
-    /// Triangles of all updates together.
+    /// Triangles drawn, summed over all updates.
     pub triangles_drawn: u64,
-    /// Segments in it, summed over frames.
+    /// Segments in the memory, summed over frames.
     pub segment_frames: u64,
-    /// Distance of the eye from where it was drawn, summed over frames, m.
+    /// Distance between the eye and the position the memory was drawn from, summed over frames, in metres.
     pub age_m: f64,
-    /// Frames in which it showed something.
+    /// Frames in which the memory showed an update.
     pub shown_frames: u64,
-    /// Frames since the eye was where it was drawn from, summed over those.
+    /// Age of the eye position, in frames, summed over the frames with an update.
     pub age_frames: u64,
-    /// The part of them until the picture was shown first.
+    /// Part of `age_frames` before the update was first shown.
     pub drawing_frames: u64,
-    /// Frames that the picture that is shown needed.
+    /// Number of frames that the shown update took to draw.
     drawn_in: u64,
 }
 
-/// What a walk has counted.
+/// Counters of a walk.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WalkTally {
-    /// Frames of it.
     pub frames: u64,
-    /// Each memory.
+    /// Counters of each memory.
     pub memories: Vec<MemoryTally>,
-    /// How often cells were dealt anew.
+    /// Number of new assignments of cells to memories.
     pub redeals: u64,
-    /// Objects that changed memories, with the policy that has them.
+    /// Objects that changed memories, for the policy of objects.
     pub moved_objects: Option<u64>,
-    /// Angles at shared vertices, of all frames.
+    /// Angles at shared vertices, over all frames.
     pub tears: Tears,
-    /// The widest tear of each frame as drawn, radians, and the vertex where it gapes; `None` where no memories meet.
+    /// For each frame, the widest tear as drawn in radians, and its vertex. `None` if no memories meet.
     pub widest: Vec<Option<(f64, u32)>>,
-    /// Which memories were due, shown and missed in each frame.
+    /// Due, shown and missed memories of each frame.
     pub outcomes: Vec<FrameOutcome>,
 }
 
 impl WalkTally {
-    /// Pictures a second of each memory.
+    /// Returns the updates per second of each memory.
     #[must_use]
     pub fn rates_hz(&self, frame_hz: f64) -> Vec<f64> {
         self.memories.iter().map(|memory| memory.updates as f64 * frame_hz / self.frames as f64).collect()
     }
 
-    /// Segments drawn a second.
+    /// Returns the number of segments drawn per second.
     #[must_use]
     pub fn draws_per_s(&self, frame_hz: f64) -> f64 {
         let draws: u64 = self.memories.iter().map(|memory| memory.segments_drawn).sum();
@@ -72,12 +71,13 @@ impl WalkTally {
         for (memory, tally) in self.memories.iter_mut().enumerate() {
             tally.missed += u64::from(outcome.missed[memory]);
             let Some(content) = &simulation.shown()[memory] else { continue };
+            // Contents and age of what the memory shows.
             let segments = content.segments.len() as u64;
             tally.segment_frames += segments;
             tally.age_m += content.eye.distance(outcome.eye);
             let age = self.frames - 1 - content.frame;
             if outcome.swapped[memory] {
-                // What needs time is shown from the next frame on.
+                // A timed source shows an update from the next frame on.
                 tally.drawn_in = age + u64::from(simulation.settings().source != SourceKind::Ideal);
                 tally.updates += 1;
                 tally.segments_drawn += segments;
@@ -87,6 +87,7 @@ impl WalkTally {
             tally.age_frames += age.max(tally.drawn_in);
             tally.drawing_frames += tally.drawn_in;
         }
+        // Tears between all memories in this frame.
         let tears = Tears::of(simulation.world(), simulation.shown());
         self.widest.push(tears.widest);
         self.tears.before.extend(tears.before);
@@ -96,11 +97,11 @@ impl WalkTally {
     }
 }
 
-/// Walks through a world for so many frames, with the eye of each frame at a place of its own.
+/// Walks through a world for `frames` frames. `eye` returns the position in each frame.
 ///
 /// # Errors
 ///
-/// As [`Simulation::new`].
+/// Same as [`Simulation::new`].
 pub fn walk(
     world: &World,
     settings: &Settings,
@@ -110,7 +111,7 @@ pub fn walk(
     Ok(walked(world, settings, frames, eye)?.1)
 }
 
-/// The same, with what memories show at the end.
+/// Walks through a world, and returns the final state as well as the counters.
 pub(crate) fn walked<'a>(
     world: &'a World,
     settings: &Settings,
@@ -135,7 +136,7 @@ pub(crate) fn walked<'a>(
     Ok((simulation, tally))
 }
 
-/// Where a walker is at the beginning of each frame.
+/// Returns a function from the number of a frame to the walker's position at its start.
 pub fn at_frames(path: &Walk, m_per_s: f64, frame_hz: f64) -> impl Fn(u64) -> DVec3 {
     move |frame| path.place(m_per_s * frame as f64 / frame_hz)
 }

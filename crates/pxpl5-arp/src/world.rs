@@ -8,72 +8,72 @@ use pxpl5_scene::{Frame, Lighting, Scene, Structure, Vertex};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// What an object has in a cell.
+/// The part of an object that lies in one cell.
 #[derive(Clone, Debug)]
 pub struct Segment {
-    /// The object that it was cut from.
+    /// Index of the object that the segment was cut from.
     pub object: usize,
-    /// Where it lies.
+    /// Cell that contains the segment.
     pub cell: Cell,
-    /// Its triangles, indices into [`World::vertices`].
+    /// Triangles as indices into [`World::vertices`].
     pub triangles: Vec<[u32; 3]>,
 }
 
 /// A structure of the scene.
 #[derive(Clone, Debug)]
 pub struct Object {
-    /// Its name.
     pub name: String,
-    /// Its segments, indices into [`World::segments`].
+    /// Range of its segments in [`World::segments`].
     pub segments: Range<usize>,
 }
 
-/// A vertex of a cut that cells share.
+/// A vertex on a cut that several segments share.
 #[derive(Clone, Debug)]
 pub struct SharedVertex {
     /// Index into [`World::vertices`].
     pub vertex: u32,
-    /// The segments that hold it, at least two.
+    /// Indices of the segments with this vertex, at least two.
     pub segments: Vec<usize>,
 }
 
-/// What colours of triangles stand for.
+/// Meaning of the colours of triangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tint {
-    /// The scene's own, in its light.
+    /// The shaded colours of the scene.
     #[default]
     Shaded,
-    /// The object.
+    /// One colour per object.
     Objects,
-    /// The cell.
+    /// One colour per cell.
     Cells,
 }
 
 /// A scene cut at the borders of cells.
 #[derive(Clone, Debug)]
 pub struct World {
-    /// Places, m: of each object its own, then those that its cuts made.
+    /// Positions in metres. For each object, its own vertices are followed by those of its cuts.
     pub vertices: Vec<DVec3>,
     /// Shaded colours of the vertices.
     pub colours: Vec<u32>,
-    /// All segments, object by object.
+    /// All segments, in the order of objects.
     pub segments: Vec<Segment>,
-    /// The scene's structures.
+    /// The structures of the scene.
     pub objects: Vec<Object>,
-    /// Where segments of an object meet.
+    /// Vertices at which segments of an object meet.
     pub shared: Vec<SharedVertex>,
-    /// Colour of what nothing is drawn on.
+    /// Background colour, 0x00RRGGBB.
     pub background: u32,
-    /// What colours are drawn with.
+    /// Meaning of the colours of drawn triangles.
     pub tint: Tint,
 }
 
 impl World {
-    /// Cuts a scene with cells of this side, m.
+    /// Cuts a scene into cells with a side of `side_m` metres.
     ///
     /// # Errors
     ///
-    /// [`ExperimentError`] for spheres, for what moves with the head or by itself, and for what cannot be cut.
+    /// [`ExperimentError`] if the scene has spheres, moving objects or objects fixed to the head, or if it cannot be
+    /// cut.
     pub fn new(scene: &Scene, side_m: f64) -> Result<Self, ExperimentError> {
         refuse_what_is_not_still(scene)?;
         let mut world = Self {
@@ -95,6 +95,7 @@ impl World {
     fn add(&mut self, scene: &Scene, structure: &Structure, side_m: f64) -> Result<(), ExperimentError> {
         let first = self.vertices.len() as u32;
         let own = &scene.vertices()[structure.vertices.clone()];
+        // Cut the structure, and interpolate the colours of the vertices that cuts created.
         let places: Vec<DVec3> = own.iter().map(|vertex| vertex.position.as_dvec3()).collect();
         let begin = structure.vertices.start as u32;
         let triangles: Vec<[u32; 3]> =
@@ -105,6 +106,7 @@ impl World {
             let [from, to] = made.between.map(|i| colours[i as usize]);
             colours.push([0, 1, 2].map(|part| from[part] + (to[part] - from[part]) * made.share));
         }
+        // Append everything with indices of the whole world.
         self.vertices.extend(&cut.vertices);
         self.colours.extend(colours.into_iter().map(packed));
         let object = self.objects.len();
@@ -117,12 +119,12 @@ impl World {
         Ok(())
     }
 
-    /// Cells in which there is something.
+    /// Returns the cells that contain segments, with repetitions.
     pub fn cells(&self) -> impl Iterator<Item = Cell> {
         self.segments.iter().map(|segment| segment.cell)
     }
 
-    /// Triangles of some segments, where each vertex is drawn.
+    /// Returns the triangles of some segments. `place` maps a vertex to the position at which it is drawn.
     pub fn triangles<'a>(
         &'a self,
         segments: &'a [usize],
@@ -147,7 +149,7 @@ impl World {
         }
     }
 
-    /// Centre of the box around some segments, and distance from it to their farthest vertex, m.
+    /// Returns the centre of the bounding box of some segments, and the distance to their farthest vertex in metres.
     #[must_use]
     pub fn bounding_sphere(&self, segments: Range<usize>) -> (DVec3, f64) {
         let corners = self.segments[segments].iter().flat_map(|segment| segment.triangles.iter().flatten());
@@ -159,7 +161,7 @@ impl World {
     }
 }
 
-/// A colour for a number, unlike those of its neighbours: steps of the golden ratio round a colour circle.
+/// Returns a colour for a number. Steps of the golden ratio on the colour circle make neighbouring numbers differ.
 fn distinct(number: u64) -> u32 {
     let hue = (number as f64 * 0.618_033_988_749_895).fract() * 6.0;
     packed([0.0, 2.0, 4.0].map(|shift| 70.0 + 160.0 * (((hue + shift) % 6.0 - 3.0).abs() - 1.0).clamp(0.0, 1.0)))
@@ -183,7 +185,7 @@ fn refuse_what_is_not_still(scene: &Scene) -> Result<(), ExperimentError> {
     Ok(())
 }
 
-/// A vertex in the light of its scene, parts from 0 to 255.
+/// Returns the shaded colour of a vertex, with components from 0 to 255.
 fn shaded(vertex: &Vertex, light: &Lighting) -> [f64; 3] {
     let square = f64::from(vertex.normal.dot(light.towards_light)).max(0.0);
     let part = f64::from(light.ambient) + f64::from(light.diffuse) * square;
@@ -195,6 +197,7 @@ fn packed(parts: [f64; 3]) -> u32 {
 }
 
 fn shared(segments: &[Segment]) -> Vec<SharedVertex> {
+    // Collect the segments of each vertex. Vertices of one segment repeat, so compare with the last entry.
     let mut holders: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for (number, segment) in segments.iter().enumerate() {
         for vertex in segment.triangles.iter().flatten() {

@@ -1,4 +1,4 @@
-//! The papers' figures: which are fitted, which are checked, and that the document says what comes out.
+//! The papers' figures: fitted numbers, checked numbers, and the generated document.
 
 use pxpl5_arp::figures::{
     Experiments, RATE_FITTED, RATES_HZ, Row, Rules, Situation, Standing, all, definitions, markdown,
@@ -27,15 +27,17 @@ fn table_1_checked_rates_fall_from_memory_to_memory_and_memory_0_is_drawn_in_eve
     let all =
         tried.map(|tried| tried.best.rates_hz.to_vec()).chain(FIGURES.0.fits.iter().map(|fit| fit.rates_hz.clone()));
     for rates in all {
-        // A memory that holds nothing in a small hall is not drawn at all.
+        // In a small hall, a memory may have no content, and then it is never drawn.
         assert!((rates[0] - 60.0).abs() < 1e-9, "{rates:?}");
         assert!(rates.windows(2).all(|pair| pair[0] >= pair[1]), "{rates:?}");
     }
 }
 
-/// An independent model of the policy, a program of its own, gave 40.6, 25.7 and 16.0 Hz for equal rings, distances to held cells and a
-/// straight walk through the middle of seven cells, 5.5 % off.
-/// For rings that double and the block's border it gave 4.7 to 6.4 % in all halls, for equal rings and the border 11 to 13 %.
+/// An independent program that models the policy gave 40.6, 25.7 and 16.0 Hz, with an error of 5.5 %.
+///
+/// Its rules were equal rings, distances to occupied cells, and a straight walk through the middle of seven cells. With
+/// doubling rings and the block's border, its errors were 4.7 to 6.4 % in all halls. With equal rings and the border
+/// they were 11 to 13 %.
 #[test]
 fn rings_that_double_explain_table_1_better_than_equal_rings() {
     let ranked = &FIGURES.0.interpretations.ranked;
@@ -55,7 +57,7 @@ fn rings_that_double_explain_table_1_better_than_equal_rings() {
     );
 }
 
-/// The home cell alone in memory 0: its second rate is as fast as its first.
+/// If memory 0 holds only the home cell, memory 1 is drawn as often as memory 0.
 #[test]
 fn table_1_without_inner_rings_is_out_by_a_quarter_at_least() {
     let ranked = &FIGURES.0.interpretations.ranked;
@@ -63,7 +65,7 @@ fn table_1_without_inner_rings_is_out_by_a_quarter_at_least() {
     assert!(outside.clone().count() == 4 && outside.clone().all(|ranked| ranked.mean_error_percent > 25.0));
 }
 
-/// Each of three rates is left out once, and what is chosen then knows nothing of it.
+/// Each of three rates is left out once. The choice then uses only the other two rates.
 #[test]
 fn rates_that_are_left_out_are_predicted_by_the_others() {
     let left_out = &FIGURES.0.interpretations.left_out;
@@ -76,7 +78,10 @@ fn rates_that_are_left_out_are_predicted_by_the_others() {
     }
 }
 
-/// 2 texels are 3.75 pixels, one texel 1.875; a memory that begins a side away and is a frame of 16.7 mm late tears by that angle more.
+/// 2 texels are 3.75 pixels, and one texel is 1.875 pixels.
+///
+/// The nearest border is one side of a cell away. A memory that is late by a frame of 16.7 mm adds the corresponding
+/// angle to its tears.
 #[test]
 fn a_threshold_in_pixels_tells_the_side_of_a_cell() {
     let rows = &FIGURES.0.thresholds;
@@ -89,8 +94,10 @@ fn a_threshold_in_pixels_tells_the_side_of_a_cell() {
     assert!((row("1 texel").cell_m / row("2 texels").cell_m - 2.0).abs() < 1e-9);
 }
 
-/// tan of the sphere's angular radius is 1/2, 1 and 2 at the limits: diameters of 2 sin(atan(x)) of the middle's distance. The chord
-/// makes them smaller by parts of theta.
+/// At the limits, the tangent of the sphere's angular radius is 1/2, 1 and 2. The diameters are 2 sin(atan(x)) of the
+/// distance.
+///
+/// The rule of the chord makes them smaller by a fraction of theta.
 #[test]
 fn a8_lies_between_limits_that_depend_on_what_is_measured() {
     let expected = [0.5_f64, 1.0, 2.0].map(|tangent| {
@@ -112,7 +119,7 @@ fn table_2_cutting_moves_segments_outwards_and_saves() {
     assert!((cut.iter().sum::<f64>() - uncut.iter().sum::<f64>()).abs() < 1e-6, "nothing is lost");
 }
 
-/// D1 to D5 as the specification has computed them by hand.
+/// D1 to D5 must equal the values that the specification computed by hand.
 #[test]
 fn definitions_are_the_derived_numbers_and_no_rows() {
     let all = definitions();
@@ -133,7 +140,8 @@ fn definitions_are_the_derived_numbers_and_no_rows() {
 
 #[test]
 fn point_objects_are_drawn_6_and_13_times_less_often_as_computed_by_hand() {
-    // 1 / (p0 + p1 / 2 + p2 / 4 + p3 / 8), p from the squares of 10.8650, 21.7300 and 43.4599 m over 100 m.
+    // The factor is 1 / (p0 + p1 / 2 + p2 / 4 + p3 / 8). p follows from the squares of 10.8650, 21.7300 and 43.4599 m
+    // over 100 m.
     let borders = [10.8650_f64, 21.7300, 43.4599].map(|metres| (metres / 100.0).powi(2));
     let mean =
         borders[0] + (borders[1] - borders[0]) / 2.0 + (borders[2] - borders[1]) / 4.0 + (1.0 - borders[2]) / 8.0;

@@ -1,4 +1,4 @@
-//! Walks: properties and hard cases of the policies with a source of faces.
+//! Walks: properties and special cases of the policies with a source of faces.
 
 use address_recalculation::{CubeFace, FaceSet, Latch, Lens, TexelAddress};
 use glam::{DQuat, DVec3};
@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use std::sync::LazyLock;
 use tracking::motion::Walk;
 
-/// Cells of the scene's own cut, a threshold of 90/512 degrees, and the rules' usual rings.
+/// Settings with the scene's own cut, a threshold of 90/512 degrees, and the usual rings.
 const CELLS: Settings = five_metres(Settings::CELLS);
 const WARPED: Settings = five_metres(Settings::WARPED);
 const OBJECTS: Settings = five_metres(Settings::OBJECTS);
@@ -94,8 +94,8 @@ fn with_the_eye_still_nothing_is_due_whatever_the_head_does() {
 
 #[test]
 fn with_the_eye_still_objects_around_it_alone_are_due() {
-    // From inside of a bounding sphere an image is wrong at once (3.6), also when nobody moves: floor, ceiling and walls of the
-    // gallery are such objects.
+    // From inside a bounding sphere an image is wrong immediately (3.6), even if nothing moves. Floor, ceiling and
+    // walls of the gallery are such objects.
     let mut simulation = simulated(&OBJECTS);
     let eye = PATH.place(3.0);
     simulation.frame(eye).expect("drawn");
@@ -106,7 +106,7 @@ fn with_the_eye_still_objects_around_it_alone_are_due() {
 
 #[test]
 fn the_picture_after_a_turn_is_a_redraw_for_that_orientation_whatever_the_renderer() {
-    // A renderer that is far too slow has drawn all memories once; then the eye stands still and the head turns.
+    // After a much too slow renderer has drawn all memories once, the eye stays in place and the head rotates.
     let eye = PATH.place(30.0);
     let ideal = small(CELLS);
     let slow = Settings { source: SourceKind::Timed { triangles_per_s: 700.0 }, ..ideal.clone() };
@@ -126,7 +126,8 @@ fn the_picture_after_a_turn_is_a_redraw_for_that_orientation_whatever_the_render
 
 #[test]
 fn no_vertex_of_any_memory_is_ever_off_by_more_than_theta() {
-    // Chord: a point at distance d is off by at most asin(2 sin(theta / 2)), 1.2e-6 of theta more than theta.
+    // With the chord rule, a point at distance d is off by at most asin(2 sin(theta / 2)). This exceeds theta by a
+    // factor of 1 + 1.2e-6.
     let theta = CELLS.numbers.theta_deg.to_radians();
     let bound = (2.0 * (theta / 2.0).sin()).asin() * (1.0 + 1e-9);
     let mut simulation = simulated(&CELLS);
@@ -176,7 +177,7 @@ fn warped_with_cascade_no_cut_gapes_and_without_it_some_do() {
         let tally = walk(&WORLD, &settings, 1_800, &eye).expect("walked");
         tally.tears.after.into_iter().fold(0.0, f64::max) / texel
     });
-    // At once drawn, a tear is at most a texel wide (theta = 90/512 degrees).
+    // If updates are shown immediately, a tear is at most one texel wide (theta = 90/512 degrees).
     assert!(torn > 0.3 && torn <= 1.0 + 1e-6, "{torn}");
     assert!(stale > torn, "{stale}");
 }
@@ -235,7 +236,8 @@ fn a_tiny_threshold_draws_everything_always_and_a_huge_one_nothing_again() {
         tally.memories.iter().map(|memory| memory.updates).collect::<Vec<u64>>()
     };
     assert_eq!(rates(1e-6), [600; 4]);
-    // Three metres within a cell: memory 1 begins 6 m away at least, so it would be due after 2 x 6 sin(45 deg) = 8.5 m.
+    // Within a cell, the eye moves 3 m. Memory 1 begins at least 6 m away, so it would be due after 2 x 6 sin(45 deg) =
+    // 8.5 m.
     let mut settings = CELLS;
     settings.numbers.theta_deg = 90.0;
     let inside = |frame: u64| DVec3::new(1.0 + 0.005 * frame as f64, 1.7, 2.5);
@@ -246,7 +248,7 @@ fn a_tiny_threshold_draws_everything_always_and_a_huge_one_nothing_again() {
 #[test]
 fn one_memory_draws_all_and_eight_draw_less_than_four() {
     let draws = |memories: u64| {
-        // With rings that double the gallery is too small for eight memories.
+        // With doubling rings, the gallery is too small for eight memories.
         let mut settings = CELLS.with_memories(memories);
         settings.numbers.ring_growth = 1;
         walk(&WORLD, &settings, 900, at_frames(&PATH, 1.0, 60.0)).expect("walked").draws_per_s(60.0)
@@ -266,7 +268,7 @@ fn a_renderer_that_is_slowed_down_misses_slow_memories_first_and_shows_nothing_h
     let few = missed(20_000.0);
     assert!(few[3] > few[0] && few.windows(2).all(|pair| pair[0] <= pair[1]), "{few:?}");
     assert!(missed(3_000.0)[0] > few[0]);
-    // Before its first whole picture a memory shows nothing at all.
+    // A memory shows nothing before its first complete update.
     let slow = Settings { source: SourceKind::Timed { triangles_per_s: 3_000.0 }, ..CELLS };
     let mut simulation = simulated(&slow);
     let outcome = simulation.frame(PATH.place(0.0)).expect("drawn");
@@ -335,8 +337,10 @@ fn the_report_has_every_key_of_the_schema_and_null_for_what_was_not_judged() {
     assert!(report["memories"][0]["regions_copied"].is_null());
 }
 
-/// A pixel lights 239/2 lines of 4004/63 us and 639/2 pixels of 11/135 us after the first of its field in the mean, 639/2 pixels after the
-/// first of its line, and the pipeline is 650 ns deep.
+/// A pixel lights on average 239/2 lines of 4004/63 us and 639/2 pixels of 11/135 us after the first pixel of its
+/// field.
+///
+/// It lights 639/2 pixels after the first pixel of its line. The pipeline takes 650 ns.
 #[test]
 fn a_walk_has_the_latencies_of_its_display() {
     let [lines_ms, pixels_ms] = [119.5 * 4.004 / 63.0, 319.5 * 0.011 / 135.0];
@@ -349,7 +353,8 @@ fn a_walk_has_the_latencies_of_its_display() {
         let report = Report::of(&WORLD, &settings, &tally, None);
         let turn = &report.rotation_latency_ms;
         assert!((turn.total.expect("simulated") - 0.00065 - scan).abs() < 1e-6, "{name}: {turn:?}");
-        // Memory 0 is drawn in every frame in no time: a step waits for the scan alone, whatever is latched.
+        // Memory 0 is drawn in every frame in no time. Translation therefore waits only for the scan, regardless of the
+        // latch.
         let step = &report.translation_latency_ms;
         assert!((step.total.expect("shown") - lines_ms - pixels_ms).abs() < 1e-6, "{name}: {step:?}");
         let sums = report.memories.iter().map(|memory| &memory.translation_latency_ms);
@@ -357,7 +362,7 @@ fn a_walk_has_the_latencies_of_its_display() {
     }
 }
 
-/// A memory that is drawn every n frames is (n - 1) / 2 frames old in the mean; what needs a frame to be drawn is shown one frame later.
+/// A memory drawn every n frames is on average (n - 1) / 2 frames old. A timed source adds one frame.
 #[test]
 fn the_age_of_what_is_shown_is_a_part_of_the_latency_of_a_step() {
     let eye = at_frames(&PATH, 1.0, 60.0);
@@ -377,7 +382,7 @@ fn the_age_of_what_is_shown_is_a_part_of_the_latency_of_a_step() {
     }
 }
 
-/// Faces look the same through every lens; beyond 170 degrees there is no flat picture.
+/// The faces are independent of the lens. Beyond 170 degrees there is no flat picture.
 #[test]
 fn pictures_are_seen_through_the_lens_that_was_chosen() {
     let names_of = |display: &dyn Fn(&mut Settings)| {

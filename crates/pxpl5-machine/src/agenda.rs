@@ -1,10 +1,10 @@
-//! Puts the outputs of boards into the event queue.
+//! Moves the outputs of boards into the event queue.
 
 use crate::event::Event;
 use pxpl5_ring::{RingEvent, RingOutput};
 use pxpl5_sim::{Context, EventQueue, Phase};
 
-/// Schedules the events of a board for itself.
+/// Schedules the events that a board has requested for itself.
 pub(crate) fn schedule_own<E, O>(
     queue: &mut EventQueue<Event>,
     context: &mut Context<E, O>,
@@ -13,7 +13,7 @@ pub(crate) fn schedule_own<E, O>(
     context.each_event(|time, phase, event| queue.schedule(time, phase, event_of(event)));
 }
 
-/// Schedules the outputs of the ring at the boards that receive them.
+/// Schedules each output of the ring as an event of the receiving board.
 pub(crate) fn schedule_outputs(queue: &mut EventQueue<Event>, context: &mut Context<RingEvent, RingOutput>) {
     for (time, output) in context.drain_outputs() {
         queue.schedule(time, Phase::Arrive, Event::FromRing(output));

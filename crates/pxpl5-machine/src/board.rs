@@ -1,37 +1,37 @@
-//! Names of boards, and what happens to them.
+//! Names of boards, and descriptions of their events.
 
 use pxpl5_sim::Time;
 use std::fmt;
 use std::str::FromStr;
 
-/// A board of a machine, or its ring.
+/// Identifies one board of a machine, or the ring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Board {
     /// The host workstation.
     Host,
-    /// A graphics processor, from 0; the first one is told of retraces.
+    /// A graphics processor, counted from 0. GP 0 receives the retrace signal.
     Gp(usize),
-    /// A renderer, from 0.
+    /// A renderer, counted from 0.
     Renderer(usize),
-    /// A display with all its ports, from 0.
+    /// A display with all its ports, counted from 0.
     Display(usize),
     /// The ring with its arbiter.
     Ring,
 }
 
-/// Something that happens to a board at an instant: one event of the simulation.
+/// Describes one event of the simulation for a debugger or a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Happening {
-    /// When.
+    /// Simulated time of the event.
     pub time: Time,
-    /// To whom.
+    /// Board that handles the event.
     pub board: Board,
-    /// What, in words.
+    /// Short description of the event in English.
     pub what: &'static str,
 }
 
 impl Board {
-    /// The host or a graphics processor, by its port.
+    /// Returns the host for port 0, and graphics processor `port - 1` for any other port.
     #[must_use]
     pub const fn of_processor(port: usize) -> Self {
         match port {
@@ -62,10 +62,13 @@ impl fmt::Display for Happening {
 impl FromStr for Board {
     type Err = String;
 
-    /// `host`, `ring`, or `gp`, `renderer`, `display` with a number, with or without a space between, in large or small letters.
+    /// Parses `host`, `ring`, or one of `gp`, `renderer`, `display` with a number.
+    ///
+    /// Case does not matter. A space between name and number is optional.
     fn from_str(text: &str) -> Result<Self, String> {
         let refused = format!("expected host, ring, gp N, renderer N or display N, found {text:?}");
         let text = text.to_ascii_lowercase();
+        // Split off the digits at the end, then remove an optional space.
         let (name, number) = text.split_at(text.trim_end_matches(|c: char| c.is_ascii_digit()).len());
         match (name, name.strip_suffix(' ').unwrap_or(name), number.parse()) {
             ("host", _, Err(_)) => Ok(Self::Host),
@@ -97,7 +100,7 @@ mod tests {
         assert_eq!(happening.to_string(), format!("{} renderer 3: copy command begins", Time(7)));
     }
 
-    /// The host is at port 0, the graphics processors behind it.
+    /// The host has port 0, and the graphics processors have the following ports.
     #[test]
     fn boards_with_processors_are_numbered_behind_the_host() {
         assert_eq!([0, 1, 4].map(Board::of_processor), [Board::Host, Board::Gp(0), Board::Gp(3)]);

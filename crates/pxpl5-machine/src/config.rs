@@ -1,4 +1,4 @@
-//! What a machine is built of.
+//! Configuration of a machine: boards, displays and all timing parameters.
 
 use parameters::{Entry, ParameterError, ParameterInfo, ParameterTable, Value, nearest};
 use pxpl5_display::{DisplayConfig, DisplayError};
@@ -13,41 +13,42 @@ use std::collections::BTreeMap;
 use std::fmt::Debug;
 use thiserror::Error;
 
-/// Boards and their numbers.
+/// The boards of a machine and all their timing parameters.
 ///
-/// There is no default: begin with a preset, which states its source.
+/// There is no `Default`: start from a preset, which states its source.
 #[derive(Clone, Debug)]
 pub struct MachineConfig {
-    /// Name of the preset that it was made from.
+    /// Name of the preset that this configuration started from.
     pub preset: String,
-    /// Graphics processors, the master included.
+    /// Number of graphics processors, including the master.
     pub n_gps: usize,
-    /// Renderer boards on the ring, each with an array of 128 x 128 pixels.
+    /// Number of renderer boards on the ring, each with an array of 128 x 128 pixels.
     pub n_renderers: usize,
-    /// The ring's channels, clock and overhead.
+    /// Timing of the ring: number of channels, clock and overhead.
     pub ring: RingTiming,
-    /// Graphics processors: the times of the code that they run, where a table stands for it.
+    /// Times of the graphics processors' work, used where a run does not execute i860 code.
     pub gp: GpTiming,
-    /// Which i860 code they run where clocks are counted (cycle level), whatever the table says; `None` for the table.
+    /// i860 code that the graphics processors run at the cycle level. `None` uses the times of `gp` at the cycle level
+    /// too.
     pub code: Option<CodeVersion>,
-    /// The core and the memory that this code runs on: clocks of its freezes and of its DRAM.
+    /// Timing of the i860 core and its memory at the cycle level: clocks of freezes and of DRAM.
     pub i860: i860::Config,
-    /// Clocks of the renderers' commands, their FIFO and backing store.
+    /// Timing of the renderers: clocks of commands, FIFO and backing store.
     pub renderer: RendererTiming,
-    /// The host workstation and its link.
+    /// Timing of the host workstation and its link to the ring.
     pub host: HostTiming,
-    /// The displays. The first is the sync generator, and what pipelines draw for.
+    /// The displays. The first display is the sync generator, and pipelines draw for it.
     pub displays: Vec<Box<dyn DisplayConfig>>,
-    /// Numbers of the firmware that may run on it, which the boards do not know; each table with the first part of its paths.
+    /// Parameter tables of firmware, each with the prefix of its parameter paths.
     pub firmware: Vec<(&'static str, Box<dyn FirmwareTable>)>,
 }
 
-/// The first part of the paths of a firmware's numbers, and what makes the table with the values of its papers.
+/// The prefix of a firmware's parameter paths, and a function that returns the table with the papers' values.
 pub type NamedTable = (&'static str, fn() -> Box<dyn FirmwareTable>);
 
-/// A table of the numbers of some firmware.
+/// A parameter table of firmware, stored in a [`MachineConfig`].
 pub trait FirmwareTable: ParameterTable + Any + Debug + Send + Sync {
-    /// A copy of the numbers.
+    /// Returns a boxed copy of the table.
     fn boxed(&self) -> Box<dyn FirmwareTable>;
 }
 
@@ -75,55 +76,55 @@ impl PartialEq for MachineConfig {
     }
 }
 
-/// A configuration that no machine can have.
+/// An error in a machine's configuration.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum ConfigError {
-    /// No preset has this name.
+    /// No preset has the requested name.
     #[error("there is no machine `{found}`; did you mean `{nearest}`? (`pxpl5 machines` lists all)")]
     UnknownPreset {
-        /// The name asked for.
+        /// The requested name.
         found: String,
-        /// The nearest valid name.
+        /// The valid name that is most similar to the requested one.
         nearest: &'static str,
     },
-    /// A number is out of range.
+    /// A number of boards is out of range.
     #[error("{what} must be {} to {}, found {found}", expected.0, expected.1)]
     Value {
-        /// The number's path.
+        /// Path of the number, such as `n_gps`.
         what: String,
-        /// Smallest and largest that the model takes.
+        /// Smallest and largest valid value.
         expected: (u64, u64),
-        /// What was asked for.
+        /// The requested value.
         found: u64,
     },
-    /// No parameter has this path.
+    /// No parameter has the requested path.
     #[error("there is no parameter `{found}`; did you mean `{nearest}`?")]
     UnknownParameter {
-        /// The path asked for.
+        /// The requested path.
         found: String,
-        /// The nearest valid path.
+        /// The valid path that is most similar to the requested one.
         nearest: String,
     },
-    /// A number is what a part is, and no machine can have another.
+    /// The parameter is a fixed property of a chip. Programs can read it but not set it.
     #[error("{path} is {value} in every machine ({origin}); it is listed, but cannot be set")]
     ReadOnly {
-        /// The number's path.
+        /// Path of the parameter.
         path: String,
-        /// The value that it has.
+        /// Value of the parameter in every machine.
         value: Value,
-        /// Where the value comes from.
+        /// Source of the value.
         origin: &'static str,
     },
-    /// A number is none that its table can take.
+    /// A parameter table refused a value.
     #[error("{board}.{error}")]
     Parameter {
-        /// The board whose table it is.
+        /// Prefix of the parameter table, such as `ring`.
         board: String,
-        /// What was expected and what was found.
+        /// The expected values and the refused one.
         error: ParameterError,
     },
-    /// A board or a pipeline refuses its numbers.
+    /// A board, a display or a pipeline refused its configuration. The text states the reason.
     #[error("{0}")]
     Board(String),
 }
@@ -134,22 +135,22 @@ impl From<DisplayError> for ConfigError {
     }
 }
 
-/// A parameter of a machine: its path, what is known of it and its value.
+/// A parameter of a machine: path, metadata and value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Parameter {
-    /// Board and field, such as `ring.word_ns`.
+    /// Prefix of the table and name of the field, such as `ring.word_ns`.
     pub path: String,
-    /// Unit, standing, range and source.
+    /// Unit, provenance, range and source.
     #[serde(flatten)]
     pub info: ParameterInfo,
-    /// Its value in this machine, in the unit that its table states.
+    /// Value in this machine, in the unit that the table states.
     pub value: Value,
-    /// Whether it is listed only: what a part is, which nobody can set.
+    /// True if the parameter is a fixed property of a chip, which [`MachineConfig::set`] refuses to change.
     pub read_only: bool,
 }
 
 impl Parameter {
-    /// The numbers of a table, whose paths begin with `prefix`; `read_only` says that none of them can be set.
+    /// Returns the parameters of one table. Paths begin with `prefix`, and `read_only` marks all of them as fixed.
     pub fn of_table(prefix: &str, table: &dyn ParameterTable, read_only: bool) -> impl Iterator<Item = Self> {
         table.entries().into_iter().map(move |Entry { info, value }| {
             let path = format!("{prefix}.{}", info.name);
@@ -159,14 +160,14 @@ impl Parameter {
 }
 
 impl Parameter {
-    /// Whether the sources allow the value.
+    /// Returns true if the value lies within the range that the sources allow.
     #[must_use]
     pub fn is_in_range(&self) -> bool {
         let (low, high) = self.info.range;
         (low..=high).contains(&self.value)
     }
 
-    /// That the value is outside what the sources allow, with range and source.
+    /// Returns the text of a warning that the value is out of range, with the range and its source.
     #[must_use]
     pub fn warning(&self) -> String {
         let Self { path, info, value, .. } = self;
@@ -179,17 +180,17 @@ impl Parameter {
     }
 }
 
-/// Most boards of a kind: a ring of that many is still far from 16 bits of port numbers.
+/// Largest number of boards of one kind. Port numbers have 16 bits, so this limit leaves room for all boards.
 const MAX_BOARDS: u64 = 1_000;
 
 impl MachineConfig {
-    /// Numbers of GPs and of renderers.
+    /// Returns the numbers of graphics processors and of renderers, in this order.
     #[must_use]
     pub fn boards(&self) -> [u64; 2] {
         [self.n_gps as u64, self.n_renderers as u64]
     }
 
-    /// The name of the code that its processors run: `unoptimised`, `compiled`, `scheduled`, or `none`.
+    /// Returns the name of the processors' i860 code: `unoptimised`, `compiled`, `scheduled`, or `none`.
     #[must_use]
     pub const fn code_name(&self) -> &'static str {
         match self.code {
@@ -198,7 +199,7 @@ impl MachineConfig {
         }
     }
 
-    /// All tables of numbers in order of the boards, each with the first part of its paths.
+    /// Returns all parameter tables in the order of the boards, each with its path prefix.
     fn tables(&self) -> Vec<(&'static str, &dyn ParameterTable)> {
         let mut all: Vec<(&'static str, &dyn ParameterTable)> = vec![("ring", &self.ring), ("gp", &self.gp)];
         all.extend(self.i860.tables());
@@ -209,7 +210,7 @@ impl MachineConfig {
         all
     }
 
-    /// The tables whose numbers can be set.
+    /// Returns the parameter tables that can be changed, each with its path prefix.
     fn tables_mut(&mut self) -> Vec<(&'static str, &mut dyn ParameterTable)> {
         let mut all: Vec<(&'static str, &mut dyn ParameterTable)> =
             vec![("ring", &mut self.ring), ("gp", &mut self.gp)];
@@ -221,44 +222,47 @@ impl MachineConfig {
         all
     }
 
-    /// The parameters that tell this machine from others: all but those of firmware and of the i860 with the values of the
-    /// papers. It has those of firmware without a table too, and those of the i860 had every machine before they could be set,
-    /// so that names of experiments made then are the same now.
+    /// Returns the parameters that identify this machine in names of experiments.
+    ///
+    /// The result omits parameters of firmware and of the i860 that have the papers' values. Older versions could not
+    /// set these parameters. Omitting them keeps the names of old experiments valid.
     #[must_use]
     pub fn telling_parameters(&self) -> Vec<Parameter> {
         let all = self.parameters().into_iter();
         all.filter(|parameter| parameter.value != parameter.info.papers || !self.is_implied(parameter)).collect()
     }
 
-    /// Whether a parameter has the value of the papers in every machine that does not say otherwise.
+    /// Returns true for parameters of firmware and of the i860, which have the papers' value unless a machine sets
+    /// another.
     fn is_implied(&self, parameter: &Parameter) -> bool {
         let table = parameter.path.rsplit_once('.').map(|(table, _)| table);
         let of_i860 = self.i860.tables().map(|(name, _)| name);
         self.firmware.iter().map(|(name, _)| *name).chain(of_i860).any(|name| Some(name) == table)
     }
 
-    /// Adds the numbers of some firmware, unless it has them already.
+    /// Adds the parameter table of a firmware, unless the configuration already has a table of this name.
     pub fn add_firmware_table(&mut self, name: &'static str, table: Box<dyn FirmwareTable>) {
         if self.firmware.iter().all(|(known, _)| *known != name) {
             self.firmware.push((name, table));
         }
     }
 
-    /// The numbers of some firmware, by their type.
+    /// Returns the parameter table of a firmware by its type.
     #[must_use]
     pub fn firmware_table<T: FirmwareTable>(&self) -> Option<&T> {
         self.firmware.iter().find_map(|(_, table)| (table.as_ref() as &dyn Any).downcast_ref())
     }
 
-    /// All parameters in order of the boards.
+    /// Returns all parameters in the order of the boards.
     #[must_use]
     pub fn parameters(&self) -> Vec<Parameter> {
         let all = self.tables().into_iter();
         all.flat_map(|(path, table)| Parameter::of_table(path, table, path == i860::CHIP_PATH)).collect()
     }
 
-    /// Parameters that differ from the preset's, by path; those of tables that the preset has not (firmware, another
-    /// display) where they differ from the value that the papers give.
+    /// Returns the parameters that differ from the preset's values, by path.
+    ///
+    /// A table that the preset does not have (firmware, another display) is compared with the papers' values.
     #[must_use]
     pub fn overrides(&self) -> BTreeMap<String, Value> {
         let Ok(preset) = Self::preset(&self.preset) else { return BTreeMap::new() };
@@ -269,8 +273,9 @@ impl MachineConfig {
         self.settings().into_iter().filter(|(path, value)| expected(path) != Some(value)).collect()
     }
 
-    /// Parameters that no source allows: outside their stated range, and not what the preset says. The model can take them, but
-    /// what comes of them is a supposition.
+    /// Returns the changed parameters whose values lie outside their stated range.
+    ///
+    /// The model accepts such values, but no source supports the results.
     #[must_use]
     pub fn out_of_range(&self) -> Vec<Parameter> {
         let changed = self.overrides();
@@ -278,7 +283,7 @@ impl MachineConfig {
         self.parameters().into_iter().filter(is_supposed).collect()
     }
 
-    /// The numbers of boards and all parameters, by path.
+    /// Returns the numbers of boards and all parameters, by path.
     #[must_use]
     pub fn settings(&self) -> Vec<(String, Value)> {
         let [n_gps, n_renderers] = self.boards();
@@ -291,8 +296,10 @@ impl MachineConfig {
     ///
     /// # Errors
     ///
-    /// [`ConfigError::UnknownParameter`] with the nearest valid path; [`ConfigError::ReadOnly`] for what a part is;
-    /// [`ConfigError::Parameter`] for a number that is not whole where one must be.
+    /// - [`ConfigError::UnknownParameter`], with the most similar valid path, if the path is unknown.
+    /// - [`ConfigError::ReadOnly`] if the parameter is a fixed property of a chip.
+    /// - [`ConfigError::Parameter`] if the table refuses the value, such as a fraction where an integer is expected.
+    /// - [`ConfigError::Board`] if a number of boards is not an integer.
     pub fn set(&mut self, path: &str, value: impl Into<Value>) -> Result<(), ConfigError> {
         let value = value.into();
         match path {
@@ -304,7 +311,7 @@ impl MachineConfig {
     }
 
     fn set_parameter(&mut self, path: &str, value: Value) -> Result<(), ConfigError> {
-        // The last part is the number's name; tables may have names of two parts, and numbers of the same name.
+        // The last part of the path is the parameter's name. The prefix may itself contain a dot (`i860.chip`).
         let Some((board, name)) = path.rsplit_once('.') else { return Err(self.unknown(path)) };
         for (prefix, table) in self.tables_mut() {
             if prefix == board && table.infos().iter().any(|info| info.name == name) {
@@ -314,7 +321,7 @@ impl MachineConfig {
         Err(self.not_settable(path))
     }
 
-    /// Why no table that can be set has a path: it is listed only, or nobody knows it.
+    /// Returns the error for a path that no changeable table has: the parameter is read-only or unknown.
     fn not_settable(&self, path: &str) -> ConfigError {
         match self.parameters().into_iter().find(|parameter| parameter.path == path) {
             Some(Parameter { path, info, value, .. }) => ConfigError::ReadOnly { path, value, origin: info.source },
@@ -328,22 +335,22 @@ impl MachineConfig {
         ConfigError::UnknownParameter { found: path.to_owned(), nearest }
     }
 
-    /// The first period of the first display: for NTSC, a field.
+    /// Returns the length of the first display's first period. For NTSC, a period is one field.
     ///
     /// # Errors
     ///
-    /// [`ConfigError::Board`] when there is no display, or none can be built of its numbers.
+    /// [`ConfigError::Board`] if the machine has no display or the display's parameters are invalid.
     pub fn period(&self) -> Result<Span, ConfigError> {
         let display = self.displays.first().ok_or_else(no_display)?;
         let nodes: Vec<NodeId> = (0..display.ports(1) as u16).map(NodeId).collect();
         Ok(display.build(&nodes)?.tick(PeriodNumber(1)).since(Time::ZERO))
     }
 
-    /// Checks everything that can be checked before a machine is built.
+    /// Checks all numbers of boards, parameter tables and displays before a machine is built.
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] names the first number that is out of range, what was expected and what was found.
+    /// [`ConfigError`] describes the first invalid value and the values expected.
     pub fn check(&self) -> Result<(), ConfigError> {
         check("n_gps", self.n_gps as u64, 1, MAX_BOARDS)?;
         check("n_renderers", self.n_renderers as u64, 1, MAX_BOARDS)?;
@@ -357,7 +364,7 @@ impl MachineConfig {
     }
 }
 
-/// A number of boards.
+/// Converts the value of `n_gps` or `n_renderers` to an integer.
 fn whole(path: &str, value: Value) -> Result<usize, ConfigError> {
     let number = value.whole().and_then(|number| usize::try_from(number).ok());
     number.ok_or_else(|| ConfigError::Board(format!("{path} must be a whole number, found {value}")))
@@ -405,9 +412,8 @@ mod tests {
     }
 
     parameters::parameter_table! {
-        /// Numbers of some firmware.
         struct Numbers {
-            /// A time that may be changed.
+            /// A time within a range.
             step_ns: 500, "ns", Assumed, 100..=900, "made up";
         }
     }

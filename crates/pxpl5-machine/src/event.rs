@@ -1,4 +1,4 @@
-//! Events of a machine, and what they are called.
+//! Events of a machine and their descriptions.
 
 use crate::board::{Board, Happening};
 use crate::ports::Ports;
@@ -9,31 +9,31 @@ use pxpl5_ring::{RingEvent, RingOutput};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 
-/// An event of any board.
+/// An event that one board, or the ring, handles.
 #[derive(Debug)]
 pub(crate) enum Event {
     Ring(RingEvent),
-    /// What the ring brings to a board.
+    /// Output of the ring for one of the other boards.
     FromRing(RingOutput),
     Gp(usize, GpEvent),
     Renderer(usize, RendererEvent),
-    /// What a line, by its number, brings to the first display past the ring.
+    /// Arrival of messages on a host line (by its number), which bypasses the ring.
     HostLine(usize),
-    /// What a display scheduled for itself.
+    /// Event that a display has scheduled for itself.
     Display(usize, DisplayEvent),
-    /// The tick of a display's clock that begins a period.
+    /// Clock tick of a display that begins a period.
     Tick(usize, PeriodNumber),
-    /// An edge of the boards' clock, where every one of them counts.
+    /// Edge of the boards' clock. Scheduled only if the optimization `IdleBoards` is disabled.
     Edge,
 }
 
 impl Event {
-    /// Whether it is one of displays or clocks alone: what goes on in a machine whose programs all wait.
+    /// Returns true for events of displays and clocks. Such events continue while all programs wait.
     pub(crate) const fn is_of_displays(&self) -> bool {
         matches!(self, Self::Edge | Self::Tick(..) | Self::Display(..) | Self::HostLine(_))
     }
 
-    /// What it is to somebody who watches.
+    /// Returns a description of this event for a debugger.
     pub(crate) fn happening(&self, time: Time, ports: &Ports) -> Happening {
         let (board, what) = match self {
             Self::Ring(event) => (Board::Ring, ring_what(event)),
@@ -49,7 +49,7 @@ impl Event {
     }
 }
 
-/// Whom the ring brings something, and what.
+/// Returns the receiver of a ring output, and a description of the output.
 fn brought(output: &RingOutput, ports: &Ports) -> (Board, &'static str) {
     match output {
         RingOutput::Announce { message, .. } => (ports.board(message.destination), "message announced"),
@@ -59,7 +59,6 @@ fn brought(output: &RingOutput, ports: &Ports) -> (Board, &'static str) {
     }
 }
 
-/// What an event of the ring is, in words.
 const fn ring_what(event: &RingEvent) -> &'static str {
     match event {
         RingEvent::Request(_) => "a board asks for a channel",
@@ -69,7 +68,6 @@ const fn ring_what(event: &RingEvent) -> &'static str {
     }
 }
 
-/// What an event of a processor is, in words.
 const fn gp_what(event: &GpEvent) -> &'static str {
     match event {
         GpEvent::Delivered(_) => "message delivered",
@@ -81,7 +79,6 @@ const fn gp_what(event: &GpEvent) -> &'static str {
     }
 }
 
-/// What an event of a renderer is, in words.
 const fn renderer_what(event: &RendererEvent) -> &'static str {
     match event {
         RendererEvent::Announce { .. } => "message announced",

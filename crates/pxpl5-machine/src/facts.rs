@@ -1,14 +1,14 @@
-//! What of a happening enters the trace.
+//! Converts events to the numbers that enter the trace hash.
 
 use pxpl5_gp::Mark;
 use pxpl5_wire::{Body, Message, RegionPixels, SurfaceId};
 
-/// What of a message enters the trace, under a number for what happened to it.
+/// Returns the trace entry of a message. `kind` is the number of the event's type.
 pub(crate) fn facts(kind: u64, message: &Message) -> [u64; 4] {
     [kind, u64::from(message.source.0), u64::from(message.destination.0), u64::from(message.words)]
 }
 
-/// What of a message that came to a port by a line of the host enters the trace.
+/// Returns the trace entry of a message that a host line delivered to a display's port.
 pub(crate) fn facts_of_line(port: usize, body: &Body) -> Vec<u64> {
     match body {
         Body::Words(words) => [8, port as u64].into_iter().chain(words.iter().map(|word| u64::from(*word))).collect(),
@@ -19,13 +19,15 @@ pub(crate) fn facts_of_line(port: usize, body: &Body) -> Vec<u64> {
     }
 }
 
-/// What of a mark enters the trace.
+/// Returns the trace entry of a mark.
 pub(crate) fn facts_of(mark: &Mark) -> [u64; 6] {
     let surface = surface_fact(mark.surface);
     [4, u64::from(mark.node.0), mark.picture.0, surface, mark.stage as u64, mark.edge as u64]
 }
 
-/// The surface as traces have it since there were two at most, which 2 stands for: none.
+/// Returns the code of a surface in the trace. Code 2 stands for no surface, so surfaces from 2 on are shifted by one.
+///
+/// Code 2 dates from versions with at most two surfaces and keeps old trace hashes valid.
 fn surface_fact(surface: Option<SurfaceId>) -> u64 {
     match surface {
         None => 2,
@@ -54,7 +56,8 @@ mod tests {
         assert_eq!(facts_of_line(6, &Body::Commands(list)), [10, 6]);
     }
 
-    /// Hashes that were published hold only as long as the numbers of surfaces stay: 2 is none, those from the third on follow.
+    /// Published trace hashes depend on these codes: 2 means no surface, and surfaces from the third on have their
+    /// number plus 1.
     #[test]
     fn marks_are_told_with_their_surfaces_as_ever() {
         let surfaces = [Some(0), Some(1), None, Some(2), Some(3)];

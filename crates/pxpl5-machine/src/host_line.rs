@@ -1,16 +1,19 @@
-//! A line to a display that does not go over the ring.
+//! Connections from the host to a display that bypass the ring.
 
 use pxpl5_sim::Time;
 use pxpl5_wire::Body;
 use std::fmt::Debug;
 
-/// What comes to the first display by a line of its own, such as the orientations of a head from the host: nothing on the ring delays
-/// it.
+/// A connection from the host to the first display that bypasses the ring.
+///
+/// An example is the line that carries orientations of the head. Traffic on the ring does not delay its messages.
 pub trait HostLine: Debug {
-    /// When the next messages have come after an instant; `None` when none will.
+    /// Returns the time of the first arrival after the instant `after`, or `None` if no more messages follow.
     fn next(&self, after: Time) -> Option<Time>;
 
-    /// What has come at an instant that [`HostLine::next`] named, in order, each with the number of the display's port that it came
-    /// to. It is asked in the order of time.
+    /// Returns the messages that arrive at the instant `now`, each with the number of the receiving port of the
+    /// display.
+    ///
+    /// The machine calls this method with the instants from [`HostLine::next`], in ascending order.
     fn messages(&mut self, now: Time) -> Vec<(usize, Body)>;
 }

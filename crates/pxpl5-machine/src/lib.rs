@@ -1,12 +1,14 @@
-//! Pixel-Planes 5 as a whole: which boards there are, and how they are plugged together.
+//! The complete machine: its boards and the connections between them.
 //!
-//! [`Machine`] is the schematic: the only place where boards meet. [`MachineConfig`] holds every number of it, beginning
-//! with a preset of the papers ([`PRESETS`]). What was observed, and the boards themselves when a run is over, are a
-//! [`Record`].
+//! - [`Machine`] is the schematic. Only [`Machine`] connects boards to each other.
+//! - [`MachineConfig`] holds every number of a machine. A configuration starts from a preset of the papers
+//!   ([`PRESETS`]).
+//! - [`Record`] holds the boards after a run and everything observed during the run.
 //!
-//! A machine owns any number of displays ([`pxpl5_display::Display`]) and knows nothing of what is peculiar to one.
+//! A machine owns any number of displays ([`pxpl5_display::Display`]). The machine uses only the
+//! [`pxpl5_display::Display`] interface and contains no code for a particular kind of display.
 //!
-//! **Not here:** the computer that the simulation runs on. Clocks, threads and files are handed in ([`PixelWorker`]).
+//! **Not here:** clocks, threads and files of the host computer. Callers pass them in ([`PixelWorker`]).
 
 #![warn(missing_docs)]
 

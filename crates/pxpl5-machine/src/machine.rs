@@ -1,4 +1,4 @@
-//! The schematic: this file alone plugs boards together.
+//! The schematic: only this file connects boards.
 //!
 //! ```text
 //!   port   0      1 .. n_gps      then renderers       then the displays' ports
@@ -32,24 +32,25 @@ use pxpl5_wire::{Body, Message, NodeId, PeriodNumber};
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
-/// A whole machine at work: its boards and what was observed of them ([`Record`]), programs, and what is going to happen.
+/// A running machine: boards, observations ([`Record`]), programs and the queue of future events.
 #[derive(Debug)]
 pub struct Machine {
     record: Record,
     queue: EventQueue<Event>,
-    /// The host, then the graphics processors: all boards that run programs, by their port.
+    /// All boards that run programs, indexed by port: the host, then the graphics processors.
     processors: Vec<GpBoard>,
     contexts: Contexts,
-    /// Swaps of what is behind each port so far.
+    /// Number of swaps so far at each display port.
     swaps: BTreeMap<NodeId, u64>,
-    /// What the host says to the first display past the ring.
+    /// Host lines into the first display, which bypass the ring.
     host_lines: Vec<Box<dyn HostLine>>,
     pixels: Option<Box<dyn PixelWorker>>,
-    /// Whether every edge of the boards' clock is an event.
+    /// True if every edge of the boards' clock is an event (optimization `IdleBoards` disabled).
     every_edge: bool,
     failure: Option<RunError>,
-    /// Events since the last tick of the first display that were no tick, and the ticks up to it without any.
+    /// Events since the last tick of the first display, not counting events of displays and clocks.
     work_events: u64,
+    /// Number of consecutive ticks of the first display without any other event between them.
     idle_ticks: u64,
 }
 
@@ -61,32 +62,38 @@ struct Contexts {
     display: DisplayContext,
 }
 
-/// Ticks of the first display with no other event between or ahead after which a machine with waiting programs is said to be deadlocked.
+/// Number of idle ticks of the first display after which a machine with waiting programs counts as deadlocked.
+///
+/// A tick is idle if no other event happened since the previous tick and none is pending.
 pub const DEADLOCK_TICKS: u64 = 120;
 
-/// Events that a tick of the first display causes by itself: the signal to the first GP, and the poll of its programs.
+/// Events that each tick of the first display causes: the signal to the first GP, and the poll of its programs.
 const EVENTS_OF_A_TICK: u64 = 2;
 
-/// What a signal needs to leave a board: one cycle of the boards' 40 MHz.
+/// Returns the delay of a signal that leaves a board: one cycle of the boards' 40 MHz clock.
 fn cycle() -> Span {
     Clock::from_hz(40_000_000).map_or(Span(25_000), |clock| clock.span(Cycles(1)))
 }
 
 impl Machine {
-    /// Builds the machine with displays for a pipeline that draws so many pictures at a time: 1, or 2 for two eyes.
+    /// Builds a machine whose displays have ports for `pictures` pictures at a time: 1, or 2 for two eyes.
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] when a number is out of range.
+    /// [`ConfigError`] if a parameter of the machine or of a display is invalid.
     pub fn new(config: &MachineConfig, pictures: usize, layout: Layout) -> Result<Self, ConfigError> {
         config.check()?;
+        // Number the ports first: every board needs its own port number.
         let ports = Ports::plug(config, pictures);
+        // Renderers are not elastic: they accept a message only when their FIFO has room.
         let renderers = ports.renderers.clone();
         let elastic = move |node: NodeId| !renderers.contains(&node);
         let ring =
             Ring::new(config.ring, ports.count(), elastic).map_err(|error| ConfigError::Board(error.to_string()))?;
+        // Build the boards in the order of their ports.
         let host = GpBoard::new(ports.host, config.host.board(), cycle());
         let gps = ports.gps.iter().map(|node| GpBoard::new(*node, config.gp, cycle()));
+        // All renderers share one pool for their pixel arrays.
         let pool = ArrayPool::new(layout);
         let renderer = |node: &NodeId| Renderer::new(*node, config.renderer, config.ring.word(), cycle(), pool.clone());
         let displays = config.displays.iter().zip(&ports.displays).map(|(display, nodes)| display.build(nodes));
@@ -116,18 +123,21 @@ impl Machine {
         })
     }
 
-    /// Takes ties of events in an order hashed from a seed, to prove that no result depends on it.
+    /// Handles simultaneous events in a pseudo-random order derived from `seed`.
+    ///
+    /// Tests use this method to prove that no result depends on the order of simultaneous events.
     pub fn shuffle_ties(&mut self, seed: u64) {
         self.queue.shuffle_ties(seed);
     }
 
-    /// Has the pixels of every region that is copied from now on computed by a worker.
+    /// Computes the pixels of every region copied from now on, using `worker`.
     pub fn compute_all_pixels(&mut self, worker: Box<dyn PixelWorker>) {
         self.pixels = Some(worker);
     }
 
-    /// Has the graphics processors tell the time of their work by the i860 code of the machine's configuration, if it names
-    /// any; to be called before programs are loaded.
+    /// Takes the times of the graphics processors' work from i860 code, if the configuration names any code.
+    ///
+    /// Call this method before loading programs.
     pub fn run_code(&mut self) {
         if let Some(version) = self.record.config.code {
             let core = self.record.config.i860;
@@ -136,7 +146,7 @@ impl Machine {
         }
     }
 
-    /// Gives up a saving: what it skips is done from now on. To be called before the machine has run.
+    /// Disables an optimization of the simulator. Call this method before the machine runs.
     pub fn give_up(&mut self, saving: Saving) {
         match saving {
             Saving::IdleBoards => self.every_edge = true,
@@ -146,26 +156,26 @@ impl Machine {
         }
     }
 
-    /// Records messages, busy channels and FIFOs, each when it happens. To be called before the machine has run.
+    /// Records messages, busy channels and FIFOs as they change. Call this method before the machine runs.
     pub fn record_traffic(&mut self) {
         self.record.observation.traffic = Some(Box::default());
         self.record.ring.watch();
         self.record.renderers.iter_mut().for_each(Renderer::watch_fifo);
     }
 
-    /// Gives up marks, arrivals and swaps before an instant: nobody will ask for them. No time changes.
+    /// Discards marks, arrivals and swaps before an instant, to save memory. No simulated time changes.
     pub fn forget_before(&mut self, instant: Time) {
         let Record { observation, displays, .. } = &mut self.record;
         observation.forget_before(instant, |period| displays[0].tick(period));
     }
 
-    /// Its boards and everything observed so far.
+    /// Returns the boards and everything observed so far.
     #[must_use]
     pub const fn record(&self) -> &Record {
         &self.record
     }
 
-    /// What is left of it when it is over.
+    /// Ends the run and returns the boards and all observations.
     #[must_use]
     pub fn into_record(mut self) -> Record {
         self.finish_pixels();
@@ -174,41 +184,43 @@ impl Machine {
         self.record
     }
 
-    /// The ports of the boards.
+    /// Returns the ring ports of all boards.
     #[must_use]
     pub const fn ports(&self) -> &Ports {
         &self.record.ports
     }
 
-    /// A handle for a program on the board at a port (host or graphics processor).
+    /// Returns a handle for a program on the board at a port (host or graphics processor).
     ///
     /// # Panics
     ///
-    /// If no processor has this port.
+    /// Panics if no processor has this port.
     #[must_use]
     pub fn processor(&self, node: NodeId, level: Priority) -> Gp {
         self.processors[usize::from(node.0)].handle_for(level)
     }
 
-    /// Loads a program onto the board at a port.
+    /// Loads a program onto the host or graphics processor at a port.
     ///
     /// # Panics
     ///
-    /// If no processor has this port.
+    /// Panics if no processor has this port.
     pub fn load(&mut self, node: NodeId, level: Priority, program: Firmware) {
         self.processors[usize::from(node.0)].load(level, program);
     }
 
-    /// Plugs one more line into the first display, past the ring; to be called before the machine is switched on.
+    /// Adds a host line to the first display, which bypasses the ring. Call this method before [`Machine::switch_on`].
     pub fn plug_host_line(&mut self, line: Box<dyn HostLine>) {
         self.host_lines.push(line);
     }
 
-    /// Switches on: every board's programs begin at time zero, and so does the first period of every display.
+    /// Starts the machine: all programs and the first period of every display begin at time zero.
     pub fn switch_on(&mut self) {
+        // Every processor polls its programs first.
         for board in 0..self.processors.len() {
             self.queue.schedule(Time::ZERO, Phase::Work, Event::Gp(board, GpEvent::Poll));
         }
+        // Start the clocks of the displays.
         for (display, device) in self.record.displays.iter().enumerate() {
             self.queue.schedule(
                 device.tick(PeriodNumber::FIRST),
@@ -216,33 +228,35 @@ impl Machine {
                 Event::Tick(display, PeriodNumber::FIRST),
             );
         }
+        // With the optimization `IdleBoards` disabled, poll at every clock edge.
         if self.every_edge {
             self.queue.schedule(Time::ZERO, Phase::Work, Event::Edge);
         }
         (0..self.host_lines.len()).for_each(|line| self.schedule_host_line(line, Time::ZERO));
     }
 
-    /// Runs up to, and not including, an instant.
+    /// Handles all events before the instant `end`, not including `end` itself.
     ///
     /// # Errors
     ///
-    /// [`RunError`]; everything observed before it is kept.
+    /// [`RunError`] if a program fails, the machine deadlocks or the ring refuses a message. The [`Record`] keeps all
+    /// earlier observations.
     pub fn run_until(&mut self, end: Time) -> Result<(), RunError> {
         while self.takes_event_before(end).is_some() {}
         self.failure.clone().map_or(Ok(()), Err)
     }
 
-    /// Handles the next event, if it is before an instant, and gives its time.
+    /// Handles the next event if it is before the instant `end`, and returns its time.
     ///
     /// # Errors
     ///
-    /// [`RunError`], of this event or of one before: a machine that has failed goes on no more.
+    /// [`RunError`] of this event or of an earlier one. A machine that has failed handles no more events.
     pub fn step_before(&mut self, end: Time) -> Result<Option<Time>, RunError> {
         let taken = self.takes_event_before(end);
         self.failure.clone().map_or(Ok(taken), Err)
     }
 
-    /// Handles the next event, if it is before an instant and the machine has not failed, and gives its time.
+    /// Handles the next event if it is before `end` and the machine has not failed. Returns the event's time.
     fn takes_event_before(&mut self, end: Time) -> Option<Time> {
         if self.failure.is_some() {
             return None;
@@ -252,7 +266,7 @@ impl Machine {
         Some(now)
     }
 
-    /// What will happen next; `None` where nothing will.
+    /// Returns a description of the next event, or `None` if no event is pending.
     #[must_use]
     pub fn next_happening(&self) -> Option<Happening> {
         self.queue.peek().map(|(time, event)| event.happening(time, &self.record.ports))
@@ -272,14 +286,14 @@ impl Machine {
         }
     }
 
-    /// Asks every board that could have something to do, and the next edge.
+    /// Polls every processor and the ring's arbiter, and schedules the next clock edge.
     fn edge(&mut self, now: Time) {
         (0..self.processors.len()).for_each(|board| self.gp_event(now, board, GpEvent::Poll));
         self.ring_event(now, RingEvent::Arbitrate);
         self.queue.schedule(now + cycle(), Phase::Work, Event::Edge);
     }
 
-    /// A display's clock ticks; that of the first one is the sync generator of the first graphics processor.
+    /// Handles a display's clock tick. The first display's tick also signals a retrace to the first graphics processor.
     fn tick(&mut self, now: Time, display: usize, period: PeriodNumber) {
         self.display_event(now, display, DisplayEvent::Tick(period));
         let next = period.next();
@@ -290,7 +304,9 @@ impl Machine {
         }
     }
 
-    /// Notices when nothing has happened for long though programs wait, and nothing is going to: work may take longer than that.
+    /// Detects a deadlock: programs wait, nothing happened for [`DEADLOCK_TICKS`] ticks, and no work is pending.
+    ///
+    /// Pending work is checked because a single piece of work may take longer than [`DEADLOCK_TICKS`] ticks.
     fn watch(&mut self, now: Time) {
         let is_idle = self.work_events <= EVENTS_OF_A_TICK && self.is_at_rest();
         self.idle_ticks = if is_idle { self.idle_ticks + 1 } else { 0 };
@@ -303,26 +319,28 @@ impl Machine {
         }
     }
 
-    /// Returns true if a program, a renderer or a message waits for something that no retrace brings.
+    /// Returns true if a program, a renderer or a message waits for something other than a retrace.
     fn waits_for_a_board(&self) -> bool {
         self.processors.iter().any(GpBoard::waits_for_a_board)
             || self.record.renderers.iter().any(|renderer| renderer.blocked("").is_some())
             || !self.record.ring.waiting().is_empty()
     }
 
-    /// Ticks of the first display, up to the last one, between which nothing happened but ticks.
+    /// Returns the number of consecutive ticks of the first display without any other event.
     #[must_use]
     pub const fn idle_ticks(&self) -> u64 {
         self.idle_ticks
     }
 
-    /// Whether nothing is under way but the displays and the boards' clock: perhaps only until the next tick.
+    /// Returns true if all pending events belong to displays or to the boards' clock.
+    ///
+    /// The next tick of a display may still wake a program.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
         self.queue.pending().all(Event::is_of_displays)
     }
 
-    /// Who waits for what.
+    /// Returns the boards that wait, each with a description of what it waits for.
     #[must_use]
     pub fn blocked(&self) -> Vec<Blocked> {
         let processors = self
@@ -339,6 +357,7 @@ impl Machine {
         let Self { record: Record { ring, observation, .. }, contexts: Contexts { ring: context, .. }, queue, .. } =
             self;
         let mut traffic = observation.traffic.as_deref_mut();
+        // Record that a renderer accepts a message.
         if let (Some(traffic), RingEvent::Accept { destination, last_word_at }) = (&mut traffic, &event) {
             traffic.accept(*destination, *last_word_at);
         }
@@ -350,11 +369,12 @@ impl Machine {
         schedule_outputs(queue, context);
     }
 
-    /// What the ring has brought to a board enters the trace now.
+    /// Delivers an output of the ring to its board and records it in the trace.
     fn bring(&mut self, now: Time, output: RingOutput) {
         let record = &mut self.record;
         let mut traffic = record.observation.traffic.as_deref_mut();
         match output {
+            // The first words of a message reach a renderer's FIFO.
             RingOutput::Announce { message, first_word_at, .. } => {
                 record.hash.record(now, &facts(1, &message));
                 if let Some(traffic) = &mut traffic {
@@ -363,6 +383,7 @@ impl Machine {
                 let board = usize::from(message.destination.0 - record.ports.renderers[0].0);
                 self.renderer_event(now, board, RendererEvent::Announce { message, first_word_at });
             }
+            // A message has arrived completely.
             RingOutput::Delivered(message) => {
                 record.hash.record(now, &facts(2, &message));
                 if let Some(traffic) = &mut traffic {
@@ -370,6 +391,7 @@ impl Machine {
                 }
                 self.deliver(now, message);
             }
+            // Tell the sender that its message was accepted.
             RingOutput::Sent { source, ticket } => {
                 record.hash.record(now, &[3, u64::from(source.0), ticket]);
                 match record.ports.renderers.binary_search(&source) {
@@ -377,13 +399,14 @@ impl Machine {
                     Err(_) => self.gp_event(now, usize::from(source.0), GpEvent::Accepted(ticket)),
                 }
             }
+            // An invalid message stops the machine.
             RingOutput::Refused { error, .. } => {
                 self.failure = Some(RunError::Ring { time: now, reason: error.to_string() });
             }
         }
     }
 
-    /// The last word of a message is with its receiver.
+    /// Passes a completely received message to its display, host or graphics processor.
     fn deliver(&mut self, now: Time, message: Message) {
         match self.record.ports.of_display(message.destination) {
             Some((display, port)) => {
@@ -393,7 +416,7 @@ impl Machine {
         }
     }
 
-    /// Messages of a line of the host reach ports of the first display, and the next ones are on their way.
+    /// Delivers the messages of a host line to the first display and schedules the line's next arrival.
     fn host_says(&mut self, now: Time, line: usize) {
         let messages = self.host_lines[line].messages(now);
         self.schedule_host_line(line, now);
@@ -411,18 +434,22 @@ impl Machine {
     }
 
     fn gp_event(&mut self, now: Time, board: usize, event: GpEvent) {
+        // Let the processor handle the event.
         let Self { processors, contexts: Contexts { gp: context, .. }, queue, .. } = self;
         let processor = &mut processors[board];
         processor.handle(event, context.at(now));
         schedule_own(queue, context, |event| Event::Gp(board, event));
+        // Schedule the messages that its programs have sent.
         for (order, (time, output)) in (0..).zip(context.drain_outputs()) {
             let GpOutput::Send { message, ticket, hold } = output;
             let request = Request { message, ticket: Some(ticket), hold, order };
             queue.schedule(time, Phase::Arrive, Event::Ring(RingEvent::Request(request)));
         }
+        // A program that failed stops the machine.
         if let Some(fault) = processor.fault().cloned() {
             self.failure = Some(RunError::Fault { board: Board::of_processor(board).to_string(), time: now, fault });
         }
+        // Record the marks of its programs.
         let Record { hash, observation, .. } = &mut self.record;
         processor.drain_marks(|mark| {
             hash.record(mark.time, &facts_of(&mark));
@@ -432,6 +459,7 @@ impl Machine {
 
     fn renderer_event(&mut self, now: Time, board: usize, event: RendererEvent) {
         let Self { record, contexts: Contexts { renderer: context, .. }, queue, pixels, .. } = self;
+        // Let the renderer handle the event.
         record.renderers[board].handle(event, context.at(now));
         if let Some(traffic) = &mut record.observation.traffic {
             let changes = record.renderers[board].take_fifo_changes();
@@ -439,6 +467,7 @@ impl Machine {
         }
         schedule_own(queue, context, |event| Event::Renderer(board, event));
         let destination = record.ports.renderers[board];
+        // Schedule its answers to the ring: acceptance of a message, or a region to send.
         for (order, (time, output)) in (0..).zip(context.drain_outputs()) {
             let event = match output {
                 RendererOutput::Accept { last_word_at } => RingEvent::Accept { destination, last_word_at },
@@ -451,13 +480,13 @@ impl Machine {
         }
     }
 
-    /// The host and the graphics processors, by port.
+    /// Returns the host and the graphics processors, indexed by port.
     #[must_use]
     pub fn processors(&self) -> &[GpBoard] {
         &self.processors
     }
 
-    /// The host or a graphics processor; `None` for other boards, and those that it does not have.
+    /// Returns the host or a graphics processor. Returns `None` for other boards and for numbers that do not exist.
     #[must_use]
     pub fn board(&self, board: Board) -> Option<&GpBoard> {
         match board {
@@ -467,43 +496,45 @@ impl Machine {
         }
     }
 
-    /// Has i860s keep what they find at some addresses of code, instead of those given before; no time changes. Where the time of work
-    /// does not come from code nothing is found.
+    /// Sets breakpoints at addresses of i860 code, replacing all earlier breakpoints.
+    ///
+    /// A breakpoint records the processor's state and changes no simulated time. Processors that take their times from
+    /// a table never reach a breakpoint.
     pub fn break_at(&mut self, addresses: &BTreeSet<u32>) {
         self.processors.iter_mut().for_each(|board| board.break_at(addresses));
     }
 
-    /// Breakpoints that were met since the last call of this, by board.
+    /// Returns and removes the breakpoint hits since the last call, in the order of the boards.
     #[must_use]
     pub fn take_hits(&mut self) -> Vec<BreakpointHit> {
         self.processors.iter_mut().flat_map(GpBoard::take_hits).collect()
     }
 
-    /// Why the machine goes on no more, if it does not.
+    /// Returns the error that stopped the machine, if any.
     #[must_use]
     pub const fn failure(&self) -> Option<&RunError> {
         self.failure.as_ref()
     }
 
-    /// Events that the simulation has handled so far.
+    /// Returns the number of events handled so far.
     #[must_use]
     pub const fn events(&self) -> u64 {
         self.queue.events_taken()
     }
 
-    /// Events that wait.
+    /// Returns the number of events in the queue.
     #[must_use]
     pub fn pending_events(&self) -> usize {
         self.queue.len()
     }
 
-    /// Waits for the worker that computes pixels; the number of regions that it computed.
+    /// Waits for the worker that computes pixels, and returns the number of regions it computed.
     pub fn finish_pixels(&mut self) -> u64 {
         self.pixels.take().map_or(0, PixelWorker::finish)
     }
 }
 
-/// Hands a region over when its first message is on its way.
+/// Passes a region's pixels to the worker when the first of the region's messages is sent.
 fn compute_pixels(worker: &mut Option<Box<dyn PixelWorker>>, body: &Body) {
     if let (Some(worker), Body::Pixels(pixels)) = (worker, body)
         && pixels.part == 0

@@ -1,4 +1,4 @@
-//! What was observed of a run, and the pictures' histories that follow from it.
+//! Observations of a run, and the history of each picture derived from them.
 
 use crate::traffic::Traffic;
 use pxpl5_gp::{Mark, Stage, StageEdge};
@@ -9,97 +9,100 @@ use std::collections::BTreeMap;
 /// A region that has arrived at a display.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Arrival {
-    /// The surface that it is for.
+    /// The surface that shows the region.
     pub surface: SurfaceId,
-    /// Where on it the region belongs.
+    /// The picture, the region and the port of the display that the region was sent to.
     pub target: CopyTarget,
-    /// When its first message had arrived.
+    /// Arrival of the region's first message.
     pub first_part_at: Time,
-    /// When its last message had arrived.
+    /// Arrival of the region's last message.
     pub last_part_at: Time,
 }
 
 impl Arrival {
-    /// When its first word was on the channel; its messages are `message` long.
+    /// Returns the time at which the region's first word was on the channel. `message` is the duration of one message.
     #[must_use]
     pub const fn begins_at(&self, message: Span) -> Time {
         Time(self.first_part_at.0.saturating_sub(message.0))
     }
 }
 
-/// A swap at a tick of a display.
+/// A change of the visible buffer at a tick of a display.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Swap {
     /// The surface that shows its other buffer.
     pub surface: SurfaceId,
-    /// The port of the ring that fills it, or that part of it which swapped.
+    /// The ring port behind the surface, or behind the part of the surface that swapped.
     pub port: NodeId,
-    /// How many swaps of that port came before it.
+    /// Number of earlier swaps at this port.
     pub number: u64,
-    /// The period from whose begin on it does.
+    /// The display period at whose start the swap takes effect.
     pub tick: PeriodNumber,
-    /// The buffer that is shown from then on; it may be the same as before.
+    /// The buffer shown from now on. It may be the same as before.
     pub buffer: u8,
 }
 
 /// A picture, or a part of it, that a double-buffered port has shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shown {
-    /// Which.
+    /// Number of the picture, in its pipeline's own count.
     pub picture: PictureNumber,
-    /// When the last message of its first region had arrived.
+    /// Arrival of the last message of the picture's first region.
     pub first_region_at: Time,
-    /// The swap from which on it is shown.
+    /// Time of the swap that made the picture visible.
     pub at: Time,
 }
 
-/// Everything that was observed, in order of time as far as it was handled.
+/// Everything observed of a run. Each list is in the order in which the machine handled the events.
 #[derive(Clone, Debug, Default)]
 pub struct Observation {
-    /// What the programs said.
+    /// Marks set by programs at the begin and end of each stage of a picture.
     pub marks: Vec<Mark>,
-    /// Regions that have arrived.
+    /// Regions that have arrived at displays.
     pub arrivals: Vec<Arrival>,
     /// Swaps of double buffers, in the order in which displays made them.
     pub swaps: Vec<Swap>,
-    /// Messages and FIFOs, if they were recorded.
+    /// Messages and FIFO levels. `None` unless recording was enabled.
     pub traffic: Option<Box<Traffic>>,
-    /// What is still known of records that were given up.
+    /// Summary of observations that were discarded to save memory.
     pub forgotten: Forgotten,
 }
 
-/// What is known of records that were given up so that a long run has room: see [`Machine::forget_before`](crate::Machine::forget_before).
+/// Summary of observations discarded by [`Machine::forget_before`](crate::Machine::forget_before) in a long run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Forgotten {
-    /// Marks, arrivals and swaps before this instant are gone, but the last swap of each port, which says what is shown.
+    /// Marks, arrivals and swaps before this instant were discarded. The last swap of each port was kept.
     pub before: Time,
-    /// The first swap of all.
+    /// Period of the first swap in the whole run.
     pub first_swap: Option<PeriodNumber>,
-    /// Most regions that were there of one picture when records were given up.
+    /// Largest number of regions held for one picture when observations were discarded.
     pub most_regions: u32,
 }
 
-/// A stage of one picture and surface, from the first board that began it to the last one that ended it.
+/// One stage of a picture on one surface, from the first board's begin to the last board's end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StageSpan {
-    /// The picture that the stage worked for, in its pipeline's own count.
+    /// The picture that the boards worked on, in its pipeline's own count.
     pub picture: PictureNumber,
-    /// The surface, for stages that take one eye at a time.
+    /// The surface, for stages that handle one eye at a time.
     pub surface: Option<SurfaceId>,
-    /// Which part of the work it was.
+    /// The kind of work, such as TRANSFORM or COPY.
     pub stage: Stage,
-    /// When the first board began.
+    /// Time at which the first board began.
     pub begin: Time,
-    /// When the last board ended; `None` if it has not.
+    /// Time at which the last board ended. `None` if no board has ended.
     pub end: Option<Time>,
 }
 
 impl Observation {
-    /// All stages in order of picture, surface and stage. COPY comes from the displays: from the begin of the first
-    /// region's transfer (its first message is `message` long) to its last pixel.
+    /// Returns all stages in the order of picture, surface and stage.
+    ///
+    /// COPY is derived from arrivals at displays: from the begin of the first region's transfer to the arrival of its
+    /// last pixel. `message` is the duration of one message.
     #[must_use]
     pub fn stages(&self, message: Span) -> Vec<StageSpan> {
         let mut spans: BTreeMap<(PictureNumber, Option<SurfaceId>, Stage), StageSpan> = BTreeMap::new();
+        // Stages that programs have marked.
         for mark in &self.marks {
             let fresh = StageSpan {
                 picture: mark.picture,
@@ -114,6 +117,7 @@ impl Observation {
                 StageEdge::End => span.end = span.end.max(Some(mark.time)),
             }
         }
+        // COPY, which no program marks.
         for arrival in &self.arrivals {
             let picture = arrival.target.picture;
             let surface = Some(arrival.surface);
@@ -126,8 +130,9 @@ impl Observation {
         spans.into_values().collect()
     }
 
-    /// The frames that were swapped in on all of the first `surfaces` surfaces, by how many came before, and the ticks at which they
-    /// were; those that were not given up.
+    /// Returns the frames that all of the first `surfaces` surfaces have shown, with the period of the latest swap.
+    ///
+    /// The key is the number of earlier swaps. Frames whose swaps were discarded are missing.
     #[must_use]
     pub fn frames(&self, surfaces: usize) -> BTreeMap<u64, PeriodNumber> {
         let of = |surface| self.swaps_of(surface).map(|swap| (swap.number, swap.tick));
@@ -139,19 +144,19 @@ impl Observation {
         frames
     }
 
-    /// The period from which on anything at all was shown.
+    /// Returns the first period that showed any picture.
     #[must_use]
     pub fn first_swap(&self) -> Option<PeriodNumber> {
         self.forgotten.first_swap.or_else(|| self.swaps.iter().map(|swap| swap.tick).min())
     }
 
-    /// How many swaps of a port came before the first one that is held; 0 where none is.
+    /// Returns the number of swaps of a port before the first one still held, or 0 if none is held.
     #[must_use]
     pub fn first_swap_held(&self, port: NodeId) -> u64 {
         self.swaps.iter().filter(|swap| swap.port == port).map(|swap| swap.number).min().unwrap_or_default()
     }
 
-    /// Most regions that have arrived of one picture, in the whole run.
+    /// Returns the largest number of regions that arrived for one picture in the whole run.
     #[must_use]
     pub fn most_regions_of_a_picture(&self) -> u32 {
         let mut of_pictures: BTreeMap<PictureNumber, u32> = BTreeMap::new();
@@ -159,13 +164,13 @@ impl Observation {
         of_pictures.into_values().max().unwrap_or_default().max(self.forgotten.most_regions)
     }
 
-    /// Marks, arrivals and swaps that are held.
+    /// Returns the number of marks, arrivals and swaps held in memory.
     #[must_use]
     pub fn records(&self) -> usize {
         self.marks.len() + self.arrivals.len() + self.swaps.len()
     }
 
-    /// Gives up what was before an instant; `tick` tells when a period begins.
+    /// Discards observations before `instant`. `tick` returns the start of a display period.
     pub(crate) fn forget_before(&mut self, instant: Time, tick: impl Fn(PeriodNumber) -> Time) {
         let most_regions = self.most_regions_of_a_picture();
         if let Some(traffic) = &mut self.traffic {
@@ -173,6 +178,7 @@ impl Observation {
         }
         self.marks.retain(|mark| mark.time >= instant);
         self.arrivals.retain(|arrival| arrival.last_part_at >= instant);
+        // Keep the last old swap of each port: it tells which buffer is visible.
         let first_swap = self.first_swap();
         let mut last: BTreeMap<NodeId, u64> = BTreeMap::new();
         let is_old = |swap: &Swap| tick(swap.tick) < instant;
@@ -180,28 +186,28 @@ impl Observation {
             last.entry(swap.port).and_modify(|last| *last = swap.number.max(*last)).or_insert(swap.number);
         }
         self.swaps.retain(|swap| !is_old(swap) || last[&swap.port] == swap.number);
-        // Room for as much again stays: a run that gives up now and then takes it soon.
+        // Keep capacity for twice the held records: a run that discards regularly needs the space again soon.
         self.marks.shrink_to(2 * self.marks.len());
         self.arrivals.shrink_to(2 * self.arrivals.len());
         self.forgotten = Forgotten { before: instant, first_swap, most_regions };
     }
 
-    /// The swaps of a surface that are held, in order.
+    /// Returns the swaps of a surface that are still held, in order.
     pub fn swaps_of(&self, surface: SurfaceId) -> impl Iterator<Item = &Swap> {
         self.swaps.iter().filter(move |swap| swap.surface == surface)
     }
 }
 
-/// A region that came after its deadline.
+/// A region that arrived after its deadline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct LateRegion {
-    /// The period that it was for: an NTSC display's field.
+    /// The display period for which the region was drawn. For NTSC, a period is one field.
     pub field: PeriodNumber,
-    /// The surface that it was for.
+    /// The surface that should have shown the region.
     pub surface: SurfaceId,
-    /// Its number in its picture's grid.
+    /// Number of the region in the picture's grid.
     pub region: u16,
-    /// How much later than its deadline it was complete, picoseconds.
+    /// Time between the deadline and the arrival of the complete region, in picoseconds.
     pub lateness: Span,
 }
 
@@ -211,7 +217,8 @@ mod tests {
 
     const EYES: [SurfaceId; 2] = [SurfaceId(0), SurfaceId(1)];
 
-    /// Two eyes that swap every second period, the second one period later.
+    /// Returns an observation of two eyes that swap every second period. The second eye swaps one period after the
+    /// first.
     fn stereo() -> Observation {
         let swap = |number: u64| {
             EYES.map(|surface| {
@@ -231,7 +238,8 @@ mod tests {
         let mut observation = stereo();
         let all = observation.frames(2);
         assert!(all.iter().all(|(number, tick)| tick.0 == 2 * number + 1) && all.len() == 20);
-        // Between the swaps of frame 7's eyes: the first eye's swap is the last before the instant, and kept.
+        // This instant lies between the swaps of both eyes for frame 7. The first eye's swap is the last one before it
+        // and is kept.
         observation.forget_before(Time(1_450), tick);
         let left = observation.frames(2);
         assert_eq!(left, all.into_iter().filter(|(number, _)| *number >= 7).collect());
@@ -301,7 +309,7 @@ mod tests {
         for capacity in [observation.marks.capacity(), observation.arrivals.capacity()] {
             assert!((200..1_000).contains(&capacity), "{capacity}");
         }
-        // Swaps at 900 (the second eye's, whose period 9 begins then) and later, and the last one of each eye before.
+        // Kept are the swaps from time 900 on, and the last swap of each eye before it.
         let of = |surface| observation.swaps_of(surface).map(|swap| swap.tick.0).collect::<Vec<_>>();
         assert_eq!(of(EYES[0])[..2], [8, 10]);
         assert_eq!(of(EYES[1])[..3], [7, 9, 11]);

@@ -1,19 +1,19 @@
-//! Who computes pixels while the simulation goes on: apart from simulated time, handed in by whoever runs the machine.
+//! Computation of pixels during a run. The caller supplies it, and it takes no simulated time.
 
 use pxpl5_wire::PixelSource;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// Somebody who computes the pixels of regions.
+/// Computes the pixels of regions while the simulation runs.
 pub trait PixelWorker: Debug {
-    /// Takes a region; it may be computed at any time until [`PixelWorker::finish`].
+    /// Accepts a region. The worker may compute it at any time before [`PixelWorker::finish`] returns.
     fn compute(&mut self, region: &Arc<dyn PixelSource>);
 
-    /// Waits until everything is computed; the number of regions.
+    /// Waits until all regions are computed and returns their number.
     fn finish(self: Box<Self>) -> u64;
 }
 
-/// Computes pixels at once, on the thread that simulates.
+/// A [`PixelWorker`] that computes pixels immediately, on the thread of the simulation.
 #[derive(Debug, Default)]
 pub struct SameThread {
     regions: u64,

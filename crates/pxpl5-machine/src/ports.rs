@@ -1,24 +1,24 @@
-//! Which board is plugged in where.
+//! Assignment of boards to ports of the ring.
 
 use crate::board::Board;
 use crate::config::MachineConfig;
 use pxpl5_wire::NodeId;
 
-/// Which port of the ring each board has.
+/// The ring port of each board.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Ports {
-    /// Where the host computer is plugged into the ring.
+    /// Port of the host computer.
     pub host: NodeId,
-    /// Where the graphics processors are, in the order of their boards.
+    /// Ports of the graphics processors, in the order of their boards.
     pub gps: Vec<NodeId>,
-    /// Where the renderers are, in the order of their boards.
+    /// Ports of the renderers, in the order of their boards.
     pub renderers: Vec<NodeId>,
-    /// The ports of each display, in the machine's order.
+    /// Ports of each display, in the machine's order of displays.
     pub displays: Vec<Vec<NodeId>>,
 }
 
 impl Ports {
-    /// Ports in the order of the schematic, from 0.
+    /// Assigns port numbers from 0 in the order of the schematic.
     pub(crate) fn plug(config: &MachineConfig, pictures: usize) -> Self {
         let mut next = 0;
         Self {
@@ -29,19 +29,19 @@ impl Ports {
         }
     }
 
-    /// The ports of the first display: those that pipelines draw for.
+    /// Returns the ports of the first display, for which pipelines draw.
     #[must_use]
     pub fn display(&self) -> &[NodeId] {
         self.displays.first().map_or(&[], Vec::as_slice)
     }
 
-    /// The display that has a port, and which of its ports that is.
+    /// Returns the display that has the port `node`, and the index of the port within this display.
     pub(crate) fn of_display(&self, node: NodeId) -> Option<(usize, usize)> {
         let has_node = |nodes: &Vec<NodeId>| nodes.binary_search(&node).ok();
         self.displays.iter().enumerate().find_map(|(display, nodes)| Some((display, has_node(nodes)?)))
     }
 
-    /// The board that a port belongs to.
+    /// Returns the board that has the port `node`.
     #[must_use]
     pub fn board(&self, node: NodeId) -> Board {
         if let Some((display, _)) = self.of_display(node) {
@@ -59,7 +59,7 @@ impl Ports {
     }
 }
 
-/// The next `count` ports.
+/// Returns the next `count` unused ports.
 fn take_ports(next: &mut u16, count: usize) -> Vec<NodeId> {
     let first = *next;
     *next += count as u16;

@@ -1,4 +1,4 @@
-//! The machines of the papers, by name.
+//! The built-in machines, by name.
 
 use crate::config::{ConfigError, MachineConfig};
 use parameters::nearest;
@@ -8,23 +8,23 @@ use pxpl5_renderer::RendererTiming;
 use pxpl5_ring::RingTiming;
 use serde::Serialize;
 
-/// A preset: name, what it is, where it comes from.
+/// A built-in machine: name, description and parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Preset {
     /// Name on the command line.
     pub name: &'static str,
-    /// What it is and its source.
+    /// Description of the machine and its source.
     pub about: &'static str,
     n_gps: usize,
     n_renderers: usize,
     #[serde(skip)]
     gp: GpTiming,
-    /// The i860 code that its graphics processors run at the cycle level.
+    /// i860 code that the graphics processors run at the cycle level.
     #[serde(skip)]
     code: CodeVersion,
 }
 
-/// The machines that are built in, those of the papers first.
+/// The built-in machines. Machines described in the papers come first.
 pub const PRESETS: [Preset; 7] = [
     Preset {
         name: "small-hmd",
@@ -85,11 +85,11 @@ pub const PRESETS: [Preset; 7] = [
 ];
 
 impl MachineConfig {
-    /// The machine of a preset.
+    /// Returns the machine of a preset.
     ///
     /// # Errors
     ///
-    /// [`ConfigError::UnknownPreset`] with the nearest valid name.
+    /// [`ConfigError::UnknownPreset`], with the most similar valid name, if no preset is called `name`.
     pub fn preset(name: &str) -> Result<Self, ConfigError> {
         let preset = PRESETS.iter().find(|preset| preset.name == name).ok_or_else(|| ConfigError::UnknownPreset {
             found: name.to_owned(),
@@ -122,13 +122,13 @@ impl MachineConfig {
         }
     }
 
-    /// The machine of the Rendering Control measurements: 13 GPs, 5 renderers (TR94).
+    /// Returns the machine of the Rendering Control measurements: 13 GPs, 5 renderers (TR94).
     #[must_use]
     pub fn small_hmd() -> Self {
         Self::from_preset(&PRESETS[0])
     }
 
-    /// The machine of the Slats prototype: 1 GP, 5 renderers (TR94).
+    /// Returns the machine of the Slats prototype: 1 GP, 5 renderers (TR94).
     #[must_use]
     pub fn slats() -> Self {
         Self::from_preset(&PRESETS[1])

@@ -1,4 +1,4 @@
-//! What is known of a machine: the state of its boards and everything observed.
+//! State of a machine's boards and everything observed of a run.
 
 use crate::config::MachineConfig;
 use crate::observation::{Observation, Shown, StageSpan};
@@ -10,8 +10,7 @@ use pxpl5_sim::{Span, Time, TraceHash};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, NodeId, PeriodNumber, PictureNumber, SurfaceId};
 use std::any::Any;
 
-/// The boards of a machine without the programs that ran on it, and everything observed: plain data, which may be sent to
-/// another thread.
+/// The boards of a machine, without programs, and everything observed of the run. Can be sent to another thread.
 #[derive(Debug)]
 pub struct Record {
     pub(crate) config: MachineConfig,
@@ -26,85 +25,88 @@ pub struct Record {
 }
 
 impl Record {
-    /// The numbers that the machine was built of.
+    /// Returns the configuration that the machine was built from.
     #[must_use]
     pub const fn config(&self) -> &MachineConfig {
         &self.config
     }
 
-    /// The ports of the boards.
+    /// Returns the ring ports of all boards.
     #[must_use]
     pub const fn ports(&self) -> &Ports {
         &self.ports
     }
 
-    /// The ring as it stands at the end of the run.
+    /// Returns the ring with its state at the end of the run.
     #[must_use]
     pub const fn ring(&self) -> &Ring {
         &self.ring
     }
 
-    /// The renderers as they stand at the end of the run, in the order of their boards.
+    /// Returns the renderers with their state at the end of the run, in the order of their boards.
     #[must_use]
     pub fn renderers(&self) -> &[Renderer] {
         &self.renderers
     }
 
-    /// The displays as they stand at the end of the run; the first is the sync generator.
+    /// Returns the displays with their state at the end of the run. The first display is the sync generator.
     #[must_use]
     pub fn displays(&self) -> &[Box<dyn Display>] {
         &self.displays
     }
 
-    /// The first display: what pipelines draw for, and whose clock the length of a run is counted in.
+    /// Returns the first display. Pipelines draw for it, and its clock defines the periods of a run.
     ///
     /// # Panics
     ///
-    /// Never: a machine without a display is refused.
+    /// Never, because [`MachineConfig::check`] refuses a machine without a display.
     #[must_use]
     pub fn display(&self) -> &dyn Display {
         self.displays[0].as_ref()
     }
 
-    /// The first display of a kind; `None` where the machine has none.
+    /// Returns the first display of type `D`, or `None` if the machine has none.
     #[must_use]
     pub fn display_of_kind<D: Display + 'static>(&self) -> Option<&D> {
         self.displays.iter().find_map(|display| (display.as_ref() as &dyn Any).downcast_ref())
     }
 
-    /// The number of a display's first surface.
+    /// Returns the number of the first surface of a display.
     pub(crate) fn first_surface(&self, display: usize) -> usize {
         self.displays[..display].iter().map(|display| display.surfaces().len()).sum()
     }
 
-    /// The surfaces of all displays, in the order of their numbers.
+    /// Returns the surfaces of all displays, in the order of their numbers.
     pub fn surfaces(&self) -> impl Iterator<Item = (SurfaceId, &Surface)> {
         let all = self.displays.iter().flat_map(|display| display.surfaces());
         (0..).map(SurfaceId).zip(all)
     }
 
-    /// A surface by its number.
+    /// Returns a surface by its number.
     #[must_use]
     pub fn surface(&self, id: SurfaceId) -> Option<&Surface> {
         self.surfaces().nth(id.index()).map(|(_, surface)| surface)
     }
 
-    /// What was observed so far.
+    /// Returns everything observed so far.
     #[must_use]
     pub const fn observation(&self) -> &Observation {
         &self.observation
     }
 
-    /// All stages of all pictures, COPY as the displays saw it.
+    /// Returns all stages of all pictures. COPY is derived from arrivals at the displays.
     #[must_use]
     pub fn stages(&self) -> Vec<StageSpan> {
         self.observation.stages(self.message_span())
     }
 
-    /// What a double-buffered port has shown, swap after swap: the picture of which the last region had come before the swap, as far as
-    /// both are held. No region of the next comes before the buffer is free.
+    /// Returns the pictures that a double-buffered port has shown, in the order of swaps.
+    ///
+    /// A swap shows the picture whose last region arrived before the swap. This rule holds because no region of the
+    /// next picture arrives before the other buffer is free. Discarded arrivals and swaps are missing.
     #[must_use]
     pub fn shown_by(&self, port: NodeId) -> Vec<Shown> {
+        // Sort the arrivals at this port by time.
         let arrivals = self.observation.arrivals.iter().filter(|arrival| arrival.target.frame_buffer == port);
         let arrivals = arrivals.map(|arrival| (arrival.last_part_at, arrival.target.picture));
         let mut arrivals: Vec<(Time, PictureNumber)> = arrivals.collect();
@@ -112,6 +114,7 @@ impl Record {
         let mut arrivals = arrivals.into_iter().peekable();
         let mut newest: Option<(PictureNumber, Time)> = None;
         let swaps = self.observation.swaps.iter().filter(|swap| swap.port == port);
+        // For each swap, find the newest picture that has arrived.
         let shown = swaps.filter_map(|swap| {
             let at = self.tick(swap.tick);
             while let Some((arrived_at, picture)) = arrivals.next_if(|arrival| arrival.0 <= at) {
@@ -124,31 +127,33 @@ impl Record {
         shown.collect()
     }
 
-    /// How long the longest message occupies a channel.
+    /// Returns how long a message of maximum length occupies a channel.
     #[must_use]
     pub const fn message_span(&self) -> Span {
         self.ring.timing().occupancy(MAX_MESSAGE_WORDS)
     }
 
-    /// The tick that begins a period of the first display.
+    /// Returns the start of a period of the first display.
     #[must_use]
     pub fn tick(&self, period: PeriodNumber) -> Time {
         self.display().tick(period)
     }
 
-    /// Hash of everything that happened.
+    /// Returns the hash of all traced events of the run.
     #[must_use]
     pub const fn trace_hash(&self) -> TraceHash {
         self.hash
     }
 
-    /// Events handled in the whole run.
+    /// Returns the number of events handled in the whole run.
     #[must_use]
     pub const fn events(&self) -> u64 {
         self.events
     }
 
-    /// Vertices that graphics processors transformed in the whole run: each corner of a triangle and each centre of a sphere, once for each view.
+    /// Returns the number of vertices that graphics processors transformed in the whole run.
+    ///
+    /// Each corner of a triangle and each centre of a sphere counts once per view.
     #[must_use]
     pub const fn vertex_transforms(&self) -> u64 {
         self.vertex_transforms

@@ -1,43 +1,43 @@
-//! Why a machine cannot go on.
+//! Errors that stop a run.
 
 use pxpl5_gp::Fault;
 use pxpl5_sim::{Blocked, Time};
 use thiserror::Error;
 
-/// Why a run ended early.
+/// The reason why a run ended early.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum RunError {
-    /// A program stopped: something did not fit, or a message made no sense.
+    /// A program failed, for example because a buffer overflowed or a message was invalid.
     #[error("{board} stopped at {time}: {fault}")]
     Fault {
-        /// The board's name.
+        /// Name of the board that ran the program.
         board: String,
-        /// When it stopped.
+        /// Simulated time of the failure.
         time: Time,
-        /// What it could not do.
+        /// Description of the failed operation.
         fault: Fault,
     },
-    /// Nothing can happen any more but ticks of the displays.
+    /// Programs wait, and only ticks of the displays are pending.
     #[error("nothing can happen any more at {time}:{}", waits(blocked))]
     Deadlock {
-        /// When that was noticed.
+        /// Simulated time at which the deadlock was detected.
         time: Time,
-        /// Who waits for what.
+        /// The waiting boards, each with what it waits for.
         blocked: Vec<Blocked>,
     },
     /// The ring could not carry a message.
     #[error("ring, at {time}: {reason}")]
     Ring {
-        /// When it was asked to.
+        /// Simulated time of the request.
         time: Time,
-        /// What is wrong with the message.
+        /// Description of the error in the message.
         reason: String,
     },
 }
 
 impl RunError {
-    /// When the run ended.
+    /// Returns the simulated time at which the run ended.
     #[must_use]
     pub const fn time(&self) -> Time {
         match self {

@@ -1,33 +1,41 @@
-//! What a run does not compute because nothing would come of it.
+//! Optimizations of the simulator that change no result.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// A saving that an experiment can give up (`Experiment::without`). None of them changes a time or a pixel that is
-/// seen, which `tests/savings.rs` shows by doing without each; `cargo bench --bench savings` measures what they are worth.
+/// An optimization of the simulator. An experiment can disable each one (`Experiment::without`).
 ///
-/// What nobody looks at is one more saving: `Pixels` of the experiment.
+/// No optimization changes a time or a visible pixel: `tests/savings.rs` repeats runs with each one disabled. `cargo
+/// bench --bench savings` measures the speed-ups.
+///
+/// Unread pixels are skipped by a separate setting, `Pixels` of the experiment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Saving {
-    /// Boards sleep until something happens to them. Without it every processor polls its programs and the ring its
-    /// arbiter at every edge of the boards' 40 MHz clock. (Renderers and frame buffers have nothing to poll: a SIMD array
-    /// takes the same time whatever its data are, so the arrival of a command tells its end.)
+    /// Boards sleep until their next event.
+    ///
+    /// If disabled, every processor polls its programs and the ring polls its arbiter at every edge of the boards' 40
+    /// MHz clock. Renderers and frame buffers never poll. The duration of a renderer's command does not depend on data,
+    /// so the command's end is known when it arrives.
     IdleBoards,
-    /// The ring computes the end of a message at its grant. Without it every word slot of every channel is an event.
+    /// The ring computes the end of a message when it grants the channel. If disabled, every word of every channel is
+    /// an event.
     Transfers,
-    /// A region that no primitive touches is drawn once and kept for as long as its other commands stay the same, and triangles that
-    /// firmware sends to regions which they do not touch (Slats) are left out of their pixels. Without it everything is drawn.
+    /// A region that no primitive touches is drawn once and reused while its other commands stay the same.
+    ///
+    /// Triangles that firmware sends to regions they do not touch (Slats) are skipped when pixels are computed. If
+    /// disabled, every region and triangle is drawn.
     EmptyRegions,
-    /// Code that repeats with all it needs in the caches takes the clocks that were counted before (cycle level). Without it
-    /// the i860s count every clock.
+    /// Code that repeats with all its code and data in the caches takes the clocks counted before (cycle level).
+    ///
+    /// If disabled, the i860s count every clock.
     RepeatedCode,
 }
 
 impl Saving {
-    /// Every saving that an experiment can give up.
+    /// All optimizations that an experiment can disable.
     pub const ALL: [Self; 4] = [Self::IdleBoards, Self::Transfers, Self::EmptyRegions, Self::RepeatedCode];
 
-    /// The name by which the command knows it.
+    /// Returns the name used on the command line.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

@@ -1,39 +1,39 @@
-//! What went over the ring and through the renderers' FIFOs, recorded when asked for; it changes no time.
+//! Records of ring messages and renderer FIFOs. Recording is optional and changes no simulated time.
 
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Message, NodeId};
 use std::collections::BTreeMap;
 
-/// A message on its way.
+/// A message that crossed the ring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Transfer {
-    /// The port of the board that sent it.
+    /// Port of the sender.
     pub source: NodeId,
-    /// The port of the board that it was for.
+    /// Port of the receiver.
     pub destination: NodeId,
-    /// Its length in words of 32 bits, header included.
+    /// Length in words of 32 bits, including the header.
     pub words: u32,
-    /// When its first word reached the receiver.
+    /// Arrival of the first word at the receiver.
     pub begin: Time,
-    /// When the receiver had taken its last word.
+    /// Time at which the receiver had taken the last word.
     pub end: Time,
 }
 
-/// Everything that was recorded.
+/// Messages, channel use and FIFO changes recorded during a run.
 #[derive(Clone, Debug, Default)]
 pub struct Traffic {
     /// Messages, in the order in which their receivers had taken them.
     pub transfers: Vec<Transfer>,
-    /// Occupied channels of the ring, overhead and stalls included, whenever their number changed.
+    /// Number of occupied channels, at each change. A channel counts as occupied during overhead and stalls too.
     pub busy_channels: Vec<(Time, u32)>,
-    /// Renderer, time and change: words of commands that have come in whole, and of commands that start.
+    /// Changes of the FIFOs: renderer, time, and words added by a complete command or removed by a command that starts.
     pub fifo_changes: Vec<(usize, Time, i64)>,
     /// Messages that a renderer has not accepted yet, by destination.
     announced: BTreeMap<NodeId, Transfer>,
 }
 
 impl Traffic {
-    /// The words of complete commands that wait in a renderer's FIFO, whenever their number changed.
+    /// Returns the number of words of complete commands in a renderer's FIFO, at each change.
     #[must_use]
     pub fn fifo_words(&self, renderer: usize) -> Vec<(Time, i64)> {
         let of = self.fifo_changes.iter().filter(|change| change.0 == renderer);
@@ -47,13 +47,14 @@ impl Traffic {
         sums.collect()
     }
 
-    /// Messages and changes that are held.
+    /// Returns the number of messages and changes held in memory.
     #[must_use]
     pub fn records(&self) -> usize {
         self.transfers.len() + self.busy_channels.len() + self.fifo_changes.len()
     }
 
-    /// Gives up what was before an instant: messages that had been taken, and changes; the state that the last of them left stays.
+    /// Discards messages and changes before an instant, and keeps the channel use and FIFO levels valid at that
+    /// instant.
     pub(crate) fn forget_before(&mut self, instant: Time) {
         self.transfers.retain(|transfer| transfer.end >= instant);
         let last = self.busy_channels.partition_point(|(time, _)| *time < instant).saturating_sub(1);
@@ -84,7 +85,8 @@ impl Traffic {
         self.transfers.extend(announced.map(|transfer| Transfer { end, ..transfer }));
     }
 
-    /// Words reach a receiver that takes them as they come without a gap.
+    /// Records a message to a receiver that takes words without a gap, so the begin follows from the end and the
+    /// length.
     pub(crate) fn deliver(&mut self, message: &Message, end: Time, word: Span) {
         let begin = Time(end.0.saturating_sub((word * u64::from(message.words)).0));
         self.transfers.push(transfer(message, begin, end));
@@ -164,7 +166,7 @@ mod tests {
         assert_eq!(traffic.fifo_changes, [(0, Time(20), 5)]);
     }
 
-    /// What a history says of an instant: that of the last entry that is not after it.
+    /// Returns the state of a history at an instant, which is that of the last entry at or before it.
     fn at<T: Copy>(history: &[(Time, T)], instant: u64) -> Option<T> {
         history.iter().rev().find(|(time, _)| time.0 <= instant).map(|(_, state)| *state)
     }

@@ -1,29 +1,31 @@
-//! Where the time goes from the head's pose to light.
+//! Latency from the head's pose to light, by stage.
 
 use pxpl5_run::{PictureTimes, Sampled, Samples, Settled};
 use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::collections::BTreeMap;
 
-/// Mean time in each stage from the head's pose to light, in milliseconds. The stages add up to the total. Of no picture there
-/// is none of these (NaN; null in JSON).
+/// Mean time of each stage from the head's pose to light, in milliseconds. The stages add up to the total.
+///
+/// All means are NaN (null in JSON) if no picture was measured.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Budget {
-    /// From the pose to the arrival of its report at the host: tracker, cable, host's kernel.
+    /// From the measurement of the pose to the arrival of its report at the host: tracker, cable, kernel of the host.
     pub tracking_ms: f64,
-    /// From there until the pipeline takes it.
+    /// From the arrival of the tracker's report until the pipeline uses it.
     pub waiting_ms: f64,
-    /// From there to the start of TRANSFORM: host's link, edits, wait for the stage.
+    /// From the use of the report to the start of TRANSFORM: link of the host, edits, wait for the stage.
     pub sending_ms: f64,
-    /// From there until the frame buffer has it: TRANSFORM, RENDER, COPY.
+    /// From the start of TRANSFORM until the frame buffer holds the picture: TRANSFORM, RENDER, COPY.
     pub drawing_ms: f64,
-    /// From there until it may be shown: wait for the retrace or for the beam. Negative where the last pixels come
-    /// after the first are shown.
+    /// From the end of COPY until the picture is shown: wait for the retrace or for the beam.
+    ///
+    /// Negative if the last pixels arrive after the first pixels are shown.
     pub showing_ms: f64,
-    /// From there until the beam is at the middle of the picture.
+    /// From the time the picture is shown until the beam reaches its middle.
     pub scanning_ms: f64,
-    /// From the pose to the light of the picture's middle.
+    /// From the measurement of the pose to the light of the picture's middle.
     pub total_ms: f64,
-    /// Pictures that this is the mean of.
+    /// Number of pictures in the mean.
     pub n: u64,
 }
 
@@ -34,13 +36,13 @@ impl Default for Budget {
 }
 
 impl Budget {
-    /// The mean over the pictures of several runs.
+    /// Returns the mean over the pictures of several runs, each run weighted by its number of pictures.
     #[must_use]
     pub fn pooled(budgets: impl Iterator<Item = Self>) -> Self {
         let known: Vec<Self> = budgets.filter(|budget| budget.n > 0).collect();
         let n: u64 = known.iter().map(|budget| budget.n).sum();
         let mean = |of: fn(&Self) -> f64| {
-            // Of no picture there is no number.
+            // Without pictures, 0 / 0 gives NaN.
             known.iter().map(|budget| of(budget) * budget.n as f64).sum::<f64>() / n as f64
         };
         Self {
@@ -56,45 +58,48 @@ impl Budget {
     }
 }
 
-/// Stages of the complete pictures in the window whose pose was measured, milliseconds.
+/// Sums of the stages over complete pictures in the window that have a measured pose, in milliseconds.
 #[derive(Debug, Default)]
 pub(crate) struct BudgetSum {
-    /// The first period of the window as it is known by now.
+    /// First period of the result window, as far as known.
     window_from: Option<PeriodNumber>,
     stages_ms: [Samples; STAGES],
-    /// Poses of the last pictures and of those to come: a head gives up what is old, and a silent tracker leaves one pose to all that
-    /// come.
+    /// Poses of recent and future pictures.
+    ///
+    /// They are copied because a head discards old poses, and because later pictures may use the last pose of a silent
+    /// tracker.
     poses: Poses,
 }
 
-/// Poses before the newest picture's that are held: a slow display memory shows older views than a fast one.
+/// Number of poses kept from before the newest picture. A slow display memory shows older views than a fast one.
 const OLDER_POSES: usize = 64;
 
-/// What is held of views, by their numbers.
+/// Sampled views by their numbers.
 pub(crate) type Poses = BTreeMap<ViewNumber, Sampled>;
 
-/// Stages from the head's pose to light.
 pub(crate) const STAGES: usize = 6;
 
 impl BudgetSum {
     pub(crate) fn take(&mut self, run: &Settled<'_>) {
         let window_from = run.window.map(|window| window.first_period);
         if self.window_from != window_from {
-            // All that was taken before lies before the window.
+            // The window has moved: everything summed so far lies before it.
             self.window_from = window_from;
             self.stages_ms = std::array::from_fn(|_| Samples::keeping(run.samples));
         }
+        // Sum the stages of the new pictures.
         self.poses.append(&mut poses(run));
         for stages in of_pictures(run, &self.poses, run.steady_pictures()) {
             self.stages_ms.iter_mut().zip(stages).for_each(|(samples, ms)| samples.push(ms));
         }
+        // Discard poses that no later picture can use.
         if let Some(newest) = run.pictures.last() {
             let oldest = self.poses.range(..newest.view).rev().nth(OLDER_POSES).map(|(view, _)| *view);
             self.poses = self.poses.split_off(&oldest.unwrap_or_default());
         }
     }
 
-    /// The means.
+    /// Returns the mean of each stage.
     pub(crate) fn said(self) -> Budget {
         let n = self.stages_ms[0].count();
         let means = self.stages_ms.map(|samples| samples.statistics().mean);
@@ -104,12 +109,12 @@ impl BudgetSum {
     }
 }
 
-/// Those that a head holds.
+/// Returns the poses that the head of a run still holds.
 pub(crate) fn poses(run: &Settled<'_>) -> Poses {
     run.head.map(|head| head.sampled()).unwrap_or_default().into_iter().map(|s| (s.number, s)).collect()
 }
 
-/// Of complete pictures whose pose was measured and is held.
+/// Returns the duration of each stage, for every complete picture whose measured pose is still in memory.
 pub(crate) fn of_pictures<'a>(
     run: &Settled<'_>,
     poses: &Poses,
@@ -119,10 +124,11 @@ pub(crate) fn of_pictures<'a>(
     complete.filter_map(|times| of_picture(run, times, poses.get(&times.view)?)).collect()
 }
 
-/// From each instant at which a picture's pose passed from stage to stage to the next one.
+/// Returns the time between consecutive instants of a picture's way from the pose to light, in milliseconds.
 fn of_picture(run: &Settled<'_>, times: &PictureTimes, sampled: &Sampled) -> Option<[f64; STAGES]> {
     let light = run.pipeline.light(run.record, times);
     let taken_at = sampled.known.max(sampled.arrived_at?);
+    // The stages lie between these consecutive instants.
     let path = [
         sampled.measured_at?,
         sampled.arrived_at?,

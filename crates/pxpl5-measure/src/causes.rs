@@ -1,35 +1,40 @@
-//! Why pixels are where they are: the error of a run split into its causes.
+//! The error of a run, split into its causes.
 
 use crate::errors::{PixelErrors, Showing};
 use pxpl5_run::{Cause, Outcome};
 use serde::Serialize;
 
-/// The mean error of a run and what each cause adds to it, pixels: how much smaller it is with that cause alone turned off. Causes
-/// that need each other (a latency hurts only where a prediction fails) leave an interaction; all of it adds up to the whole.
+/// Mean error of a run and the contribution of each cause, in pixels.
 ///
-/// A part can be negative: without noise a filter that smooths it still lags, without latency the noise remains.
+/// The contribution of a cause is the reduction of the error when only this cause is turned off. Some causes act only
+/// together: a latency matters only if the prediction fails. The remainder is the interaction, so parts and interaction
+/// add up to the whole.
+///
+/// A contribution can be negative. For example, a filter lags even without the noise that it should smooth.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ErrorCauses {
-    /// Mean error over the grid and all judged fields, pixels.
+    /// Mean error over the grid and all evaluated fields, in pixels.
     pub whole_px: f64,
-    /// What each cause adds, pixels, in the order of [`Cause::ALL`].
+    /// Contribution of each cause in pixels, in the order of [`Cause::ALL`].
     pub parts_px: Vec<ErrorPart>,
-    /// What is left: `whole_px` less the sum of the parts, pixels.
+    /// Difference between `whole_px` and the sum of the parts, in pixels.
     pub interaction_px: f64,
 }
 
-/// What one cause adds.
+/// Contribution of one cause to the error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ErrorPart {
-    /// What was turned off.
+    /// The cause that was turned off.
     pub cause: Cause,
-    /// Mean error less the mean error without the cause, pixels.
+    /// Mean error minus the mean error without the cause, in pixels.
     pub px: f64,
 }
 
 impl ErrorCauses {
-    /// Of a run whose pictures are shown so, and what its errors are then ([`PixelErrors::shown`]); `None` of a run without a head, or of
-    /// which no pixel could be judged.
+    /// Computes the contributions for a run.
+    ///
+    /// `whole` holds the errors of the same run shown in the same way ([`PixelErrors::shown`]). Returns `None` for a
+    /// run without a head, or if no pixel could be evaluated.
     #[must_use]
     pub fn of(outcome: &Outcome, showing: Showing, whole: &PixelErrors) -> Option<Self> {
         outcome.head()?;
@@ -37,6 +42,7 @@ impl ErrorCauses {
             return None;
         }
         let whole_px = whole.pixels.mean;
+        // Evaluate the run again without each single cause.
         let parts = Cause::ALL.map(|cause| {
             let without_px = PixelErrors::without(outcome, showing, cause).pixels.mean;
             ErrorPart { cause, px: whole_px - without_px }

@@ -1,42 +1,42 @@
-//! What a pixel shows: the point of the scene that the ray through it meets, and where that point is at another time.
+//! Ray casting into the scene: the point that a pixel shows, and the position of this point at another time.
 
 use glam::{DMat4, DVec3};
 use pxpl5_scene::{Frame, Hinge, HmdConfig, Scene, Structure};
 use pxpl5_sim::Time;
 
-/// A point that is shown, in the coordinates of what it is fixed to.
+/// A visible point, in the coordinates of the object it belongs to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Content {
     point: DVec3,
-    /// The structure that moves with it, by its place in [`Contents`]; `None` of the world.
+    /// Index in [`Contents`] of the structure that the point moves with. `None` for a fixed point of the world.
     body: Option<usize>,
 }
 
 impl Content {
-    /// A point of the world that does not move.
+    /// Returns a point of the world that does not move.
     pub(crate) const fn fixed(point: DVec3) -> Self {
         Self { point, body: None }
     }
 }
 
-/// Primitives that rays can meet: all of the scene that is fixed to the world. What is fixed to the head is always where it
-/// should be.
+/// The primitives that rays can hit: all structures of the scene in the world's frame.
+///
+/// Structures fixed to the head are left out, because they are always displayed at the right position.
 #[derive(Debug, Default)]
 pub(crate) struct Contents {
     bodies: Vec<Body>,
 }
 
-/// A structure of the scene.
 #[derive(Debug)]
 struct Body {
-    /// Its place in the scene.
+    /// Index of the structure in the scene.
     structure: usize,
     hinge: Option<Hinge>,
     patches: Vec<Patch>,
     spheres: Vec<(DVec3, f64)>,
 }
 
-/// Some triangles that follow each other, which in a mesh mostly lie beside each other, and a sphere around them.
+/// A group of consecutive triangles with a bounding sphere. Consecutive triangles of a mesh are mostly neighbours.
 #[derive(Debug)]
 struct Patch {
     centre: DVec3,
@@ -44,10 +44,10 @@ struct Patch {
     triangles: Vec<[DVec3; 3]>,
 }
 
-/// Triangles of a patch.
+/// Number of triangles in a [`Patch`].
 const PATCH: usize = 32;
 
-/// A half line; at `t` metres of depth it is at `origin + t direction`.
+/// A half line with the points `origin + t * direction`, where `t` is the depth in metres.
 #[derive(Clone, Copy, Debug)]
 struct Ray {
     origin: DVec3,
@@ -61,13 +61,14 @@ impl Contents {
         Self { bodies: in_world.map(|(place, structure)| Body::of(scene, place, structure)).collect() }
     }
 
-    /// What the ray from an eye meets first, with its objects where they are at a time; `direction` goes 1 m deep into the view.
-    /// `None` where there is nothing between the near and the far plane.
+    /// Returns the nearest point that a ray from the eye hits, with moving objects placed for the time `objects_at`.
+    ///
+    /// `direction` covers 1 m of depth. Returns `None` if the ray hits nothing between the near and the far plane.
     pub(crate) fn met(&self, origin: DVec3, direction: DVec3, objects_at: Time) -> Option<Content> {
         self.nearest(origin, direction, objects_at, |_| true).map(|(_, content)| content)
     }
 
-    /// The same of some structures, by their place in the scene, with its depth.
+    /// Returns the nearest hit, and its depth, among the structures selected by `structures` (indexed as in the scene).
     pub(crate) fn met_of(
         &self,
         origin: DVec3,
@@ -87,6 +88,7 @@ impl Contents {
     ) -> Option<(f64, Content)> {
         let hmd = HmdConfig::unc();
         let mut nearest = (hmd.far_m, None);
+        // Test each structure in its own coordinates, up to the depth of the nearest hit so far.
         for (i, body) in self.bodies.iter().enumerate().filter(|(_, body)| is_wanted(body.structure)) {
             let to_body = body.model(objects_at).inverse();
             let ray = Ray { origin: to_body.transform_point3(origin), direction: to_body.transform_vector3(direction) };
@@ -97,7 +99,7 @@ impl Contents {
         nearest.1.map(|content| (nearest.0, content))
     }
 
-    /// Where a point is in the world at a time.
+    /// Returns the position of a point in the world at a time.
     pub(crate) fn place(&self, content: &Content, at: Time) -> DVec3 {
         let body = content.body.and_then(|body| self.bodies.get(body));
         body.map_or(content.point, |body| body.model(at).transform_point3(content.point))
@@ -118,12 +120,12 @@ impl Body {
         }
     }
 
-    /// From its coordinates to the world's.
+    /// Returns the matrix from the structure's coordinates to the world's.
     fn model(&self, at: Time) -> DMat4 {
         self.hinge.map_or(DMat4::IDENTITY, |hinge| hinge.model(at.0).as_dmat4())
     }
 
-    /// The least depth of what a ray meets between two depths.
+    /// Returns the smallest depth at which a ray hits the structure between two depths.
     fn met(&self, ray: &Ray, (near, far): (f64, f64)) -> Option<f64> {
         let patches = self.patches.iter().filter(|patch| ray.passes(patch.centre, patch.radius));
         let of_triangles =
@@ -140,20 +142,20 @@ impl Patch {
         let high = corners().fold(DVec3::NEG_INFINITY, DVec3::max);
         let centre = (low + high) / 2.0;
         let radius = corners().map(|corner| corner.distance(centre)).fold(0.0, f64::max);
-        // Rounding must not lose a corner.
+        // Enlarge the sphere slightly, so that rounding leaves no corner outside.
         Self { centre, radius: radius * (1.0 + 1e-9), triangles: triangles.to_vec() }
     }
 }
 
 impl Ray {
-    /// Whether its line comes as near to a point as this.
+    /// Returns true if the ray's line passes within `radius` of a point.
     fn passes(&self, centre: DVec3, radius: f64) -> bool {
         let way = centre - self.origin;
         let along = way.dot(self.direction);
         way.length_squared() - along * along / self.direction.length_squared() <= radius * radius
     }
 
-    /// Depth at which it meets a triangle, from either side (Moeller and Trumbore 1997).
+    /// Returns the depth at which the ray hits a triangle from either side (Moeller and Trumbore 1997).
     fn meets_triangle(&self, [a, b, c]: &[DVec3; 3]) -> Option<f64> {
         let ab = b - a;
         let ac = c - a;
@@ -162,6 +164,7 @@ impl Ray {
         if determinant == 0.0 {
             return None;
         }
+        // `u` and `v` are barycentric coordinates of the hit.
         let way = self.origin - a;
         let u = way.dot(normal) / determinant;
         let across = way.cross(ab);
@@ -169,7 +172,7 @@ impl Ray {
         (u >= 0.0 && v >= 0.0 && u + v <= 1.0).then(|| ac.dot(across) / determinant)
     }
 
-    /// Depth at which it enters a sphere.
+    /// Returns the depth at which the ray enters a sphere.
     fn meets_sphere(&self, centre: DVec3, radius: f64) -> Option<f64> {
         let way = centre - self.origin;
         let squared = self.direction.length_squared();
@@ -198,7 +201,7 @@ mod tests {
             for j in -5..=5 {
                 let direction = DVec3::new(f64::from(i) * 0.015, f64::from(j) * 0.015, -1.0);
                 let ray = Ray { origin: eye, direction };
-                // At time 0 the rudder is at the begin of its swing, so ask where every structure is.
+                // The rudder is at the start of its swing at time 0, so it must be placed like all other structures.
                 let posed = scene.posed(&scene.edits_at(0));
                 let corner = |v: u32| posed.vertices()[v as usize].position.as_dvec3();
                 let all = posed.triangles().iter().filter_map(|t| ray.meets_triangle(&t.map(corner)));
@@ -241,7 +244,7 @@ mod tests {
         for i in -20..=20 {
             for j in -20..=20 {
                 let at = DVec3::new(f64::from(i) * 0.13 + 0.01, f64::from(j) * 0.11 + 0.01, -3.0);
-                // 1 m of depth is half of the way to the plane.
+                // 1 m of depth is half of the distance to the plane.
                 let ray = Ray { origin, direction: (at - origin) / 2.0 };
                 let is_inside = at.x >= 0.0 && at.y >= 0.0 && at.x / 2.0 + at.y <= 1.0;
                 let found = ray.meets_triangle(&triangle);
@@ -251,7 +254,7 @@ mod tests {
         }
     }
 
-    /// The nearest point of a line to a centre is where a small step to either side comes no nearer.
+    /// Searches the smallest distance by stepping along the line, and compares it with `passes` and `meets_sphere`.
     #[test]
     fn a_line_passes_a_centre_at_its_least_distance_and_enters_a_sphere_on_its_surface() {
         let centre = DVec3::new(0.5, -1.0, -6.0);

@@ -1,21 +1,23 @@
-//! Percentiles of more numbers than are kept.
+//! Percentiles of a stream of numbers in limited memory.
 
 use crate::percentiles::Percentiles;
 use pxpl5_run::Samples;
 use std::collections::BTreeMap;
 
-/// Bits of a number's fraction that tell bins apart: a bin is 1/1024 of its numbers wide.
+/// Bits of the fraction that select a bin. A bin is 1/1024 of its numbers wide.
 const FRACTION_BITS: u32 = 10;
 const DROPPED_BITS: u32 = f64::MANTISSA_DIGITS - 1 - FRACTION_BITS;
 
-/// Numbers from 0 on whose percentiles are wanted. Up to a limit all of them are kept, and percentiles are theirs; beyond it they are counted
-/// in bins, and a percentile is the middle of its number's bin, which is at most a 2048th beside it. Number, mean and greatest stay those
-/// of all of them.
+/// A distribution of non-negative numbers that answers percentiles in limited memory.
+///
+/// Up to `limit` numbers are kept, and percentiles are exact. Beyond `limit` the numbers are counted in bins. A
+/// percentile is then the middle of a bin and differs from the true value by at most 1/2048. Count, mean and maximum
+/// are always exact.
 #[derive(Clone, Debug)]
 pub(crate) struct Distribution {
     samples: Samples,
     limit: usize,
-    /// How many numbers have these first bits; only beyond the limit.
+    /// Number of values in each bin, by leading bits. Empty up to `limit` values.
     bins: BTreeMap<u64, u64>,
 }
 
@@ -34,7 +36,7 @@ impl Distribution {
         self.samples.push(value);
     }
 
-    /// The first ones, at most as many as the limit.
+    /// Returns the first numbers, at most `limit` of them.
     pub(crate) fn kept(&self) -> &[f64] {
         &self.samples
     }
@@ -44,6 +46,7 @@ impl Distribution {
         if statistics.n <= self.limit as u64 {
             return Percentiles::of(self.samples.iter().copied());
         }
+        // The percentile has the smallest rank that covers the requested share.
         let at = |percent: u64| self.ranked((statistics.n * percent).div_ceil(100).max(1));
         Percentiles {
             n: statistics.n,
@@ -55,7 +58,7 @@ impl Distribution {
         }
     }
 
-    /// The number of a rank, counted from 1 at the least, as far as its bin tells it.
+    /// Returns the middle of the bin that holds the number with a rank. Ranks count from 1, the smallest number.
     fn ranked(&self, rank: u64) -> f64 {
         let mut counted = 0;
         let is_it = |(_, n): &(&u64, &u64)| {
@@ -78,7 +81,7 @@ const fn middle(bin: u64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Numbers of many sizes in an order of no meaning.
+    /// Returns numbers of different magnitudes in pseudo-random order.
     fn numbers(n: u64) -> impl Iterator<Item = f64> + Clone {
         (0..n).map(move |i| {
             let place = i * 7_919 % n;
@@ -110,7 +113,7 @@ mod tests {
         }
     }
 
-    /// From 1 to 2 bins are 1/1024 wide, from 4 to 8 four times that.
+    /// Bins between 1 and 2 are 1/1024 wide. Bins between 4 and 8 are four times as wide.
     #[test]
     fn a_bin_stands_for_its_middle() {
         for (value, middle) in [(1.0, 1.0 + 1.0 / 2_048.0), (1.000_9, 1.0 + 1.0 / 2_048.0), (6.0, 6.0 + 4.0 / 2_048.0)]

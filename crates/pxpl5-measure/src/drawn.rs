@@ -1,18 +1,18 @@
-//! For which pose a pixel was drawn.
+//! The pose and the time for which a pixel was drawn.
 
 use glam::DVec2;
 use pxpl5_sim::Time;
 use std::sync::Arc;
 use tracking::Pose;
 
-/// What a view was drawn for: a pose, and the time for which moving objects were placed.
+/// The pose for which a view was drawn, and the time for which moving objects were placed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moment {
     pub(crate) pose: Pose,
     pub(crate) objects_at: Time,
 }
 
-/// What a pixel was drawn for.
+/// The source of a displayed pixel.
 #[derive(Clone, Debug)]
 pub(crate) enum Drawn {
     View(Moment),
@@ -22,23 +22,25 @@ pub(crate) enum Drawn {
         part: f64,
         on_screen: bool,
     },
-    /// A picture that is shifted on its way to the screen.
+    /// A picture that the display shifts while scanning it out (raster offset).
     Shifted(Moment, DVec2),
-    /// Faces around the eye, looked up in the newest direction: the nearest of what several memories show.
+    /// Faces of a cube around the eye, addressed by the latched direction. The nearest point of all memories is
+    /// visible.
     Faces(FacesSeen),
 }
 
-/// What a pixel of a display with faces was looked up in.
+/// The memories and the direction from which a pixel of an address recalculation display was read.
 #[derive(Clone, Debug)]
 pub(crate) struct FacesSeen {
-    /// For each memory, from the lowest, the pose of its eye in the latched direction, and which structures of the scene it holds.
+    /// For each memory, starting with the lowest: the eye's pose in the latched direction, and a flag for each
+    /// structure it holds.
     pub(crate) memories: Vec<(Moment, Arc<[bool]>)>,
-    /// The instant that the direction was predicted for.
+    /// Instant for which the latched direction was predicted.
     pub(crate) aimed_at: Time,
 }
 
 impl Drawn {
-    /// The instant that it was drawn for; what is shifted on its way is drawn for the instant of its light.
+    /// Returns the instant for which the pixel was drawn. For a shifted picture, this is the instant of its light.
     pub(crate) fn instant(&self, light: Time) -> Time {
         match self {
             Self::View(moment) => moment.objects_at,

@@ -1,4 +1,4 @@
-//! Pixel errors, summed up period by period while a run goes on or when it is over.
+//! Sums of pixel errors, updated during a run or computed after it.
 
 use crate::distribution::Distribution;
 use crate::errors::{CENTRE, FieldError, PixelErrors, Showing, grid};
@@ -12,38 +12,39 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use tracking::view::{PixelError, RasterOffset};
 
-/// Errors of a run's pictures as they are shown.
+/// Sums the errors of a run's pictures as they are displayed.
 #[derive(Debug, Default)]
 pub(crate) struct ErrorSum {
-    /// `None` for what is before the head's eyes.
+    /// Display mode of the pictures. `None` uses the mode of the head's display.
     showing: Option<Showing>,
     without: Option<Cause>,
     judging: Option<Judging>,
-    /// The first period of the window as it is known by now.
+    /// First period of the result window, as far as known.
     window_from: Option<PeriodNumber>,
     collected: Option<Collected>,
 }
 
 impl ErrorSum {
-    /// Of all of a run at once, with one cause of error turned off; else of one that goes on.
+    /// Creates a sum with a given display mode, optionally with one cause of error turned off.
     pub(crate) fn of(showing: Showing, without: Option<Cause>) -> Self {
         Self { showing: Some(showing), without, ..Self::default() }
     }
 
-    /// Judges the periods that are settled.
+    /// Evaluates the periods that are final.
     pub(crate) fn take(&mut self, run: &Settled<'_>) {
         let Some(head) = run.head else { return };
         let showing = self.showing.unwrap_or_else(|| head.head().raster().into());
         let judging = self.judging.get_or_insert_with(|| Judging::begin(run, head, showing, self.without));
         let window_from = run.window.map(|window| window.first_period);
         if self.window_from != window_from {
-            // All that was taken before lies before the window.
+            // The window has moved: everything summed so far lies before it.
             self.window_from = window_from;
             self.collected = None;
         }
         let collected = self.collected.get_or_insert_with(|| Collected::keeping(run.samples));
         judging.shown.take(run, head);
         let fields = judging.fields(run);
+        // With a cause turned off, recompute the poses that these fields show.
         if let Some(cause) = self.without {
             judging.give_poses(run, head, &fields, cause);
         }
@@ -56,23 +57,23 @@ impl ErrorSum {
     }
 }
 
-/// What judges the pixels of a run.
+/// State of the evaluation of a run's pixels.
 #[derive(Debug)]
 struct Judging {
     judge: Judge,
     shown: Shown,
     content: Content,
-    /// Whether a pixel is judged at the instant that it was drawn for, and not when it lights.
+    /// True if a pixel is evaluated at the instant it was drawn for, instead of the instant of its light.
     at_one_instant: bool,
-    /// The first period that was not looked at yet.
+    /// First period that is not evaluated yet.
     next: PeriodNumber,
 }
 
-/// What the pixels of a run show, as it is shown.
+/// Display mode of the pixels under evaluation.
 #[derive(Debug)]
 enum Content {
     Plain,
-    /// The raster is shifted by the offset of the field that is judged, if it has one.
+    /// The display shifts the raster. The offset is that of the current field, if the field has one.
     Shifted(Estimator, Option<RasterOffset>),
     Ideal(Estimator),
 }
@@ -94,14 +95,14 @@ impl Judging {
         }
     }
 
-    /// The periods of the window that can be judged now.
+    /// Returns the periods of the window that are final and not evaluated yet.
     fn fields(&mut self, run: &Settled<'_>) -> impl Iterator<Item = PeriodNumber> + Clone + use<> {
         let fields = run.periods_from(self.next);
         self.next = self.next.max(run.until);
         fields
     }
 
-    /// Gives the views that are seen the poses that they would have had without a cause of error.
+    /// Replaces the poses of the visible views by those that the run would have had without one cause of error.
     fn give_poses(
         &mut self,
         run: &Settled<'_>,
@@ -111,6 +112,7 @@ impl Judging {
     ) {
         let display = run.record.display();
         let shown = &self.shown;
+        // Find all views that some evaluated pixel shows.
         let of_field = |field: PeriodNumber| {
             let pixels = grid(display, field).into_iter();
             pixels.flat_map(move |(x, y, at)| shown.views_at(run, [x, y], field, at))
@@ -120,12 +122,14 @@ impl Judging {
     }
 
     fn judge(&mut self, run: &Settled<'_>, field: PeriodNumber, collected: &mut Collected) {
+        // With a shifted raster, first find the offset of this field.
         if let Content::Shifted(estimator, of_field) = &mut self.content {
             let pose = pose_of_field(run, &self.shown, field);
             *of_field = pose.map(|pose| offset(estimator, run.record.display(), field, &pose));
         }
         let mut of_field = Vec::new();
         let mut centre = None;
+        // Evaluate every pixel of the grid.
         for (i, (x, y, at)) in grid(run.record.display(), field).into_iter().enumerate() {
             let seen = self.seen(run, [x, y], field, at);
             let Some(error) = self.error([x, y], at, seen, collected) else { continue };
@@ -141,6 +145,7 @@ impl Judging {
     fn seen(&mut self, run: &Settled<'_>, place: [u32; 2], field: PeriodNumber, at: Time) -> Seen {
         match &mut self.content {
             Content::Plain => self.shown.seen(run, place, field, at),
+            // Only whole views can be shifted. An interpolated picture or faces have no single pose.
             Content::Shifted(_, offset) => match self.shown.seen(run, place, field, at) {
                 Seen::Complete(Drawn::View(moment)) => {
                     let shift = offset.map(|offset| offset.shift_px(&self.judge.view, at.0));
@@ -155,9 +160,10 @@ impl Judging {
         }
     }
 
-    /// The error of a pixel, or why there is none.
+    /// Returns the error of a pixel. If there is none, increments the counter of the reason.
     fn error(&self, [x, y]: [u32; 2], at: Time, seen: Seen, collected: &mut Collected) -> Option<PixelError> {
         let errors = &mut collected.errors;
+        // Each reason has its own counter.
         let (error, unjudged) = match seen {
             Seen::Nothing => (None, &mut errors.empty),
             Seen::Incomplete => (None, &mut errors.incomplete),
@@ -172,17 +178,17 @@ impl Judging {
     }
 }
 
-/// Errors as they are collected.
+/// Errors collected so far.
 #[derive(Debug)]
 struct Collected {
     grid: [Distribution; 2],
     centre: [Distribution; 2],
     fields_kept: usize,
-    /// Counts, and errors field by field.
+    /// Counters, and the errors of each field.
     errors: PixelErrors,
 }
 
-/// Numbers of the grid that are kept for each that is kept of a field: 4 MiB of pixels and as much of degrees.
+/// Number of grid values kept for each kept field. The limit corresponds to 4 MiB for pixels and 4 MiB for degrees.
 const KEPT_OF_GRID: usize = 8;
 
 impl Collected {
@@ -192,7 +198,7 @@ impl Collected {
         Self { grid, centre: both(fields), fields_kept: fields, errors: PixelErrors::default() }
     }
 
-    /// Takes a field that begins at an instant.
+    /// Adds the errors of a field that begins at the instant `begin`.
     fn take(&mut self, field: PeriodNumber, begin: Time, of_field: &[PixelError], centre: Option<PixelError>) {
         of_field.iter().for_each(|error| push(&mut self.grid, error));
         let Some(centre) = centre else { return };
@@ -220,7 +226,7 @@ impl Collected {
     }
 }
 
-/// Pixels and degrees.
+/// Adds an error in pixels to the first distribution, and in degrees to the second.
 fn push([pixels, degrees]: &mut [Distribution; 2], error: &PixelError) {
     pixels.push(error.pixels);
     degrees.push(error.degrees);
@@ -238,7 +244,7 @@ mod tests {
     use tracking::predict::PredictorKind;
     use tracking::tracker::TrackerConfig;
 
-    /// What is held after each step of a run that goes on.
+    /// A streaming observer that records the number of held views after each step of a run.
     #[derive(Debug, Default)]
     struct Watched {
         sum: ErrorSum,
@@ -256,7 +262,7 @@ mod tests {
         }
     }
 
-    /// Of a run that gives up its records no more is held at its end than when it gave them up for the first time.
+    /// A run that discards its records holds no more views at its end than after the first time it discarded records.
     #[test]
     fn what_is_held_of_a_run_does_not_grow_with_it() {
         for (name, scene, fields) in [
@@ -277,7 +283,8 @@ mod tests {
         }
     }
 
-    /// Five fields of which three are kept one by one; the middle pixel of each is off by its number, and so many degrees.
+    /// Evaluates five fields with a limit of three. The middle pixel of field n has an error of n pixels and n/8
+    /// degrees.
     #[test]
     fn so_many_fields_are_kept_one_by_one_and_all_of_them_counted() {
         let mut collected = Collected::keeping(3);

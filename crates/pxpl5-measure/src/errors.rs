@@ -1,4 +1,4 @@
-//! Pixel error: where each pixel's content is seen, against where it should be at the moment when it lights.
+//! Pixel error: the distance between a pixel and the correct position of its content at the time of its light.
 
 use crate::percentiles::Percentiles;
 use pxpl5_display::Display;
@@ -7,64 +7,70 @@ use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 
-/// The error of one field.
+/// Errors of one field (one display period).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FieldError {
-    /// The period of the display that was judged.
+    /// Number of the evaluated display period.
     pub field: PeriodNumber,
-    /// When it begins, seconds.
+    /// Start of the period in simulated time, in seconds.
     pub time_s: f64,
-    /// Mean over the grid, pixels.
+    /// Mean error over the grid, in pixels.
     pub mean_px: f64,
-    /// In the middle, pixels.
+    /// Error of the pixel in the middle, in pixels.
     pub centre_px: f64,
 }
 
-/// Errors over a grid of pixels and all fields of the window, where a picture is seen that was shown in the window, complete and in
-/// time: others have no error. What was not evaluated is no number (NaN; null in JSON).
+/// Errors over a grid of pixels and all fields of the result window.
+///
+/// Only pixels of pictures that were complete, in time and shown within the window are evaluated. The other fields
+/// count the remaining pixels. Statistics of no pixels are NaN (null in JSON).
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PixelErrors {
-    /// Distance from where it should be, over the grid, pixels.
+    /// Distance from the correct position over the grid, in pixels.
     pub pixels: Percentiles,
-    /// The same as an angle, degrees.
+    /// Angle between the displayed and the correct direction over the grid, in degrees.
     pub degrees: Percentiles,
-    /// In the middle of the picture, pixels.
+    /// Error of the pixel in the middle of the picture, in pixels.
     pub centre_px: Percentiles,
-    /// In the middle of the picture, degrees.
+    /// Error of the pixel in the middle of the picture, in degrees.
     pub centre_deg: Percentiles,
-    /// Pixels that have an error, over the grid and all fields.
+    /// Number of evaluated pixels over the grid and all fields.
     pub judged: u64,
-    /// Pixels whose content should not be before the eye at all.
+    /// Number of pixels whose content lies behind the eye at the time of their light.
     pub behind: u64,
-    /// Pixels that showed nothing yet.
+    /// Number of pixels that were lit before any picture was shown.
     pub empty: u64,
-    /// Pixels that showed a part of a picture that was not complete in time.
+    /// Number of pixels from pictures that were not complete in time.
     pub incomplete: u64,
-    /// Pixels that still showed a picture from before the window, such as one of start-up.
+    /// Number of pixels that still showed a picture from before the window, such as one from the start of the run.
     pub before: u64,
-    /// The same field by field, in the order of time; of a run that keeps statistics only the first
-    /// [`KEPT_SAMPLES`](pxpl5_run::KEPT_SAMPLES) fields.
+    /// Errors of each field, in the order of time.
+    ///
+    /// A run that keeps only statistics has the first [`KEPT_SAMPLES`](pxpl5_run::KEPT_SAMPLES) fields here.
     #[serde(skip)]
     pub by_field: Vec<FieldError>,
-    /// Every judged pixel's, pixels; of a run that keeps statistics only those of the first 20,971 fields, behind which percentiles are
-    /// told to a 2048th.
+    /// Error of each evaluated pixel, in pixels.
+    ///
+    /// A run that keeps only statistics has the first 20,971 fields here. Percentiles of longer runs have a relative
+    /// error of at most 1/2048.
     #[serde(skip)]
     pub all_px: Vec<f64>,
 }
 
-/// Columns and rows of the grid; odd, so that the middle is one of its pixels.
+/// Number of columns and rows of the grid. Odd, so that one pixel lies in the middle.
 const GRID: u32 = 5;
 
-/// The pixel of the grid in its middle.
+/// Index of the pixel in the middle of the grid.
 pub(crate) const CENTRE: usize = (GRID * GRID / 2) as usize;
 
-/// The pixels of a period at which it is judged, in the order of the beam, and when each lights.
+/// Returns the evaluated pixels of a display period in scan order, each with the time of its light.
 pub(crate) fn grid(display: &dyn Display, period: PeriodNumber) -> Vec<(u32, u32, Time)> {
     let Some(surface) = display.surfaces().first() else { return Vec::new() };
     let (first_row, row_distance) = display.rows_lit(period);
     let place = |i: u32, size: u32| (2 * i + 1) * size / (2 * GRID);
     let mut pixels = Vec::new();
     for j in 0..GRID {
+        // Move the row to the nearest line above that this field lights.
         let y = place(j, surface.height) / row_distance * row_distance + first_row;
         for x in (0..GRID).map(|i| place(i, surface.width)) {
             pixels.extend(display.lights(0, x, y, period).map(|at| (x, y, at)));
@@ -73,15 +79,17 @@ pub(crate) fn grid(display: &dyn Display, period: PeriodNumber) -> Vec<(u32, u32
     pixels
 }
 
-/// How a run's pictures come before the eyes.
+/// The way in which a display shows the pictures of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Showing {
-    /// As they were drawn.
+    /// Each picture is shown as it was drawn.
     Plain,
-    /// On a raster that is shifted while it is scanned.
+    /// The raster is shifted while it is scanned out (VDRT).
     RasterOffset,
-    /// Not at all: the view is evaluated at every pixel's own moment, from all reports that the host has by then. The reference,
-    /// computed and not timed.
+    /// An ideal reference that uses no picture: each pixel shows the view predicted for the time of its light.
+    ///
+    /// The prediction uses all tracker reports that the host has at that time. The reference is computed after the run
+    /// and costs no simulated time.
     Ideal,
 }
 

@@ -1,4 +1,4 @@
-//! What a display with faces did, as numbers.
+//! Report of an address recalculation display, as numbers.
 
 use crate::step_sum::Steps;
 use crate::turn_sum::{RotationPart, Turns};
@@ -6,61 +6,65 @@ use address_recalculation::{AddressRecalculationPipeline, DisplayMemory, Latch};
 use pxpl5_run::{Outcome, Statistics};
 use serde::Serialize;
 
-/// An address recalculation pipeline and its memories over a run.
+/// Results of an address recalculation pipeline and its memories in a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FacesReport {
     /// Name and version of this record's layout.
     pub schema: &'static str,
-    /// Texels along an edge of a face, guard texels included.
+    /// Number of texels along the edge of a face, including guard texels.
     pub face_texels: u64,
-    /// Before what the orientation is latched.
+    /// The moment at which the display latches the orientation.
     pub latch: Latch,
-    /// From the latch to the light of the first pixel, nanoseconds.
+    /// From the latch to the light of the first pixel, in nanoseconds.
     pub pipeline_ns: f64,
-    /// Orientations that the display took.
+    /// Number of orientations that the display accepted.
     pub matrix_loads: u64,
-    /// Orientations that it refused.
+    /// Number of orientations that the display refused.
     pub matrix_refused: u64,
-    /// Its memories, the one that is drawn most often first.
+    /// The display memories, starting with the one that is drawn most often.
     pub memories: Vec<MemoryReport>,
-    /// From the measurement of an orientation to the light of the picture's middle, milliseconds; nothing without a tracked head.
+    /// From the measurement of an orientation to the light of the picture's middle, in milliseconds. `None` without a
+    /// tracker.
     pub rotation_latency_ms: Option<Statistics>,
-    /// Its parts, which add up to it.
+    /// Parts of the rotation latency. Their means add up to the mean of the whole.
     pub rotation_latency_parts_ms: Vec<RotationPart>,
 }
 
-/// A display memory over a run.
+/// Results of one display memory in a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MemoryReport {
-    /// Updates that were shown, a second, over the window; nothing where fewer than two were, since a single one has no rate.
+    /// Updates shown per second within the window. `None` if fewer than two updates were shown.
     pub updates_hz: Option<f64>,
-    /// Periods of the display from one to the next; nothing where there is no rate.
+    /// Display periods between consecutive updates. `None` if fewer than two updates were shown.
     pub period_frames: Option<f64>,
-    /// Updates that were shown in the whole run, start-up included.
+    /// Number of updates shown in the whole run, including start-up.
     pub updates: u64,
-    /// Structures that it held at its last update.
+    /// Number of structures of the scene in the memory at its last update.
     pub segments: usize,
-    /// Regions that came.
+    /// Number of regions that arrived.
     pub regions_copied: u64,
-    /// Retraces at which an update that had been asked for was not whole.
+    /// Number of retraces at which a requested update was not complete.
     pub missed: u64,
-    /// From the measurement of the head, or without a tracker from the instant at which the memory became due, to the light of the
-    /// picture's middle, milliseconds, over all fields from the first update on; `None` before it, and where a run dropped its records unobserved.
+    /// Latency of the head's translation to the light of the picture's middle, in milliseconds, over all fields.
+    ///
+    /// The latency starts at the measurement of the head. Without a tracker it starts when the memory becomes due.
+    /// `None` before the first update, and in a run that discarded its records without a streaming observer.
     pub translation_latency_ms: Option<Statistics>,
-    /// Means of its parts, which add up to its mean: from the measurement until the memory became due, until the update was shown, the
-    /// age of what is shown, the scan.
+    /// Means of the parts of the translation latency, in milliseconds. They add up to its mean.
+    ///
+    /// The parts are: measurement until the memory became due, due until shown, age of the shown update, and scan-out.
     pub translation_latency_parts_ms: Vec<(&'static str, f64)>,
-    /// From the first retrace that each late update missed to the one that showed it, summed up, milliseconds.
+    /// Total delay of late updates in milliseconds, each from the first missed retrace to the retrace that showed it.
     pub lateness_ms: f64,
-    /// Bytes of both its buffers.
+    /// Size of both buffers of the memory, in bytes.
     pub bytes: u64,
 }
 
 impl FacesReport {
-    /// Name and version of the layout.
+    /// Name and version of the record's layout.
     pub const SCHEMA: &'static str = "pxpl5-arp/1";
 
-    /// Of a run; `None` where its display takes no faces.
+    /// Returns the report of a run, or `None` if its display is not an address recalculation pipeline.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Option<Self> {
         let display: &AddressRecalculationPipeline = outcome.record().display_of_kind()?;
@@ -90,9 +94,10 @@ impl MemoryReport {
     fn of(outcome: &Outcome, (k, memory): (usize, &DisplayMemory), steps: Option<&Steps>) -> Self {
         let stats = memory.stats();
         let in_window = outcome.tally().memory_updates.get(&k).copied().unwrap_or_default();
-        // Periods from one update to the next, on average over the window.
+        // Mean number of periods between updates within the window.
         let period =
             outcome.window().filter(|_| in_window >= 2).map(|window| window.periods() as f64 / in_window as f64);
+        // The last update tells which structures the memory holds.
         let notes = outcome.face_notes().all();
         let last = notes.iter().rfind(|note| note.memory == k);
         Self {

@@ -1,4 +1,4 @@
-//! What a report says of a head, summed up while a run goes on.
+//! Streaming observer of the results that concern the head.
 
 use crate::budget::{Budget, BudgetSum};
 use crate::error_sum::ErrorSum;
@@ -8,8 +8,10 @@ use crate::turn_sum::{TurnSum, Turns};
 use pxpl5_run::{Settled, Summing};
 use std::any::Any;
 
-/// From the head to light, turns of a display with faces, and errors in pixels, for a run that keeps statistics only:
-/// `experiment.keep(Keep::Statistics).summed_by(Some(HeadSum::begin))`.
+/// A streaming observer for runs that keep only statistics.
+///
+/// It collects the latency from head to light, rotation latencies of address recalculation displays, and errors in
+/// pixels. Enable it with `experiment.keep(Keep::Statistics).summed_by(Some(HeadSum::begin))`.
 #[derive(Debug, Default)]
 pub struct HeadSum {
     budget: BudgetSum,
@@ -19,7 +21,7 @@ pub struct HeadSum {
 }
 
 impl HeadSum {
-    /// Begins, for [`Experiment::summed_by`](pxpl5_run::Experiment::summed_by).
+    /// Creates the observer, for [`Experiment::summed_by`](pxpl5_run::Experiment::summed_by).
     #[must_use]
     pub fn begin() -> Box<dyn Summing> {
         Box::<Self>::default()
@@ -41,7 +43,7 @@ impl Summing for HeadSum {
     }
 }
 
-/// What came of it.
+/// Results of a [`HeadSum`].
 #[derive(Clone, Debug)]
 pub(crate) struct HeadSaid {
     pub(crate) end_to_end: Budget,

@@ -1,14 +1,14 @@
-//! Where the latency of pictures goes, as statistics.
+//! Statistics of the latency of pictures and its parts.
 
 use pxpl5_run::{DefinedStatistics, LATENCY_PARTS, LatencyParts, Outcome, Samples};
 
-/// The parts of the latency of the complete pictures in the window that are kept ([`pxpl5_run::Keep`]).
+/// Returns the latency parts of each complete picture in the window, as far as kept ([`pxpl5_run::Keep`]).
 #[must_use]
 pub fn latency_parts(outcome: &Outcome) -> Vec<LatencyParts> {
     outcome.latency_parts()
 }
 
-/// Their statistics in milliseconds, by name and definition, of all complete pictures in the window.
+/// Returns the statistics of each latency part in milliseconds, over all complete pictures in the window.
 pub(crate) fn latency_part_statistics(outcome: &Outcome) -> Vec<NamedStatistics> {
     let parts = LATENCY_PARTS.iter().zip(&outcome.tally().parts_ms);
     let named = parts.map(|(part, ms): (_, &Samples)| NamedStatistics {
@@ -19,32 +19,34 @@ pub(crate) fn latency_part_statistics(outcome: &Outcome) -> Vec<NamedStatistics>
     named.collect()
 }
 
-/// Statistics of one part.
+/// Statistics of one part of the latency.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct NamedStatistics {
-    /// Name of the part.
+    /// Name of the part, as in [`LATENCY_PARTS`].
     pub name: String,
-    /// Whether it belongs to the latency that the papers state.
+    /// True if the latency stated in the papers includes this part.
     pub in_published_latency: bool,
-    /// The numbers and their definition.
+    /// The statistics, in milliseconds, and the definition of the part.
     #[serde(flatten)]
     pub statistics: DefinedStatistics,
 }
 
-/// Latency of a surface, or of a pair of them, up to some event.
+/// Latency of one surface, or of a pair of surfaces, up to an event.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct SurfaceStatistics {
-    /// The surface's label (`left`, `right`), or `pair`: from the first one's TRANSFORM until both have come so far.
+    /// Label of the surface (`left`, `right`), or `pair`. A pair lasts from the first TRANSFORM until both surfaces
+    /// reach the event.
     pub of: String,
-    /// `end_of_copy`, `swap` or `light`.
+    /// Name of the final event: `end_of_copy`, `swap` or `light`.
     pub until: &'static str,
-    /// The numbers, in milliseconds, and their definition.
+    /// The statistics, in milliseconds, and their definition.
     #[serde(flatten)]
     pub statistics: DefinedStatistics,
 }
 
-/// Latencies of both surfaces and of the pair over the complete pictures in the window; empty where surfaces have no TRANSFORM
-/// of their own.
+/// Returns the latencies of both surfaces and of the pair over the complete pictures in the window.
+///
+/// The result is empty if the surfaces have no TRANSFORM of their own.
 #[must_use]
 pub fn latency_by_surface(outcome: &Outcome) -> Vec<SurfaceStatistics> {
     let labels: Vec<&str> = outcome.record().surfaces().map(|(_, surface)| surface.label).collect();

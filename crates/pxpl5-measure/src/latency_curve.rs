@@ -1,20 +1,22 @@
-//! What a latency alone makes of a head's motion, without any machine.
+//! The error that a latency alone causes for a head motion, without any machine.
 
 use tracking::motion::Motion;
 use tracking::time::{NTSC_FIELD_PS, PS_PER_MS, PS_PER_S};
 use tracking::view::HmdView;
 
-/// The error in the middle of the picture that a latency alone makes of a motion, field by field.
+/// Error over time in the middle of the picture, caused by a constant latency. One point per NTSC field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LatencyCurve {
-    /// Milliseconds from the pose that is drawn to its light.
+    /// Time from the drawn pose to its light, in milliseconds.
     pub latency_ms: u64,
-    /// Time in seconds and error in pixels.
+    /// Pairs of time in seconds and error in pixels.
     pub points: Vec<(f64, f64)>,
 }
 
 impl LatencyCurve {
-    /// What is drawn at t for the pose of t - latency, over `seconds`; the point is `distance_m` ahead.
+    /// Computes the curve over `seconds`: at time t the display shows the pose of t - `latency_ms`.
+    ///
+    /// The error is that of a point `distance_m` metres ahead of the head.
     #[must_use]
     pub fn of(motion: &dyn Motion, latency_ms: u64, seconds: u64, distance_m: f64) -> Self {
         let view = HmdView::ntsc();
@@ -27,7 +29,7 @@ impl LatencyCurve {
         Self { latency_ms, points: points.collect() }
     }
 
-    /// Mean error in pixels.
+    /// Returns the mean error in pixels.
     #[must_use]
     pub fn mean_px(&self) -> f64 {
         self.points.iter().map(|p| p.1).sum::<f64>() / self.points.len().max(1) as f64

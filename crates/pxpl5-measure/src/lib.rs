@@ -1,14 +1,14 @@
-//! What an outcome says: latencies and where they go, errors in pixels, pictures, and all of it as a report.
+//! Measurements of a run: latencies and their parts, errors in pixels, pictures, and a report of all of them.
 //!
 //! | question | answer |
 //! |---|---|
-//! | how long, and which part of the machine takes it | [`latency_parts`], [`latency_by_surface`], [`Budget`] |
-//! | how many pixels wrong, and why | [`PixelErrors`], [`Registration`], [`ErrorCauses`] |
-//! | how wrong is a latency by itself | [`LatencyCurve`] |
-//! | what does the viewer see | [`picture`], [`side_by_side`], [`RasterOffsets`] |
-//! | everything as numbers with units | [`Report`], [`Measure`] |
+//! | How long is the latency, and which part of the machine causes it? | [`latency_parts`], [`latency_by_surface`], [`Budget`] |
+//! | How many pixels is the content displaced, and why? | [`PixelErrors`], [`Registration`], [`ErrorCauses`] |
+//! | How large is the error that a latency alone causes? | [`LatencyCurve`] |
+//! | What does the viewer see? | [`picture`], [`side_by_side`], [`RasterOffsets`] |
+//! | All results as numbers with units | [`Report`], [`Measure`] |
 //!
-//! [`Measured`] gives an [`Outcome`] the most common of them as methods.
+//! [`Measured`] offers the most common measurements as methods of [`Outcome`].
 
 #![warn(missing_docs)]
 

@@ -1,4 +1,4 @@
-//! An outcome's measurements as methods of it.
+//! Measurements as methods of an outcome.
 
 use crate::Report;
 use crate::errors::PixelErrors;
@@ -9,21 +9,23 @@ use image::RgbImage;
 use pxpl5_run::{LatencyParts, Outcome};
 use pxpl5_wire::SurfaceId;
 
-/// What is most often asked of an [`Outcome`].
+/// Common measurements of an [`Outcome`].
 pub trait Measured {
-    /// Everything as numbers.
+    /// Returns all results as numbers.
     fn report(&self) -> Report;
 
-    /// The parts of the latency of every complete picture in the window.
+    /// Returns the latency parts of each complete picture in the window, as far as kept.
     fn latency_parts(&self) -> Vec<LatencyParts>;
 
-    /// Latencies of both eyes and of the pair; empty where eyes have no TRANSFORM of their own.
+    /// Returns the latencies of both eyes and of the pair. Empty if the eyes have no TRANSFORM of their own.
     fn latency_by_surface(&self) -> Vec<SurfaceStatistics>;
 
-    /// Pixel errors on the raster before the eyes; `None` of a run without a head.
+    /// Returns the pixel errors as the head's display shows the pictures, or `None` for a run without a head.
     fn pixel_errors(&self) -> Option<PixelErrors>;
 
-    /// What the viewer of a surface, such as an eye, sees at the end; `None` without pixels, or before anything was shown.
+    /// Returns the picture that the viewer of a surface sees at the end of the run.
+    ///
+    /// Returns `None` if the experiment computes no pixels, or before anything was shown.
     fn picture(&self, surface: impl Into<SurfaceId>) -> Option<RgbImage>;
 }
 

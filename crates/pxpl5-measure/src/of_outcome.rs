@@ -1,4 +1,4 @@
-//! What is said of the head of a run: as it was summed up while it went on, or else of what is kept now that it is over.
+//! Results that concern the head: from the streaming observer, or else computed from the records that the run kept.
 
 use crate::budget::{Budget, BudgetSum, of_pictures, poses};
 use crate::error_sum::ErrorSum;
@@ -9,13 +9,13 @@ use crate::turn_sum::{TurnSum, Turns};
 use pxpl5_run::{Cause, Outcome};
 
 impl HeadSaid {
-    /// Of a run that was summed up while it went on.
+    /// Returns the results of the streaming observer, if the run had one.
     fn while_it_ran(outcome: &Outcome) -> Option<&Self> {
         outcome.said()
     }
 }
 
-/// What is missing where a run with a head gave up its records and nobody summed them up: a sentence.
+/// Returns a warning if a run with a head has discarded its records and had no streaming observer.
 pub(crate) fn untold(outcome: &Outcome) -> Option<String> {
     let is_untold = outcome.head().is_some() && outcome.has_forgotten() && HeadSaid::while_it_ran(outcome).is_none();
     is_untold.then(|| UNTOLD.to_owned())
@@ -25,14 +25,17 @@ const UNTOLD: &str = "what is said from the head to light, of its turns and of e
     its records, and nobody summed them up before (Experiment::summed_by, or Keep::Everything)";
 
 impl PixelErrors {
-    /// Of a run with a head, its pictures as they were drawn; empty without one.
+    /// Returns the errors of a run whose pictures are shown as drawn. Empty for a run without a head.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
         Self::shown(outcome, Showing::Plain)
     }
 
-    /// The same with its pictures shown so. Of a run that gave up its records ([`Outcome::has_forgotten`]) it is of all periods only as its
-    /// head shows pictures, and only where [`HeadSum`](crate::HeadSum) summed it up; else of the last ones.
+    /// Returns the errors of a run whose pictures are shown as `showing` says.
+    ///
+    /// A run that discarded its records ([`Outcome::has_forgotten`]) covers all periods only if
+    /// [`HeadSum`](crate::HeadSum) observed it and `showing` is the head's own display mode. Otherwise the result
+    /// covers only the last periods.
     #[must_use]
     pub fn shown(outcome: &Outcome, showing: Showing) -> Self {
         let Some(head) = outcome.head() else { return Self::default() };
@@ -40,8 +43,9 @@ impl PixelErrors {
         said.map_or_else(|| Self::judged(outcome, showing, None), |said| said.error.clone())
     }
 
-    /// The same without one cause of error: with the reports and poses that the run would have had, its times being as they are. Of a run
-    /// that gave up its records it is of the last periods alone.
+    /// Returns the errors that the run would have without one cause of error. All times stay the same.
+    ///
+    /// For a run that discarded its records, the result covers only the last periods.
     #[must_use]
     pub fn without(outcome: &Outcome, showing: Showing, cause: Cause) -> Self {
         Self::judged(outcome, showing, Some(cause))
@@ -54,14 +58,14 @@ impl PixelErrors {
     }
 }
 
-/// Pixel errors on the raster before the eyes; `None` of a run without a head.
+/// Returns the pixel errors as the head's display shows the pictures, or `None` for a run without a head.
 #[must_use]
 pub fn pixel_errors(outcome: &Outcome) -> Option<PixelErrors> {
     Some(PixelErrors::shown(outcome, outcome.head()?.head().raster().into()))
 }
 
 impl Budget {
-    /// Of the complete pictures in the window whose pose was measured.
+    /// Returns the budget over the complete pictures in the window whose pose was measured.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
         if let Some(said) = HeadSaid::while_it_ran(outcome) {
@@ -72,7 +76,7 @@ impl Budget {
         sum.said()
     }
 
-    /// From the pose to the light of each picture's middle, milliseconds, in order; of pictures that are kept.
+    /// Returns the latency of each kept picture from the pose to the light of its middle, in milliseconds.
     #[must_use]
     pub fn totals_ms(outcome: &Outcome) -> Vec<f64> {
         let run = outcome.settled();
@@ -82,7 +86,7 @@ impl Budget {
 }
 
 impl Turns {
-    /// Of a run.
+    /// Returns the rotation latencies of a run.
     pub(crate) fn of(outcome: &Outcome) -> Self {
         if let Some(said) = HeadSaid::while_it_ran(outcome) {
             return said.turns.clone();

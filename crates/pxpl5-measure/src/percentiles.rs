@@ -1,21 +1,21 @@
-//! Mean and percentiles.
+//! Mean and percentiles of a set of numbers.
 
 use serde::Serialize;
 
-/// How many numbers there are, their mean and percentiles. Of none there is none of these (NaN; null in JSON).
+/// Count, mean, percentiles and maximum of a set of numbers. All but the count are NaN (null in JSON) for an empty set.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Percentiles {
-    /// How many numbers there are.
+    /// Number of values.
     pub n: u64,
-    /// Sum of the numbers over how many there are.
+    /// Arithmetic mean of the values.
     pub mean: f64,
-    /// The median: half of the numbers are at most this.
+    /// Median: the smallest value that is at least as large as half of the values.
     pub p50: f64,
-    /// 90 of 100 are at most this.
+    /// 90th percentile: the smallest value that is at least as large as 90 % of the values.
     pub p90: f64,
-    /// 99 of 100 are at most this.
+    /// 99th percentile: the smallest value that is at least as large as 99 % of the values.
     pub p99: f64,
-    /// The greatest of all numbers.
+    /// Largest value.
     pub max: f64,
 }
 
@@ -27,7 +27,7 @@ impl Default for Percentiles {
 }
 
 impl Percentiles {
-    /// Of some numbers, none of them NaN. A percentile is the smallest number that so many do not exceed.
+    /// Computes the statistics of `values`, none of which may be NaN.
     #[must_use]
     pub fn of(values: impl Iterator<Item = f64>) -> Self {
         let mut values: Vec<f64> = values.collect();

@@ -1,11 +1,11 @@
-//! Pictures of a run: what stands before a viewer at the end, both eyes side by side.
+//! Pictures that a viewer sees at the end of a run, and both eyes side by side.
 //!
 //! | picture | size (NTSC) |
 //! |---|---|
 //! | [`Display::seen`] | 640 x 480, a field and the one before it |
-//! | [`Display::seen_at`] | 640 x 480, as the beam is at an instant |
+//! | [`Display::seen_at`] | 640 x 480, with the beam at a given instant |
 //! | [`Display::shown`] | 640 x 480, the buffer that is shown |
-//! | [`side_by_side`] | twice as wide: left eye left |
+//! | [`side_by_side`] | twice as wide, left eye on the left |
 
 use crate::raster::RasterOffsets;
 use image::{GenericImage, RgbImage};
@@ -14,23 +14,26 @@ use pxpl5_machine::Record;
 use pxpl5_run::{Outcome, Pixels};
 use pxpl5_wire::{PeriodNumber, SurfaceId};
 
-/// Two pictures next to each other, the left eye's left; the height is that of the higher one.
+/// Returns two pictures next to each other, the left eye on the left. The height is that of the taller picture.
 #[must_use]
 pub fn side_by_side(left: &RgbImage, right: &RgbImage) -> RgbImage {
     let mut both = RgbImage::new(left.width() + right.width(), left.height().max(right.height()));
-    // Both fit by construction.
+    // Both copies fit, so the result can be ignored.
     let _ = both.copy_from(left, 0, 0);
     let _ = both.copy_from(right, left.width(), 0);
     both
 }
 
-/// What the viewer of a surface sees at the end of a run; `None` without pixels, or before anything was shown.
+/// Returns the picture that the viewer of a surface sees at the end of a run.
+///
+/// Returns `None` if the experiment computes no pixels, or before anything was shown.
 #[must_use]
 pub fn picture(outcome: &Outcome, surface: impl Into<SurfaceId>) -> Option<RgbImage> {
     let surface = surface.into();
     if outcome.experiment().pixels_wanted() == Pixels::Off {
         return None;
     }
+    // A shifted raster needs the offsets of the fields that are visible.
     match RasterOffsets::of(outcome) {
         Some(offsets) => {
             let display = outcome.record().display();
@@ -40,7 +43,9 @@ pub fn picture(outcome: &Outcome, surface: impl Into<SurfaceId>) -> Option<RgbIm
     }
 }
 
-/// What stands before a viewer at the end of a period, shifted as his raster does; black for a surface that is not there.
+/// Returns the picture before a viewer at the end of a display period, with the rows shifted by `offsets` if given.
+///
+/// Returns a black picture for a surface that does not exist.
 #[must_use]
 pub fn screen(
     record: &Record,
@@ -52,6 +57,7 @@ pub fn screen(
     let Some(seen) = display.seen(surface.index(), period) else { return blank(display) };
     let Some(offsets) = offsets else { return seen };
     let mut shifted = RgbImage::new(seen.width(), seen.height());
+    // An interlaced screen still shows the lines of the previous period.
     if let Some(before) = period.before(1) {
         offsets.shift_rows(&seen, before, &mut shifted);
     }
@@ -59,7 +65,7 @@ pub fn screen(
     shifted
 }
 
-/// A black picture of a display's size.
+/// Returns a black picture of the size of the display's first surface.
 fn blank(display: &dyn Display) -> RgbImage {
     display.surfaces().first().map_or_else(RgbImage::default, |surface| RgbImage::new(surface.width, surface.height))
 }

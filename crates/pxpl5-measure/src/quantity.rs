@@ -1,4 +1,4 @@
-//! Quantities of a run by name, for tables, CSV and sweep rows.
+//! Quantities of a run by name, for tables, CSV files and sweeps.
 
 use crate::Report;
 use crate::summary::summary;
@@ -6,16 +6,16 @@ use parameters::nearest;
 use pxpl5_gp::Stage;
 use pxpl5_run::{DuePictures, Outcome, Summary};
 
-/// A quantity that can be measured.
+/// A quantity that can be measured, selected by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Measure(&'static Quantity);
 
-/// What a quantity is, and how it is had.
+/// Definition of a quantity: name, description and computation.
 #[derive(Debug)]
 pub struct Quantity {
-    /// Its name, with the unit.
+    /// Name with the unit, such as `latency_ms.mean`.
     pub name: &'static str,
-    /// What is measured, from where to where, in a sentence.
+    /// Description of the measured interval or count, in one sentence.
     pub definition: &'static str,
     value: Value,
 }
@@ -30,9 +30,9 @@ impl Eq for Quantity {}
 
 #[derive(Debug)]
 enum Value {
-    /// At every level of modelling.
+    /// Computed from a summary, which every level of modelling gives.
     OfSummary(fn(&Summary) -> f64),
-    /// Where there are events.
+    /// Computed from a simulated run.
     OfRun(fn(&Outcome, &Report) -> Option<f64>),
 }
 
@@ -52,7 +52,7 @@ const EYE_RETRACES: &str = "the same in retraces: those of that time, the one of
 
 const ERROR_PX: &str = "distance of a pixel's content from where it should be when it lights, over a grid of pixels and all fields of the window, where a picture is seen that was shown in the window, complete and in time; only with a head.motion";
 
-/// All quantities. Those that need events have no value at the analytic level.
+/// All quantities by name. Quantities that need a simulated run have no value at the analytic level.
 pub static QUANTITIES: [Quantity; 40] = [
     of_summary("latency_fields.mean", LATENCY, |s| s.latency_fields().told().mean),
     of_summary("latency_fields.sd", LATENCY, |s| s.latency_fields().told().sd),
@@ -66,7 +66,7 @@ pub static QUANTITIES: [Quantity; 40] = [
     of_summary("eye_latency_ms.sd", EYE_LATENCY, |s| s.eye_latency_ms().told().sd),
     of_summary("eye_retraces.mean", EYE_RETRACES, |s| s.eye_retraces().told().mean),
     of_summary("eye_retraces.sd", EYE_RETRACES, |s| s.eye_retraces().told().sd),
-    // What is not a number is no value: see `Measure::of`.
+    // NaN counts as no value: see `Measure::of`.
     of_summary("updates_hz", "whole pictures shown a second, over the window; none where fewer than two were", |s| {
         s.updates_hz.unwrap_or(f64::NAN)
     }),
@@ -137,42 +137,42 @@ pub static QUANTITIES: [Quantity; 40] = [
     }),
 ];
 
-/// A count of the pictures that were due; not a number where none was.
+/// Returns a count over the pictures due, or NaN if no picture was due.
 fn of_due(summary: &Summary, count: fn(&DuePictures) -> u64) -> f64 {
     summary.due.map_or(f64::NAN, |due| count(&due) as f64)
 }
 
 impl Measure {
-    /// The quantity of this name.
+    /// Returns the quantity with the name `name`.
     ///
     /// # Errors
     ///
-    /// The nearest valid name.
+    /// The valid name that is most similar to `name`.
     pub fn named(name: &str) -> Result<Self, &'static str> {
         let found = QUANTITIES.iter().find(|quantity| quantity.name == name).map(Self);
         found.ok_or_else(|| nearest(name, QUANTITIES.iter().map(|q| q.name)).unwrap_or_default())
     }
 
-    /// What is measured when nobody says what.
+    /// Returns the quantities measured by default: latencies, update rate and missed retraces.
     #[must_use]
     pub fn usual() -> Vec<Self> {
         let names = ["latency_fields.", "latency_ms.", "updates_hz", "missed_retraces"];
         QUANTITIES.iter().filter(|q| names.iter().any(|name| q.name.starts_with(name))).map(Self).collect()
     }
 
-    /// Its name, with the unit.
+    /// Returns the name with the unit.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         self.0.name
     }
 
-    /// What is measured, from where to where, in a sentence.
+    /// Returns the description of the measured interval or count, in one sentence.
     #[must_use]
     pub const fn definition(&self) -> &'static str {
         self.0.definition
     }
 
-    /// Its value; `None` when the run shows none.
+    /// Returns the value, or `None` if the run has no finite value for this quantity.
     #[must_use]
     pub fn of(&self, results: &Results) -> Option<f64> {
         let value = match self.0.value {
@@ -183,31 +183,31 @@ impl Measure {
     }
 }
 
-/// What came of an experiment at any level of modelling.
+/// Results of an experiment at any level of modelling.
 #[derive(Debug)]
 pub struct Results {
-    /// At every level of modelling.
+    /// Results that every level of modelling gives.
     pub summary: Summary,
-    /// Where there are events.
+    /// The simulated run and its report. `None` at the analytic level.
     pub run: Option<(Outcome, Report)>,
 }
 
 impl Results {
-    /// Of a run with events.
+    /// Returns the results of a simulated run.
     #[must_use]
     pub fn of_run(outcome: Outcome) -> Self {
         let report = Report::of(&outcome);
         Self { summary: summary(&outcome), run: Some((outcome, report)) }
     }
 
-    /// Of a closed form.
+    /// Returns the results of a closed form, without a run.
     #[must_use]
     pub const fn of_closed_form(summary: Summary) -> Self {
         Self { summary, run: None }
     }
 }
 
-/// Mean over the pictures in the window; no number where there are none.
+/// Returns the mean time of a stage over the pictures in the window. `None` if no picture has this stage.
 fn stage_ms(outcome: &Outcome, stage: Stage) -> Option<f64> {
     let (_, samples) = outcome.tally().stage_ms.iter().find(|(of, _)| *of == stage)?;
     Some(samples.statistics().mean)

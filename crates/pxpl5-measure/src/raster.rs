@@ -1,4 +1,4 @@
-//! The raster offset of VDRT: the picture is moved, as it is scanned out, by what its pose was wrong.
+//! Raster offset of VDRT: the display shifts the picture during scan-out to correct its pose.
 
 use crate::shown::{Drawn, Shown, view_of};
 use glam::DVec2;
@@ -10,11 +10,14 @@ use pxpl5_wire::PeriodNumber;
 use tracking::view::{HmdView, RasterOffset};
 use tracking::{Pose, rotation};
 
-/// A raster that is shifted while it is scanned (Breglia 1981).
+/// A raster that is shifted while it is scanned out (Breglia 1981).
 ///
-/// At the retrace the newest tracking data are used to predict the head for the field's first line; the picture is
-/// shifted by the yaw and the pitch between the pose that it was drawn for and this one, and during the field by their
-/// predicted rates. Roll and translation remain. A flat raster is shifted, not turned, so the edges keep an error.
+/// At the retrace, the newest tracker data predict the head's pose for the first line of the field. The picture is
+/// shifted by the difference in yaw and pitch between the drawn pose and this prediction. During the field, the shift
+/// follows the predicted rates.
+///
+/// Roll and translation are not corrected. The flat raster is shifted instead of rotated, so errors remain at the
+/// edges.
 pub struct Vdrt<'a> {
     estimator: Estimator,
     display: &'a dyn Display,
@@ -27,35 +30,38 @@ impl std::fmt::Debug for Vdrt<'_> {
 }
 
 impl<'a> Vdrt<'a> {
-    /// A display behind what the host knows of a head.
+    /// Creates the raster of a display whose offsets come from `estimator`.
     #[must_use]
     pub const fn new(estimator: Estimator, display: &'a dyn Display) -> Self {
         Self { estimator, display }
     }
 
-    /// The offset of a field whose picture was drawn for a pose. Fields must be asked for in rising order.
+    /// Returns the offset of a field whose picture was drawn for the pose `drawn_for`. Call with fields in ascending
+    /// order.
     pub fn offset(&mut self, field: PeriodNumber, drawn_for: &Pose) -> RasterOffset {
         offset(&mut self.estimator, self.display, field, drawn_for)
     }
 }
 
-/// The offset of a field whose picture was drawn for a pose, by what is known when it begins.
+/// Returns the offset of a field whose picture was drawn for a pose, using the reports known at the field's start.
 pub(crate) fn offset(
     estimator: &mut Estimator,
     display: &dyn Display,
     field: PeriodNumber,
     drawn_for: &Pose,
 ) -> RasterOffset {
+    // Only reports known at the retrace count.
     let known = display.tick(field);
     let first = display.first_light(0, field).unwrap_or(known);
     let field_span = display.tick(field.next()).since(known);
+    // Predict the pose at the first line and one field later, to get the rates.
     let [begin, end] = [first, first + field_span].map(|at| estimator.pose(known, at));
     let seconds = field_span.as_ms() * 1e-3;
     let rate = rotation::difference(begin.orientation, end.orientation) / seconds;
     RasterOffset::between(drawn_for, &begin, first.0).with_rates(&begin, rate)
 }
 
-/// The offset of every field of a run.
+/// Raster offsets of all fields of a run.
 #[derive(Clone, Debug)]
 pub struct RasterOffsets<'a> {
     display: &'a dyn Display,
@@ -64,8 +70,9 @@ pub struct RasterOffsets<'a> {
 }
 
 impl<'a> RasterOffsets<'a> {
-    /// As a run's head has them; `None` unless it looks at a raster that is shifted. A field of which nothing is drawn, or not for one pose,
-    /// has none.
+    /// Returns the offsets of a run, or `None` if the head's display does not shift its raster.
+    ///
+    /// A field has no offset if it shows nothing, or if its picture was not drawn for a single pose.
     #[must_use]
     pub fn of(outcome: &'a Outcome) -> Option<Self> {
         let head = outcome.head().filter(|head| head.head().raster() == Raster::Vdrt)?;
@@ -80,14 +87,16 @@ impl<'a> RasterOffsets<'a> {
         Some(Self { display, view: view_of(display), offsets: offsets.collect() })
     }
 
-    /// The offset in one period of the display; `None` where nothing is drawn, or not for one pose.
+    /// Returns the offset in one display period. `None` if nothing is shown or the picture was not drawn for a single
+    /// pose.
     #[must_use]
     pub fn field(&self, field: PeriodNumber) -> Option<&RasterOffset> {
         self.offsets.get(usize::try_from(field.0).ok()?)?.as_ref()
     }
 
-    /// A screen, the rows that are lit in a field shifted to whole pixels; black where nothing comes in, and where the
-    /// field has no offset the rows as they are.
+    /// Copies the rows lit in a field from `screen` to `shifted`, moved by the field's offset in whole pixels.
+    ///
+    /// Uncovered pixels become black. A field without an offset is copied unchanged.
     pub fn shift_rows(&self, screen: &RgbImage, field: PeriodNumber, shifted: &mut RgbImage) {
         let offset = self.field(field);
         let (first_row, row_distance) = self.display.rows_lit(field);
@@ -102,7 +111,7 @@ impl<'a> RasterOffsets<'a> {
         }
     }
 
-    /// The pixel that a shift brings to a place, from a row of the same field.
+    /// Returns the pixel that the shift moves to a place, taken from a row of the same field.
     fn shifted_pixel(
         &self,
         screen: &RgbImage,
@@ -111,8 +120,10 @@ impl<'a> RasterOffsets<'a> {
         [x, y]: [u32; 2],
     ) -> Rgb<u8> {
         let (first_row, row_distance) = self.display.rows_lit(field);
+        // The shift depends on the time at which the beam lights the pixel.
         let at = self.display.lights(0, x, y, field).unwrap_or(Time::ZERO);
         let shift = offset.shift_px(&self.view, at.0);
+        // Stay within the rows of this field.
         let row = (y - first_row) / row_distance;
         let from = DVec2::new(f64::from(x) - shift.x, f64::from(row) - shift.y / f64::from(row_distance)).round();
         let inside = from.x >= 0.0 && from.y >= 0.0;
@@ -122,7 +133,7 @@ impl<'a> RasterOffsets<'a> {
     }
 }
 
-/// The one pose that all of a field was drawn for.
+/// Returns the single pose for which a whole field was drawn, if there is one.
 pub(crate) fn pose_of_field(run: &Settled<'_>, shown: &Shown, field: PeriodNumber) -> Option<Pose> {
     let display = run.record.display();
     let x = display.surfaces().first()?.width / 2;

@@ -1,4 +1,4 @@
-//! How far a pixel's content is from where it should be at the moment when it lights.
+//! Registration error: distance between a pixel and the correct position of its content at the time of its light.
 
 use crate::content::{Content, Contents};
 use crate::shown::{Drawn, FacesSeen, Moment, Seen, Shown, view_of};
@@ -10,14 +10,14 @@ use std::sync::Arc;
 use tracking::Pose;
 use tracking::view::{HmdView, PixelError, dual_list};
 
-/// Projects and compares.
+/// Computes registration errors by casting rays and projecting the hit points.
 #[derive(Debug)]
 pub(crate) struct Judge {
     pub(crate) view: HmdView,
     head: Arc<HeadViews>,
-    /// What rays meet; nothing where errors are judged at a distance that was said.
+    /// The scene's primitives. Empty if the experiment evaluates errors at a fixed distance.
     contents: Contents,
-    /// Where rays end that meet nothing.
+    /// Distance of the assumed content on rays that hit nothing, in metres.
     distance_m: f64,
 }
 
@@ -29,13 +29,13 @@ impl Judge {
         Self { view, head: Arc::clone(head), contents, distance_m: head.distance_m() }
     }
 
-    /// The direction in head axes that a place of the picture shows, 1 m deep.
+    /// Returns the direction of a picture position in head axes, scaled to 1 m of depth.
     fn direction(&self, place: DVec2) -> DVec3 {
         let from_centre = (place - self.view.centre_px()) / self.view.focal_px();
         DVec3::new(from_centre.x, -from_centre.y, -1.0)
     }
 
-    /// What stands at a place of a view: the scene's content there, or a point at the distance of what has none.
+    /// Returns the content at a picture position of a view. A ray that hits nothing gets a point at `distance_m`.
     fn met(&self, moment: &Moment, place: DVec2) -> Content {
         let Pose { position, orientation } = moment.pose;
         let direction = orientation * self.direction(place);
@@ -43,8 +43,9 @@ impl Judge {
         met.unwrap_or_else(|| Content::fixed(position + direction * self.distance_m))
     }
 
-    /// The nearest of what stands at a place of several memories, of the lowest where they are alike; a point at the distance of what
-    /// has none where all are empty.
+    /// Returns the nearest content at a picture position over several memories. The lowest memory wins a tie.
+    ///
+    /// If no memory has content there, the result is a point at `distance_m`.
     fn nearest(&self, faces: &FacesSeen, place: DVec2) -> Content {
         let direction = self.direction(place);
         let met = faces.memories.iter().filter_map(|(moment, structures)| {
@@ -58,16 +59,17 @@ impl Judge {
         })
     }
 
-    /// What stands at a place of what was drawn.
+    /// Returns the point of the scene that a drawn pixel shows.
     fn content(&self, drawn: &Drawn, place: DVec2) -> Content {
         match drawn {
             Drawn::View(moment) => self.met(moment, place),
             Drawn::Faces(faces) => self.nearest(faces, place),
             Drawn::Shifted(moment, shift) => self.met(moment, place - *shift),
+            // Find by iteration the content that interpolation moves to this place.
             Drawn::Between { from, to, part, on_screen } => {
                 let between = between(from, to, *part);
                 let mut guess = place;
-                // Each step leaves the square of a per cent or two.
+                // Each step squares the remaining relative error, which starts at one or two per cent.
                 for _ in 0..4 {
                     let content = self.met(&between, guess);
                     let [a, b] = [from, to].map(|end| end.pose.view_of(self.contents.place(&content, end.objects_at)));
@@ -79,8 +81,10 @@ impl Judge {
         }
     }
 
-    /// The error of a place of the picture that lights at `at`, against where its content is then; `None` if that is behind
-    /// the eye.
+    /// Returns the error of a picture position that lights at `at`, relative to the position of its content at that
+    /// time.
+    ///
+    /// Returns `None` if the content is behind the eye.
     pub(crate) fn error(&self, place: DVec2, drawn: &Drawn, at: Time) -> Option<PixelError> {
         let content = self.contents.place(&self.content(drawn, place), at);
         let seen = self.head.truth(at).view_of(content);
@@ -90,19 +94,19 @@ impl Judge {
     }
 }
 
-/// A part of the way from one moment to another.
+/// Interpolates between two moments. `part` is 0 at `from` and 1 at `to`.
 fn between(from: &Moment, to: &Moment, part: f64) -> Moment {
     let begin = from.objects_at.0 as f64;
     let end = to.objects_at.0 as f64;
     Moment { pose: from.pose.interpolate(&to.pose, part), objects_at: Time((begin + (end - begin) * part) as u64) }
 }
 
-/// Angle between two vectors, exact for small ones too.
+/// Returns the angle between two vectors in radians. The formula is accurate for small angles too.
 fn angle_between(a: DVec3, b: DVec3) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
 }
 
-/// Judges single pixels of a run.
+/// Evaluates the registration error of single pixels of a run.
 #[derive(Debug)]
 pub struct Registration<'a> {
     run: Settled<'a>,
@@ -111,7 +115,7 @@ pub struct Registration<'a> {
 }
 
 impl<'a> Registration<'a> {
-    /// Of a run, as far as it is kept; `None` when it had no head.
+    /// Prepares the evaluation of a run, as far as its records are kept. `None` for a run without a head.
     #[must_use]
     pub fn of(outcome: &'a Outcome) -> Option<Self> {
         let run = outcome.settled();
@@ -119,8 +123,9 @@ impl<'a> Registration<'a> {
         Some(Self { judge: Judge::new(&run, head), shown: Shown::of_run(&run, head), run })
     }
 
-    /// The error of a pixel in a field that scans its line; `None` where no picture is shown that was complete in time, or where
-    /// its content should be behind the eye.
+    /// Returns the error of a pixel in a field that scans its line.
+    ///
+    /// Returns `None` if the picture shown was not complete in time, or if its content is behind the eye.
     #[must_use]
     pub fn at(&self, x: u32, y: u32, field: PeriodNumber) -> Option<PixelError> {
         let at = self.run.record.display().lights(0, x, y, field)?;
@@ -129,7 +134,7 @@ impl<'a> Registration<'a> {
     }
 }
 
-/// The middle of a pixel.
+/// Returns the position of a pixel's middle.
 pub(crate) fn middle(x: u32, y: u32) -> DVec2 {
     DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5)
 }
@@ -143,7 +148,7 @@ mod tests {
         assert_eq!(middle(0, 7), DVec2::new(0.5, 7.5));
     }
 
-    /// Objects stand where they are after the same part of the time as the head of its way.
+    /// Interpolates objects and the head with the same factor.
     #[test]
     fn between_two_moments_objects_and_head_are_the_same_part_of_the_way() {
         let moment = |at: u64| Moment { pose: Pose::at(DVec3::X * at as f64), objects_at: Time(at) };

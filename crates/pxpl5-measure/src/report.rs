@@ -1,4 +1,4 @@
-//! Results as numbers, with units in the names.
+//! The report of an experiment. Names of its numbers include the unit.
 
 use crate::budget::Budget;
 use crate::errors::PixelErrors;
@@ -16,16 +16,16 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Write};
 use tracking::predict::{PredictorConfig, Training};
 
-/// The numbers of one experiment.
+/// All numbers of one experiment, as written to JSON.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
     /// Name and version of this record's layout.
     pub schema: String,
-    /// Version of the program.
+    /// Version of the program that made the report.
     pub version: String,
-    /// Preset of the machine.
+    /// Name of the machine's preset.
     pub machine: String,
-    /// Name of everything on which the trace depends ([`pxpl5_run::Experiment::config_hash`]).
+    /// Hash of all settings that the trace depends on ([`pxpl5_run::Experiment::config_hash`]).
     pub config_hash: String,
     /// Level of modelling: `transaction` or `cycle`.
     pub level: String,
@@ -33,100 +33,105 @@ pub struct Report {
     pub seed: u64,
     /// Name of the pipeline, as in experiment files.
     pub pipeline: String,
-    /// Its keys and their values, as they take effect.
+    /// Settings of the pipeline as `key=value`, including defaults.
     pub variant: String,
-    /// The display that it draws for.
+    /// Name of the display that the pipeline draws for.
     pub display: String,
-    /// Parameters of the machine that differ from the preset's, by path.
+    /// Machine parameters that differ from the preset, by path.
     pub overrides: BTreeMap<String, Value>,
-    /// What no source allows: each parameter outside its stated range, with range and source.
+    /// Warnings, such as parameters outside the range that the sources allow.
     pub warnings: Vec<String>,
-    /// What displays could not use of what came to them, and the first reason of each: then less is shown than was drawn.
+    /// Messages that each display could not use, with the first reason. If not empty, the displays show less than was
+    /// drawn.
     pub display_faults: Vec<String>,
-    /// Graphics processors of the machine, the master included.
+    /// Number of graphics processors in the machine, including the master.
     pub n_gps: usize,
-    /// Renderer boards of the machine.
+    /// Number of renderer boards in the machine.
     pub n_renderers: usize,
     /// Name of the scene that was drawn.
     pub scene: String,
-    /// Triangles in the scene.
+    /// Number of triangles in the scene.
     pub triangles: usize,
-    /// Spheres in the scene.
+    /// Number of spheres in the scene.
     pub spheres: usize,
-    /// Periods of the display that were simulated: NTSC fields.
+    /// Number of simulated display periods. For NTSC, a period is one field.
     pub fields: u64,
-    /// The periods of the display over which latencies, pictures due, errors and rates are computed; nothing of a run that was over
-    /// before they began.
+    /// The display periods over which latencies, pictures due, errors and rates are computed.
+    ///
+    /// `None` if the run ended before the window began.
     pub window: Option<ResultWindow>,
-    /// Complete pictures in the window, that the statistics are over.
+    /// Number of complete pictures in the window, over which the statistics are computed.
     pub pictures: usize,
-    /// Latency in periods of the display: for NTSC, fields of 1001/60000 s.
+    /// Latency in display periods. For NTSC, a period is one field of 1001/60000 s.
     pub latency_fields: DefinedStatistics,
     /// The same latency in milliseconds of simulated time.
     pub latency_ms: DefinedStatistics,
-    /// Where the latency goes, in milliseconds: parts that add up to the way from the sample of the pose to light.
+    /// Parts of the latency in milliseconds. They add up to the time from the sample of the pose to light.
     pub latency_parts_ms: Vec<NamedStatistics>,
-    /// Latency of each eye and of the pair to the end of COPY, to the swap and to light, in milliseconds; empty where the
-    /// eyes have no TRANSFORM of their own.
+    /// Latency of each eye and of the pair to the end of COPY, to the swap and to light, in milliseconds.
+    ///
+    /// Empty if the eyes have no TRANSFORM of their own.
     pub latency_by_eye_ms: Vec<SurfaceStatistics>,
-    /// Complete pictures that were shown in the whole run, the warm-up included.
+    /// Number of complete pictures shown in the whole run, including warm-up.
     pub shown: u64,
-    /// Whole new pictures a second, over the window; nothing where fewer than two were shown.
+    /// Complete new pictures per second within the window. `None` if fewer than two were shown.
     pub updates_hz: Option<f64>,
-    /// The pictures that were due in the window, and what became of them; nothing where none was.
+    /// The pictures due in the window, counted by result. `None` if no picture was due.
     pub due: Option<DuePictures>,
-    /// When a picture is due here, what it takes to be in time, and which are counted.
+    /// Definition of a picture due: when it is due, when it is in time, and which pictures are counted.
     pub due_definition: String,
-    /// Pictures that were due and not shown: late, incomplete or missed.
+    /// Number of pictures due that were not shown: late, incomplete or missed.
     pub missed_retraces: Option<u64>,
-    /// That the load was too heavy, and what would do; nothing where it was not.
+    /// Warning that the scene is too heavy for the pipeline, with advice. `None` if the load is acceptable.
     pub too_heavy: Option<TooHeavy>,
-    /// Whether the pictures that the viewer sees at the end are complete.
+    /// True if the pictures that the viewer sees at the end of the run are complete.
     pub ends_complete: bool,
-    /// Regions that came after their deadline.
+    /// Number of regions that arrived after their deadline.
     pub late_regions: usize,
-    /// The first of them; lateness in picoseconds.
+    /// The first late regions, with lateness in picoseconds.
     pub first_late_regions: Vec<LateRegion>,
-    /// What the first display has counted since the start.
+    /// Counters of the first display since the start of the run.
     pub display_counters: Vec<Counter>,
-    /// From the head to light; nothing of a run without a tracker.
+    /// Results that concern the head. `None` for a run without a tracker.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub head: Option<HeadReport>,
-    /// Of a display with faces around the head; nothing of any other.
+    /// Results of an address recalculation display. `None` for any other display.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub arp: Option<FacesReport>,
-    /// Hash of everything that happened, and of the statistics above.
+    /// Hash of all events of the run and of the statistics of this report.
     pub trace_hash: String,
-    /// Events of the simulation that were handled.
+    /// Number of events that the simulation handled.
     pub events: u64,
-    /// Vertices that graphics processors transformed: each corner of a triangle and each centre of a sphere, once for each view.
+    /// Number of vertices that graphics processors transformed.
+    ///
+    /// Each corner of a triangle and each centre of a sphere counts once per view.
     pub vertex_transforms: u64,
-    /// Time that the run took on this host; nothing on a host without a clock.
+    /// Time that the run took on the host computer, in seconds. `None` on a host without a clock.
     pub host_seconds: Option<f64>,
 }
 
-/// What a tracker, a predictor and a display make of a pipeline.
+/// Results that concern the head: tracker, prediction, latency to light and registration error.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HeadReport {
-    /// Name of the tracker that reported the head.
+    /// Name of the tracker that reported the head's pose.
     pub tracker: String,
     /// Name of the predictor between tracker and pipeline.
     pub predictor: String,
-    /// The instant of what is shown from it that a view is predicted for.
+    /// The instant of the shown picture that a view is predicted for.
     pub aim: Aim,
-    /// Its numbers, as it ran.
+    /// Parameters of the predictor in this run.
     pub prediction: PredictorConfig,
-    /// On what they were tuned; nothing where they were given.
+    /// Data on which the predictor's parameters were tuned. `None` if the user set the parameters.
     pub training: Option<Training>,
-    /// Name of the head with all that it is, the numbers of its predictor included.
+    /// Hash of all settings of the head, including the parameters of its predictor.
     pub fingerprint: String,
-    /// Distance at which errors are judged, metres; nothing where the scene's content lies.
+    /// Fixed distance at which errors are evaluated, in metres. `None` if errors are evaluated at the scene's content.
     pub judged_at_m: Option<f64>,
-    /// How the raster before the eyes shows the picture.
+    /// Raster of the head-mounted display: plain or shifted.
     pub display: Raster,
-    /// From the head's pose to light, milliseconds.
+    /// Latency from the head's pose to light by stage, in milliseconds.
     pub end_to_end: Budget,
-    /// Where pixels are against where they should be.
+    /// Registration error of the displayed pixels.
     pub error: PixelErrors,
 }
 
@@ -148,7 +153,8 @@ impl HeadReport {
 }
 
 impl Report {
-    /// Lines of regions that were overwritten before they had been shown; `None` where the display does not count them.
+    /// Returns the number of region lines overwritten before they were shown. `None` if the display does not count
+    /// them.
     #[must_use]
     pub fn lines_never_shown(&self) -> Option<u64> {
         let counter = self.display_counters.iter().find(|counter| counter.name == Counter::LINES_NEVER_SHOWN);
@@ -165,10 +171,10 @@ fn faults(record: &Record) -> impl Iterator<Item = String> {
 }
 
 impl Report {
-    /// Name and version of the layout.
+    /// Name and version of the record's layout.
     pub const SCHEMA: &'static str = "pxpl5-report/2";
 
-    /// Everything that an outcome says, as numbers.
+    /// Computes the report of an outcome.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
         let experiment = outcome.experiment();
@@ -179,6 +185,7 @@ impl Report {
         let due = outcome.due();
         let tally = outcome.tally();
         let mut report = Self {
+            // Identity of the run.
             schema: Self::SCHEMA.to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             machine: config.preset.clone(),
@@ -193,6 +200,7 @@ impl Report {
                 .collect::<Vec<_>>()
                 .join(" "),
             display: record.display().name().to_owned(),
+            // Warnings and configuration.
             overrides: config.overrides(),
             warnings: experiment.warnings().into_iter().chain(untold(outcome)).collect(),
             display_faults: faults(record).collect(),
@@ -201,6 +209,7 @@ impl Report {
             scene: scene.name().to_owned(),
             triangles: scene.triangles().len(),
             spheres: scene.spheres().len(),
+            // Results over the window.
             fields: outcome.fields(),
             window: outcome.window(),
             pictures: tally.complete as usize,
@@ -208,6 +217,7 @@ impl Report {
             latency_ms: outcome.latency_ms().defined(pipeline.latency_definition()),
             latency_parts_ms: latency_part_statistics(outcome),
             latency_by_eye_ms: latency_by_surface(outcome),
+            // Results over the whole run.
             shown: outcome.shown(),
             updates_hz: outcome.updates_hz(),
             due,
@@ -218,6 +228,7 @@ impl Report {
             late_regions: tally.late_regions as usize,
             first_late_regions: tally.first_late_regions.clone(),
             display_counters: record.display().counters(),
+            // Parts that only some runs have.
             head: outcome.head().and_then(|views| HeadReport::of_head(outcome, views.head())),
             arp: FacesReport::of(outcome),
             trace_hash: String::new(),
@@ -229,28 +240,31 @@ impl Report {
         report
     }
 
-    /// Takes the statistics into the hash: what is reported follows from what happened, but in an order of its own, and a sum of
-    /// floating-point numbers in another order is another one.
+    /// Adds the statistics of this report to the trace hash.
+    ///
+    /// The trace hash alone does not cover the order of summation, which changes floating-point sums.
     fn hash_statistics(&mut self, mut hash: TraceHash) {
         let latencies = (&self.latency_fields, &self.latency_ms, &self.latency_parts_ms, &self.latency_by_eye_ms);
         let pictures =
             (self.pictures, self.shown, &self.updates_hz, &self.due, self.missed_retraces, self.ends_complete);
         let late = (self.late_regions, &self.first_late_regions, &self.display_counters);
-        // The latency of a step is no part of it, since a run that has dropped records does not know it.
+        // Leave out the translation latency: a run that has discarded records does not know it.
         let mut arp = self.arp.clone();
         for memory in arp.iter_mut().flat_map(|faces| &mut faces.memories) {
             memory.translation_latency_ms = None;
             memory.translation_latency_parts_ms.clear();
         }
         let mut text = HashedText::default();
-        // Numbers print with as many digits as tell them apart.
+        // The debug format prints enough digits to distinguish all numbers.
         let _ = write!(text, "{latencies:?}{pictures:?}{late:?}{:?}{:?}", self.head, arp);
         hash.0 = hash.0.wrapping_add(text.0);
         self.trace_hash = hash.to_string();
     }
 }
 
-/// The hash of a record at time zero of the facts 9 and the bytes of a text, which nobody holds: that of a long run has many.
+/// Computes, without storing the text, the trace hash of a record with the fact 9 and the bytes of a text at time zero.
+///
+/// The text of a long run would be large.
 struct HashedText(u64);
 
 impl Default for HashedText {
@@ -274,7 +288,7 @@ mod tests {
     use pxpl5_renderer::Layout;
     use pxpl5_wire::{Body, swap_request};
 
-    /// A processor that asks a frame buffer for its buffer 2 of 2, so many times.
+    /// A program requests the invalid buffer 2 of a double-buffered frame buffer, `asks` times.
     #[test]
     fn displays_say_what_they_could_not_use_and_nothing_else() {
         for asks in [0, 1, 3] {

@@ -1,22 +1,22 @@
-//! Which region's pixels are on the screen at any instant, from the arrivals of a run.
+//! The region whose pixels are on the screen at any instant, derived from the arrivals of a run.
 
 use pxpl5_machine::Arrival;
 use pxpl5_run::{Settled, region_at};
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, Lines, PeriodNumber, PictureNumber, RegionGrid, RegionId, SurfaceId};
 
-/// What the first surface of a run shows, as far as it was told and did not forget.
+/// Contents of a run's first surface over time, as far as arrivals were added and not discarded.
 #[derive(Debug, Default)]
 pub(crate) struct Screen {
     cuts: Vec<Cut>,
-    /// Ticks from which on the other buffer is shown, and how many swaps came before each.
+    /// Each swap: the period from which the other buffer is shown, and the number of earlier swaps.
     swaps: Vec<(PeriodNumber, u64)>,
 }
 
-/// All that came for one buffer in one cut, by region, in order of arrival.
+/// Arrivals for one buffer with one division into regions, sorted by region and arrival.
 #[derive(Debug)]
 struct Cut {
-    /// Its first target, whose region and picture say nothing here.
+    /// Target of the first arrival. Its region and picture are not used.
     of: CopyTarget,
     regions: Vec<Vec<(Time, PictureNumber)>>,
 }
@@ -26,7 +26,7 @@ impl Cut {
         (target.buffer, target.lines, target.grid)
     }
 
-    /// The newest picture in a pixel's region that had arrived by `at`.
+    /// Returns the newest arrival in a pixel's region up to the instant `at`.
     fn newest(&self, x: u32, y: u32, at: Time) -> Option<(Time, CopyTarget)> {
         let row = match self.of.lines {
             Lines::Frame => y,
@@ -41,7 +41,7 @@ impl Cut {
 }
 
 impl Screen {
-    /// Takes what has arrived since it was told last, and the swaps that are held.
+    /// Adds the arrivals since the last call, and replaces the swaps by those that the run still holds.
     pub(crate) fn take(&mut self, run: &Settled<'_>) {
         let arrived = run.arrivals.iter().filter(|arrival| arrival.surface == SurfaceId(0));
         arrived.for_each(|arrival| self.arrive(arrival));
@@ -51,6 +51,7 @@ impl Screen {
 
     fn arrive(&mut self, arrival: &Arrival) {
         let target = arrival.target;
+        // Find the division that the region belongs to, or add a new one.
         let place = self.cuts.iter().position(|cut| Cut::key(&cut.of) == Cut::key(&target)).unwrap_or_else(|| {
             self.cuts.push(Cut { of: target, regions: vec![Vec::new(); target.grid.regions() as usize] });
             self.cuts.len() - 1
@@ -60,7 +61,7 @@ impl Screen {
         }
     }
 
-    /// Forgets what cannot be seen any more at an instant or later: what was covered by then.
+    /// Discards arrivals that other arrivals had covered by `instant`.
     pub(crate) fn forget_before(&mut self, instant: Time) {
         for region in self.cuts.iter_mut().flat_map(|cut| &mut cut.regions) {
             let there = region.partition_point(|arrived| arrived.0 <= instant);
@@ -68,7 +69,7 @@ impl Screen {
         }
     }
 
-    /// All that it still knows of.
+    /// Returns the targets of all arrivals that are still held.
     pub(crate) fn targets(&self) -> impl Iterator<Item = CopyTarget> {
         self.cuts.iter().flat_map(|cut| {
             let regions = (0..).map(RegionId).zip(&cut.regions);
@@ -80,7 +81,7 @@ impl Screen {
         })
     }
 
-    /// What a pixel of a field shows when the beam is there; `None` before anything came.
+    /// Returns the region that a pixel of a field shows at the instant `at`, or `None` before the first arrival.
     pub(crate) fn shown(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Option<CopyTarget> {
         // Buffer 0 is shown first, and every swap shows the other one.
         let before = self.swaps.partition_point(|swap| swap.0 <= field);
@@ -97,7 +98,7 @@ mod tests {
 
     const GRID: RegionGrid = RegionGrid { width: 256, height: 256, region_width: 128, region_height: 128 };
 
-    /// Of buffer 0; its region 3 is the lower right one.
+    /// Returns a target in buffer 0. Region 3 of the grid is the lower right one.
     fn target(lines: Lines, picture: u64) -> CopyTarget {
         let (frame_buffer, picture) = (NodeId(1), PictureNumber(picture));
         CopyTarget { frame_buffer, buffer: 0, lines, grid: GRID, region: RegionId(3), picture }

@@ -1,4 +1,4 @@
-//! What each pixel of a run shows, and for which pose it was drawn.
+//! The picture that each pixel of a run shows, and the pose for which it was drawn.
 
 pub(crate) use crate::drawn::{Drawn, FacesSeen, Moment};
 use crate::screen::Screen;
@@ -11,37 +11,38 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use tracking::view::HmdView;
 
-/// What a pixel shows, as far as it can be judged.
+/// The picture that a pixel shows, classified for evaluation.
 #[derive(Clone, Debug)]
 pub(crate) enum Seen {
-    /// Nothing yet, or nothing that is known.
+    /// The pixel shows nothing yet, or its source is unknown.
     Nothing,
-    /// A part of a picture that was not complete in time.
+    /// The pixel belongs to a picture that was not complete in time.
     Incomplete,
-    /// A part of a complete one that was shown before the window.
+    /// The pixel belongs to a complete picture that was shown before the window.
     Before,
-    /// A part of one that was shown in the window, complete and in time.
+    /// The pixel belongs to a picture shown within the window, complete and in time.
     Complete(Drawn),
 }
 
-/// Everything that is known of a run's views, and what is still to be seen of it while it goes on.
+/// The views of a run and the contents of its screen, updated while the run continues.
 #[derive(Debug)]
 pub(crate) struct Shown {
     screen: Screen,
     views: BTreeMap<PictureNumber, ViewNumber>,
-    /// Pictures that were complete in time, each with the period from which on it was shown; `None` for those of start-up.
+    /// Pictures that were complete in time, each with the first period that showed it. `None` for pictures of start-up.
     complete: BTreeMap<PictureNumber, Option<PeriodNumber>>,
-    /// Pictures that were taken.
+    /// Number of pictures added so far.
     pictures: usize,
-    /// The window outside of which pictures are not evaluated; `None` where none is ever due: there every picture is seen until the next
-    /// one covers it.
+    /// The result window, outside which pictures are not evaluated.
+    ///
+    /// `None` for pipelines without due pictures. Their pictures are all evaluated, each until the next one covers it.
     window: Option<ResultWindow>,
     moments: BTreeMap<ViewNumber, Viewed>,
-    /// Of a display with faces.
+    /// Memories and directions of an address recalculation display.
     faces: Option<TurnedFaces>,
 }
 
-/// What a view was drawn for, and what its host knew: the reports up to an instant.
+/// The moment for which a view was drawn, and the time up to which the host knew tracker reports.
 #[derive(Clone, Copy, Debug)]
 struct Viewed {
     known: Time,
@@ -49,7 +50,7 @@ struct Viewed {
 }
 
 impl Shown {
-    /// Of a run of which nothing was told yet.
+    /// Creates the state for a run of which nothing was added yet.
     pub(crate) fn begin(run: &Settled<'_>, head: &Arc<HeadViews>) -> Self {
         Self {
             screen: Screen::default(),
@@ -62,18 +63,19 @@ impl Shown {
         }
     }
 
-    /// Of all that is kept of a run.
+    /// Creates the state from all kept records of a run.
     pub(crate) fn of_run(run: &Settled<'_>, head: &Arc<HeadViews>) -> Self {
         let mut shown = Self::begin(run, head);
         shown.take(run, head);
         shown
     }
 
-    /// Takes what is settled.
+    /// Adds the final pictures, arrivals and views of the run.
     pub(crate) fn take(&mut self, run: &Settled<'_>, head: &HeadViews) {
         self.screen.take(run);
         self.views.extend(run.pictures.iter().map(|times| (times.picture, times.view)));
         let display = run.record.display();
+        // Pictures of start-up are complete without a period, so they are never evaluated.
         for times in run.pictures {
             self.pictures += 1;
             let is_start_up = self.pictures <= WARM_UP_PICTURES;
@@ -87,8 +89,9 @@ impl Shown {
         self.faces.iter_mut().for_each(|faces| faces.take(run));
     }
 
-    /// Forgets what is not seen in the periods to come. Of views whose host knew what came later nothing is forgotten: their pictures may
-    /// still come.
+    /// Discards everything that later periods cannot show.
+    ///
+    /// Views that use later reports are kept, because their pictures may still arrive.
     pub(crate) fn forget(&mut self, run: &Settled<'_>) {
         let instant = run.record.tick(run.until);
         self.screen.forget_before(instant);
@@ -101,14 +104,15 @@ impl Shown {
         self.faces.iter_mut().for_each(|faces| faces.forget_before(instant));
     }
 
-    /// Everything that it holds, counted.
     #[cfg(test)]
     pub(crate) fn held(&self) -> usize {
         let of_faces = self.faces.as_ref().map_or(0, TurnedFaces::held);
         self.screen.targets().count() + self.views.len() + self.complete.len() + self.moments.len() + of_faces
     }
 
-    /// Views that are seen at an instant or later although they are older, or may be: of display memories all that are not yet covered.
+    /// Returns the older views that are visible at `instant` or may become visible later.
+    ///
+    /// For display memories, these are all views that are not yet covered.
     fn still_seen(&self, run: &Settled<'_>, instant: Time) -> BTreeSet<ViewNumber> {
         if self.faces.is_some() {
             return run.notes.all().iter().map(|note| note.view).collect();
@@ -121,7 +125,7 @@ impl Shown {
         sources.flat_map(views_of).collect()
     }
 
-    /// What a pixel that lights at `at` shows, and whether its picture was complete in time, in the window.
+    /// Classifies the picture of a pixel that lights at `at`.
     pub(crate) fn seen(&self, run: &Settled<'_>, [x, y]: [u32; 2], field: PeriodNumber, at: Time) -> Seen {
         if self.faces.is_none()
             && let Some(target) = self.screen.shown(x, y, field, at)
@@ -135,7 +139,8 @@ impl Shown {
         self.drawn(run, [x, y], field, at).map_or(Seen::Nothing, Seen::Complete)
     }
 
-    /// Gives some of its views the poses that they would have had without a cause of error; all others show nothing then.
+    /// Replaces the poses of the views `of` by those without one cause of error. All other views show nothing
+    /// afterwards.
     pub(crate) fn give_poses(&mut self, head: &Arc<HeadViews>, of: &BTreeSet<ViewNumber>, without: Cause) {
         let mut estimator = Estimator::new(head, Some(without));
         let mut sampled: Vec<Sampled> = head.sampled().into_iter().filter(|s| of.contains(&s.number)).collect();
@@ -148,7 +153,9 @@ impl Shown {
         self.faces.iter_mut().for_each(|faces| faces.leave_out(without));
     }
 
-    /// The views that a pixel shows which lights at `at`: one, or two between which it stands; none before anything came.
+    /// Returns the views that a pixel shows when it lights at `at`.
+    ///
+    /// The result has one view, or two for an interpolated picture. It is empty before the first arrival.
     pub(crate) fn views_at(
         &self,
         run: &Settled<'_>,
@@ -167,7 +174,7 @@ impl Shown {
         run.pipeline.source(run.record, target, &self.views, run.aim)
     }
 
-    /// What a pixel that lights at `at` shows; `None` before anything came.
+    /// Returns the source of a pixel that lights at `at`, or `None` before the first arrival.
     pub(crate) fn drawn(&self, run: &Settled<'_>, [x, y]: [u32; 2], field: PeriodNumber, at: Time) -> Option<Drawn> {
         let moment = |number: ViewNumber| self.moments.get(&number).map(|viewed| viewed.moment);
         if let Some(faces) = &self.faces {
@@ -195,7 +202,7 @@ fn viewed(sampled: &Sampled) -> Viewed {
     Viewed { known: sampled.known, moment }
 }
 
-/// The picture of the head-mounted display on the first surface of a display.
+/// Returns the projection of the head-mounted display on the first surface of a display.
 pub(crate) fn view_of(display: &dyn Display) -> HmdView {
     let ntsc = HmdView::ntsc();
     let sized = |surface: &Surface| HmdView::new(surface.width, surface.height, ntsc.horizontal_deg());

@@ -1,27 +1,28 @@
-//! A scene that is too heavy for a pipeline, and what would do.
+//! Warning about a scene that is too heavy for a pipeline, with advice.
 
 use pxpl5_run::{DuePictures, Experiment};
 use serde::Serialize;
 use std::fmt;
 
-/// That the load was too heavy ([`DuePictures::is_too_heavy`]), and how many triangles would do.
+/// Warning that the load was too heavy ([`DuePictures::is_too_heavy`]), with the number of triangles that would fit.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct TooHeavy {
-    /// Pictures that were due.
+    /// Number of pictures that were due.
     pub due: u64,
-    /// Those that were late, incomplete or missed.
+    /// Number of pictures due that were late, incomplete or missed.
     pub not_shown: u64,
-    /// Triangles and spheres of the scene.
+    /// Number of triangles and spheres in the scene.
     pub triangles: u64,
-    /// How many of them, the scene's first ones, would be shown in time, by the pipeline's closed form; nothing where it has
-    /// none, or where that has so many in time.
+    /// Number of the scene's first primitives that the pipeline would show in time, by its closed form.
+    ///
+    /// `None` if the pipeline has no closed form, or if the closed form predicts that the whole scene is in time.
     pub triangles_in_time: Option<u64>,
-    /// How to get pictures in time: a number of triangles, or how to find one.
+    /// Advice to the user: a number of triangles to try, or a command that finds one.
     pub advice: String,
 }
 
 impl TooHeavy {
-    /// Of an experiment; `None` where the load was not too heavy.
+    /// Returns the warning for an experiment, or `None` if the load was acceptable.
     #[must_use]
     pub fn of(experiment: &Experiment, due: &DuePictures) -> Option<Self> {
         if !due.is_too_heavy() {
@@ -43,12 +44,12 @@ fn advice(pipeline: &str, triangles_in_time: Option<u64>) -> String {
     }
 }
 
-/// The ending of a noun behind a number.
+/// Returns the plural ending of a noun that follows a number.
 const fn ending(count: u64) -> &'static str {
     if count == 1 { "" } else { "s" }
 }
 
-/// In a line.
+/// Writes the warning in one line.
 impl fmt::Display for TooHeavy {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { due, not_shown, triangles, advice, .. } = self;

@@ -1,30 +1,30 @@
-//! How long a turn of the head takes to light, over all fields of the window.
+//! Latency from a rotation of the head to light, over all fields of the window.
 
 use pxpl5_run::{RotationLatency, Samples, Settled, Statistics};
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 
-/// A part of the latency of rotation.
+/// One part of the latency of rotation.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RotationPart {
-    /// Its name: see [`RotationLatency`](pxpl5_run::RotationLatency).
+    /// Name of the part, as in [`RotationLatency`](pxpl5_run::RotationLatency).
     pub name: &'static str,
-    /// Over the middle pixel of all fields of the window, milliseconds.
+    /// Statistics over the middle pixel of all fields of the window, in milliseconds.
     #[serde(flatten)]
     pub statistics: Statistics,
 }
 
-/// Rotation latencies of the middle pixel of every field of the window, milliseconds.
+/// Collects the rotation latency of the middle pixel of every field of the window, in milliseconds.
 #[derive(Debug, Default)]
 pub(crate) struct TurnSum {
     next: PeriodNumber,
-    /// The first period of the window as it is known by now.
+    /// First period of the result window, as far as known.
     window_from: Option<PeriodNumber>,
     total: Samples,
     parts: Vec<Samples>,
 }
 
-/// What came of them; nothing without a tracked head, and where the display takes no faces.
+/// Results of a [`TurnSum`]. Empty without a tracker, or if the display is not an address recalculation pipeline.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Turns {
     pub(crate) latency_ms: Option<Statistics>,
@@ -34,6 +34,7 @@ pub(crate) struct Turns {
 impl TurnSum {
     pub(crate) fn take(&mut self, run: &Settled<'_>) {
         let window_from = run.window.map(|window| window.first_period);
+        // The window has moved: everything summed so far lies before it.
         if self.parts.is_empty() || self.window_from != window_from {
             self.window_from = window_from;
             self.total = Samples::keeping(run.samples);

@@ -1,5 +1,4 @@
-//! What pixels show that were looked up in faces around an eye: positions that memories were drawn from, in the direction that was
-//! latched.
+//! Sources of pixels on an address recalculation display: positions of the memories, and latched directions.
 
 use crate::drawn::{FacesSeen, Moment};
 use glam::DQuat;
@@ -12,7 +11,6 @@ use std::fmt;
 use std::sync::Arc;
 use tracking::Pose;
 
-/// Memories and orientations of a run.
 pub(crate) struct TurnedFaces {
     history: FaceHistory,
     latched: LatchedHead,
@@ -21,10 +19,10 @@ pub(crate) struct TurnedFaces {
     turns: RefCell<Turns>,
 }
 
-/// Orientations by the report that they rest on and the instant that they were predicted for.
+/// Predicted orientations, by the report they use and the instant they are predicted for.
 struct Turns {
     estimator: Estimator,
-    /// The last report that the estimator was asked about: it goes forward alone.
+    /// Time of the last report passed to the estimator, which accepts reports only in ascending order.
     asked: Time,
     known: BTreeMap<(Time, Time), DQuat>,
 }
@@ -36,7 +34,7 @@ impl fmt::Debug for TurnedFaces {
 }
 
 impl TurnedFaces {
-    /// `None` where the display takes no faces.
+    /// Creates the state for a run, or returns `None` if the display is not an address recalculation pipeline.
     pub(crate) fn begin(run: &Settled<'_>, head: &Arc<HeadViews>) -> Option<Self> {
         let history = FaceHistory::held(run.record, run.notes)?;
         let latched = LatchedHead::of_run(run)?;
@@ -44,34 +42,33 @@ impl TurnedFaces {
         Some(Self { history, latched, head: Arc::clone(head), without: None, turns })
     }
 
-    /// Takes what is held of the updates that were shown.
+    /// Replaces the history by the display updates that the run still holds.
     pub(crate) fn take(&mut self, run: &Settled<'_>) {
         self.history = FaceHistory::held(run.record, run.notes).unwrap_or_default();
     }
 
-    /// Forgets orientations that rest on reports before an instant.
+    /// Discards orientations that use reports before an instant.
     pub(crate) fn forget_before(&mut self, instant: Time) {
         self.turns.get_mut().known.retain(|(report, _), _| *report >= instant);
     }
 
-    /// Orientations that it holds.
     #[cfg(test)]
     pub(crate) fn held(&self) -> usize {
         self.turns.borrow().known.len()
     }
 
-    /// Turns to the orientations that a run without a cause of error would have had.
+    /// Switches to the orientations that the run would have had without one cause of error.
     pub(crate) fn leave_out(&mut self, cause: Cause) {
         self.without = Some(cause);
         self.turns = RefCell::new(Turns::new(&self.head, self.without));
     }
 
-    /// The views that memories show in a field.
+    /// Returns the views that the memories show in a field.
     pub(crate) fn views_at(&self, field: PeriodNumber) -> Vec<ViewNumber> {
         self.history.at(field).map(|shown| shown.note.view).collect()
     }
 
-    /// What a pixel was looked up in; `None` before anything came.
+    /// Returns the memories and the direction of a pixel, or `None` before the first update.
     pub(crate) fn drawn(
         &self,
         x: u32,
@@ -79,8 +76,10 @@ impl TurnedFaces {
         field: PeriodNumber,
         moment: impl Fn(ViewNumber) -> Option<Moment>,
     ) -> Option<FacesSeen> {
+        // Find the report and the instant from which this pixel's orientation was predicted.
         let (report, aimed_at) = self.latched.turned_by(&self.head, x, y, field)?;
         let orientation = self.turns.borrow_mut().at(&self.head, self.without, report, aimed_at);
+        // Each memory keeps its position but is seen in this orientation.
         let seen = self.history.at(field).filter_map(|shown| {
             let Moment { pose, objects_at } = moment(shown.note.view)?;
             let pose = Pose { orientation, ..pose };

@@ -1,4 +1,4 @@
-//! Where the time goes from the head's pose to light, and what causes an error.
+//! Stages of the latency from pose to light, and causes of the error.
 
 use glam::DVec3;
 use pxpl5_machine::MachineConfig;
@@ -32,7 +32,7 @@ fn assert_near(found: f64, expected: f64, what: &str) {
     assert!((found - expected).abs() < 1e-6, "{what}: {found} {expected}");
 }
 
-/// The stages of every pipeline are those of its pictures, and what is not of the pipeline has its closed form.
+/// Stages inside a pipeline must equal those of its pictures. All other stages have closed forms.
 #[test]
 fn stages_from_head_to_light_add_up() {
     let pipelines = [
@@ -80,7 +80,7 @@ fn stages_from_head_to_light_add_up() {
         let found = Budget::totals_ms(&outcome);
         assert_eq!(found.len(), n);
         found.iter().zip(&totals).for_each(|(found, expected)| assert_near(*found, *expected, name));
-        // 3.75 ms to the first character, and 47 bytes at 115,200 baud.
+        // The report takes 3.75 ms to the first character, and 47 bytes at 115,200 baud.
         assert!((budget.tracking_ms - 3.75 - 4.08).abs() < 0.01, "{}", budget.tracking_ms);
     }
 }
@@ -95,8 +95,10 @@ fn without_a_head_nothing_was_measured() {
     assert_eq!(ErrorCauses::of(&outcome, Showing::Plain, &PixelErrors::of(&outcome)), None);
 }
 
-/// A head that slides without noise, seen by a tracker with 40 ms of latency that nothing predicts: noise adds nothing, latency most, and
-/// what each cause adds is the whole less what remains without it.
+/// A head slides, and a tracker without noise reports it 40 ms late without prediction.
+///
+/// Noise contributes nothing, and latency contributes most. Each contribution equals the whole minus the error without
+/// the cause.
 #[test]
 fn causes_of_an_error_add_up_to_it() {
     let slats = Arc::new(Slats::split()) as Arc<dyn Pipeline>;

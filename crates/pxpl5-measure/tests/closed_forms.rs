@@ -1,8 +1,8 @@
-//! Pixel errors of every pipeline beside closed forms that share nothing with the program but NTSC's numbers.
+//! Pixel errors of every pipeline, compared with closed forms that share only NTSC's numbers with the program.
 //!
-//! With a perfect tracker and constant velocity a steady turn is predicted exactly, so what remains is scan-out: a pixel that
-//! lights at t and was drawn for a is turned by |v| |t - a|. For a sinusoid the prediction itself is wrong, by what a straight
-//! line through two of its points is.
+//! With a perfect tracker and constant velocity, a steady rotation is predicted exactly. The remaining error comes from
+//! scan-out: a pixel that lights at t and was drawn for a is rotated by |v| |t - a|. For a sinusoid the prediction
+//! itself is wrong: a straight line through two of its points differs from the sinusoid.
 
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{Measured, PixelErrors, Showing};
@@ -17,30 +17,32 @@ use tracking::predict::{PredictorConfig, PredictorKind};
 use tracking::tracker::TrackerConfig;
 use tracking::{Pose, SettingSink};
 
-/// Fields of a run.
+/// Number of fields of a run.
 const FIELDS: u64 = 45;
 
-/// NTSC: a line of 780 pixel periods, of which the last 640 are visible; a field of 262.5 lines, the first 22 of which are blanked,
-/// and in odd fields half a line more (all of the blanking comes first).
+/// Duration of an NTSC line.
+///
+/// A line has 780 pixel periods, of which the last 640 are visible. A field has 262.5 lines, of which the first 22 are
+/// blanked, and half a line more in odd fields. All blanking precedes the visible part.
 const LINE_S: f64 = 4004.0 / 63.0 * 1e-6;
 
-/// When the beam begins a field.
+/// Returns the time at which the beam begins a field.
 fn retrace(field: u64) -> f64 {
     field as f64 * 262.5 * LINE_S
 }
 
-/// When the beam is at a pixel of a row of a field.
+/// Returns the time at which the beam reaches a pixel of a field.
 fn beam(field: u64, row: u64, x: u64) -> f64 {
     let half = (field % 2) as f64 / 2.0;
     retrace(field) + (half + 22.0 + row as f64 + (140.0 + x as f64) / 780.0) * LINE_S
 }
 
-/// The instant of some rows that an aim means.
+/// Returns the instant that an aim selects within a range of rows.
 fn aimed(aim: Aim, (first_field, first_row): (u64, u64), (last_field, last_row): (u64, u64)) -> f64 {
     aimed_between(aim, first_field, beam(first_field, first_row, 0), beam(last_field, last_row, 639))
 }
 
-/// The instant that an aim means of what lights from a first to a last pixel.
+/// Returns the instant that an aim selects between a first and a last pixel of a field.
 fn aimed_between(aim: Aim, field: u64, first: f64, last: f64) -> f64 {
     match aim {
         Aim::Middle => (first + last) / 2.0,
@@ -50,8 +52,10 @@ fn aimed_between(aim: Aim, field: u64, first: f64, last: f64) -> f64 {
     }
 }
 
-/// Pixels whose orientation one load of the host brings, where pixels latch: it sends nine words, then the next nine, and begins anew with
-/// each line, which has room for eight.
+/// Returns the pixels that use the same load of the orientation register, with a latch per pixel.
+///
+/// The host sends nine words per load, one load after the other. It starts anew with each line, which has room for
+/// eight loads.
 fn of_one_load(x: u64) -> (u64, u64) {
     let pixels = ORIENTATION_S / (LINE_S / 780.0);
     let load = (x as f64 / pixels).floor().min(7.0);
@@ -59,33 +63,35 @@ fn of_one_load(x: u64) -> (u64, u64) {
     ((load * pixels).ceil() as u64, last)
 }
 
-/// The ideal tracker reports every millisecond, at once. An orientation takes nine words of four bytes at 5 MB/s to the register of a
-/// display with faces, which is latched 26 stages of 25 ns before its first pixel, with one memory 24.
+/// Interval of the ideal tracker's reports, which arrive without delay.
+///
+/// An orientation takes nine words of four bytes at 5 MB/s to the register. The register is latched 26 stages of 25 ns
+/// before the first pixel, or 24 stages with one memory.
 const REPORT_S: f64 = 1e-3;
 const ORIENTATION_S: f64 = 36.0 / 5e6;
 const STAGE_S: f64 = 25e-9;
 
-/// What a pixel shows: when the newest measurement was made that it rests on, and the instant that it is drawn for.
+/// Content of a pixel: the newest measurement it uses, and the instant it is drawn for.
 struct Content {
     measured: Measurement,
     drawn_for: f64,
 }
 
-/// A measurement, by the view that rests on it or by itself.
+/// A measurement, identified by the view that uses it or by its time.
 enum Measurement {
     Of(ViewNumber),
     At(f64),
 }
 
-/// A run, and what is known of it.
+/// A run and the data that the closed forms need.
 struct Run {
     pipeline: &'static str,
     aim: Aim,
     outcome: Outcome,
     sampled: BTreeMap<ViewNumber, Sampled>,
-    /// Field in which each picture begins to be shown, and its view.
+    /// First field that shows each picture, and its view.
     shown: Vec<(u64, ViewNumber)>,
-    /// Arrivals of each block of frameless rendering: when, and of which update.
+    /// For each block of frameless rendering, the arrivals with their times and updates.
     blocks: BTreeMap<u64, Vec<(f64, ViewNumber)>>,
 }
 
@@ -93,7 +99,7 @@ impl Run {
     fn new(pipeline: &'static str, aim: Aim, motion: impl Motion + Send + Sync + 'static) -> Self {
         let registry = Registry::of_papers();
         let built = (registry.pipeline(pipeline).expect("listed").build)(&PipelineSettings::default());
-        // The closed form knows the baseline: it is given, not tuned.
+        // The closed form needs a given baseline, so the predictor is not tuned.
         let tracker = TrackerConfig::ideal();
         let predictor = PredictorConfig::for_tracker(PredictorKind::ConstantVelocity, &tracker);
         let head = Head::predicted_by(Arc::new(motion), tracker, predictor, 1);
@@ -113,7 +119,7 @@ impl Run {
         Self { pipeline, aim, sampled, shown, blocks, outcome }
     }
 
-    /// The newest picture shown in a field: the field in which it began, and its view.
+    /// Returns the newest picture shown in a field: the field in which it was first shown, and its view.
     fn newest(&self, field: u64) -> (u64, ViewNumber) {
         *self.shown.iter().rev().find(|shown| shown.0 <= field).expect("shown before fields are judged")
     }
@@ -139,8 +145,10 @@ impl Run {
         Content { measured: Measurement::Of(view), drawn_for: aimed(self.aim, first, last) }
     }
 
-    /// Faces are turned by the newest orientation in the register: predicted for the aim in its field, in its line, or in the pixels for
-    /// which the host's line to the display brings one. A load is in the register when the first of them latches, or a moment before.
+    /// Returns the content of a pixel that an address recalculation display shows.
+    ///
+    /// Faces are rotated by the newest orientation in the register. It is predicted for the aim within its field, line,
+    /// or group of pixels per load. A load is in the register at the latch of its first pixel, or slightly earlier.
     fn content_of_faces(&self, field: u64, row: u64, x: u64) -> Content {
         let stages =
             if ["arp-full", "arp-ideal"].iter().any(|one| self.pipeline.starts_with(one)) { 24.0 } else { 26.0 };
@@ -159,7 +167,7 @@ impl Run {
         Content { measured: Measurement::At(measured), drawn_for }
     }
 
-    /// When the newest measurement was made that a pixel's content rests on.
+    /// Returns the time of the newest measurement that a pixel's content uses.
     fn measured_at(&self, content: &Content) -> f64 {
         match content.measured {
             Measurement::At(at) => at,
@@ -167,7 +175,8 @@ impl Run {
         }
     }
 
-    /// The random order decides when a block is drawn: the instant is taken from the run.
+    /// Returns the content of a block. The time at which it was drawn comes from the run, because blocks have a random
+    /// order.
     fn content_of_block(&self, field: u64, row: u64, x: u64) -> Content {
         let y = 2 * row + field % 2;
         let arrivals = &self.blocks[&(y / 16 * 40 + x / 16)];
@@ -176,8 +185,9 @@ impl Run {
         Content { measured: Measurement::Of(*view), drawn_for: predicted_for.0 as f64 * 1e-12 }
     }
 
-    /// The pixels that are judged: five by five of every field of the window, as [`PixelErrors`] says. Of Rendering Control only those
-    /// on which a frame is seen that was shown in the window.
+    /// Returns the evaluated pixels: five by five in every field of the window, as in [`PixelErrors`].
+    ///
+    /// For Rendering Control, only pixels of frames shown within the window count.
     fn judged(&self) -> impl Iterator<Item = (u64, u64, u64)> + '_ {
         let places = |size: u64| (0..5).map(move |i| (2 * i + 1) * size / 10);
         let in_field = move |field| places(480).flat_map(move |y| places(640).map(move |x| (field, y / 2, x)));
@@ -188,8 +198,8 @@ impl Run {
         (first..=last).filter(move |field| !frames || self.newest(*field).0 >= first).flat_map(in_field)
     }
 
-    /// Mean error in pixels and degrees where a pixel's content is turned about the vertical by `turned_rad` to the left of where
-    /// it should be.
+    /// Returns the mean expected error in pixels and degrees. `turned_rad` is the rotation of a pixel's content about
+    /// the vertical.
     fn expected(&self, turned_rad: impl Fn(&Content, f64) -> f64) -> [f64; 2] {
         let mut sum = [0.0, 0.0];
         let mut n = 0.0;
@@ -217,14 +227,15 @@ impl Run {
     }
 }
 
-/// Distance in pixels and in degrees between a place of the picture, from its middle, and where the point that it shows is after the
-/// head has turned to the left.
+/// Returns the distance between a picture position and its content after a rotation to the left, in pixels and degrees.
+///
+/// The position is given relative to the picture's middle.
 fn error(right: f64, up: f64, turned_rad: f64) -> [f64; 2] {
     let focal = 320.0 / 30f64.to_radians().tan();
     let (sin, cos) = turned_rad.sin_cos();
     let seen = [right * cos + focal * sin, up, focal * cos - right * sin];
     let place = [seen[0] * focal / seen[2], seen[1] * focal / seen[2]];
-    // The point runs on a circle about the vertical; the angle is that of its chord.
+    // The point moves on a circle about the vertical. The angle of the error is that of the chord.
     let radius = right.hypot(focal);
     let chord = radius / radius.hypot(up) * (turned_rad.abs() / 2.0).sin();
     [(place[0] - right).hypot(place[1] - up), 2.0 * chord.asin().to_degrees()]
@@ -236,8 +247,8 @@ fn pipelines() -> Vec<&'static str> {
 
 #[test]
 fn under_a_pan_nothing_but_scan_out_is_left_at_every_pipeline_and_aim() {
-    // So slow that interpolation on the screen between the ends of a field (0.34 px at 200 deg/s, with the square of the rate)
-    // is nothing beside a line's scan-out.
+    // At this low speed, the error of interpolation on the screen is negligible relative to the scan-out of a line. The
+    // interpolation error grows with the square of the speed and is 0.34 px at 200 deg/s.
     const DEG_PER_S: f64 = 0.02;
     for pipeline in pipelines() {
         for (_, aim) in Aim::ALL {
@@ -258,11 +269,11 @@ fn a_fast_pan_too_where_a_picture_is_drawn_for_one_instant() {
     }
 }
 
-/// A head that shakes about the vertical.
+/// A head that oscillates about the vertical.
 #[derive(Clone, Copy, Debug)]
 struct Shaking;
 
-/// So little that the square of its rate is nothing (see above).
+/// So small that the square of the speed is negligible (see above).
 const AMPLITUDE_DEG: f64 = 0.1;
 const HZ: f64 = 0.5;
 
@@ -288,7 +299,7 @@ impl Motion for Shaking {
 
 #[test]
 fn a_sinusoid_is_wrong_by_its_distance_from_a_straight_line_and_by_scan_out() {
-    // The predictor's line goes through the newest report and the fourth before it, 4 ms apart.
+    // The predictor's line passes through the newest report and the fourth report before it, 4 ms apart.
     const BASELINE_S: f64 = 0.004;
     for pipeline in pipelines() {
         let run = Run::new(pipeline, Aim::Middle, Shaking);
@@ -301,7 +312,8 @@ fn a_sinusoid_is_wrong_by_its_distance_from_a_straight_line_and_by_scan_out() {
         if pipeline.contains("dual") {
             continue;
         }
-        // Without prediction for a cause the newest report is carried on by the motion itself, which between two views is no straight line.
+        // With prediction turned off as a cause, the exact motion replaces it. Between two views the motion is not a
+        // straight line.
         let scanned = |content: &Content, at: f64| yaw(at) - yaw(content.drawn_for);
         let errors = PixelErrors::without(&run.outcome, Showing::Plain, Cause::Prediction);
         run.check_errors(&errors, run.expected(scanned), 1e-3);

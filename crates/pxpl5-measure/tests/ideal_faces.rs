@@ -1,4 +1,4 @@
-//! What remains wrong of what is drawn without error for one instant of its field.
+//! Errors that remain in pictures drawn without error for one instant of their field.
 
 use address_recalculation::Latch;
 use pxpl5_machine::MachineConfig;
@@ -11,11 +11,13 @@ use tracking::motion::{Slide, Synthetic};
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
 
-/// Focal length of 640 pixels over 60 degrees.
+/// Focal length of a picture with 640 pixels over 60 degrees, in pixels.
 const FOCAL_PX: f64 = 554.256_258_422_040_8;
 
-/// A head that slides at a speed, predicted without error for the first pixel of each field: a pixel that lights later shows what stands at
-/// z m from where the eye was then, f v t / z pixels off. So do faces that are drawn in no time, and a picture in which nothing stands.
+/// A head slides at speed v, and its pose is predicted exactly for the first pixel of each field.
+///
+/// A pixel that lights t later shows content at distance z with an error of f v t / z pixels. The same holds for faces
+/// that are drawn in no time, and for a picture without content.
 #[test]
 fn under_a_slide_a_pixel_is_off_by_the_way_since_the_first_of_its_field() {
     let speed = 1.0;
@@ -44,7 +46,8 @@ fn under_a_slide_a_pixel_is_off_by_the_way_since_the_first_of_its_field() {
     }
 }
 
-/// Orientations are predicted from reports that go forward alone: whoever asks for an earlier pixel gets what he would have got at first.
+/// The estimator accepts reports only in ascending order. A request for an earlier pixel must still give the same
+/// result.
 #[test]
 fn errors_are_the_same_in_whatever_order_they_are_asked_for() {
     let pipeline =

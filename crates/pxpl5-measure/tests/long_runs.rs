@@ -1,4 +1,4 @@
-//! A run with a tracked head that keeps statistics only is reported as one that keeps everything, and holds no more the longer it is.
+//! A run that keeps only statistics gives the same report as a run that keeps everything, and its memory does not grow.
 
 use glam::DVec3;
 use pxpl5_machine::MachineConfig;
@@ -30,19 +30,21 @@ fn synthetic() -> Synthetic {
     Synthetic::recorded_use(3)
 }
 
-/// Twenty metres to and fro, looking around.
+/// Returns a walk of twenty metres back and forth, with a head that looks around.
 fn walk() -> Walk {
     let corners = [DVec3::ZERO, DVec3::new(0.0, 0.0, -10.0), DVec3::new(1.0, 0.0, 0.0)];
     Walk::new(&corners, 0.6).expect("a way").looking_around(5)
 }
 
-/// A tracker that says nothing from a second of the run to another one.
+/// Returns a tracker that is silent between two times of the run.
 fn silent(from_s: f64, to_s: f64) -> TrackerConfig {
     let [from_ps, to_ps] = [from_s, to_s].map(|s| (s * 1e12) as u64);
     TrackerConfig { faults: vec![TrackerFault::Dropout { from_ps, to_ps }], ..TrackerConfig::fastrak() }
 }
 
-/// Every family of pipelines, long enough that records are given up several times; trackers, predictors, rasters and aims between them.
+/// Returns experiments of every family of pipelines, with different trackers, predictors, rasters and aims.
+///
+/// They are long enough that records are discarded several times.
 fn experiments() -> Vec<Experiment> {
     let small = MachineConfig::small_hmd;
     let fastrak = TrackerConfig::fastrak;
@@ -80,10 +82,10 @@ fn run(experiment: &Experiment, keep: Keep) -> Outcome {
     experiment.clone().keep(keep).run().expect("it runs")
 }
 
-/// All of a report but what it took of this computer; numbers print with as many digits as tell them apart.
+/// Returns everything of a report except the time on this computer. Numbers have enough digits to be distinguished.
 fn said(outcome: &Outcome) -> String {
     let mut report = Report { host_seconds: None, ..outcome.report() };
-    // The latency of a step needs the whole run, and is null in a run that has dropped records.
+    // The latency of translation needs the whole run, and is null in a run that has discarded records.
     for memory in report.arp.iter_mut().flat_map(|faces| &mut faces.memories) {
         assert!(!outcome.has_forgotten() || memory.translation_latency_ms.is_none());
         memory.translation_latency_ms = None;
@@ -114,8 +116,9 @@ fn what_is_kept_changes_nothing_that_is_said_of_a_head() {
     experiments().iter().for_each(assert_same);
 }
 
-/// The same in a few seconds: a display that is drawn field by field, for eighteen seconds from the last report before its tracker fell silent; one with
-/// two buffers; one with faces.
+/// Shorter runs for the same test: a display drawn field by field, a double-buffered display, and a display with faces.
+///
+/// The first one lasts eighteen seconds after the tracker's last report.
 #[test]
 fn what_is_kept_changes_nothing_that_is_said_of_a_head_in_shorter_runs() {
     let [slats, _, _, _, control, .., faces, _, _] = &experiments()[..] else { panic!("fourteen") };

@@ -1,4 +1,4 @@
-//! Numbers of a report against each other and against the machine's: what has a name has one value, wherever it is asked for.
+//! Consistency of a report's numbers: a quantity has the same value in every place.
 
 use glam::{DQuat, DVec3};
 use image::{Rgb, RgbImage};
@@ -77,7 +77,8 @@ fn every_quantity_is_the_number_of_that_name_in_the_report() {
     assert!(due.shown > 0 && report.pictures > 0 && report.events > 0);
 }
 
-/// An eye's picture has TRANSFORM, RENDER and COPY one after the other; the two first are different work, which takes different times.
+/// An eye's picture passes TRANSFORM, RENDER and COPY in this order. The first two are different work and take
+/// different times.
 #[test]
 fn parts_of_a_picture_add_up() {
     let results = Results::of_run(run("rendering-control", "sphere:10", 60));
@@ -135,7 +136,8 @@ fn a_load_that_is_too_heavy_is_told_with_what_would_do() {
     assert_eq!(run("jitp-scanline", "full-screen:2", 40).report().too_heavy, None);
 }
 
-/// How many primitives would do is said where the closed form knows, and where these are fewer than there are.
+/// The report states how many primitives would be in time only if a closed form exists and the number is smaller than
+/// the scene.
 #[test]
 fn a_number_that_would_do_is_said_where_it_is_less_than_there_is() {
     fn all(experiment: &Experiment) -> u64 {
@@ -184,7 +186,7 @@ fn the_hash_of_a_report_is_of_what_happened_and_of_what_is_said_of_it() {
     assert_ne!(report.trace_hash, outcome.record().trace_hash().to_string());
 }
 
-/// In six fields not all of four memories have been drawn, and none behind start-up.
+/// In six fields, not all of four memories have been drawn, and none after start-up.
 #[test]
 fn a_memory_without_two_updates_in_the_window_has_neither_rate_nor_period() {
     let pipeline =
@@ -204,7 +206,8 @@ fn a_memory_without_two_updates_in_the_window_has_neither_rate_nor_period() {
     assert!(memories.iter().all(|memory| (memory.updates_hz, memory.period_frames) == (None, None)), "{memories:?}");
 }
 
-/// A ball far away is drawn once, into the slowest memory: one update has no rate, however long the run is.
+/// A distant sphere is drawn once, into the slowest memory. One update has no rate, regardless of the length of the
+/// run.
 #[test]
 fn a_single_update_has_no_rate() {
     for fields in [60, 200] {
@@ -228,7 +231,7 @@ fn a_single_update_has_no_rate() {
     }
 }
 
-/// Faces of 512 texels of 24 bits of colour and of depth, one memory, so 24 stages of 25 ns.
+/// The display has faces of 512 texels, 24 bits of colour and of depth, and one memory, so it has 24 stages of 25 ns.
 #[test]
 fn a_display_with_faces_is_reported_with_its_memory() {
     let pipeline = FacePipeline { source: FaceSource::Ideal, ..FacePipeline::new(FacePolicy::Full) };
@@ -250,7 +253,8 @@ fn a_display_with_faces_is_reported_with_its_memory() {
     let whole = faces.rotation_latency_ms.expect("a head").mean;
     let parts: f64 = faces.rotation_latency_parts_ms.iter().map(|part| part.statistics.mean).sum();
     assert!(whole > 0.0 && (whole - parts).abs() < 1e-9, "{whole} {parts}");
-    // A step goes the same way up to the retrace before which the ideal renderer draws: it is older by a field at most.
+    // Translation has the same latency up to the retrace before which the ideal renderer draws, so it is at most a
+    // field older.
     let step = memory.translation_latency_ms.expect("updates were shown").mean;
     let parts: f64 = memory.translation_latency_parts_ms.iter().map(|(_, mean)| mean).sum();
     assert!(
@@ -259,7 +263,7 @@ fn a_display_with_faces_is_reported_with_its_memory() {
     );
 }
 
-/// The first point is where the pose that is drawn is that of the start; there is one each field until the end.
+/// The first point shows the pose of the start. Each field until the end has one point.
 #[test]
 fn a_latency_alone_has_a_point_each_field_from_its_first_picture_on() {
     let curve = LatencyCurve::of(&Pan::at(40.0), 90, 2, 3.0);
@@ -272,7 +276,7 @@ fn a_latency_alone_has_a_point_each_field_from_its_first_picture_on() {
     assert!(LatencyCurve::of(&Pan::at(40.0), 2_000, 2, 3.0).points.is_empty());
 }
 
-/// A head that turns for a second and then stands.
+/// A head that rotates for one second and then stops.
 #[derive(Clone, Copy, Debug)]
 struct Stopping;
 

@@ -1,4 +1,4 @@
-//! What is asked of an outcome besides its report: parts of the latency, latencies by eye, pictures.
+//! Measurements of an outcome besides its report: parts of the latency, latencies by eye, and pictures.
 
 use pxpl5_display::Counter;
 use pxpl5_gp::Stage;
@@ -36,7 +36,7 @@ fn statistics_of_parts_are_those_of_the_pictures_one_by_one() {
     }
 }
 
-/// A pair has come as far as the later eye, from the start of the first eye's TRANSFORM.
+/// The latency of a pair lasts from the start of the first eye's TRANSFORM to the event of the later eye.
 #[test]
 fn a_pair_takes_as_long_as_its_eyes_and_longer() {
     let outcome = run("rendering-control", 60, Pixels::Off);

@@ -1,6 +1,6 @@
-//! A raster that is shifted while it is scanned, beside the closed form of a head that turns steadily about one axis.
+//! A shifted raster, compared with the closed form of a head that rotates steadily about one axis.
 //!
-//! A picture that is drawn for the middle of its field is shifted, where the beam is at t, by what the head turns between: f tan(v (t - a)).
+//! A picture is drawn for the middle of its field, at time a. When the beam is at t, the shift is f tan(v (t - a)).
 
 use glam::{DQuat, DVec3};
 use image::{Rgb, RgbImage};
@@ -18,8 +18,10 @@ use tracking::{Pose, SettingSink};
 
 const FIELDS: u64 = 30;
 
-/// NTSC: a line of 780 pixel periods, of which the last 640 are visible, and a field of 262.5 lines, the first 22 of which are blanked; an
-/// odd one begins with half a line.
+/// Duration of an NTSC line.
+///
+/// A line has 780 pixel periods, of which the last 640 are visible. A field has 262.5 lines, of which the first 22 are
+/// blanked. An odd field begins with half a line.
 const LINE_S: f64 = 4004.0 / 63.0 * 1e-6;
 
 fn beam(field: u64, row: u64, x: u64) -> f64 {
@@ -27,12 +29,12 @@ fn beam(field: u64, row: u64, x: u64) -> f64 {
     (field as f64 * 262.5 + half + 22.0 + row as f64 + (140.0 + x as f64) / 780.0) * LINE_S
 }
 
-/// Focal length of 640 pixels over 60 degrees.
+/// Returns the focal length of a picture with 640 pixels over 60 degrees, in pixels.
 fn focal_px() -> f64 {
     320.0 / 30f64.to_radians().tan()
 }
 
-/// A head that turns about an axis of the world: to the left about y, upwards about x.
+/// A head that rotates about an axis of the world: to the left about y, or upwards about x.
 #[derive(Clone, Copy, Debug)]
 struct Turning {
     axis: DVec3,
@@ -42,7 +44,7 @@ const RAD_PER_S: f64 = 2.0;
 
 impl Motion for Turning {
     fn pose(&self, t_ps: u64) -> Pose {
-        // Begun so that a field in the middle of the run looks straight ahead, where up and down are those of the world.
+        // The start is chosen so that the head looks straight ahead in a field in the middle of the run.
         Pose::facing(DQuat::from_axis_angle(self.axis, RAD_PER_S * (t_ps as f64 * 1e-12 - 0.35)))
     }
     fn identify(&self, settings: &mut SettingSink) {
@@ -66,18 +68,18 @@ fn run(axis: DVec3, raster: Raster) -> Outcome {
     experiment.fields(FIELDS).pixels(Pixels::Off).run().expect("two triangles")
 }
 
-/// The angle by which the head has turned since the instant that a field's picture is drawn for.
+/// Returns the angle of rotation since the instant for which a field's picture is drawn.
 fn turned(field: u64, row: u64, x: u64) -> f64 {
     let aim = (beam(field, 0, 0) + beam(field, 239, 639)) / 2.0;
     RAD_PER_S * (beam(field, row, x) - aim)
 }
 
-/// A screen of which every pixel tells its place.
+/// Returns a screen in which the colour of each pixel encodes its position.
 fn places() -> RgbImage {
     RgbImage::from_fn(640, 480, |x, y| Rgb([1 + (x / 256) as u8, x as u8, (y / 2) as u8]))
 }
 
-/// Shifts every pixel of a field and compares with what comes from its place in the closed form.
+/// Shifts every pixel of a field, and compares its source with that of the closed form.
 fn check(axis: DVec3, field: u64, from: impl Fn(u64, u64, f64) -> [f64; 2]) {
     let outcome = run(axis, Raster::Vdrt);
     let offsets = RasterOffsets::of(&outcome).expect("it is shifted");
@@ -129,14 +131,14 @@ fn before_anything_is_shown_rows_stay_and_behind_the_run_there_is_no_offset() {
     assert!(RasterOffsets::of(&run(DVec3::Y, Raster::Plain)).is_none());
 }
 
-/// Where a place's content is after a turn to the left, both from the middle.
+/// Returns the position of content after a rotation to the left, relative to the picture's middle.
 fn after(right: f64, up: f64, angle: f64) -> [f64; 2] {
     let (sin, cos) = angle.sin_cos();
     let depth = focal_px() * cos - right * sin;
     [(right * cos + focal_px() * sin) * focal_px() / depth, up * focal_px() / depth]
 }
 
-/// The mean error of the 25 pixels of each field, from the place at which a pixel's content was drawn.
+/// Returns the mean error of the 25 evaluated pixels of each field.
 fn mean_px(drawn_at: impl Fn(f64, f64) -> f64) -> f64 {
     let grid = |size: u64| (0..5).map(move |i| (2 * i + 1) * size / 10);
     let fields = WARM_UP_PERIODS..FIELDS;
@@ -163,7 +165,7 @@ fn a_flat_raster_leaves_what_a_shift_is_no_turn() {
     }
 }
 
-/// The reference is drawn for every pixel's own instant, so that nothing is left under a turn that is predicted without error.
+/// The ideal reference is drawn for every pixel's own instant, so an exactly predicted rotation leaves no error.
 #[test]
 fn an_ideal_view_of_a_steady_turn_has_no_error() {
     let errors = PixelErrors::shown(&run(DVec3::Y, Raster::Plain), Showing::Ideal);
@@ -191,8 +193,10 @@ fn errors_by_field_are_those_of_all_pixels_at_the_time_of_their_retraces() {
     assert_eq!((errors.all_px.len() as u64, errors.behind, errors.empty), (errors.judged, 0, 0));
 }
 
-/// At 1,450 degrees a second a head turns by 145 degrees and more in the 100 ms that its reports are late, and by less than 240 until the last pixel
-/// of a field that is drawn from them lights: all of it is behind the eye by then, which sees 30 degrees to each side.
+/// The head rotates at 1,450 deg/s, and its reports are 100 ms late.
+///
+/// It turns by at least 145 degrees until a picture begins to light, and by less than 240 degrees until its last pixel.
+/// All content is then behind the eye, which sees 30 degrees to each side.
 #[test]
 fn what_is_behind_the_eye_when_it_lights_has_no_error_and_is_counted() {
     let fields = 45;

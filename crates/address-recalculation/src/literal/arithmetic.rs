@@ -1,17 +1,18 @@
-//! Arithmetic as gates do it, in words of a stated width.
+//! Arithmetic of the reference model: gate level, in words of a stated width.
 
-/// A number cut to a signed word of so many bits: what is above them is lost.
+/// Truncates a number to a signed word of `bits` bits. Higher bits are lost.
 pub(super) const fn signed(value: i64, bits: u64) -> i64 {
     value << (64 - bits) >> (64 - bits)
 }
 
-/// A number cut to an unsigned word of so many bits.
+/// Truncates a number to an unsigned word of `bits` bits.
 pub(super) const fn unsigned(value: u64, bits: u64) -> u64 {
     value & (u64::MAX >> (64 - bits))
 }
 
-/// The product of two signed words in as many bits as both have: a partial product for each bit of the second, the one of
-/// its sign subtracted.
+/// Multiplies two signed words by partial products. The product has as many bits as both words together.
+///
+/// Each bit of the second word adds a partial product, and its sign bit subtracts one.
 pub(super) fn multiply(first: i64, second: i64, bits: [u64; 2]) -> i64 {
     let width = bits[0] + bits[1];
     let sign = bits[1] - 1;
@@ -20,12 +21,12 @@ pub(super) fn multiply(first: i64, second: i64, bits: [u64; 2]) -> i64 {
     signed(sum - partial(sign), width)
 }
 
-/// The product of two unsigned words, a partial product for each bit of the second.
+/// Multiplies two unsigned words by a partial product for each bit of the second word.
 pub(super) fn multiply_unsigned(first: u64, second: u64) -> u64 {
     (0..64 - second.leading_zeros()).filter(|bit| second >> bit & 1 == 1).map(|bit| first << bit).sum()
 }
 
-/// A restoring divider: one bit of the quotient a step.
+/// A restoring divider that computes one bit of the quotient per step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Divider {
     divisor: u64,
@@ -34,12 +35,12 @@ pub(super) struct Divider {
 }
 
 impl Divider {
-    /// To divide a dividend by a divisor that is not less. Equal ones give a quotient of all ones.
+    /// Starts a division. `divisor` must not be less than `dividend`. Equal operands give a quotient of all ones.
     pub(super) const fn new(dividend: u64, divisor: u64) -> Self {
         Self { divisor, remainder: dividend, quotient: 0 }
     }
 
-    /// The next bit, with a remainder of so many bits.
+    /// Computes the next bit of the quotient, with a remainder of `bits` bits.
     pub(super) const fn step(&mut self, bits: u64) {
         let doubled = unsigned(self.remainder << 1, bits);
         let fits = doubled >= self.divisor;

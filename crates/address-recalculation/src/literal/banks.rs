@@ -1,18 +1,18 @@
-//! The four interleaved memories of a display memory, as words lie in them.
+//! The four interleaved banks of a display memory in the reference model.
 
 use crate::face::{CubeFace, TexelAddress};
 use crate::texel::{DEPTH_FARTHEST, FaceSet, TexelFormat, narrowed, widened};
 
-/// Colour and depth as a bank holds them: of 16 bits the narrow words themselves.
+/// Colour and depth as a bank stores them. With 16 bits, the fields hold the narrow words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Cell {
-    /// Kept bits of the depth, all ones for an empty texel.
+    /// Stored bits of the depth, all ones for an empty texel.
     pub(super) depth: u32,
-    /// Kept bits of the colour.
+    /// Stored bits of the colour.
     pub(super) colour: u32,
 }
 
-/// The shown buffer of one display memory: four banks, each with its part of six faces.
+/// The visible buffer of one display memory as four banks. Each bank holds a part of all six faces.
 #[derive(Clone, Debug)]
 pub struct BankedMemory {
     texels: u32,
@@ -21,7 +21,7 @@ pub struct BankedMemory {
 }
 
 impl BankedMemory {
-    /// The banks with what six faces show, texel by texel.
+    /// Copies six faces into banks, texel by texel.
     #[must_use]
     pub fn of(faces: &FaceSet) -> Self {
         let texels = faces.texels();
@@ -33,6 +33,7 @@ impl BankedMemory {
             for row in 0..texels {
                 for column in 0..texels {
                     let texel = TexelAddress { face, column, row };
+                    // Empty texels keep the initial cell.
                     if let Some((colour, depth)) = faces.texel(texel) {
                         let colour = if format.colour_bits == 16 { narrowed(colour) } else { colour };
                         let place = memory.place(texel);
@@ -44,7 +45,7 @@ impl BankedMemory {
         memory
     }
 
-    /// The address within a bank: the face above the word.
+    /// Returns the address of a texel within its bank. The face forms the upper part of the address.
     fn place(&self, texel: TexelAddress) -> usize {
         let words_of_a_face = self.texels / 2 * (self.texels / 2);
         (texel.face as u32 * words_of_a_face + texel.word(self.texels)) as usize
@@ -54,12 +55,12 @@ impl BankedMemory {
         self.banks[texel.bank() as usize][self.place(texel)]
     }
 
-    /// The depth of an empty texel.
+    /// Returns the depth of an empty texel.
     pub(super) const fn farthest(&self) -> u32 {
         DEPTH_FARTHEST >> (24 - self.format.depth_bits)
     }
 
-    /// A cell's colour in 8 bits a channel.
+    /// Returns the colour of a cell with 8 bits per channel.
     pub(super) const fn wide(&self, cell: Cell) -> u32 {
         if self.format.colour_bits == 16 { widened(cell.colour) } else { cell.colour }
     }

@@ -1,12 +1,13 @@
-//! The literal twin: every register of every stage, clock by clock.
+//! The reference model: every register of every stage, clock by clock.
 //!
 //! ```text
 //! table - multiply - add - add - face - divide x q - address - memory - compare x log2 n - interpolate -> light
 //! ```
 //!
-//! A pixel enters at each clock and lights as many clocks later as there are stages. Products are sums of partial products,
-//! quotients come bit by bit, texels out of banks, the nearest through a tree of comparators. Nothing of it is shared with the
-//! fast path but the names of faces and the format of words.
+//! A pixel enters at each clock and lights after as many clocks as there are stages. Products are sums of partial
+//! products. Quotients are computed bit by bit. Texels come from banks. A tree of comparators finds the nearest texel.
+//!
+//! The reference model shares with the fast model only the names of faces and the format of words.
 
 mod arithmetic;
 mod banks;
@@ -25,7 +26,7 @@ use arithmetic::{Divider, multiply, multiply_unsigned, signed};
 use registers::Registers;
 use std::collections::VecDeque;
 
-/// What a stage does to the registers of the pixel in it.
+/// A stage of the pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
     Table,
@@ -45,9 +46,9 @@ enum Stage {
 pub struct LitPixel {
     /// Column and line in the frame.
     pub pixel: [u32; 2],
-    /// What it shows: 0x00RRGGBB.
+    /// Displayed colour, 0x00RRGGBB.
     pub colour: u32,
-    /// The texels that it was made of.
+    /// The texels from which the pixel was computed.
     pub footprint: Footprint,
 }
 
@@ -60,18 +61,19 @@ pub struct LiteralPipeline {
     vector_bits: u64,
     matrix_bits: u64,
     stages: Vec<Stage>,
-    /// The pixel in each stage, the first stage first.
+    /// The pixel in each stage, starting with the first stage.
     inside: VecDeque<Option<Registers>>,
 }
 
 impl LiteralPipeline {
-    /// An empty pipeline with a table of viewing vectors.
+    /// Creates an empty pipeline with a table of viewing vectors.
     #[must_use]
     pub fn new(config: &ArpConfig, table: LensTable) -> Self {
         let timing = &config.timing;
         let first = [Stage::Table, Stage::Multiply, Stage::AddFirst, Stage::AddSecond, Stage::Face];
         let divide = vec![Stage::Divide; timing.quotient_bits as usize];
         let compare = vec![Stage::Compare; timing.compare_stages() as usize];
+        // The order of composition decides the order of the last stages.
         let last = match config.order {
             CompositionOrder::DepthFirst => [compare, vec![Stage::Interpolate]],
             CompositionOrder::InterpolationFirst => [vec![Stage::Interpolate], compare],
@@ -88,22 +90,26 @@ impl LiteralPipeline {
         }
     }
 
-    /// Stages from the table to the light.
+    /// Returns the number of stages from the table to the light.
     #[must_use]
     pub fn stages(&self) -> usize {
         self.stages.len()
     }
 
-    /// One clock: takes a pixel with the orientation that was latched for it, moves all others one stage on and gives the one
-    /// that lights. The buffers are those that are shown at this clock, the background memory last.
+    /// Simulates one clock. All pixels advance by one stage, and the pixel that leaves the last stage is returned.
+    ///
+    /// `entering` is the new pixel with its latched orientation. `memories` and `background` are the buffers visible at
+    /// this clock.
     pub fn clock(
         &mut self,
         entering: Option<([u32; 2], MatrixWords)>,
         memories: &[BankedMemory],
         background: Option<&BankedMemory>,
     ) -> Option<LitPixel> {
+        // Shift all pixels by one stage.
         self.inside.push_front(entering.map(|(pixel, matrix)| Registers::of(pixel, matrix)));
         self.inside.truncate(self.stages.len());
+        // All stages work in parallel.
         for place in 0..self.stages.len() {
             if let Some(mut registers) = self.inside[place].take() {
                 self.work(self.stages[place], &mut registers, memories, background);
@@ -139,7 +145,7 @@ impl LiteralPipeline {
         }
     }
 
-    /// Bits of a sum of three products: the product's and one more.
+    /// Returns the number of bits of a sum of three products: one more than a product.
     const fn sum_bits(&self) -> u64 {
         self.vector_bits + self.matrix_bits + 1
     }
@@ -167,7 +173,7 @@ impl LiteralPipeline {
         }
     }
 
-    /// Comparators choose the longest component, multiplexers and sign changers the face's axes.
+    /// Selects the face by comparators, and the face's axes by multiplexers and sign changers.
     fn select_face(&self, registers: &mut Registers) {
         let [x, y, z] = registers.sums;
         let longer = [x.abs() >= y.abs(), x.abs() >= z.abs(), y.abs() >= z.abs()];
@@ -181,13 +187,16 @@ impl LiteralPipeline {
         };
         let forward = x.abs().max(y.abs()).max(z.abs());
         registers.face = face;
+        // The dividers compute (1 + side / forward) / 2, so the divisor is twice the forward component.
         let divisor = (2 * forward) as u64;
         registers.dividers = [forward + right, forward - up].map(|dividend| Divider::new(dividend as u64, divisor));
     }
 
-    /// Multiplies the quotients by the face's size; what is above the binary point is the texel, below it the fractions.
+    /// Multiplies the quotients by the size of the face. Bits above the binary point select the texel, and lower bits
+    /// the fractions.
     fn address(&self, registers: &Registers) -> Footprint {
         let q = self.unit.quotient_bits;
+        // Offset of the first position: guard texels and rounding, minus half a texel for interpolation.
         let inner = u64::from(self.unit.geometry.inner());
         let half = if self.unit.weight_bits == 0 { 0 } else { 1_i64 << (q - 1) };
         let first = (i64::from(self.unit.geometry.guard) << q) + (inner / 2) as i64 - half;
@@ -197,6 +206,7 @@ impl LiteralPipeline {
             let here = self.unit.around(registers.face, whole, [0, 0]);
             return Footprint { texels: [here.texels[0]; 4], fractions: [0, 0], is_split: false };
         }
+        // Round the fraction, which may become 1.
         let rounding = |place: i64| {
             let below = q - self.unit.weight_bits;
             let doubled = (place as u64 & ((1 << q) - 1)) << 1 >> below;

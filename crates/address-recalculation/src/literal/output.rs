@@ -1,4 +1,4 @@
-//! The stages behind the memories: comparators and interpolation.
+//! The stages after the memories in the reference model: comparators and interpolation.
 
 use super::arithmetic::multiply_unsigned;
 use super::banks::BankedMemory;
@@ -14,6 +14,7 @@ pub(super) fn read(
     constant: u32,
 ) {
     let Some(footprint) = registers.footprint else { return };
+    // Read the background first: empty texels of the other memories show it.
     registers.behind = [constant; 4];
     if let Some(memory) = background {
         let read = candidate(memory, &footprint.texels, [constant; 4]);
@@ -35,7 +36,9 @@ fn candidate(memory: &BankedMemory, texels: &[Option<TexelAddress>; 4], behind: 
     read
 }
 
-/// One level of the tree: of each two neighbours the nearer, the first on ties; one without a neighbour goes on.
+/// Simulates one level of the comparator tree. Of two neighbours the nearer one stays, and the first one wins a tie.
+///
+/// A candidate without a neighbour passes unchanged.
 pub(super) fn compare(registers: &mut Registers) {
     let pairs = registers.candidates.chunks(2);
     registers.candidates = pairs.map(|pair| pair.iter().copied().reduce(nearer).unwrap_or(pair[0])).collect();
@@ -52,24 +55,26 @@ fn nearer(first: Candidate, second: Candidate) -> Candidate {
     nearest
 }
 
-/// Weighs the four texels of every candidate that is left.
+/// Interpolates the four texels of every remaining candidate.
 pub(super) fn interpolate(composition: &Composition, registers: &mut Registers) {
     let Some(footprint) = registers.footprint else { return };
     let products = footprint.weights(composition.weight_bits);
     let weights = [0, 1, 2, 3].map(|k| footprint.texels[k].map(|_| u64::from(products[k])));
     let bits = 2 * composition.weight_bits;
+    // Depths are rounded up, so a mean never counts as nearer than it is.
     for candidate in &mut registers.candidates {
         let depth = weighed(candidate.depths, weights, bits, Rounding::Up);
         candidate.depths = [depth; 4];
         candidate.colours = [mixed(candidate.colours, weights, bits); 4];
     }
+    // The background is interpolated here only if no depth comparison preceded.
     if composition.order == CompositionOrder::InterpolationFirst {
         registers.behind = [mixed(registers.behind, weights, bits); 4];
     }
     registers.colour = registers.candidates.first().map_or(0, |candidate| candidate.colours[0]);
 }
 
-/// The colour that leaves the last stage: what is behind all memories where their nearest is the farthest.
+/// Returns the colour that leaves the last stage. If the nearest memory is empty, the background is visible.
 pub(super) fn lit(composition: &Composition, registers: &Registers, memories: &[BankedMemory]) -> u32 {
     let farthest = memories.first().map_or(0, BankedMemory::farthest);
     match (composition.order, registers.candidates.first()) {
@@ -84,7 +89,7 @@ pub(super) fn lit(composition: &Composition, registers: &Registers, memories: &[
     }
 }
 
-/// What becomes of the bits below the word.
+/// Rounding of the bits below the word.
 #[derive(Clone, Copy)]
 enum Rounding {
     Nearest,
@@ -96,8 +101,10 @@ fn mixed(colours: [u32; 4], weights: [Option<u64>; 4], bits: u64) -> u32 {
     channel(16) << 16 | channel(8) << 8 | channel(0)
 }
 
-/// A sum of products with weights that add up to 2^bits; the mean of three where one has none.
+/// Returns the weighted sum of values, with weights that add up to 2^bits. If a weight is `None`, returns the mean of
+/// three.
 fn weighed(values: [u32; 4], weights: [Option<u64>; 4], bits: u64, rounding: Rounding) -> u32 {
+    // Beyond a corner, take the mean of the other three.
     if weights.contains(&None) {
         let three: u64 = (0..4).filter(|k| weights[*k].is_some()).map(|k| u64::from(values[k])).sum();
         let remainder = three % 3;

@@ -1,19 +1,18 @@
-//! What travels with a pixel from stage to stage.
+//! The registers that travel with a pixel from stage to stage.
 
 use super::arithmetic::Divider;
 use crate::address::Footprint;
 use crate::face::CubeFace;
 use crate::orientation::MatrixWords;
 
-/// Four texels of a memory on their way through the comparators; all alike once they are interpolated.
+/// Four texels of a memory in the comparators. After interpolation, all four are equal.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Candidate {
     pub(super) depths: [u32; 4],
-    /// In 8 bits a channel; of empty texels what is behind them.
+    /// Colours with 8 bits per channel. For empty texels, the background colours.
     pub(super) colours: [u32; 4],
 }
 
-/// The registers that travel with a pixel.
 #[derive(Clone, Debug)]
 pub(super) struct Registers {
     pub(super) pixel: [u32; 2],

@@ -1,4 +1,4 @@
-//! A display alone: its clock, what is sent to it and what it puts out.
+//! A display on a test bench: clock, input messages and outputs.
 
 use address_recalculation::{AddressRecalculationPipeline, ArpConfig, ArpTiming, begin_update, region_grid};
 use pxpl5_display::{Display, DisplayConfig, DisplayEvent, DisplayOutput};
@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// 16,384 colours before 16,384 depths, and how often they were asked for.
+/// A region with 16,384 colours, then 16,384 depths, and a count of reads.
 #[derive(Debug)]
 pub(crate) struct Flat {
     colour: u32,
@@ -27,12 +27,12 @@ impl PixelSource for Flat {
     }
 }
 
-/// A region of one colour and depth.
+/// Returns a region of one colour and one depth.
 pub(crate) fn flat(colour: u32, depth: u32) -> Arc<Flat> {
     Arc::new(Flat { colour, depth, asked: AtomicU64::new(0) })
 }
 
-/// A display, its clock, and what it put out.
+/// A display with its clock and its outputs.
 pub(crate) struct Bench {
     pub(crate) display: Box<dyn Display>,
     pub(crate) outputs: Vec<(Time, DisplayOutput)>,
@@ -86,13 +86,13 @@ impl Bench {
         }
     }
 
-    /// Some messages of a region with 32.
+    /// Sends a range of the 32 messages of a region.
     pub(crate) fn parts(&mut self, port: usize, buffer: u8, region: u16, source: &Arc<Flat>, parts: Range<u32>) {
         let image: Arc<dyn PixelSource> = Arc::<Flat>::clone(source);
         self.parts_of(32, (port, buffer, region), &image, parts);
     }
 
-    /// Some messages of a region (port, buffer, number) with so many.
+    /// Sends some messages of a region that consists of `all` messages.
     pub(crate) fn parts_of(
         &mut self,
         all: u32,
@@ -107,13 +107,13 @@ impl Bench {
         }
     }
 
-    /// The first message of a region for a target, to the first port.
+    /// Sends the first message of a region to the first port.
     pub(crate) fn pixels(&mut self, target: CopyTarget) {
         let body = Body::Pixels(RegionPixels { target, image: flat(1, 1), part: 0, parts: 32 });
         self.event(Time(9), DisplayEvent::Delivered { port: 0, body });
     }
 
-    /// A whole update of the buffer that is not shown, with the same region on every face.
+    /// Sends a complete update of the hidden buffer, with the same region on every face.
     pub(crate) fn update(&mut self, port: usize, buffer: u8, source: &Arc<Flat>) {
         let regions: Vec<u16> = (0..region_grid(self.texels).regions() as u16).collect();
         self.begin(port, buffer, &regions);

@@ -7,19 +7,19 @@ use address_recalculation::{ArpConfig, CubeFace, DEPTH_FARTHEST, FaceSet, Orient
 use glam::DQuat;
 use pxpl5_sim::SplitMix64;
 
-/// The orientation of a quaternion.
+/// Returns the orientation of a quaternion.
 pub(crate) fn turned(quaternion: DQuat) -> Orientation {
     Orientation::from_quaternion(quaternion.to_array()).expect("a rotation")
 }
 
-/// All texels of faces of a size, guard included.
+/// Returns the addresses of all texels of faces, including guard texels.
 pub(crate) fn texels(size: u32) -> impl Iterator<Item = TexelAddress> {
     CubeFace::ALL.into_iter().flat_map(move |face| {
         (0..size).flat_map(move |row| (0..size).map(move |column| TexelAddress { face, column, row }))
     })
 }
 
-/// Faces of any colours; a third of the texels is empty, many depths are alike.
+/// Returns faces of random colours. A third of the texels are empty, and many depths are equal.
 pub(crate) fn noise(config: &ArpConfig, random: &mut SplitMix64) -> FaceSet {
     let mut faces = FaceSet::new(config.geometry().texels, config.format());
     for texel in texels(config.geometry().texels) {
@@ -34,7 +34,7 @@ pub(crate) fn noise(config: &ArpConfig, random: &mut SplitMix64) -> FaceSet {
     faces
 }
 
-/// Faces that show a colour in each direction, at one depth.
+/// Returns faces whose colour depends on the direction, at one depth.
 pub(crate) fn painted(config: &ArpConfig, depth: u32, colour: impl Fn(Vector) -> u32) -> FaceSet {
     let geometry = config.geometry();
     let mut faces = FaceSet::new(geometry.texels, config.format());

@@ -1,4 +1,4 @@
-//! A slave on its board: what it takes of memory, when it goes on, and where its vertices stand.
+//! Tests of a slave on its board: use of memory, waiting, and positions of vertices.
 
 use super::*;
 use crate::config::Faces;
@@ -12,15 +12,15 @@ use pxpl5_wire::{CopyContent, Lines, Message, RegionGrid, ViewNumber};
 
 const MASTER: NodeId = NodeId(1);
 const BOARD: NodeId = NodeId(2);
-/// Triangles of the display list, all of them wholly in one region of one face.
+/// Number of triangles in the display list. All lie completely in one region of one face.
 const TRIANGLES: u64 = 3;
 const BIN_BYTES: u64 = TRIANGLES * BIN_ENTRY_BYTES;
 
-/// The one of an update, at the last slave.
+/// The only token of an update, at the last slave.
 pub(crate) const TOKEN: Token =
     Token { update: PictureNumber::FIRST, region: RegionId(0), renderer: 0, slaves_left: 1, of: 1, copies: true };
 
-/// Faces of one region each.
+/// Returns a configuration in which each face has a single region.
 pub(crate) fn config() -> CubeControlConfig {
     let size = 128;
     let grid = RegionGrid { width: size, height: size, region_width: size, region_height: size };
@@ -41,7 +41,7 @@ pub(crate) fn config() -> CubeControlConfig {
     }
 }
 
-/// Triangles ahead, one behind the other.
+/// Returns a display list of triangles in front of the eye, one behind the other.
 pub(crate) fn ahead(triangles: usize) -> Arc<DisplayList> {
     let mut list = DisplayList { towards_light: Vec3::Z, ambient: 0.2, diffuse: 0.8, ..DisplayList::default() };
     for number in 0..triangles {
@@ -71,7 +71,7 @@ pub(crate) fn update(number: u64) -> FaceUpdate {
     }
 }
 
-/// The slave's board on its bench, whose messages are accepted when they are sent.
+/// A slave's board on a test bench that accepts messages as soon as they are sent.
 struct Rig {
     bench: BoardBench,
     us: u64,
@@ -87,19 +87,19 @@ impl Rig {
         Self { bench: BoardBench::new(board), us: 0 }
     }
 
-    /// The host's and the master's messages of an update.
+    /// Delivers the messages of the host and the master that start an update.
     fn send(&mut self, number: u64) {
         self.deliver(&UpdateOrder::Send(update(number)));
         self.deliver(&UpdateOrder::Edit(PictureNumber(number)));
     }
 
-    /// The one token of an update.
+    /// Delivers the only token of an update.
     fn send_token(&mut self, number: u64) {
         let token = Token { update: PictureNumber(number), ..TOKEN };
         self.deliver(&UpdateOrder::Token(token));
     }
 
-    /// After what it had to do.
+    /// Delivers a message after a pause in which the slave finishes its work.
     fn deliver(&mut self, order: &UpdateOrder) {
         self.run_for(1_000);
         let (words, body) = order.message();
@@ -117,7 +117,7 @@ impl Rig {
         }
     }
 
-    /// Updates that the master knows to be transformed, and the entries of all their bins.
+    /// Returns the updates that the slave reported as transformed, with the number of entries in all their bins.
     fn transformed(&self) -> Vec<(u64, u32)> {
         let to_master = self.bench.sent().filter_map(|(time, message)| {
             let received = Received { arrived: time, source: BOARD, body: message.body.clone() };
@@ -141,7 +141,7 @@ fn an_update_takes_its_commands_and_a_pointer_for_each_entry_of_a_bin() {
     assert_eq!(rig.bench.board.memory_peak_bytes(), expected);
 }
 
-/// There is room for the bins of one update, whichever of the two contexts is its own.
+/// The board has memory for the bins of one update, in either of the two contexts.
 #[test]
 fn an_update_waits_until_the_bins_of_the_one_before_are_free() {
     let mut rig = Rig::new(BIN_BYTES);
@@ -169,7 +169,7 @@ fn bins_that_are_too_small_for_one_update_are_a_fault() {
     assert_eq!(rig.bench.board.fault(), Some(&Fault::Memory(fault)));
 }
 
-/// All of the memory of a board that runs code.
+/// Returns the complete memory of a board that runs i860 code.
 fn memory(processor: &Processor) -> Vec<u32> {
     processor.read(0, processor.memory_bytes() as usize / 4).expect("all of it")
 }
@@ -197,8 +197,10 @@ fn vertices_stand_in_the_memory_of_the_board_where_the_last_update_wants_them() 
     }
 }
 
-/// What one more triangle takes of TRANSFORM for six faces by the scheduled code, of which it touches one: in the range that was published, from
-/// 870 clocks of optimised code with all that is less than usual to the design figure of 32 us.
+/// Measures the time that a further triangle adds to TRANSFORM for six faces, with the scheduled code.
+///
+/// The triangle touches one face. Published times range from 870 clocks of optimized code without extras to the design
+/// figure of 32 us.
 #[test]
 fn by_code_a_triangle_takes_what_was_published() {
     let ns = |triangles: usize| {

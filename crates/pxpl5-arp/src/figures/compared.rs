@@ -1,4 +1,4 @@
-//! Pictures that must be the same in every bit.
+//! Comparisons of pictures that must be bit-identical.
 
 use crate::error::ExperimentError;
 use crate::look::Faces;
@@ -8,7 +8,7 @@ use crate::world::World;
 use address_recalculation::{CubeFace, FaceSet, TexelAddress};
 use glam::{DQuat, DVec3};
 
-/// Texels along an edge of the faces that are compared.
+/// Edge length of the compared faces, in texels.
 const TEXELS: u32 = 128;
 
 fn small(settings: &Settings) -> Settings {
@@ -17,13 +17,17 @@ fn small(settings: &Settings) -> Settings {
     settings
 }
 
-/// Texels of all faces in which the composite of all memories, drawn at once from one place, is not what one memory shows for which
-/// the same was drawn in the order of the memories.
+/// Counts the texels in which the composite of all memories differs from a single memory.
+///
+/// All memories are drawn at once from one position. The single memory draws the same segments in the order of the
+/// memories.
 pub(super) fn composite_differs(world: &World, settings: &Settings, eye: DVec3) -> Result<u64, ExperimentError> {
     let settings = small(settings);
+    // Draw all memories from one position.
     let mut simulation = Simulation::new(world, &settings)?;
     simulation.frame(eye)?;
     let faces = Faces::of(&simulation)?;
+    // Draw the same segments in the same order into one memory.
     let in_order: Vec<usize> =
         simulation.shown().iter().flatten().flat_map(|content| content.segments.clone()).collect();
     let mut one = FaceSet::new(TEXELS, settings.display.format());
@@ -38,12 +42,14 @@ pub(super) fn composite_differs(world: &World, settings: &Settings, eye: DVec3) 
     Ok(all.filter(|texel| composed(*texel) != one.texel(*texel)).count() as u64)
 }
 
-/// Frames until a renderer of [`STALLED_TRIANGLES_PER_S`] has drawn all memories once.
+/// Number of frames in which a renderer of [`STALLED_TRIANGLES_PER_S`] draws all memories once.
 const FRAMES: u64 = 200;
 const STALLED_TRIANGLES_PER_S: f64 = 700.0;
 
-/// Pixels that differ between an ideal renderer and one that has long stalled, after turns of a head whose eye stands still.
+/// Counts the pixels that differ between an ideal and a stalled renderer, after rotations of a head at a fixed
+/// position.
 pub(super) fn turned_differ(world: &World, settings: &Settings, eye: DVec3) -> Result<u64, ExperimentError> {
+    // Simulate both renderers with the eye at rest until the slow one has drawn all memories.
     let ideal = small(settings);
     let source = SourceKind::Timed { triangles_per_s: STALLED_TRIANGLES_PER_S };
     let stalled = Settings { source, ..ideal.clone() };
@@ -55,6 +61,7 @@ pub(super) fn turned_differ(world: &World, settings: &Settings, eye: DVec3) -> R
         }
         seen.push(Faces::of(&simulation)?);
     }
+    // Rotate the head and compare the pictures.
     let mut differ = 0;
     for degrees in [12.0_f64, 90.0, 180.0] {
         let turned = DQuat::from_rotation_y(degrees.to_radians());

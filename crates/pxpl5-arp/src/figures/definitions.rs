@@ -1,23 +1,21 @@
-//! What follows from printed numbers alone: no code under test could give another value, so there is no verdict.
+//! Numbers that follow from printed numbers alone. No simulation could change them, so they have no verdict.
 
 use super::fit::RATES_HZ;
 use address_recalculation::ArpTiming;
 use priority_rendering::{draws_per_s, saved_percent};
 use serde::Serialize;
 
-/// Segments drawn, with segmentation and without (table 2).
+/// Number of segments drawn by each memory, with and without segmentation (table 2).
 pub const SEGMENTS: [[u64; 4]; 2] = [[87, 14, 20, 62], [160, 8, 3, 42]];
 
-/// A number that is computed from printed ones.
+/// A number computed from printed numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Definition {
-    /// Its name in the specification.
+    /// Name of the number in the specification.
     pub id: &'static str,
-    /// What it is, and what it is computed from.
+    /// Description of the number and of its inputs.
     pub statement: String,
-    /// Its value.
     pub value: f64,
-    /// Its unit.
     pub unit: &'static str,
 }
 
@@ -25,21 +23,23 @@ fn definition(id: &'static str, statement: String, value: f64, unit: &'static st
     Definition { id, statement, value, unit }
 }
 
-/// All definitions.
+/// Returns all definitions.
 #[must_use]
 pub fn definitions() -> Vec<Definition> {
     let mut all = Vec::new();
-    // A4 and A17 hold by the order of the stages: nothing that draws lies between the latch and the light.
+    // A4 and A17 follow from the order of the stages: no drawing stage lies between the latch and the light.
     let drawn = "share of rendering and buffer swap in rotational latency, by the order of the stages".to_owned();
     all.push(definition("A4", drawn, 0.0, "ms"));
     let stages =
         "from the latch to the light: 26 stages, whose clock is assumed so that this is below the printed 1 us"
             .to_owned();
     all.push(definition("A17", stages, ArpTiming::PAPERS.depth().0 as f64 / 1e6, "us"));
+    // D1 follows from the rates of table 1.
     for (memory, rate) in RATES_HZ.into_iter().enumerate() {
         all.push(definition("D1", format!("mean period of memory {memory}: 60 / A12"), 60.0 / rate, "frames"));
         all.push(definition("D1", format!("way walked in one period of memory {memory}: A9 / A12"), 1e3 / rate, "mm"));
     }
+    // D2 to D4 follow from tables 1 and 2.
     for (segments, (id, kind)) in SEGMENTS.iter().zip([("A13", "cut"), ("A14", "uncut")]) {
         let sum = segments.iter().sum::<u64>() as f64;
         let draws = draws_per_s(&RATES_HZ, segments);
@@ -48,6 +48,7 @@ pub fn definitions() -> Vec<Definition> {
         let saved = saved_percent(draws, sum * 60.0);
         all.push(definition("D4", format!("saved against all at 60 Hz by tables 1 and 2, {kind}"), saved, "%"));
     }
+    // Savings by segmentation.
     let [cut, uncut] = SEGMENTS;
     let saved = saved_percent(draws_per_s(&RATES_HZ, &cut), draws_per_s(&RATES_HZ, &uncut));
     all.push(definition("D3", "saved by cutting, by tables 1 and 2".to_owned(), saved, "%"));

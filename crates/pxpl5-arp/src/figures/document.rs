@@ -1,4 +1,4 @@
-//! The figures as a document.
+//! The figures as a Markdown document.
 
 use super::definitions::{SEGMENTS, definitions};
 use super::experiments::{EXPERIMENT_FRAMES, Experiments, Fit, SizeLimit, Slowed, Walked};
@@ -9,7 +9,7 @@ use super::rules::Rules;
 use crate::pictures::OF_FIGURES;
 use std::fmt::Write as _;
 
-/// docs/address-recalculation.md: rows with their standing, then the tables behind them.
+/// Returns the text of docs/address-recalculation.md: the rows with their standing, then the detailed tables.
 #[must_use]
 pub fn markdown(all: &Experiments, rows: &[Row]) -> String {
     let mut text = String::new();
@@ -74,7 +74,7 @@ fn head(text: &mut String, rows: &[Row]) {
     );
 }
 
-/// Rows as a table in Markdown, with its head.
+/// Returns the rows as a Markdown table with a heading.
 #[must_use]
 pub fn table(rows: &[Row]) -> String {
     let mut text =
@@ -100,7 +100,7 @@ fn line(text: &mut String, row: &Row) {
     );
 }
 
-/// The rows that are missed with what is known of their causes, as a list in Markdown.
+/// Returns the missed rows and their known causes as a Markdown list.
 #[must_use]
 pub fn missed(rows: &[Row]) -> String {
     let mut text = String::new();
@@ -131,7 +131,7 @@ fn defined(text: &mut String) {
     }
 }
 
-/// Relative errors of memories 1 to 3, percent.
+/// Returns the relative errors of memories 1 to 3 as text, in percent.
 fn errors(rates_hz: &[f64]) -> String {
     let error = |memory: usize| format!("{:+.1} %", 100.0 * (rates_hz[memory] / RATES_HZ[memory] - 1.0));
     [1, 2, 3].map(error).join(", ")
@@ -154,7 +154,7 @@ fn fits(text: &mut String, all: &Experiments) {
     }
 }
 
-/// The ranked interpretations of table 1 as Markdown.
+/// Returns the ranked interpretations of table 1 as Markdown.
 #[must_use]
 pub fn interpretations(all: &Interpretations) -> String {
     let mut text = "\n## Interpretations of table 1\n\n\
@@ -183,7 +183,7 @@ pub fn interpretations(all: &Interpretations) -> String {
     text
 }
 
-/// The single best fit, and each rate predicted by what the others choose.
+/// Returns the best single fit, and the prediction of each rate from the other rates, as Markdown.
 fn best_of_all(all: &Interpretations) -> String {
     let mut text = String::new();
     let every = all.ranked.iter().flat_map(|ranked| &ranked.tried);
@@ -215,7 +215,7 @@ fn best_of_all(all: &Interpretations) -> String {
     text
 }
 
-/// Why the usual rules are what they are.
+/// Returns the reasons for the chosen rules as Markdown.
 fn chosen(all: &Interpretations) -> String {
     let place = all.usual().map_or_else(String::new, |(place, ranked)| {
         format!("number {place} of those without cascade, {:.1} % in the mean", ranked.mean_error_percent)
@@ -257,7 +257,7 @@ fn thresholds(text: &mut String, all: &Experiments) {
     );
 }
 
-/// Table 2: what follows from the conservation of sections.
+/// Writes the consequences that the conservation of sections has for table 2.
 fn conservation(text: &mut String, all: &Experiments) {
     let ours = [0, 2].map(|walk: usize| {
         let memories = all.walks[walk].report.memories.iter();
@@ -328,7 +328,7 @@ fn walk_line(text: &mut String, walked: &Walked) {
     );
 }
 
-/// Widths below a millionth of a texel are rounding.
+/// Formats a width in texels. Widths below a millionth of a texel are rounding errors and count as 0.
 fn texels(width: f64) -> String {
     if width < 1e-6 { "0".to_owned() } else { format!("{width:.2}") }
 }
@@ -361,7 +361,7 @@ fn sizes(text: &mut String, all: &Experiments) {
     }
 }
 
-/// Four significant digits and more, without trailing zeros.
+/// Formats a number with at least four significant digits and without trailing zeros.
 fn number(value: f64) -> String {
     if !value.is_finite() {
         return "none".to_owned();
@@ -374,7 +374,7 @@ fn number(value: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
-/// A8: from which size on the size component decides.
+/// Writes the size from which on the size component decides (A8).
 fn size_limits(text: &mut String, limits: &[SizeLimit]) {
     text.push_str(
         "\nA8, \"about ten times the distance\", does not say which angle of the size may change by how much, or whether the distance is that of\n\

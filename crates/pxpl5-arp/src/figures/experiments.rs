@@ -1,4 +1,4 @@
-//! Experiments E2 to E9 of an ideal renderer, run once for all rows.
+//! The experiments E2 to E9 with an ideal renderer, run once for all rows.
 
 use super::compared::{composite_differs, turned_differ};
 use super::fit::fitted_cell_m;
@@ -16,74 +16,71 @@ use glam::{DMat3, DQuat, DVec3};
 use priority_rendering::{Objects, PriorityTiming, SizeRule, Threshold};
 use tracking::motion::Walk;
 
-/// Frames of each walk: two minutes, four fifths of a round. The specification asks for 1,800 at least.
+/// Frames of each walk: two minutes, or four fifths of a round. The specification asks for at least 1,800 frames.
 pub const EXPERIMENT_FRAMES: u64 = 7_200;
 
-/// A walk of an experiment and what it gave.
+/// Settings and results of one walk of an experiment.
 #[derive(Clone, Debug)]
 pub struct Walked {
-    /// What it is called.
+    /// Name in tables and documents.
     pub name: &'static str,
-    /// What it was made of.
     pub settings: Settings,
-    /// What was counted.
     pub tally: WalkTally,
-    /// The same as a report.
     pub report: Report,
 }
 
-/// A side of a cell that was fitted to one rate of table 1.
+/// A cell size fitted to one rate of table 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
-    /// The rules that it was fitted for.
+    /// The rules of the fit.
     pub rules: Rules,
-    /// The side, m.
+    /// Fitted side of a cell, in metres.
     pub cell_m: f64,
-    /// Updates a second of each memory.
+    /// Updates per second of each memory.
     pub rates_hz: Vec<f64>,
 }
 
-/// A renderer that is too slow or nearly so.
+/// Results with a renderer of limited speed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slowed {
-    /// Triangles that it draws a second.
+    /// Triangles that the renderer draws per second.
     pub triangles_per_s: f64,
-    /// Pictures a second of each memory.
+    /// Updates per second of each memory.
     pub rates_hz: Vec<f64>,
-    /// Retraces at which an update was not whole, of each memory.
+    /// Retraces with an incomplete update, for each memory.
     pub missed: Vec<u64>,
 }
 
-/// Results of everything that is simulated.
+/// Results of all simulated experiments.
 #[derive(Clone, Debug)]
 pub struct Experiments {
-    /// The side of a cell that was fitted in the gallery, for the usual rules and for equal rings.
+    /// Cell sizes fitted in the gallery, for the usual rules and for rings of equal width.
     pub fits: [Fit; 2],
     /// All interpretations of table 1.
     pub interpretations: Interpretations,
-    /// Thresholds, with the sides of cells that go with them.
+    /// Thresholds, each with the matching side of a cell.
     pub thresholds: Vec<ThresholdRow>,
-    /// Segments of the gallery with the cells that were fitted.
+    /// Number of segments of the gallery with the fitted cells.
     pub segments: usize,
-    /// Cut and torn, cut and warped, uncut, warped without cascade; cells as fitted.
+    /// Four walks with the fitted cells: cut and torn, cut and warped, uncut, and warped without cascade.
     pub walks: Vec<Walked>,
-    /// A renderer that is slowed down.
+    /// Walks with slower and slower renderers.
     pub slowed: Vec<Slowed>,
-    /// Reduction of point objects: 4 memories at 1 m/s, 5 at 0.37 m/s.
+    /// Factors by which draws of point objects fall: 4 memories at 1 m/s, and 5 memories at 0.37 m/s.
     pub reductions: [f64; 2],
-    /// Which component of validity decides, by size over distance.
+    /// Deciding component of validity, by size over distance.
     pub sizes: Vec<SizeRow>,
-    /// From which size on the size component decides, by interpretation.
+    /// Size from which on the size component decides, for each interpretation.
     pub size_limits: Vec<SizeLimit>,
-    /// How an edge bends on the screen and through the lens, pixels.
+    /// Bend of a straight edge on the screen and through the lens, in pixels.
     pub lens_px: [f64; 2],
-    /// Texels in which four memories, drawn at once from one place, together are not what one memory shows.
+    /// Number of texels in which four memories, all drawn from one position, differ from a single memory.
     pub composite_differs: u64,
-    /// Pixels that a stalled renderer changes in what a head sees that turns.
+    /// Number of pixels that a stalled renderer changes in the view of a rotating head.
     pub turned_differ: u64,
 }
 
-/// A head that looks at a point, upright.
+/// Returns the upright orientation of a head that looks from `eye` at a point.
 pub(crate) fn looking_at(eye: DVec3, point: DVec3) -> DQuat {
     let back = (eye - point).normalize_or(DVec3::Z);
     let right = DVec3::Y.cross(back).normalize_or(DVec3::X);
@@ -91,12 +88,13 @@ pub(crate) fn looking_at(eye: DVec3, point: DVec3) -> DQuat {
 }
 
 impl Experiments {
-    /// Runs all of them.
+    /// Runs all experiments.
     ///
     /// # Errors
     ///
-    /// [`ExperimentError`], where a scene or number is none; those here are.
+    /// [`ExperimentError`] if a scene or a number is invalid. The built-in ones are valid.
     pub fn run() -> Result<Self, ExperimentError> {
+        // Fit the cell size first: all other experiments use it.
         let (scene, path) = gallery()?;
         let fit = |rules: Rules| -> Result<Fit, ExperimentError> {
             let (cell_m, rates_hz) = fitted_cell_m(&scene, &path, &rules, EXPERIMENT_FRAMES)?;
@@ -106,6 +104,7 @@ impl Experiments {
         let side = fits[0].cell_m;
         let world = World::new(&scene, side)?;
         let cells = Settings::CELLS.with_cells(side);
+        // Walk four times with the fitted cells.
         let kinds = [
             ("cut, torn", cells.clone()),
             ("cut, warped", Settings::WARPED.with_cells(side)),
@@ -135,7 +134,7 @@ impl Experiments {
     }
 }
 
-/// The torn walk with renderers of less and less triangles a second.
+/// Repeats the torn walk with slower and slower renderers.
 fn slowed(world: &World, settings: &Settings, path: &Walk) -> Result<Vec<Slowed>, ExperimentError> {
     let mut all = Vec::new();
     for triangles_per_s in [100_000.0, 20_000.0, 10_000.0, 5_000.0, 2_500.0] {
@@ -147,16 +146,19 @@ fn slowed(world: &World, settings: &Settings, path: &Walk) -> Result<Vec<Slowed>
     Ok(all)
 }
 
-/// The threshold of E3 and E4, degrees: a texel of an ideal face.
+/// Threshold of experiments E3 and E4 in degrees: one texel of an ideal face.
 const THETA_DEG: f64 = 90.0 / 512.0;
 
-/// Points on a disc of 100 m around a walker, evenly by area.
+/// Number of points on a disc of 100 m around the walker, distributed evenly by area.
 const POINTS: usize = 20_000;
 
-/// 60 times the points over the draws of a second, at a speed (m/s), with so many memories and a threshold of 90/512 degrees.
+/// Returns the factor by which priority rendering reduces draws of point objects, relative to drawing all at 60 Hz.
+///
+/// `speed` is in m/s. The threshold is 90/512 degrees.
 #[must_use]
 pub fn point_objects_reduction(speed: f64, memories: u64) -> f64 {
     let numbers = PriorityTiming { memories, theta_deg: THETA_DEG, ..PriorityTiming::PAPERS };
+    // A point is valid for the time the walker needs to exceed the threshold.
     let threshold = Threshold::of_degrees(numbers.theta_deg);
     let distances = (0..POINTS).map(|point| 100.0 * libm::sqrt((point as f64 + 0.5) / POINTS as f64));
     let periods: Vec<f64> = distances.map(|distance_m| threshold.way(distance_m) / speed).collect();
@@ -168,18 +170,18 @@ pub fn point_objects_reduction(speed: f64, memories: u64) -> f64 {
     frames as f64 * POINTS as f64 / objects.counts()[1] as f64
 }
 
-/// Validity of an object of some size at 10 m before somebody who walks towards it at 1 m/s.
+/// Validity of an object at 10 m that a walker approaches at 1 m/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SizeRow {
-    /// Diameter over distance of the middle.
+    /// Diameter of the object over the distance of its middle.
     pub size_over_distance: f64,
-    /// Translation, by the middle's distance, s.
+    /// Validity under translation, from the distance of the middle, in seconds.
     pub translation_s: f64,
-    /// Size, by the disc and by the sphere, s.
+    /// Validity under the change of size, for a disc and for a sphere, in seconds.
     pub size_s: [f64; 2],
 }
 
-/// Rows from 0.1 to 20.
+/// Returns rows for sizes of 0.1 to 20 times the distance.
 #[must_use]
 pub fn size_rows() -> Vec<SizeRow> {
     let threshold = Threshold::of_degrees(THETA_DEG);
@@ -194,28 +196,30 @@ fn size_row(threshold: &Threshold, size: f64) -> SizeRow {
     SizeRow { size_over_distance: size, translation_s: threshold.way(10.0), size_s }
 }
 
-/// The size over distance from which on the size component decides, for an interpretation of both.
+/// Size over distance from which on the size component decides, for one interpretation of size and distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SizeLimit {
-    /// The angle that may change by the threshold, or by twice the threshold, before the size is wrong.
+    /// Name of the angle that may change by the threshold or by twice the threshold.
     pub angle: &'static str,
-    /// Threshold of the radius' angle, in those of translation.
+    /// Threshold of the radius' angle, relative to the threshold of translation.
     pub factor: f64,
-    /// Diameter over the distance of the sphere's middle.
+    /// Limit of the diameter over the distance of the sphere's middle.
     pub of_middle: f64,
-    /// Diameter over the distance of the sphere's nearest point.
+    /// Limit of the diameter over the distance of the sphere's nearest point.
     pub of_nearest: f64,
 }
 
-/// Limits for spheres, translation being that of the middle: for a change of the diameter's angle, of the radius' angle (both by the
-/// threshold), and of the radius' angle by twice the threshold.
+/// Returns the limits for spheres under three interpretations, with translation measured at the middle.
+///
+/// The angle of the diameter may change by the threshold. The angle of the radius may change by the threshold or by
+/// twice the threshold.
 #[must_use]
 pub fn size_limits() -> Vec<SizeLimit> {
     let kinds = [("the diameter's, by theta", 0.5), ("the radius', by theta", 1.0), ("the radius', by 2 theta", 2.0)];
     kinds.map(|(angle, factor)| size_limit(angle, factor)).to_vec()
 }
 
-/// Bisections: more than a double has bits.
+/// Number of bisection steps, more than a double has bits.
 const HALVINGS: usize = 60;
 
 fn size_limit(angle: &'static str, factor: f64) -> SizeLimit {

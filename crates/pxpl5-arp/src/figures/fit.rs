@@ -1,4 +1,4 @@
-//! The side of a cell, fitted to one rate of table 1; the other rates are checked.
+//! The side of a cell, fitted to one rate of table 1. The other rates serve as checks.
 
 use super::rules::Rules;
 use crate::error::ExperimentError;
@@ -9,20 +9,20 @@ use priority_rendering::{Cell, Cells, PriorityTiming};
 use pxpl5_scene::Scene;
 use tracking::motion::Walk;
 
-/// Mean update rates of memories 0 to 3, Hz (table 1).
+/// Mean update rates of memories 0 to 3, in Hz (table 1).
 pub const RATES_HZ: [f64; 4] = [60.0, 39.25, 28.21, 16.15];
 
-/// The memory whose rate the side of a cell is fitted to.
+/// Index of the memory whose rate determines the side of a cell.
 pub const RATE_FITTED: usize = 1;
 
-/// Sides that are tried, tenths of a metre.
+/// Sides of cells to try, in tenths of a metre.
 const TENTHS: std::ops::RangeInclusive<u32> = 15..=40;
 
-/// Updates a second of each memory on a walk of a metre a second: the policy alone, nothing is drawn.
+/// Returns the updates per second of each memory on a walk at 1 m/s. Only the policy runs, and nothing is drawn.
 ///
 /// # Errors
 ///
-/// As [`World::new`].
+/// Same as [`World::new`].
 pub fn policy_rates_hz(
     scene: &Scene,
     path: &Walk,
@@ -34,7 +34,7 @@ pub fn policy_rates_hz(
     Ok(rates_hz(world.cells(), at_frames(path, 1.0, numbers.frame_hz), numbers, has_cascade, frames))
 }
 
-/// The same in a world with something in these cells, with the eye of each frame at a place of its own.
+/// Returns the updates per second of each memory for a set of occupied cells. `eye` returns the position in each frame.
 pub(super) fn rates_hz(
     held: impl IntoIterator<Item = Cell>,
     eye: impl Fn(u64) -> DVec3,
@@ -44,6 +44,7 @@ pub(super) fn rates_hz(
 ) -> Vec<f64> {
     let mut cells = Cells::new(numbers, held, has_cascade);
     let mut updates = vec![0_u64; numbers.memories as usize];
+    // Count the updates of each memory.
     for frame in 0..frames {
         let update = cells.frame(eye(frame));
         update.memories().for_each(|memory| updates[memory] += 1);
@@ -51,17 +52,21 @@ pub(super) fn rates_hz(
     updates.into_iter().map(|count| count as f64 * numbers.frame_hz / frames as f64).collect()
 }
 
-/// The side of a cell, m, in steps of 0.1 m, that comes nearest to the rate of memory [`RATE_FITTED`], and the rates with it.
+/// Returns the side of a cell whose rate of memory [`RATE_FITTED`] is nearest to table 1, and the rates of all
+/// memories.
+///
+/// The side is in metres, in steps of 0.1 m.
 ///
 /// # Errors
 ///
-/// As [`policy_rates_hz`].
+/// Same as [`policy_rates_hz`].
 pub fn fitted_cell_m(
     scene: &Scene,
     path: &Walk,
     rules: &Rules,
     frames: u64,
 ) -> Result<(f64, Vec<f64>), ExperimentError> {
+    // Keep the side, its rates and its error.
     let mut best = (f64::NAN, Vec::new(), f64::INFINITY);
     for tenths in TENTHS {
         let cell_m = f64::from(tenths) / 10.0;

@@ -1,14 +1,15 @@
-//! The gallery in which the experiments walk.
+//! The gallery, the scene of all experiments.
 
 use crate::error::ExperimentError;
 use crate::hall::{Route, path_of, scaled};
 use pxpl5_scene::{Scene, builtin};
 use tracking::motion::Walk;
 
-/// Scale of the gallery's plan in the experiments: its 20 m are eight cells of 2.5 m, with 191 segments. Table 2 prints 183 and 213.
+/// Scale of the gallery in the experiments. Its 20 m are eight cells of 2.5 m with 191 segments; table 2 has 183 and
+/// 213.
 const HALL_SCALE: f64 = 0.5;
 
-/// The gallery and its path.
+/// Returns the scaled gallery and its path.
 pub(crate) fn gallery() -> Result<(Scene, Walk), ExperimentError> {
     let scene = builtin("gallery").map_err(|error| ExperimentError::Scene {
         scene: "gallery".to_owned(),

@@ -1,7 +1,8 @@
-//! What the paper leaves open about table 1: each interpretation is run and ranked.
+//! Interpretations of table 1: each open question of the paper has several answers, which are simulated and ranked.
 //!
-//! Rates depend on the product of threshold and side of a cell alone, if hall and path are measured in cells. So one number is fitted
-//! to three rates, and a side stands for all pairs of a threshold and a side with the same product.
+//! If the hall and the path are measured in cells, rates depend only on the product of threshold and side of a cell.
+//! One number is therefore fitted to three rates. A side stands for all pairs of threshold and side with the same
+//! product.
 
 use super::fit::{RATES_HZ, policy_rates_hz, rates_hz};
 use super::gallery::gallery;
@@ -17,27 +18,26 @@ use tracking::motion::Walk;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Situation {
-    /// Straight through the middle of a hall of seven cells by seven.
+    /// Straight through the middle of a hall of seven by seven cells.
     Straight,
-    /// From corner to corner of the same hall.
+    /// From corner to corner of a hall of seven by seven cells.
     Diagonal,
-    /// Once around the middle of the same hall, halfway to its walls.
+    /// Once around the middle of a hall of seven by seven cells, halfway to its walls.
     Round,
-    /// The gallery of 20 m and its path, one minute.
+    /// The path of the gallery of 20 m, for one minute.
     Gallery,
 }
 
-/// Cells along a side of the hall of all situations but the gallery.
+/// Number of cells along a side of every hall except the gallery.
 const CELLS_ACROSS: i64 = 7;
 
-/// Frames of the walk through the gallery.
+/// Number of frames of the walk through the gallery.
 const GALLERY_FRAMES: u64 = 3_600;
 
 impl Situation {
-    /// All situations.
     pub const ALL: [Self; 4] = [Self::Straight, Self::Diagonal, Self::Round, Self::Gallery];
 
-    /// As a heading of a table.
+    /// Returns the name used in table headings.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
@@ -48,7 +48,7 @@ impl Situation {
         }
     }
 
-    /// Corners of the path, in cells.
+    /// Returns the corners of the path, in units of cells.
     fn corners(self) -> Vec<[f64; 2]> {
         let across = CELLS_ACROSS as f64;
         let [near, middle, far] = [0.1, across / 2.0, across - 0.1];
@@ -61,7 +61,7 @@ impl Situation {
         }
     }
 
-    /// Updates a second of each memory on a walk of a metre a second.
+    /// Returns the updates per second of each memory on a walk at 1 m/s.
     fn rates(self, rules: &Rules, cell_m: f64) -> Result<[f64; 4], ExperimentError> {
         let numbers = rules.numbers(cell_m);
         let rates = if self == Self::Gallery {
@@ -70,7 +70,7 @@ impl Situation {
         } else {
             let corners: Vec<DVec3> = self.corners().iter().map(|[x, z]| DVec3::new(*x, 0.0, *z) * cell_m).collect();
             let path = Walk::new(&corners, 1.0)?;
-            // A walk between two corners leads back to the first one. Only the way there is walked.
+            // A walk between two corners returns to the first corner. Only the way there counts.
             let way_m = if self == Self::Round { path.length_m() } else { path.length_m() / 2.0 };
             let cells = (0..CELLS_ACROSS).flat_map(|x| (0..CELLS_ACROSS).map(move |z| Cell { x, z }));
             let frames = (way_m * numbers.frame_hz) as u64;
@@ -80,17 +80,17 @@ impl Situation {
     }
 }
 
-/// Rates with a side of a cell.
+/// Rates of the memories for one side of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Trial {
-    /// Side of a cell, m, for the usual threshold.
+    /// Side of a cell in metres, for the usual threshold.
     pub cell_m: f64,
-    /// Updates a second of memories 0 to 3.
+    /// Updates per second of memories 0 to 3.
     pub rates_hz: [f64; 4],
 }
 
 impl Trial {
-    /// Root mean square of the relative errors of some memories, percent.
+    /// Returns the root mean square of the relative errors of some memories, in percent.
     #[must_use]
     pub fn error_percent(&self, memories: &[usize]) -> f64 {
         let squares = memories.iter().map(|memory| self.miss(*memory).powi(2)).sum::<f64>();
@@ -102,84 +102,85 @@ impl Trial {
     }
 }
 
-/// Memories whose rates are compared: memory 0 is drawn in every frame by all rules.
+/// Indices of the compared memories. Memory 0 is left out, because all rules draw it in every frame.
 const COMPARED: [usize; 3] = [1, 2, 3];
 
-/// Rules in a situation, with every side that was tried.
+/// Results of one set of rules in one situation.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Tried {
-    /// The rules.
     pub rules: Rules,
     /// Hall and path.
     pub situation: Situation,
-    /// Sides that were tried.
+    /// Results for every side that was tried.
     #[serde(skip)]
     pub trials: Vec<Trial>,
-    /// The one with the least error of all three rates.
+    /// The trial with the smallest error over all three rates.
     pub best: Trial,
-    /// Its error, percent.
+    /// Error of the best trial, in percent.
     pub error_percent: f64,
-    /// Error of each rate as predicted with the side that fits the other two best, root mean square, percent.
+    /// Cross-validation error in percent: each rate is predicted with the side that fits the other two rates best.
     pub left_out_percent: f64,
 }
 
-/// Rules over all situations.
+/// Results of one set of rules over all situations.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RankedRules {
-    /// The rules.
     pub rules: Rules,
-    /// Mean of the errors in all situations, percent.
+    /// Mean error over all situations, in percent.
     pub mean_error_percent: f64,
-    /// Mean of the errors of what is left out, percent.
+    /// Mean cross-validation error over all situations, in percent.
     pub mean_left_out_percent: f64,
-    /// In each situation.
+    /// Results in each situation.
     pub tried: Vec<Tried>,
 }
 
-/// A rate that was left out, predicted by what fits the other two best.
+/// A rate predicted by the fit that is best for the other two rates.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LeftOutRate {
-    /// The memory whose rate was left out.
+    /// Index of the memory whose rate was left out.
     pub memory: usize,
-    /// The rules that fit the others best.
+    /// Rules of the best fit to the other rates.
     pub rules: Rules,
-    /// Hall and path of that fit.
+    /// Hall and path of this fit.
     pub situation: Situation,
-    /// Side of a cell of that fit.
+    /// Side of a cell and rates of this fit.
     pub trial: Trial,
-    /// Error of the rate that was left out, percent.
+    /// Relative error of the predicted rate, in percent.
     pub error_percent: f64,
 }
 
-/// All interpretations, the best first.
+/// All interpretations of table 1, best first.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Interpretations {
-    /// Rules by their mean error.
+    /// Sets of rules, in ascending order of their mean error.
     pub ranked: Vec<RankedRules>,
-    /// Each of three rates left out in turn, rules, hall and path chosen by the other two.
+    /// Prediction of each of the three rates. Rules, hall and path are chosen by the other two rates.
     pub left_out: Vec<LeftOutRate>,
 }
 
-/// Sides that are tried first: from 1.4 m on, each 1.06 times the one before.
+/// Smallest side of a cell to try, in metres. Each further side is [`STEP`] times the previous one.
 const FIRST_SIDE_M: f64 = 1.4;
 const STEP: f64 = 1.06;
 const STEPS: i32 = 20;
 
 impl Tried {
-    /// Tries all sides, and then four more around the best.
+    /// Tries all sides, and then four more near the best one.
     ///
     /// # Errors
     ///
-    /// As [`policy_rates_hz`].
+    /// Same as [`policy_rates_hz`].
     pub fn of(rules: Rules, situation: Situation) -> Result<Self, ExperimentError> {
         let trial = |cell_m| Ok(Trial { cell_m, rates_hz: situation.rates(&rules, cell_m)? });
+        // First pass with coarse steps.
         let coarse = (0..STEPS).map(|step| trial(FIRST_SIDE_M * STEP.powi(step)));
         let mut trials = coarse.collect::<Result<Vec<Trial>, ExperimentError>>()?;
         let middle = best_of(&trials, &COMPARED).map_or(FIRST_SIDE_M, |best| best.cell_m);
+        // Second pass around the best side.
         for factor in [0.96, 0.98, 1.02, 1.04] {
             trials.push(trial(middle * factor)?);
         }
         let best = best_of(&trials, &COMPARED).copied().unwrap_or(Trial { cell_m: f64::NAN, rates_hz: [f64::NAN; 4] });
+        // Cross-validation: predict each rate from the other two.
         let misses = COMPARED.map(|memory| {
             let chosen = best_of(&trials, &others(memory));
             chosen.map_or(f64::NAN, |chosen| chosen.error_percent(&[memory]).powi(2))
@@ -189,43 +190,48 @@ impl Tried {
     }
 }
 
-/// The compared memories but one.
+/// Returns the compared memories except one.
 fn others(memory: usize) -> Vec<usize> {
     COMPARED.into_iter().filter(|other| *other != memory).collect()
 }
 
-/// The trial with the least error of some memories, the first on ties.
+/// Returns the trial with the smallest error of some memories. The first one wins a tie.
 fn best_of<'a>(trials: &'a [Trial], memories: &[usize]) -> Option<&'a Trial> {
     trials.iter().min_by(|a, b| a.error_percent(memories).total_cmp(&b.error_percent(memories)))
 }
 
 impl Interpretations {
-    /// Runs all rules in all situations; `finished` hears how many of them are done.
+    /// Runs all rules in all situations. Calls `finished` with the number of runs done and the total.
     ///
     /// # Errors
     ///
-    /// As [`policy_rates_hz`].
+    /// Same as [`policy_rates_hz`].
     pub fn run(finished: impl Fn(u64, u64)) -> Result<Self, ExperimentError> {
         let all = Rules::all();
         let runs = (all.len() * Situation::ALL.len()) as u64;
         let mut ranked = Vec::new();
+        // Try each set of rules in every situation.
         for rules in all {
             let mut tried = Vec::new();
             for situation in Situation::ALL {
                 tried.push(Tried::of(rules, situation)?);
                 finished((ranked.len() * Situation::ALL.len() + tried.len()) as u64, runs);
             }
+            // Average over the situations, because the paper's path and hall are unknown.
             let mean = |value: fn(&Tried) -> f64| tried.iter().map(value).sum::<f64>() / tried.len() as f64;
             let mean_error_percent = mean(|tried| tried.error_percent);
             let mean_left_out_percent = mean(|tried| tried.left_out_percent);
             ranked.push(RankedRules { rules, mean_error_percent, mean_left_out_percent, tried });
         }
+        // Rank the rules, then cross-validate.
         ranked.sort_by(|a, b| a.mean_error_percent.total_cmp(&b.mean_error_percent));
         let left_out = COMPARED.into_iter().filter_map(|memory| left_out(&ranked, memory)).collect();
         Ok(Self { ranked, left_out })
     }
 
-    /// The rules of this project, and their place from 1 among those with or without cascade as they are.
+    /// Returns the rules of this project with their rank, counted from 1.
+    ///
+    /// The rank counts only rules that have a cascade if and only if the rules of this project have one.
     #[must_use]
     pub fn usual(&self) -> Option<(usize, &RankedRules)> {
         let alike = self.ranked.iter().filter(|ranked| ranked.rules.has_cascade == Rules::USUAL.has_cascade);
@@ -242,32 +248,33 @@ fn left_out(ranked: &[RankedRules], memory: usize) -> Option<LeftOutRate> {
     Some(LeftOutRate { memory, rules, situation, trial, error_percent: 100.0 * trial.miss(memory) })
 }
 
-/// Angle of a pixel of the display, mean over a line, and of a texel of an ideal face, degrees.
+/// Angle of a pixel of the display in degrees, mean over a line.
 pub const PIXEL_DEG: f64 = 60.0 / 640.0;
 const TEXEL_DEG: f64 = 90.0 / 512.0;
 
-/// A threshold, and what follows from it with the product of threshold and side that fits table 1.
+/// A threshold and its consequences for a fixed product of threshold and side of a cell, which fits table 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ThresholdRow {
-    /// The threshold as text, in pixels of the display or in texels of an ideal face.
+    /// The threshold as text, in pixels of the display or texels of an ideal face.
     pub threshold: &'static str,
-    /// The same in degrees.
+    /// The threshold in degrees.
     pub theta_deg: f64,
-    /// Side of a cell, m.
+    /// Side of a cell in metres.
     pub cell_m: f64,
-    /// Widest tear where pictures are shown as they become due, pixels of the display.
+    /// Widest tear if updates are shown as soon as they are due, in pixels of the display.
     pub at_once_px: f64,
-    /// Widest tear where the slower memory is one frame of a walker's way late, pixels of the display.
+    /// Widest tear if the slower memory is late by one frame of walking, in pixels of the display.
     pub frame_late_px: f64,
 }
 
-/// Thresholds in pixels of the display or in texels, with the side that was fitted for the usual threshold.
+/// Returns thresholds in pixels and texels with their consequences. `fitted_cell_m` is the fitted side for the usual
+/// threshold.
 #[must_use]
 pub fn threshold_rows(fitted_cell_m: f64) -> Vec<ThresholdRow> {
     let product = fitted_cell_m * PriorityTiming::PAPERS.theta_deg;
     let row = |(threshold, theta_deg): (&'static str, f64)| {
         let cell_m = product / theta_deg;
-        // The nearest border between memories is as far away as a cell is long.
+        // The nearest border between memories is one side of a cell away.
         let frame_deg = (1.0 / PriorityTiming::PAPERS.frame_hz / cell_m).to_degrees();
         let [at_once_px, frame_late_px] = [theta_deg, theta_deg + frame_deg].map(|angle| angle / PIXEL_DEG);
         ThresholdRow { threshold, theta_deg, cell_m, at_once_px, frame_late_px }

@@ -1,21 +1,23 @@
-//! A straight edge, looked up for a lens and seen through it.
+//! A straight edge viewed through a lens, to test the lens correction.
 
 use crate::error::ExperimentError;
 use address_recalculation::{ArpConfig, FaceSet, Lens, Lookup, Orientation};
 use cube_faces::{Corner, CubeView, DepthRange};
 use glam::DVec3;
 
-/// How far an upright edge, 20 degrees to the right, bends on the screen, and how far it does as it is seen through the lens; both
-/// from its straight chord, pixels of the middle.
+/// Returns the bend of an upright edge on the screen and as seen through the lens, in pixels of the picture's middle.
+///
+/// The edge lies 20 degrees to the right. The bend is the largest distance from the straight chord.
 ///
 /// # Errors
 ///
-/// [`ExperimentError`] for a lens that there cannot be.
+/// [`ExperimentError`] if the lens is invalid.
 pub fn straight_edge(lens: Lens) -> Result<[f64; 2], ExperimentError> {
     let config = ArpConfig { lens, ..ArpConfig::IDEAL };
     let config =
         ArpConfig { timing: address_recalculation::ArpTiming { display_memories: 1, ..config.timing }, ..config };
     let view = CubeView { geometry: config.geometry(), depth: DepthRange::new(0.1, 100.0)? };
+    // Draw the edge of a large bright square.
     let tangent = libm::tan(20_f64.to_radians());
     let corner = |x: f64, y: f64| Corner { place: DVec3::new(x, y, -1.0) * 9.0, colour: 0x00FF_FFFF };
     let edge = [
@@ -29,12 +31,13 @@ pub fn straight_edge(lens: Lens) -> Result<[f64; 2], ExperimentError> {
     let mut lookup = Lookup::new(&config, &table, vec![&faces], None);
     let mut points = [Vec::new(), Vec::new()];
     let focal = f64::from(picture.width) / 2.0 / libm::tan(picture.horizontal_deg.to_radians() / 2.0);
+    // Find the edge in each row of the picture.
     for y in 0..picture.height {
         let mut row = vec![0; picture.width as usize];
         let words = Orientation::IDENTITY.words(config.timing.matrix_bits);
         lookup.run((y * picture.width) as usize, &words, &mut row);
         let Some(x) = row.iter().position(|colour| colour & 0xFF > 0x7F).filter(|x| *x > 0) else { continue };
-        // Where between two pixels the edge is half bright.
+        // Interpolate the position at which the edge has half brightness.
         let [dark, bright] = [x - 1, x].map(|x| f64::from(row[x] & 0xFF));
         let share = (127.5 - dark) / (bright - dark);
         points[0].push([x as f64 - 1.0 + share, f64::from(y)]);
@@ -45,7 +48,7 @@ pub fn straight_edge(lens: Lens) -> Result<[f64; 2], ExperimentError> {
     Ok(points.map(|points| bend(&points)))
 }
 
-/// The farthest of some points from the straight line between the first and the last.
+/// Returns the largest distance of the points from the line between the first and the last one.
 fn bend(points: &[[f64; 2]]) -> f64 {
     let [Some(first), Some(last)] = [points.first(), points.last()] else { return f64::NAN };
     let along = [last[0] - first[0], last[1] - first[1]];

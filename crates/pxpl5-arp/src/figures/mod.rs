@@ -1,4 +1,4 @@
-//! What the papers print beside what comes out here.
+//! Comparison of the papers' figures with simulated ones.
 
 mod compared;
 mod definitions;
@@ -31,11 +31,11 @@ pub use rules::Rules;
 
 use crate::error::ExperimentError;
 
-/// Everything that is compared.
+/// Runs all experiments and returns them with the rows of the comparison.
 ///
 /// # Errors
 ///
-/// As [`Experiments::run`].
+/// Same as [`Experiments::run`].
 pub fn all() -> Result<(Experiments, Vec<Row>), ExperimentError> {
     let experiments = Experiments::run()?;
     let rows = rows(&experiments);

@@ -1,23 +1,23 @@
-//! A row: what is printed, what comes out, and how it came to be.
+//! A row of the comparison: published number, simulated number and how they were obtained.
 
 use serde::Serialize;
 
-/// How a row came to be.
+/// Provenance of a simulated number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Standing {
-    /// Simulated, with nothing fitted to it.
+    /// Simulated, with no parameter fitted to it.
     Checked,
-    /// Simulated with a number that was chosen so that this row agrees.
+    /// Simulated with a parameter that was chosen so that this row agrees.
     Fitted,
-    /// It depends on what is not printed: the interval of all interpretations is compared.
+    /// Depends on facts that the papers do not print. The interval over all interpretations is compared.
     Interpretation,
-    /// Its conditions are not printed: the number cannot be reproduced, its shape is checked.
+    /// The papers do not print the conditions. The number cannot be reproduced, and only its shape is checked.
     Shape,
 }
 
 impl Standing {
-    /// As the document says it.
+    /// Returns the name used in the document.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
@@ -29,29 +29,28 @@ impl Standing {
     }
 }
 
-/// A published or derived number beside ours.
+/// A published or derived number next to the simulated one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
-    /// The experiment that it belongs to, E1 to E9.
+    /// Name of the experiment, E1 to E9.
     pub experiment: &'static str,
-    /// Its name in the specification.
+    /// Name of the number in the specification.
     pub id: &'static str,
-    /// What it is.
+    /// Description of the number.
     pub statement: String,
     /// Unit of both numbers.
     pub unit: &'static str,
-    /// As printed, or as derived from what is printed; not a number (null in JSON) where a drawing shows a shape without numbers.
+    /// Number as printed, or derived from printed numbers. NaN (null in JSON) for drawings without numbers.
     pub published: f64,
-    /// Ours.
+    /// Simulated number.
     pub ours: f64,
-    /// How it came to be.
     pub standing: Standing,
-    /// Whether ours agrees: within 1 percent; of what cannot be reproduced, whether its shape is as printed.
+    /// True if the simulated number agrees to 1 percent, or if its shape agrees where the number cannot be reproduced.
     pub is_met: bool,
 }
 
 impl Row {
-    /// Of numbers that should be the same to a percent.
+    /// Creates a row whose numbers should agree to 1 percent.
     #[must_use]
     pub fn number(id: &'static str, statement: &str, unit: &'static str, both: [f64; 2], standing: Standing) -> Self {
         let [published, ours] = both;
@@ -59,32 +58,34 @@ impl Row {
         Self { experiment: "", id, statement: statement.to_owned(), unit, published, ours, standing, is_met }
     }
 
-    /// Of a number that cannot be reproduced, with what holds of its shape.
+    /// Creates a row for a number that cannot be reproduced. `holds` is true if its shape agrees.
     #[must_use]
     pub fn shape(id: &'static str, statement: &str, unit: &'static str, both: [f64; 2], holds: bool) -> Self {
         Self { is_met: holds, ..Self::number(id, statement, unit, both, Standing::Shape) }
     }
 
-    /// Of a number with a limit of its own kind, such as "less than".
+    /// Creates a row with its own criterion, such as "less than".
     #[must_use]
     pub fn limit(id: &'static str, statement: &str, unit: &'static str, both: [f64; 2], is_met: bool) -> Self {
         Self { is_met, ..Self::number(id, statement, unit, both, Standing::Checked) }
     }
 
-    /// The same as a row of an experiment.
+    /// Returns the row with the name of its experiment.
     #[must_use]
     pub fn of(self, experiment: &'static str) -> Self {
         Self { experiment, ..self }
     }
 
-    /// Ours against the published, percent; none of a published 0 and where no number is published.
+    /// Returns the relative error in percent, or `None` if the published number is 0 or missing.
     #[must_use]
     pub fn error_percent(&self) -> Option<f64> {
         self.published.is_normal().then(|| 100.0 * (self.ours / self.published - 1.0))
     }
 
-    /// What came of it: met, within (the interval of all interpretations), shape (what cannot be reproduced has the printed shape) or
-    /// missed.
+    /// Returns the verdict: `met`, `within`, `shape` or `missed`.
+    ///
+    /// `within` means that the interval of all interpretations contains the number. `shape` means that the number
+    /// cannot be reproduced but has the printed shape.
     #[must_use]
     pub const fn verdict(&self) -> &'static str {
         match (self.is_met, self.standing) {
@@ -95,7 +96,7 @@ impl Row {
         }
     }
 
-    /// What is known of why it is missed.
+    /// Returns the known cause of a miss.
     #[must_use]
     pub fn cause(&self) -> &'static str {
         match self.id {

@@ -1,4 +1,4 @@
-//! All rows, experiment by experiment.
+//! All rows of the comparison, by experiment.
 
 use super::definitions::SEGMENTS;
 use super::experiments::{Experiments, Fit};
@@ -7,8 +7,9 @@ use super::interpretations::PIXEL_DEG;
 use super::row::{Row, Standing};
 use priority_rendering::saved_percent;
 
-/// Rows of E1 to E9; those of E1 that need a machine are not among them. What follows from printed numbers alone stands in
-/// [`definitions`](super::definitions()).
+/// Returns the rows of E1 to E9, except rows of E1 that need a machine.
+///
+/// Numbers that follow from printed numbers alone are in [`definitions`](super::definitions()).
 #[must_use]
 pub fn rows(all: &Experiments) -> Vec<Row> {
     let experiments = [
@@ -36,7 +37,7 @@ fn composition(all: &Experiments) -> Vec<Row> {
     vec![Row::number("fig. 2", statement, "texels", [0.0, all.composite_differs as f64], Standing::Checked)]
 }
 
-/// "About ten times the distance": spheres, the distance being that of the nearest point; the radius' angle may change by the threshold.
+/// Compares A8, "about ten times the distance", for spheres and the distance of the nearest point.
 fn sizes(all: &Experiments) -> Vec<Row> {
     let limits = all.size_limits.iter().map(|limit| limit.of_nearest);
     let [least, most] = [limits.clone().fold(f64::INFINITY, f64::min), limits.fold(0.0, f64::max)];
@@ -49,6 +50,7 @@ fn sizes(all: &Experiments) -> Vec<Row> {
 }
 
 fn reductions(all: &Experiments) -> Vec<Row> {
+    // A5 requires that slower memories have fewer updates.
     let ratios = &all.walks[0].tally.memories;
     let falls = ratios.windows(2).all(|pair| pair[0].updates >= pair[1].updates);
     let fastest = all.walks[0].report.memories[0].updates_hz;
@@ -64,7 +66,6 @@ fn reductions(all: &Experiments) -> Vec<Row> {
     rows
 }
 
-/// Table 1.
 fn table_1(all: &Experiments) -> Vec<Row> {
     (0..4).map(|memory| rate(all, memory)).collect()
 }
@@ -78,6 +79,7 @@ fn rate(all: &Experiments, memory: usize) -> Row {
 
 fn table_2(all: &Experiments) -> Vec<Row> {
     let mut rows = Vec::new();
+    // Walk 0 is cut, and walk 2 is uncut.
     let ours = [0, 2].map(|walk: usize| {
         let memories = all.walks[walk].report.memories.iter();
         memories.map(|memory| memory.segments).collect::<Vec<f64>>()
@@ -90,11 +92,13 @@ fn table_2(all: &Experiments) -> Vec<Row> {
             rows.push(Row::shape(id, &statement, "1", both, moves_outwards));
         }
     }
+    // Draws per second, with and without segmentation.
     let draws = [0, 2].map(|walk: usize| all.walks[walk].report.priority.draws_per_s);
     let saves = draws[0] < draws[1];
     rows.push(Row::shape("D3", "draws a second, cut", "1/s", [7_335.0, draws[0]], saves));
     rows.push(Row::shape("D3", "draws a second, uncut", "1/s", [10_676.93, draws[1]], saves));
     rows.push(Row::shape("D3", "saved by cutting", "%", [31.3, saved_percent(draws[0], draws[1])], saves));
+    // Savings relative to drawing everything at 60 Hz.
     let saved = [0, 2].map(|walk: usize| all.walks[walk].report.priority.saved_percent);
     rows.push(Row::shape("D4", "saved against all at 60 Hz, cut", "%", [33.197, saved[0]], saved[0] > saved[1]));
     rows.push(Row::shape("D4", "saved against all at 60 Hz, uncut", "%", [16.456, saved[1]], saved[0] > saved[1]));
@@ -104,6 +108,7 @@ fn table_2(all: &Experiments) -> Vec<Row> {
 }
 
 fn tears(all: &Experiments) -> Vec<Row> {
+    // Walk 0 is torn, walk 1 warped and walk 2 uncut.
     let widest = |walk: usize| all.walks[walk].report.tears_px.after.map_or(0.0, |tears| tears.max);
     let [warped, uncut] = [1, 2].map(widest);
     let pixels = widest(0) * all.walks[0].settings.texel_deg() / PIXEL_DEG;

@@ -3,16 +3,16 @@
 use priority_rendering::PriorityTiming;
 use serde::Serialize;
 
-/// Rules that the paper does not print.
+/// One choice of the rules that the paper does not print.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Rules {
-    /// Rings of cells around the home cell in memory 0.
+    /// Number of rings of cells around the home cell in memory 0.
     pub inner_rings: u64,
-    /// Rings of a memory relative to those of the next faster one.
+    /// Factor by which the rings of a memory exceed those of the next faster memory.
     pub ring_growth: u64,
-    /// True if distances are those of cells that hold something, false if those of a block's border.
+    /// True if distances are measured to occupied cells, false if to the border of a block of cells.
     pub to_held_cells: bool,
-    /// True if an update of a memory makes all faster ones due.
+    /// True if an update of a memory makes all faster memories due.
     pub has_cascade: bool,
 }
 
@@ -25,7 +25,9 @@ impl Rules {
         has_cascade: false,
     };
 
-    /// All combinations: the home cell, one or two inner rings with equal rings; one inner ring with rings that double.
+    /// Returns all combinations of rules.
+    ///
+    /// Rings of equal width are combined with 0, 1 or 2 inner rings, and doubling rings with 1 inner ring.
     #[must_use]
     pub fn all() -> Vec<Self> {
         let flags = [(false, false), (false, true), (true, false), (true, true)];
@@ -40,7 +42,7 @@ impl Rules {
         rules.collect()
     }
 
-    /// As a line of a table.
+    /// Returns the text used in tables.
     #[must_use]
     pub fn text(&self) -> String {
         let rings = if self.ring_growth == 1 { "equal rings" } else { "rings that double" };
@@ -49,7 +51,7 @@ impl Rules {
         format!("q = {}, {rings}, {distance}, {cascade}", self.inner_rings)
     }
 
-    /// The numbers of the policy with these rules and cells of this side, m.
+    /// Returns the parameters of the policy with these rules and cells of side `cell_m`, in metres.
     #[must_use]
     pub fn numbers(&self, cell_m: f64) -> PriorityTiming {
         PriorityTiming {

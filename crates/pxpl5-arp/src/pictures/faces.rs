@@ -1,10 +1,10 @@
-//! The six faces unfolded.
+//! The six faces as an unfolded cube.
 
 use crate::look::rgb;
 use address_recalculation::{CubeFace, FaceSet, TexelAddress};
 use image::RgbImage;
 
-/// Where each face lies, in faces from the left and from the top: neighbours join.
+/// Column and row of each face in the cross, placed so that neighbouring faces join.
 const PLACES: [(CubeFace, u32, u32); 6] = [
     (CubeFace::PosY, 1, 0),
     (CubeFace::NegX, 0, 1),
@@ -14,7 +14,7 @@ const PLACES: [(CubeFace, u32, u32); 6] = [
     (CubeFace::NegY, 1, 2),
 ];
 
-/// A cross of four by three faces, empty texels in a colour of their own.
+/// Returns the six faces as a cross of 4 by 3 faces, with empty texels in the colour `empty`.
 #[must_use]
 pub fn cross(faces: &FaceSet, empty: u32) -> RgbImage {
     let size = faces.texels();

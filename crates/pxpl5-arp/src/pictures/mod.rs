@@ -1,4 +1,4 @@
-//! What people look at: unfolded faces, the eye, which memory won, tears, errors, cells from above, updates.
+//! Pictures of a walk: unfolded faces, views, winning memories, tears, errors, a plan of cells, and updates.
 
 mod colours;
 mod faces;
@@ -26,47 +26,52 @@ use image::RgbImage;
 use priority_rendering::Falloff;
 use tracking::motion::Walk;
 
-/// A picture, with the name of its file.
+/// A picture and the name of its file without extension.
 #[derive(Clone, Debug)]
 pub enum Picture {
-    /// Pixels: name.png.
+    /// Pixels, written as PNG.
     Pixels(String, RgbImage),
-    /// A drawing: name.svg.
+    /// A drawing, written as SVG.
     Drawing(String, String),
 }
 
-/// Frames of the walk that is looked at.
+/// Number of frames of the depicted walk.
 const FRAMES: u64 = 1_800;
 
-/// Experiment, figures of the paper that it draws anew, and the names of the pictures that show them.
+/// For each experiment, the figures of the paper that it redraws, and the names of our pictures.
 pub const OF_FIGURES: [(&str, &str, &[&str]); 3] = [
     ("E2", "2, 12 and 14", &["faces-0", "faces-1", "faces-2", "faces-3", "faces-whole", "memories"]),
     ("E7", "13 and 15 to 17", &["tears", "unsegmented", "warped", "difference"]),
     ("E10", "5, 6 and 8 to 11", &["cells", "eye-flat", "objects", "cells-seen", "cuts"]),
 ];
 
-/// All pictures of the torn and the warped walk, at a frame and towards a vertex where much of what lies behind is seen through
-/// the tear.
+/// Returns all pictures of the torn and the warped walk.
+///
+/// Frame and direction are chosen so that a tear shows much of the scene behind it.
 ///
 /// # Errors
 ///
-/// [`ExperimentError`], where a lens, scene or number is none; those here are.
+/// [`ExperimentError`] if a lens, scene or number is invalid. The built-in ones are valid.
 pub fn all(experiments: &Experiments) -> Result<Vec<Picture>, ExperimentError> {
     let (scene, path) = gallery()?;
     let world = World::new(&scene, experiments.fits[0].cell_m)?;
     let mut torn = Settings::CELLS.with_cells(experiments.fits[0].cell_m);
-    // One of the pictures shows what a lens does.
+    // The lens is visible only in the picture `eye`.
     torn.display.lens = Lens::Radial { k1: 0.32, k2: 0.0 };
     of_walk(world, &path, &torn, 1.0, FRAMES)
 }
 
-/// All pictures of a walk at so many m/s. `eye` is seen through the display's lens; what shows it without a lens (`eye-flat` and `cuts`)
-/// is left out where the picture is too wide for a plane. The others are flat where that is possible; at the frame and in the direction in which its widest tear would show most of what lies behind,
-/// or, where nothing is cut between memories, at its end along the path.
+/// Returns all pictures of a walk at a speed of `m_per_s`.
+///
+/// The picture `eye` is seen through the display's lens. `eye-flat` and `cuts` show the view without a lens, and are
+/// omitted if the picture is too wide for a plane. The other pictures are flat where possible.
+///
+/// The chosen frame and direction show most of the scene behind the widest tear. If no memories meet in a cut, the view
+/// is the one along the path at the end of the walk.
 ///
 /// # Errors
 ///
-/// [`ExperimentError`] for settings that cannot be, or of another cut than the world's.
+/// [`ExperimentError`] if settings are invalid, or if they do not match the cells of the world.
 pub fn of_walk(
     mut world: World,
     path: &Walk,
@@ -75,6 +80,7 @@ pub fn of_walk(
     frames: u64,
 ) -> Result<Vec<Picture>, ExperimentError> {
     let eye = at_frames(path, m_per_s, settings.numbers.frame_hz);
+    // Choose the frame and the direction of view.
     let is_cut = settings.policy == PolicyKind::Cells && settings.is_segmented;
     let mut gaped = Vec::new();
     let last = (frames - 1, ahead(path, m_per_s * (frames - 1) as f64 / settings.numbers.frame_hz));
@@ -88,6 +94,7 @@ pub fn of_walk(
     } else {
         last
     };
+    // Walk to this frame with the real settings, and draw it.
     let simulation = shown(&world, settings, 0..frame + 1, &eye)?;
     let mut pictures = seen(&simulation, orientation, eye(frame))?;
     let side = settings.numbers.cell_m;
@@ -96,6 +103,7 @@ pub fn of_walk(
     if Lens::Flat.check(&screen).is_ok() {
         pictures.push(Picture::Drawing("cuts".to_owned(), cuts_svg(&world, side, eye(frame), orientation, &screen)));
     }
+    // Draw the updates around this frame.
     let tally = walk(&world, settings, frame + 60, &eye)?;
     pictures.push(Picture::Drawing("updates".to_owned(), updates_svg(&tally, frame.saturating_sub(60)..frame + 60)));
     pictures.extend(gaped);
@@ -103,24 +111,29 @@ pub fn of_walk(
     Ok(pictures)
 }
 
-/// How far ahead on the path the eyes rest, m: as those of [`Walk`].
+/// Distance along the path at which the eyes look, in metres. Same as in [`Walk`].
 const AHEAD_M: f64 = 1.5;
 
-/// A head that looks where its path leads, so many metres from the path's beginning.
+/// Returns the orientation of a head that looks along the path, `way_m` metres from its start.
 pub(crate) fn ahead(path: &Walk, way_m: f64) -> DQuat {
     looking_at(path.place(way_m), path.place(way_m + AHEAD_M))
 }
 
-/// The faces of all memories and of one that has it all, the eye with and without a lens, which memory won, what is wrong.
+/// Returns pictures of one frame: faces, views, winning memories and errors.
+///
+/// The faces include a reference memory that holds the whole scene. Views are drawn with and without the lens.
 fn seen(simulation: &Simulation<'_>, orientation: DQuat, eye: DVec3) -> Result<Vec<Picture>, ExperimentError> {
     let faces = Faces::of(simulation)?;
     let mut pictures: Vec<Picture> = Vec::new();
+    // Unfolded faces of each memory.
     for (memory, set) in faces.memories.iter().enumerate() {
         pictures.push(Picture::Pixels(format!("faces-{memory}"), cross(set, faces.background())));
     }
+    // Faces of a reference memory with the whole scene.
     let whole = Settings { display: simulation.settings().display.clone(), ..Settings::FULL }.with_memories(1);
     let whole = Faces::of(&shown(simulation.world(), &whole, 0..1, &|_| eye)?)?;
     pictures.push(Picture::Pixels("faces-whole".to_owned(), cross(&whole.memories[0], faces.background())));
+    // Views without a lens, then through the display's lens.
     let display = &simulation.settings().display;
     let views = Views { faces: &faces, orientation, lens: without_lens(display) };
     if views.lens == Lens::Flat {
@@ -133,7 +146,7 @@ fn seen(simulation: &Simulation<'_>, orientation: DQuat, eye: DVec3) -> Result<V
     Ok(pictures)
 }
 
-/// The eye's picture with a colour for each object, and with one for each cell.
+/// Returns the view with one colour per object, and the view with one colour per cell.
 fn tinted(
     mut world: World,
     settings: &Settings,
@@ -150,15 +163,16 @@ fn tinted(
     Ok(pictures)
 }
 
-/// What tears are seen against.
+/// Background colour behind tears.
 const WHITE: u32 = 0x00FF_FFFF;
 
-/// Frames that are tried at most, and the least number from one to the next.
+/// Largest number of frames to try, and smallest distance between them.
 const TRIED: u64 = 63;
 const EVERY: u64 = 29;
 
-/// Of the frames that are tried, each seen towards its widest tear in something upright, the one that shows most white; `None` where
-/// nothing gapes.
+/// Returns the frame and orientation at which a tear shows the largest number of background pixels.
+///
+/// Each tried frame is viewed towards its widest tear in an upright surface. Returns `None` if nothing tears.
 fn gaping(
     world: &World,
     torn: &Settings,
@@ -169,14 +183,16 @@ fn gaping(
     let mut best = (0, DQuat::IDENTITY, 0);
     for frame in 0..frames {
         let outcome = simulation.frame(eye(frame))?;
+        // Evaluate only some frames, because drawing is slow.
         if frame % EVERY.max(frames / TRIED) != 0 {
             continue;
         }
+        // Look horizontally towards the widest tear.
         let Some(vertex) = widest_upright(world, &simulation) else { continue };
         let orientation = looking_at(outcome.eye, vertex.with_y(outcome.eye.y));
         let faces = Faces::of(&simulation)?;
         let seen = Views { faces: &faces, orientation, lens: without_lens(&torn.display) }.seen()?;
-        // A pixel of the gap is mixed with its neighbours: nothing else in the gallery is as bright.
+        // Antialiasing mixes the pixels of a gap with their neighbours. Nothing else in the gallery is as bright.
         let white = seen.pixels().filter(|pixel| pixel.0.iter().all(|part| *part > 238)).count();
         if white > best.2 {
             best = (frame, orientation, white);
@@ -185,7 +201,7 @@ fn gaping(
     Ok((best.2 > 0).then_some((best.0, best.1)))
 }
 
-/// The place of the widest tear of what is not the floor or the ceiling.
+/// Returns the position of the widest tear, not counting floor and ceiling.
 fn widest_upright(world: &World, simulation: &Simulation<'_>) -> Option<DVec3> {
     let is_upright =
         |segment: usize| !["floor", "ceiling"].contains(&world.objects[world.segments[segment].object].name.as_str());
@@ -195,7 +211,7 @@ fn widest_upright(world: &World, simulation: &Simulation<'_>) -> Option<DVec3> {
     Some(world.vertices[vertex as usize])
 }
 
-/// The same frame torn, warped and without cuts, cleared to white, and the difference of the first two.
+/// Returns one frame torn, warped and uncut, against white, and the difference of the torn and the warped picture.
 fn gaps(
     world: &World,
     torn: &Settings,
@@ -204,6 +220,7 @@ fn gaps(
     orientation: DQuat,
 ) -> Result<Vec<Picture>, ExperimentError> {
     let mut both = Vec::new();
+    // Draw the frame torn, warped and uncut.
     for (falloff, is_segmented) in [(Falloff::None, true), (Falloff::Linear, true), (Falloff::None, false)] {
         let settings = Settings { falloff, has_cascade: falloff != Falloff::None, is_segmented, ..torn.clone() };
         let simulation = shown(world, &settings, 0..frame + 1, eye)?;
@@ -216,7 +233,7 @@ fn gaps(
     Ok(pictures)
 }
 
-/// A walk through some frames.
+/// Runs a walk over a range of frames.
 fn shown<'a>(
     world: &'a World,
     settings: &Settings,

@@ -1,4 +1,4 @@
-//! Drawings: cells from above, and a row of updates for each memory.
+//! Drawings of the cells from above, and of the updates of each memory.
 
 use super::colours::MEMORY_COLOURS;
 use crate::simulation::{FrameOutcome, Simulation};
@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use tracking::motion::Walk;
 
-/// Pixels of a metre, and of the margin.
+/// Pixels per metre.
 const SCALE: f64 = 14.0;
 const MARGIN: f64 = 30.0;
 
@@ -18,7 +18,7 @@ fn colour(memory: usize) -> String {
     format!("#{:06x}", MEMORY_COLOURS[memory % MEMORY_COLOURS.len()])
 }
 
-/// Where places lie on a drawing of the floor.
+/// Mapping from the floor of the hall to a drawing.
 struct Plan {
     low: [f64; 2],
     size: [f64; 2],
@@ -48,7 +48,8 @@ fn head(width: f64, height: f64) -> String {
     )
 }
 
-/// Cells by their memories, partitions, the path, the eye and its home cell, from above, -z at the top.
+/// Draws the cells from above, coloured by memory, with partitions, path, eye and home cell. The direction -z is at the
+/// top.
 #[must_use]
 pub fn cells_svg(world: &World, simulation: &Simulation<'_>, path: &Walk, eye: DVec3) -> String {
     let side = simulation.settings().numbers.cell_m;
@@ -56,6 +57,7 @@ pub fn cells_svg(world: &World, simulation: &Simulation<'_>, path: &Walk, eye: D
     let plan = Plan::of(&cells, side);
     let [width, depth] = plan.size;
     let mut svg = head(width, depth + 40.0);
+    // Cells in the colours of their memories.
     for (x, z) in &cells {
         let cell = Cell { x: *x, z: *z };
         let memory = simulation.dealing().map_or(0, |dealing| dealing.memory(cell));
@@ -67,9 +69,11 @@ pub fn cells_svg(world: &World, simulation: &Simulation<'_>, path: &Walk, eye: D
             &format!("fill=\"{}\" fill-opacity=\"0.55\" stroke=\"white\"", colour(memory)),
         );
     }
+    // Outline of the home cell.
     if let Some(dealing) = simulation.dealing() {
         cell_box(&mut svg, &plan, dealing.home, side, "fill=\"none\" stroke=\"black\" stroke-width=\"3\"");
     }
+    // Walls, path and eye.
     upright_edges(&mut svg, world, &plan);
     walked(&mut svg, path, &plan);
     let [x, y] = plan.at(eye.x, eye.z);
@@ -106,14 +110,16 @@ fn legend(svg: &mut String, memory: usize, top: f64) {
     );
 }
 
-/// Edges of triangles that stand upright, seen from above: walls and partitions.
+/// Draws the edges of upright triangles from above: walls and partitions.
 fn upright_edges(svg: &mut String, world: &World, plan: &Plan) {
     for three in world.segments.iter().flat_map(|segment| &segment.triangles) {
+        // Only upright triangles form walls.
         let [a, b, c] = three.map(|i| world.vertices[i as usize]);
         let normal = (b - a).cross(c - a).normalize_or_zero();
         if normal.y.abs() > 0.01 {
             continue;
         }
+        // Seen from above, a wall is its longest horizontal edge.
         let ends = [[a, b], [b, c], [c, a]];
         let longest = ends
             .iter()
@@ -124,7 +130,8 @@ fn upright_edges(svg: &mut String, world: &World, plan: &Plan) {
     }
 }
 
-/// For each frame of a range a mark in the row of each memory: due and shown, due and missed, dealt anew.
+/// Draws a row per memory with a mark for each frame in which the memory was shown or missed, and for new assignments
+/// of cells.
 #[must_use]
 pub fn updates_svg(tally: &WalkTally, frames: std::ops::Range<u64>) -> String {
     let memories = tally.memories.len();
@@ -133,14 +140,17 @@ pub fn updates_svg(tally: &WalkTally, frames: std::ops::Range<u64>) -> String {
     let width = left + step * (frames.end - frames.start) as f64 + 20.0;
     let height = 34.0 * memories as f64 + 70.0;
     let mut svg = head(width, height);
+    // Labels and base lines of the memories.
     for memory in 0..memories {
         let top = 20.0 + 34.0 * memory as f64;
         let _ = writeln!(svg, "<text x=\"8\" y=\"{:.0}\">memory {memory}</text>", top + 17.0);
         let _ = writeln!(svg, "<path d=\"M{left:.0} {0:.0}H{1:.0}\" stroke=\"#ccc\"/>", top + 26.0, width - 20.0);
     }
+    // One column per frame.
     for (column, frame) in frames.clone().enumerate() {
         let Some(outcome) = tally.outcomes.get(frame as usize) else { break };
         let x = left + step * column as f64;
+        // A dashed line marks a new assignment of cells.
         if outcome.deals_anew {
             let _ = writeln!(
                 svg,
@@ -149,6 +159,7 @@ pub fn updates_svg(tally: &WalkTally, frames: std::ops::Range<u64>) -> String {
             );
         }
         (0..memories).for_each(|memory| mark(&mut svg, outcome, memory, x));
+        // Label every 15th frame.
         if frame % 15 == 0 {
             let _ = writeln!(svg, "<text x=\"{x:.0}\" y=\"{:.0}\">{frame}</text>", height - 30.0);
         }
@@ -162,7 +173,7 @@ pub fn updates_svg(tally: &WalkTally, frames: std::ops::Range<u64>) -> String {
     svg
 }
 
-/// What happened to a memory in a frame.
+/// Draws the mark of a memory in one frame.
 fn mark(svg: &mut String, outcome: &FrameOutcome, memory: usize, x: f64) {
     let top = 22.0 + 34.0 * memory as f64;
     let place = format!("x=\"{x:.0}\" y=\"{top:.0}\" width=\"6\" height=\"24\"");

@@ -1,4 +1,4 @@
-//! What the eye sees, and what is wrong with it.
+//! Views of the eye, and their errors.
 
 use super::colours::MEMORY_COLOURS;
 use crate::content::angle;
@@ -10,37 +10,37 @@ use cube_faces::CubeView;
 use glam::{DQuat, DVec3};
 use image::{Rgb, RgbImage};
 
-/// A look at faces.
+/// A view of the faces of all memories.
 #[derive(Clone, Debug)]
 pub struct Views<'a> {
-    /// Of all memories.
+    /// Faces of all memories.
     pub faces: &'a Faces,
-    /// Of the head.
+    /// Orientation of the head.
     pub orientation: DQuat,
-    /// Through which the eye looks.
+    /// Lens through which the eye looks.
     pub lens: Lens,
 }
 
-/// The lens of pictures without one: none, or the display's own where its angle is too wide for a plane.
+/// Returns the lens for pictures without a lens: a flat one, or the display's own if the view is too wide for a plane.
 pub(crate) fn without_lens(display: &ArpConfig) -> Lens {
     if Lens::Flat.check(&display.picture()).is_ok() { Lens::Flat } else { display.lens.clone() }
 }
 
 impl Views<'_> {
-    /// What the eye sees.
+    /// Returns the picture that the eye sees.
     ///
     /// # Errors
     ///
-    /// [`ExperimentError::Display`] for a lens that there cannot be.
+    /// [`ExperimentError::Display`] if the lens is invalid.
     pub fn seen(&self) -> Result<RgbImage, ExperimentError> {
         Ok(self.faces.clone().through(self.lens.clone()).seen(self.orientation)?.0)
     }
 
-    /// The eye's picture tinted in the colour of the memory that won each pixel.
+    /// Returns the view, tinted by the colour of the memory that won each pixel.
     ///
     /// # Errors
     ///
-    /// As [`Views::seen`].
+    /// Same as [`Views::seen`].
     pub fn memories(&self) -> Result<RgbImage, ExperimentError> {
         let mut seen = self.seen()?;
         let (width, winners) = self.faces.clone().through(self.lens.clone()).winners(self.orientation)?;
@@ -53,17 +53,20 @@ impl Views<'_> {
         Ok(seen)
     }
 
-    /// By how many pixels of the middle each pixel is off because its memory was drawn from another place: black for none, white for
-    /// two and more; the scale stands below.
+    /// Returns a picture of the error of each pixel that results from the memory's eye position.
+    ///
+    /// The unit is a pixel of the picture's middle. Black means no error, and white means two pixels or more. A scale
+    /// is drawn below the picture.
     ///
     /// # Errors
     ///
-    /// As [`Views::seen`].
+    /// Same as [`Views::seen`].
     pub fn errors(&self, simulation: &Simulation<'_>, eye: DVec3) -> Result<RgbImage, ExperimentError> {
         let view = simulation.settings().view()?;
         let screen = simulation.settings().display.picture();
         let bar = 24;
         let focal = pixels_per_radian(&self.lens, &screen);
+        // The rows below the picture hold the scale.
         Ok(RgbImage::from_fn(screen.width, screen.height + bar, |x, y| match y.checked_sub(screen.height) {
             Some(_) => heat(2.0 * f64::from(x) / f64::from(screen.width), x % (screen.width / 8) == 0),
             None => {
@@ -73,7 +76,9 @@ impl Views<'_> {
         }))
     }
 
-    /// Angle between where a ray's place is seen and where it is seen from the eye, radians; `None` where there is nothing.
+    /// Returns the angle between the displayed and the correct direction of a ray's content, in radians.
+    ///
+    /// Returns `None` if the ray hits nothing.
     fn off(&self, simulation: &Simulation<'_>, view: &CubeView, ray: DVec3, eye: DVec3) -> Option<f64> {
         let texel = view.geometry.texel(ray.to_array())?;
         let texels = self.faces.memories.iter().zip(simulation.shown());
@@ -85,14 +90,14 @@ impl Views<'_> {
     }
 }
 
-/// Pixels of a radian in the middle of a picture: over the two pixels beside it.
+/// Returns the number of pixels per radian in the middle of a picture.
 fn pixels_per_radian(lens: &Lens, screen: &Picture) -> f64 {
     let view = |x: u32| DVec3::from_array(lens.view(screen, x.min(screen.width - 1), screen.height / 2));
     let middle = screen.width / 2;
     1.0 / angle(view(middle.saturating_sub(1)), view(middle)).max(f64::MIN_POSITIVE)
 }
 
-/// From black over red and yellow to white at two pixels; blue marks every quarter of a pixel on the scale.
+/// Returns the colour of an error: black, red, yellow, then white at two pixels. Marks of the scale are blue.
 fn heat(pixels: f64, is_mark: bool) -> Rgb<u8> {
     if is_mark {
         return Rgb([0, 128, 255]);
@@ -101,7 +106,7 @@ fn heat(pixels: f64, is_mark: bool) -> Rgb<u8> {
     Rgb([0.0, 1.0, 2.0].map(|from: f64| ((share - from).clamp(0.0, 1.0) * 255.0) as u8))
 }
 
-/// Half the difference of two pictures around grey.
+/// Returns half the difference of two pictures, centred at grey.
 #[must_use]
 pub fn difference(first: &RgbImage, second: &RgbImage) -> RgbImage {
     RgbImage::from_fn(first.width(), first.height(), |x, y| {

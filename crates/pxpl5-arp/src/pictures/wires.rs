@@ -1,4 +1,4 @@
-//! Cuts of the segmentation as wires, as an eye sees them.
+//! Wireframe of the cuts that the segmentation makes, as the eye sees them.
 
 use crate::world::World;
 use address_recalculation::Picture;
@@ -6,11 +6,12 @@ use glam::{DQuat, DVec3};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-/// What lies nearer before the eye is not drawn, m.
+/// Near plane in metres. Edges nearer to the eye are clipped.
 const NEAR_M: f64 = 0.05;
 
-/// Edges of all triangles as an eye at a place sees them, nothing hidden: grey what the scene has, red what borders of cells of this side
-/// (m) cut into it.
+/// Draws the edges of all triangles without hidden-line removal.
+///
+/// Edges of the scene are grey. Edges cut by the borders of cells with side `side_m` are red.
 #[must_use]
 pub fn cuts_svg(world: &World, side_m: f64, eye: DVec3, orientation: DQuat, screen: &Picture) -> String {
     let [width, height] = [screen.width, screen.height].map(f64::from);
@@ -19,14 +20,17 @@ pub fn cuts_svg(world: &World, side_m: f64, eye: DVec3, orientation: DQuat, scre
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {height:.0}\" fill=\"none\">\n\
          <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
     );
+    // Rotate world coordinates to the axes of the head.
     let back = orientation.conjugate();
     let seen = |index: u32| back * (world.vertices[index as usize] - eye);
+    // Draw the grey edges first, so that red ones cover them.
     for (is_cut, style) in
         [(false, "stroke=\"#999\" stroke-width=\"0.7\""), (true, "stroke=\"#d00\" stroke-width=\"1.2\"")]
     {
         let mut wires = String::new();
         for ([a, b], _) in edges(world, side_m).iter().filter(|(_, cut)| **cut == is_cut) {
             let Some([from, to]) = before(seen(*a), seen(*b)) else { continue };
+            // Project, and skip edges outside the picture.
             let [x1, x2] = [from, to].map(|p| width / 2.0 + focal * p.x / -p.z);
             let [y1, y2] = [from, to].map(|p| height / 2.0 - focal * p.y / -p.z);
             let is_beside = x1.max(x2) < 0.0 || x1.min(x2) > width || y1.max(y2) < 0.0 || y1.min(y2) > height;
@@ -40,7 +44,7 @@ pub fn cuts_svg(world: &World, side_m: f64, eye: DVec3, orientation: DQuat, scre
     svg
 }
 
-/// Edges by their vertices, and whether each lies on a border of cells.
+/// Returns all edges by their vertices, with a flag that is true if the edge lies on a border of cells.
 fn edges(world: &World, side_m: f64) -> BTreeMap<[u32; 2], bool> {
     let mut edges = BTreeMap::new();
     for three in world.segments.iter().flat_map(|segment| &segment.triangles) {
@@ -54,13 +58,14 @@ fn edges(world: &World, side_m: f64) -> BTreeMap<[u32; 2], bool> {
     edges
 }
 
-/// Whether both coordinates are the same border: cuts compute them exactly so.
+/// Returns true if both coordinates are exactly the same border. Cuts compute coordinates so that this comparison is
+/// exact.
 fn is_on_border(p: f64, q: f64, side_m: f64) -> bool {
     let border = (p / side_m).round() * side_m;
     p == border && q == border
 }
 
-/// The part of an edge that lies before the eye.
+/// Returns the part of an edge in front of the near plane.
 fn before(a: DVec3, b: DVec3) -> Option<[DVec3; 2]> {
     let at_near = |from: DVec3, to: DVec3| from.lerp(to, (-NEAR_M - from.z) / (to.z - from.z));
     match (a.z < -NEAR_M, b.z < -NEAR_M) {

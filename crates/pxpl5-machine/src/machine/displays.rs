@@ -1,4 +1,4 @@
-//! What a machine tells its displays, and what they tell it.
+//! Events between the machine and its displays.
 
 use super::{Contexts, Machine};
 use crate::agenda::schedule_own;
@@ -16,6 +16,7 @@ impl Machine {
         let first_surface = record.first_surface(display);
         record.displays[display].handle(event, context.at(now));
         schedule_own(queue, context, |event| Event::Display(display, event));
+        // Record every output in the trace and in the observation.
         for (time, output) in context.drain_outputs() {
             match output {
                 DisplayOutput::RegionArrived { surface, target, first_part_at, last_part_at } => {
@@ -30,6 +31,7 @@ impl Machine {
                     record.hash.record(time, &[6, u64::from(surface.0), u64::from(buffer), tick.0]);
                     note_swap(&mut record.observation, queue, swaps, (time, surface, port, tick, buffer));
                 }
+                // An update of a part of a surface, which has its own port.
                 DisplayOutput::Updated { surface, port, buffer, tick } => {
                     let surface = SurfaceId((first_surface + surface) as u16);
                     record.hash.record(time, &[7, u64::from(port.0), u64::from(buffer), tick.0]);
@@ -40,7 +42,8 @@ impl Machine {
     }
 }
 
-/// Notes that a surface, or a part of it behind a port of its own, shows its other buffer from a tick on, and tells the master.
+/// Records that a surface, or the part of it behind one port, shows its other buffer from a tick on, and signals the
+/// first GP.
 fn note_swap(
     observation: &mut Observation,
     queue: &mut EventQueue<Event>,

@@ -1,4 +1,4 @@
-//! What a machine is built of: paths, limits, and what tells one from another.
+//! Tests of a machine's configuration: paths of parameters, limits, and parameters that identify a machine.
 
 use crate::rig::{ScreenConfig, ScreenNumbers, config};
 use parameters::{ParameterError, Value};
@@ -6,7 +6,6 @@ use pxpl5_machine::{ConfigError, MachineConfig, Parameter};
 use pxpl5_sim::Span;
 
 parameters::parameter_table! {
-    /// Numbers of some firmware.
     struct Numbers {
         /// A time.
         step_ns: 500, "ns", Assumed, 100..=900 in 10..=1_000, "made up";
@@ -14,9 +13,8 @@ parameters::parameter_table! {
 }
 
 parameters::parameter_table! {
-    /// Numbers of other firmware.
     struct Others {
-        /// A share.
+        /// A fraction.
         share: f64 = 0.5, "", Assumed, 0.0..=1.0, "made up";
     }
 }
@@ -112,7 +110,8 @@ fn numbers_of_firmware_are_kept_once_and_found_by_their_type() {
     assert_eq!(config.firmware_table::<Others>().map(|table| table.share), Some(0.5));
 }
 
-/// Names of experiments are made of these: numbers of firmware and of the i860 came later and are told only where they differ.
+/// Names of experiments depend on these parameters. Parameters of firmware and of the i860 were added later and appear
+/// only if changed.
 #[test]
 fn parameters_tell_a_machine_apart_but_those_that_all_have() {
     let telling = |config: &MachineConfig| -> Vec<String> {
@@ -171,7 +170,8 @@ fn overrides_are_what_differs_from_the_preset() {
     assert!(config.overrides().is_empty(), "nobody knows what it differs from");
 }
 
-/// A value outside its range that a preset has is no supposition of the experiment; one within its range never is.
+/// A value outside its range causes no warning if the preset has the same value. A value within its range never causes
+/// a warning.
 #[test]
 fn warnings_are_of_changed_values_outside_their_range() {
     let slats = MachineConfig::slats();
@@ -195,7 +195,7 @@ fn tables_are_listed_with_their_prefix() {
     assert_eq!((&path[..], info.name, *value, *read_only), ("some.step_ns", "step_ns", 500.into(), true));
 }
 
-/// NTSC: 525 lines of 63.5556 us, two fields a frame; 59.94 fields a second.
+/// NTSC has 525 lines of 63.5556 us in two fields, which gives 59.94 fields per second.
 #[test]
 fn the_period_is_that_of_the_first_display() {
     let field = usual().period().expect("it can be built");

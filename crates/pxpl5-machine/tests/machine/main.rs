@@ -1,4 +1,4 @@
-//! What a machine promises by itself, whatever runs on it: with programs of a few lines and a display that does what messages say.
+//! Guarantees of the machine itself, tested with short programs and with a display that the test controls by messages.
 
 mod configuration;
 mod messages;

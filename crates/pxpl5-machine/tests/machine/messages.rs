@@ -1,5 +1,7 @@
-//! The ways of messages, event by event. Times are those of the boards' and the ring's own documents: a board's signal leaves it a cycle of
-//! 40 MHz after it was made; a message of w words arrives 16 + w word times after its grant, and a hop later for each port that it passes.
+//! Timing of messages, event by event.
+//!
+//! A board's signal leaves the board one cycle of 40 MHz after it was made. A message of w words arrives 16 + w word
+//! times after its grant, plus one hop for each port that it passes.
 
 use crate::rig::{
     FIRST_GP, MESSAGE, RENDERERS, SCREEN, SECOND_GP, Say, ScreenConfig, build, config, copy_command, happenings, load,
@@ -9,13 +11,13 @@ use pxpl5_machine::{Board, Machine};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Body, CopyWay, NodeId, RegionPixels};
 
-/// 40 MHz (TR94).
+/// Cycle of the boards' 40 MHz clock (TR94).
 const CYCLE: Span = Span::from_ns(25);
 
-/// 20 million words a second (TR94, F89).
+/// Time of a word, at 20 million words per second (TR94, F89).
 const WORD: Span = Span::from_ns(50);
 
-/// What happens but looks of programs, ticks and their signals.
+/// Returns all events except polls of programs, ticks and their signals.
 fn seen(machine: &mut Machine, until: Time) -> Vec<(Time, Board, &'static str)> {
     let mut all = happenings(machine, until);
     all.retain(|(_, _, what)| !["programs look", "tick", "retrace"].contains(what));
@@ -47,13 +49,13 @@ fn the_sender_is_told_at_the_instant_of_arrival() {
     machine.switch_on();
     let all = seen(&mut machine, us(50));
     let [.., delivered, accepted] = &all[..] else { panic!("{all:?}") };
-    // The host is plugged in behind the last of six ports: from port 2 there are four hops.
+    // The host follows the last of six ports on the ring, so a message from port 2 passes four hops.
     let arrived = Time::ZERO + MESSAGE + CYCLE + WORD * (16 + 1) + Span::from_ns(4 * 50);
     assert_eq!(*delivered, (arrived, Board::Host, "message delivered"));
     assert_eq!(*accepted, (arrived, Board::Gp(1), "message accepted by its receiver"));
 }
 
-/// A chain that goes to several receivers at once.
+/// A chain sends to several receivers at the same time.
 #[test]
 fn each_message_of_a_chain_asks_for_a_channel_of_its_own() {
     let mut machine = machine();
@@ -68,7 +70,7 @@ fn each_message_of_a_chain_asks_for_a_channel_of_its_own() {
     assert_eq!(delivered.map(|(_, board, _)| *board).collect::<Vec<_>>(), [Board::Gp(1), Board::Host]);
 }
 
-/// Two messages of one board's port that leave it one after the other.
+/// Two messages of one board leave its port one after the other.
 #[test]
 fn a_message_that_leaves_later_is_asked_for_later() {
     let mut machine = machine();
@@ -76,7 +78,7 @@ fn a_message_that_leaves_later_is_asked_for_later() {
     machine.switch_on();
     let all = seen(&mut machine, us(50));
     let asked: Vec<Time> = all.iter().filter(|(_, _, what)| what.contains("asks")).map(|(time, ..)| *time).collect();
-    // The second chain waits for the first: its message was accepted when it had arrived.
+    // The second chain waits until the first chain's message is accepted, which happens at its arrival.
     let accepted = Time::ZERO + MESSAGE + CYCLE + WORD * 17 + Span::from_ns(50);
     assert_eq!(asked, [us(1) + CYCLE, (Time::ZERO + MESSAGE * 2).max(accepted) + CYCLE]);
 }
@@ -86,7 +88,7 @@ fn whats(machine: &mut Machine, of: Board) -> Vec<&'static str> {
     all.into_iter().filter(|(_, board, _)| *board == of).map(|(_, _, what)| what).collect()
 }
 
-/// A region's transfer: sixteen messages of 1,024 words, of which the last is told to have been accepted.
+/// A region takes sixteen messages of 1,024 words. The last one is acknowledged.
 #[test]
 fn a_renderer_copies_the_region_that_it_is_told_to() {
     for (way, stored) in [(CopyWay::FromPixelMemory, false), (CopyWay::ThroughBacking, true)] {
@@ -119,7 +121,8 @@ fn a_renderers_answer_is_an_event_of_the_ring() {
     assert_eq!(machine.record().ring().refusals().count, 0);
 }
 
-/// The sender of commands is told when the renderer has the last word: a hop a port behind the grant, and no stall.
+/// The sender of commands is notified when the renderer has the last word: one hop per port after the grant, without a
+/// stall.
 #[test]
 fn who_sends_to_a_renderer_goes_on_when_its_fifo_has_the_message() {
     let mut machine = machine();

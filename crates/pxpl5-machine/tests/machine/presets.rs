@@ -1,10 +1,12 @@
-//! The machines of the papers.
+//! The presets, compared with published numbers.
 
 use pxpl5_gp::{CodeUse, CodeVersion, GpTiming};
 use pxpl5_machine::{MachineConfig, PRESETS};
 
-/// TR94 (small-hmd, slats), I3D95 (slats-1995, slats-optimised, large), F89 (design-maximum). Triangles: TR94's limit of 110 a field and
-/// I3D95's of 100 fit 30.0 and 55.8 us; code that fits the cache takes a third.
+/// Sources are TR94 (small-hmd, slats), I3D95 (slats-1995, slats-optimised, large) and F89 (design-maximum).
+///
+/// The published limits of 110 triangles per field (TR94) and 100 (I3D95) correspond to 30.0 and 55.8 us. Code that
+/// fits into the cache takes a third of the time.
 #[test]
 fn presets_have_the_boards_and_times_that_were_published() {
     let expected = [

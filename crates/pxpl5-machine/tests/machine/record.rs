@@ -1,4 +1,4 @@
-//! What is kept of a run.
+//! Observations that remain after a run.
 
 use crate::rig::{
     FIRST_GP, MESSAGE, RENDERERS, SCREEN, SECOND_GP, Say, Screen, ScreenConfig, build, config, copy_command,
@@ -35,14 +35,14 @@ fn a_record_has_the_boards_and_numbers_of_its_machine() {
     assert!(record.display_of_kind::<NtscDisplay>().is_none());
 }
 
-/// 780 us a region of fifteen messages (TR94).
+/// A region of fifteen messages takes 780 us (TR94).
 #[test]
 fn the_longest_message_takes_a_fifteenth_of_a_published_region() {
     let record = machine().into_record();
     assert_eq!(record.message_span() * 15, Span::from_us(780));
 }
 
-/// A machine with two ports that was told something, after a millisecond.
+/// Returns a machine with a display of two ports, one millisecond after the script began.
 fn told(script: &[(u64, Say)]) -> (Machine, [NodeId; 2]) {
     let config = config(vec![Box::new(ScreenConfig::new(2))]);
     let mut machine = Machine::new(&config, 2, pxpl5_renderer::Layout::slats()).expect("valid");
@@ -89,7 +89,7 @@ fn what_a_port_shows_is_the_newest_picture_before_each_swap() {
     assert!(record.shown_by(FIRST_GP).is_empty());
 }
 
-/// The first swap shows an empty buffer, of which there is nothing to tell.
+/// The first swap shows an empty buffer, which yields no picture.
 #[test]
 fn a_swap_before_any_region_shows_no_picture() {
     let (machine, [left, _]) = told(&[swapped(100, 0, 1), arrived(110, 0, 2), swapped(200, 0, 2)]);
@@ -112,7 +112,7 @@ fn copying_is_a_stage_from_the_first_message_on() {
     assert_eq!(machine.record().observation().marks.iter().filter(|mark| mark.edge == StageEdge::Begin).count(), 0);
 }
 
-/// What is given up is counted in periods of the first display.
+/// The limit of discarding is counted in periods of the first display.
 #[test]
 fn what_is_before_an_instant_can_be_given_up() {
     let (mut machine, [left, right]) = told(&[
@@ -144,7 +144,8 @@ fn with_traffic() -> Record {
     machine.into_record()
 }
 
-/// The first word of a message arrives 16 words and its hops after the grant, and the last one `words` later.
+/// The first word of a message arrives 16 words and its hops after the grant. The last word arrives `words` word times
+/// later.
 #[test]
 fn traffic_tells_when_each_message_was_taken_and_how_many_channels_were_busy() {
     let record = with_traffic();
@@ -160,11 +161,11 @@ fn traffic_tells_when_each_message_was_taken_and_how_many_channels_were_busy() {
     let end = begin + word * 9;
     let second = Transfer { source: FIRST_GP, destination: RENDERERS[1], words: 9, begin, end };
     assert_eq!(traffic.transfers[1], second);
-    // Then a region of 128 x 128 pixels in messages of 1,024.
+    // The rest is a region of 128 x 128 pixels in messages of 1,024 words.
     assert_eq!(traffic.transfers.len(), 2 + 16);
     let to_screen = |transfer: &Transfer| (transfer.source, transfer.destination) == (RENDERERS[1], SCREEN);
     assert!(traffic.transfers[2..].iter().all(to_screen));
-    // The command had come in whole, and the copy begins: it leaves the FIFO at once.
+    // The copy command arrives completely and starts at once, so it leaves the FIFO immediately.
     assert!(traffic.fifo_changes.iter().all(|(renderer, ..)| *renderer == 1));
     assert_eq!(traffic.fifo_changes.iter().map(|(_, _, words)| words).sum::<i64>(), 0, "nothing is left");
     assert!(traffic.fifo_changes.iter().any(|(_, time, words)| (*time, *words) == (end, 9)));

@@ -1,4 +1,5 @@
-//! A machine of two graphics processors and two renderers, a display that does what messages say, and a line to it.
+//! Test machine with two graphics processors, two renderers, a display controlled by messages, and a host line to the
+//! display.
 
 use image::RgbImage;
 use parameters::ParameterTable;
@@ -16,18 +17,18 @@ use pxpl5_wire::{
 use std::cell::RefCell;
 use std::rc::Rc;
 
-/// Software of a message of the machine's processors.
+/// Software cost of a message on the test machine's processors.
 pub(crate) const MESSAGE: Span = Span::from_us(1);
 
 parameters::parameter_table! {
-    /// The numbers of the display.
+    /// Parameters of the test display.
     pub(crate) struct ScreenNumbers {
-        /// From one tick to the next.
+        /// Time between ticks.
         period_us: 100, "us", Assumed, 50..=200 in 1..=1_000_000, "made up";
     }
 }
 
-/// A display of so many surfaces; one of no surface is refused.
+/// Configuration of a display with a number of surfaces. A display without surfaces is refused.
 #[derive(Clone, Debug)]
 pub(crate) struct ScreenConfig {
     pub(crate) name: &'static str,
@@ -75,7 +76,7 @@ impl DisplayConfig for ScreenConfig {
     }
 }
 
-/// A display that puts out what it is told to.
+/// A test display that emits the outputs it receives as messages.
 #[derive(Debug)]
 pub(crate) struct Screen {
     period: Span,
@@ -84,16 +85,16 @@ pub(crate) struct Screen {
     pixels: u64,
 }
 
-/// What the display is told.
+/// A message to the test display.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Say {
-    /// A region of this picture has arrived at a surface and a port, its first message so many microseconds ago.
+    /// Reports a region of a picture. Its first message arrived `first_us_ago` microseconds ago.
     Arrived { surface: u32, port: u32, picture: u32, first_us_ago: u32 },
-    /// A surface swaps with a tick.
+    /// Reports a swap of a surface at a tick.
     Swapped { surface: u32, tick: u32 },
-    /// What is behind a port of a surface swaps with a tick.
+    /// Reports a swap of the part of a surface behind one port.
     Updated { surface: u32, port: u32, tick: u32 },
-    /// A region of this picture has arrived at the first surface and port, so many microseconds from now.
+    /// Reports a region of a picture on the first surface and port, `us` microseconds from now.
     Later { us: u32, picture: u32 },
 }
 
@@ -199,7 +200,7 @@ impl Display for Screen {
     }
 }
 
-/// The only region of a picture of 128 x 128: sixteen messages of pixels.
+/// Returns the only region of a picture of 128 x 128 pixels, which takes sixteen messages.
 pub(crate) fn target(frame_buffer: NodeId, picture: u32) -> CopyTarget {
     CopyTarget {
         frame_buffer,
@@ -211,7 +212,7 @@ pub(crate) fn target(frame_buffer: NodeId, picture: u32) -> CopyTarget {
     }
 }
 
-/// A command to copy a region: its length in words, and the list.
+/// Returns the length in words and the list of a command that copies a region.
 pub(crate) fn copy_command(way: CopyWay, target: CopyTarget) -> (u32, Body) {
     let words = CommandKind::CopyRegion.words();
     let order = CopyOrder { target, context: 0, way, content: CopyContent::Colour, acknowledge: None };
@@ -219,7 +220,7 @@ pub(crate) fn copy_command(way: CopyWay, target: CopyTarget) -> (u32, Body) {
     (words, Body::Commands(CommandList { runs: vec![run], context: 0, copies: vec![order], content: None }))
 }
 
-/// A line that says given things at given instants, in order of time.
+/// A host line that delivers given messages at given instants, in the order of time.
 #[derive(Debug)]
 pub(crate) struct Script(pub(crate) Vec<(Time, Body)>);
 
@@ -237,7 +238,7 @@ pub(crate) fn us(us: u64) -> Time {
     Time::ZERO + Span::from_us(us)
 }
 
-/// Ports: host 0, graphics processors 1 and 2, renderers 3 and 4, then those of the displays.
+/// Returns a configuration with the ports: host 0, graphics processors 1 and 2, renderers 3 and 4, then displays.
 pub(crate) fn config(displays: Vec<Box<dyn DisplayConfig>>) -> MachineConfig {
     let papers = MachineConfig::small_hmd();
     let gp = GpTiming { message_ns: MESSAGE.0 / 1_000, ..papers.gp };
@@ -249,12 +250,12 @@ pub(crate) const SECOND_GP: NodeId = NodeId(2);
 pub(crate) const RENDERERS: [NodeId; 2] = [NodeId(3), NodeId(4)];
 pub(crate) const SCREEN: NodeId = NodeId(5);
 
-/// A machine of that configuration for one picture, not switched on.
+/// Builds a machine for one picture at a time, not switched on.
 pub(crate) fn build(config: &MachineConfig) -> Machine {
     Machine::new(config, 1, Layout::slats()).expect("it is a valid machine")
 }
 
-/// With a display of one surface.
+/// Builds a machine with a display of one surface.
 pub(crate) fn machine() -> Machine {
     build(&config(vec![Box::new(ScreenConfig::new(1))]))
 }
@@ -268,7 +269,7 @@ where
     machine.load(node, Priority::Foreground, Box::pin(program(gp)));
 }
 
-/// Loads a program that sends messages one after the other and then waits for ever.
+/// Loads a program that sends messages one after the other and then waits forever.
 pub(crate) fn load_sender(machine: &mut Machine, node: NodeId, messages: Vec<(NodeId, u32, Body)>) {
     load(machine, node, |gp| async move {
         for (destination, words, body) in messages {
@@ -278,7 +279,7 @@ pub(crate) fn load_sender(machine: &mut Machine, node: NodeId, messages: Vec<(No
     });
 }
 
-/// Tells the display something at given instants, past the ring.
+/// Sends messages to the display at given instants over a host line.
 pub(crate) fn say(machine: &mut Machine, script: &[(u64, Say)]) {
     let script = script.iter().map(|(at, say)| (us(*at), say.body())).collect();
     machine.plug_host_line(Box::new(Script(script)));
@@ -288,7 +289,7 @@ pub(crate) fn words(words: &[u32]) -> Body {
     Body::Words(words.into())
 }
 
-/// What happens up to an instant to boards but the programs' looks: when, to whom, and what.
+/// Returns all events up to an instant, except polls of programs: time, board and description.
 pub(crate) fn happenings(machine: &mut Machine, until: Time) -> Vec<(Time, Board, &'static str)> {
     let mut all = Vec::new();
     loop {
@@ -300,10 +301,10 @@ pub(crate) fn happenings(machine: &mut Machine, until: Time) -> Vec<(Time, Board
     }
 }
 
-/// A place where programs note what they see.
+/// A list in which programs record what they observe.
 pub(crate) type Notes<T> = Rc<RefCell<Vec<T>>>;
 
-/// Pixels of a region that count how often they are asked for.
+/// Pixels of a region that count how often they are read.
 #[derive(Debug, Default)]
 pub(crate) struct Counted {
     pub(crate) asked: std::sync::atomic::AtomicU64,

@@ -1,4 +1,4 @@
-//! A machine at work: what it lets programs do, what it tells of itself, and that looking changes nothing.
+//! Tests of a running machine: programs, observations, and the guarantee that observing changes nothing.
 
 use crate::rig::{
     Counted, FIRST_GP, MESSAGE, Notes, RENDERERS, SCREEN, SECOND_GP, Say, ScreenConfig, Script, build, config,
@@ -75,7 +75,7 @@ fn a_run_ends_before_its_end_and_goes_on_from_there() {
     assert_eq!(machine.record().observation().arrivals.len(), 1);
 }
 
-/// At time zero: a tick of the display, its signal, and a look of the programs of three boards.
+/// At time zero there is a tick of the display, its signal to the first GP, and a poll of three boards.
 #[test]
 fn events_are_counted() {
     let mut machine = machine();
@@ -87,7 +87,7 @@ fn events_are_counted() {
     assert_eq!(machine.into_record().events(), 5);
 }
 
-/// Retraces are for the first processor alone, ticks of other displays for none.
+/// Only the first processor receives retraces, and only those of the first display.
 #[test]
 fn the_first_display_is_the_sync_generator_of_the_first_processor() {
     let mut other = ScreenConfig::new(1);
@@ -106,7 +106,7 @@ fn the_first_display_is_the_sync_generator_of_the_first_processor() {
     assert_eq!(machine.processors()[2].look(us(301)).period, PeriodNumber(0));
 }
 
-/// A status line tells how often what is behind a port has swapped.
+/// A status line counts the swaps behind a port.
 #[test]
 fn the_master_is_told_of_each_swap_and_how_many_there_were() {
     let mut machine =
@@ -142,7 +142,7 @@ fn surfaces_of_all_displays_are_numbered_one_after_the_other() {
         Say::Updated { surface: 1, port: 0, tick: 1 },
     ];
     load_sender(&mut machine, FIRST_GP, told.map(|say| (second, 5, say.body())).into());
-    // `Swapped` names the port by the surface's number: the second display has one port.
+    // `Swapped` identifies the port by the number of the surface. The second display has one port.
     load_sender(&mut machine, SECOND_GP, vec![(second, 5, Say::Swapped { surface: 0, tick: 2 }.body())]);
     machine.switch_on();
     machine.run_until(us(50)).expect("it goes on");
@@ -170,14 +170,14 @@ fn a_machine_of_which_every_edge_is_an_event_rests_too() {
     machine.give_up(Saving::IdleBoards);
     say(&mut machine, &[(60, Say::Later { us: 30, picture: 1 })]);
     machine.switch_on();
-    // Each edge asks the ring, whose answer comes in the same instant.
+    // Each clock edge polls the ring, which arbitrates in the same instant.
     machine.run_until(us(50)).expect("it goes on");
     assert!(machine.is_at_rest(), "an edge, a tick and a line");
     machine.run_until(us(70)).expect("it goes on");
     assert!(machine.is_at_rest(), "an edge, a tick and a timer");
 }
 
-/// The trace of a run in which three boards speak to one another at the same instants, and who spoke first.
+/// Returns the trace hash of a run in which three boards send at the same instants, and the order of the senders.
 fn shuffled(seed: Option<u64>) -> (TraceHash, Vec<Board>) {
     let mut machine = machine();
     if let Some(seed) = seed {
@@ -198,7 +198,7 @@ fn shuffled(seed: Option<u64>) -> (TraceHash, Vec<Board>) {
 #[test]
 fn ties_are_taken_in_another_order_and_nothing_else_changes() {
     let (hash, first) = shuffled(None);
-    // The first processor looks twice: it was told of the retrace.
+    // The first processor is polled twice, because it received the retrace.
     assert_eq!(first[..3], [Board::Host, Board::Gp(0), Board::Gp(1)], "in the order of their ports");
     assert_ne!(hash, TraceHash::default());
     let others: Vec<_> = (0..20).map(|seed| shuffled(Some(seed))).collect();
@@ -230,7 +230,7 @@ fn traces_tell_machines_apart_by_what_is_sent_when_and_to_whom() {
     assert!(others.iter().all(|other| *other != usual));
 }
 
-/// A region is computed once, though sixteen messages bring it.
+/// The pixels of a region are computed once, although sixteen messages carry them.
 #[test]
 fn a_worker_computes_every_region_that_is_copied_once() {
     for computes in [false, true] {
@@ -275,7 +275,7 @@ fn what_programs_tell_the_observer_is_observed_and_traced() {
     assert_ne!(run(1), run(2));
 }
 
-/// Graphics processors run the code; the host has none.
+/// Only graphics processors take their times from i860 code. The host has no code.
 #[test]
 fn code_tells_the_time_of_messages_where_it_runs() {
     let busy = |code: Option<CodeVersion>, runs: bool| {

@@ -1,4 +1,6 @@
-//! What a machine does that gives up a saving, and how savings are named. That none changes a result the workspace's `tests/savings.rs` shows.
+//! Behaviour of a machine with a disabled optimization, and names of optimizations.
+//!
+//! The workspace's `tests/savings.rs` shows that no optimization changes a result.
 
 use crate::rig::{FIRST_GP, SECOND_GP, happenings, load_sender, machine, us, words};
 use pxpl5_machine::{Board, Saving};
@@ -9,14 +11,14 @@ fn a_saving_is_known_by_the_name_that_it_prints() {
     for saving in Saving::ALL {
         assert_eq!(saving.name().parse(), Ok(saving));
         assert_eq!(saving.to_string(), saving.name());
-        // As commands name things: words of small letters.
+        // Names on the command line consist of small letters and hyphens.
         assert!(saving.name().bytes().all(|b| b == b'-' || b.is_ascii_lowercase()));
     }
     let all = Saving::ALL.map(Saving::name).join(", ");
     assert_eq!("sleep".parse::<Saving>(), Err(format!("expected {all}, found \"sleep\"")));
 }
 
-/// The boards' clock of 40 MHz: forty edges in a microsecond.
+/// The boards' clock of 40 MHz has forty edges per microsecond.
 #[test]
 fn without_sleep_every_board_is_asked_at_every_edge() {
     let mut machine = machine();

@@ -1,4 +1,4 @@
-//! How a machine comes to a stop, and what it says of it.
+//! Errors and deadlocks that stop a machine.
 
 use crate::rig::{
     FIRST_GP, MESSAGE, RENDERERS, SCREEN, SECOND_GP, Say, ScreenConfig, build, config, copy_command, load, load_sender,
@@ -11,12 +11,12 @@ use pxpl5_wire::{CopyWay, NodeId};
 
 const LONG: Time = Time(100_000 * 1_000_000);
 
-/// A program that waits for what never comes.
+/// Loads a program that waits forever.
 fn load_waiting(machine: &mut Machine, node: NodeId) {
     load(machine, node, |gp| async move { gp.until("Godot", || None).await });
 }
 
-/// Period 0 has the looks of programs at the start; the first tick with none since the last is the second.
+/// Period 0 contains the polls at the start, so the second tick is the first idle one.
 #[test]
 fn programs_that_wait_for_ever_are_a_deadlock_after_so_many_ticks() {
     let mut machine = machine();
@@ -53,7 +53,7 @@ fn waiting_for_retraces_is_no_deadlock_nor_is_a_machine_without_programs() {
     }
 }
 
-/// A message in every hundredth period is something that happens; one that a line brings to the display is not.
+/// A message in every hundredth period prevents a deadlock. A message on a host line does not.
 #[test]
 fn who_is_sent_something_now_and_then_is_not_deadlocked() {
     let run = |works: bool| {
@@ -76,8 +76,10 @@ fn who_is_sent_something_now_and_then_is_not_deadlocked() {
     assert_eq!(run(false).map_err(|error| error.time()), Err(us(100 * (1 + DEADLOCK_TICKS))));
 }
 
-/// TRANSFORM of a large scene on one processor takes longer than a deadlock does to be noticed. Between the ticks behind its last one nothing
-/// happens any more, and what waits waits for nothing.
+/// TRANSFORM of a large scene on one processor exceeds the time after which a deadlock is detected.
+///
+/// No deadlock may be reported before the work ends. After its end, the program still waits, and the machine is
+/// deadlocked.
 #[test]
 fn work_that_takes_long_is_no_deadlock_until_it_is_over() {
     let ticks = 3 * DEADLOCK_TICKS;
@@ -99,7 +101,7 @@ fn work_that_takes_long_is_no_deadlock_until_it_is_over() {
 fn everybody_who_waits_is_told_with_what_he_waits_for() {
     let mut machine = machine();
     load_waiting(&mut machine, NodeId(0));
-    // A region for a frame buffer of which the port is kept by another renderer: the first copy never ends.
+    // Both renderers copy to the same frame buffer. One of them occupies the port, so the other copy cannot begin.
     let copies = RENDERERS.map(|renderer| {
         let (length, list) = copy_command(CopyWay::FromPixelMemory, target(SCREEN, 1));
         (renderer, length, list)
@@ -135,7 +137,7 @@ fn a_fault_of_a_program_stops_the_machine_with_its_board_and_time() {
     assert_eq!((error.time(), machine.step_before(LONG)), (us(7), Err(error.clone())));
 }
 
-/// Messages have 1,024 words at most (TR94); there are six ports.
+/// Messages have at most 1,024 words (TR94), and the test machine has six ports.
 #[test]
 fn a_message_that_no_ring_carries_stops_the_machine() {
     for (receiver, length, reason) in
@@ -145,7 +147,7 @@ fn a_message_that_no_ring_carries_stops_the_machine() {
         load_sender(&mut machine, FIRST_GP, vec![(receiver, length, words(&[1]))]);
         machine.switch_on();
         let error = machine.run_until(LONG).expect_err("refused");
-        // A cycle after the software the board asks, and the ring says no a word later.
+        // The board sends its request one cycle after the software cost. The ring refuses it one word later.
         assert_eq!(error.time(), Time::ZERO + MESSAGE + Span::from_ns(25 + 50));
         let RunError::Ring { reason: found, .. } = &error else { panic!("{error}") };
         assert!(found.contains(reason), "{found}");

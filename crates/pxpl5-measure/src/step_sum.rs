@@ -1,0 +1,101 @@
+//! How long a step of the head takes to light, for what each memory of a display with faces shows.
+
+use address_recalculation::{AddressRecalculationPipeline, Scan};
+use pxpl5_run::{FaceHistory, Samples, Settled, ShownMemory, Statistics};
+use pxpl5_sim::Time;
+use pxpl5_wire::PeriodNumber;
+
+/// Parts of the latency of a step of the head, in the order of time.
+const PARTS: [&str; 4] = ["before_due", "draw", "age", "scan"];
+
+/// A streaming observer of the latencies of a step of the head, one for each memory and period since the memory's first update.
+#[derive(Debug, Default)]
+pub(crate) struct StepSum {
+    next: PeriodNumber,
+    memories: Vec<OfMemory>,
+}
+
+/// Latencies in what one memory shows, milliseconds.
+#[derive(Debug, Default)]
+struct OfMemory {
+    /// The period from whose begin the newest update is shown, and the instant at which its latency begins.
+    begin: Option<(PeriodNumber, Time)>,
+    total: Samples,
+    parts: [f64; PARTS.len()],
+}
+
+/// The latency of a step in what one memory showed.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Steps {
+    /// Over all periods from the first update on, milliseconds; `None` before it.
+    pub(crate) latency_ms: Option<Statistics>,
+    /// Means of its parts, milliseconds.
+    pub(crate) parts_ms: Vec<(&'static str, f64)>,
+}
+
+impl StepSum {
+    pub(crate) fn take(&mut self, run: &Settled<'_>) {
+        let display: Option<&AddressRecalculationPipeline> = run.record.display_of_kind();
+        let Some(scan) = display.and_then(|display| display.config().scan().ok()) else { return };
+        let Some(history) = FaceHistory::held(run.record, run.notes) else { return };
+        for field in self.next.until(run.until) {
+            for memory in 0..history.n_memories() {
+                let Some(shown) = history.memory_at(memory, field) else { continue };
+                if self.memories.len() <= memory {
+                    self.memories.resize_with(memory + 1, || OfMemory {
+                        total: Samples::keeping(run.samples),
+                        ..OfMemory::default()
+                    });
+                }
+                self.memories[memory].push(run, &scan, shown, field);
+            }
+        }
+        self.next = run.until;
+    }
+
+    /// Returns the result of each memory, the one that is drawn most often first.
+    pub(crate) fn result(self) -> Vec<Steps> {
+        self.memories.into_iter().map(OfMemory::result).collect()
+    }
+}
+
+impl OfMemory {
+    /// Takes the latency of what the memory shows in the middle of a field.
+    fn push(&mut self, run: &Settled<'_>, scan: &Scan, shown: &ShownMemory, field: PeriodNumber) {
+        let due = shown.note.due_at;
+        // The measurement is looked up once: a long run gives up the views of updates that it shows for many fields.
+        let begin = match self.begin {
+            Some((from, begin)) if from == shown.from => begin,
+            _ => measured_at(run, shown).unwrap_or(due),
+        };
+        self.begin = Some((shown.from, begin));
+        // An interlaced display shows one of two neighbouring lines in each period.
+        let mut middle = [0, 1].into_iter().map(|line| scan.lights(scan.width() / 2, scan.height() / 2 + line, field));
+        let Some(light) = middle.find_map(|light| light) else { return };
+        let instants = [begin, due, scan.retrace(shown.from), scan.retrace(field), light];
+        for (sum, pair) in self.parts.iter_mut().zip(instants.windows(2)) {
+            *sum += between_ms(pair[0], pair[1]);
+        }
+        self.total.push(between_ms(begin, light));
+    }
+
+    fn result(self) -> Steps {
+        let count = self.total.count();
+        if count == 0 {
+            return Steps::default();
+        }
+        let parts = PARTS.into_iter().zip(self.parts).map(|(name, sum)| (name, sum / count as f64));
+        Steps { latency_ms: Some(self.total.statistics()), parts_ms: parts.collect() }
+    }
+}
+
+/// Returns the instant at which the pose behind a memory's picture was measured; `None` without a tracked head.
+fn measured_at(run: &Settled<'_>, shown: &ShownMemory) -> Option<Time> {
+    let sampled = run.head?.sampled();
+    sampled.iter().find(|sampled| sampled.number == shown.note.view)?.measured_at
+}
+
+/// Returns the milliseconds between two instants: below zero where a view rests on a report that came after its memory was due.
+fn between_ms(from: Time, to: Time) -> f64 {
+    (to.0 as f64 - from.0 as f64) * 1e-9
+}
