@@ -13,17 +13,17 @@ use crate::state::Mode;
 use crate::timing::ChipSizes;
 use crate::trap::TrapCause;
 
-/// Most units of a block, its slot not counted.
+/// Most units of a block, without its slot.
 const LONGEST: usize = 32;
 
-/// What issues at once: an instruction, or a pair.
+/// Code that issues in one clock: an instruction or a pair.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Unit {
     pub(crate) pc: u32,
-    /// Mode in which it executes, and that of the unit after it.
+    /// Modes in which this unit and the next unit execute.
     pub(crate) mode: Mode,
     pub(crate) after: Mode,
-    /// The instruction, or the floating-point half.
+    /// The single instruction, or the floating-point half of a pair.
     pub(crate) first: Decoded,
     /// The core half of a pair.
     pub(crate) second: Option<Decoded>,
@@ -56,19 +56,19 @@ impl Unit {
         Ok(Unit { pc, mode, after: mode.after_pair(first.dual()), first, second: Some(second) })
     }
 
-    /// The half that may access memory or branch: that of a pair, or the instruction.
+    /// Returns the half that may access memory or branch: the core half of a pair, or the single instruction.
     #[inline]
     pub(crate) fn core(&self) -> &Decoded {
         self.second.as_ref().unwrap_or(&self.first)
     }
 
-    /// Address of the core half.
+    /// Returns the address of the core half.
     #[inline]
     pub(crate) fn core_pc(&self) -> u32 {
         self.pc.wrapping_add(if self.second.is_some() { 4 } else { 0 })
     }
 
-    /// Address of what follows.
+    /// Returns the address after the unit.
     #[inline]
     pub(crate) fn next(&self) -> u32 {
         self.pc.wrapping_add(if self.second.is_some() { 8 } else { 4 })
@@ -78,7 +78,7 @@ impl Unit {
         1 + u64::from(self.second.is_some())
     }
 
-    /// Whether a block must end behind it because it changes what code is, or how it is fetched.
+    /// Returns true for `st.c`, which can change code or how it is fetched, so that a block must end after it.
     fn ends_block(&self) -> bool {
         self.core().instruction.op == Op::StC
     }
@@ -97,40 +97,40 @@ fn is_store(op: Op) -> bool {
 
 const LINE_BYTES: u32 = ChipSizes::PAPERS.line_bytes as u32;
 
-/// No state of an instruction cache.
+/// Value of [`Block::held_in`] that equals no state of an instruction cache.
 const NEVER: u64 = u64::MAX;
 
 /// A run of units that ends with a branch, before an instruction that cannot be executed, or at its greatest length.
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
-    /// Where it begins, and in which mode.
+    /// Address and mode in which the block begins.
     pub(crate) pc: u32,
     mode: Mode,
-    /// Mode after its slot.
+    /// Mode after the delay slot.
     pub(crate) after_slot: Mode,
-    /// Mode and address of what follows its units.
+    /// Mode and address of the code after the units of the block.
     pub(crate) after: Mode,
     pub(crate) next: u32,
-    /// Number of its units, without the slot.
+    /// Number of units, without the slot.
     pub(crate) count: usize,
-    /// Instructions, the slot included.
+    /// Number of instructions, including the slot.
     pub(crate) instructions: u64,
-    /// State of the instruction cache in which all of it was held.
+    /// State number of the instruction cache at the last time that the cache held the whole block.
     held_in: u64,
-    /// What the units change that a program can see, and the slot behind them.
+    /// Effects of the units and of the slot after them.
     pub(crate) actions: Box<[Action]>,
-    /// The units that access data, in order, each once.
+    /// Units that access data, in order.
     pub(crate) accessing: Box<[AccessingUnit]>,
     pub(crate) remembered: BlockMemory,
-    /// The units, and the slot behind them.
+    /// The units, then the slot.
     units: Box<[Unit]>,
-    /// The first unit on each line of the cache.
+    /// Number of the first unit on each cache line.
     lines: Box<[u8]>,
-    /// Why what follows a delayed branch that ends the block cannot be executed.
+    /// Cause of the trap if the slot of the final branch cannot be executed.
     pub(crate) wrong_slot: Option<TrapCause>,
 }
 
-/// What the clock must know of an access.
+/// Properties of a data access that the clock needs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Access {
     pub(crate) op: Op,
@@ -148,10 +148,10 @@ impl Access {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AccessingUnit {
     pub(crate) access: Access,
-    /// Its number in the block.
+    /// Number of the unit in its block.
     pub(crate) number: u8,
     pub(crate) is_store: bool,
-    /// Whether it goes past the cache, whatever that holds.
+    /// True if the access always goes to the bus, regardless of the cache's contents.
     pub(crate) leaves_cache: bool,
 }
 
@@ -169,7 +169,7 @@ impl AccessingUnit {
     }
 }
 
-/// The first of some units on each line of the cache.
+/// Returns the number of the first unit on each cache line.
 fn first_on_lines(units: &[Unit]) -> Box<[u8]> {
     let mut line = None;
     let lines = (0..).zip(units);
@@ -178,12 +178,13 @@ fn first_on_lines(units: &[Unit]) -> Box<[u8]> {
 }
 
 impl Block {
-    /// The block that begins at an address in a mode.
+    /// Decodes the block that begins at an address in a mode.
     ///
     /// # Errors
-    /// Why its first unit cannot be executed.
+    /// The cause of the trap if its first unit cannot be executed.
     pub(crate) fn read<B: Bus>(pc: u32, mode: Mode, code: &mut CodeMap, bus: &mut B) -> Result<Block, TrapCause> {
         let mut last = Unit::read(pc, mode, code, bus)?;
+        // Take units up to a branch, an `st.c`, an illegal unit or the greatest length.
         let mut units = vec![last];
         while units.len() < LONGEST && !last.core().is_branch() && !last.ends_block() {
             let Ok(unit) = Unit::read(last.next(), last.after, code, bus) else { break };
@@ -192,6 +193,7 @@ impl Block {
         }
         let count = units.len();
         let mut wrong_slot = None;
+        // A delayed branch also needs its slot, in which no branch may stand.
         if last.core().instruction.is_delayed_branch() {
             match Unit::read(last.next(), last.after, code, bus) {
                 Ok(unit) if unit.core().is_branch() => wrong_slot = Some(TrapCause::BranchInSlot),
@@ -217,13 +219,13 @@ impl Block {
         })
     }
 
-    /// The units that were executed.
+    /// Returns the units that were executed.
     #[inline]
     pub(crate) fn executed(&self, execution: Execution) -> &[Unit] {
         self.units.get(..execution.units + usize::from(execution.slot)).unwrap_or_default()
     }
 
-    /// How many instructions those are.
+    /// Returns the number of instructions in the executed units.
     #[inline]
     pub(crate) fn instructions_of(&self, execution: Execution) -> u64 {
         let executed = self.executed(execution);
@@ -234,13 +236,13 @@ impl Block {
         }
     }
 
-    /// A unit by its number; the slot has the one behind the last.
+    /// Returns a unit by its number. The slot has the number after the last unit.
     #[inline]
     pub(crate) fn unit(&self, number: usize) -> &Unit {
         &self.units[number]
     }
 
-    /// An address on the line of the cache that a unit is on, and the number of the first unit behind that line.
+    /// Returns an address on the cache line of a unit, and the number of the first unit after that line.
     #[inline]
     pub(crate) fn line(&self, number: usize) -> (u32, usize) {
         let next = self.lines.iter().skip(1).position(|first| usize::from(*first) > number);
@@ -249,7 +251,7 @@ impl Block {
         (self.pc.wrapping_add(line as u32 * LINE_BYTES), end)
     }
 
-    /// Whether the instruction cache holds all of it.
+    /// Returns true if the instruction cache holds the whole block.
     #[inline]
     pub(crate) fn is_held(&mut self, cache: &InstructionTags) -> bool {
         self.held_in == cache.changes() || self.look_up(cache)
@@ -264,13 +266,14 @@ impl Block {
         held
     }
 
-    /// Whether it is that of an address and a mode.
+    /// Returns true if the block begins at this address in this mode.
     #[inline]
     pub(crate) fn begins(&self, pc: u32, mode: Mode) -> bool {
         self.pc == pc && self.mode == mode
     }
 
-    /// Whether an address lies behind its first unit and before its end; the slot is behind its end.
+    /// Returns true if an address lies after the first unit and before the end of the block. The slot does not belong
+    /// to this range.
     #[inline]
     pub(crate) fn passes(&self, address: u32) -> bool {
         let offset = address.wrapping_sub(self.pc);
