@@ -1,23 +1,25 @@
-//! Work of the CPU, whose time comes from the timing table or from code.
+//! Work of the CPU, with its time from the timing table or from code.
 
 use crate::firmware::{Fault, Gp};
 use crate::processor::{Processor, ProcessorFault};
 use crate::timing::GpTiming;
 use pxpl5_sim::Span;
 
-/// A piece of work in both forms in which a board can tell its time.
+/// A piece of work whose time is known from the timing table and from code.
 pub trait Work {
-    /// Its time by the timing table.
+    /// Returns the time of the work by the timing table.
     fn by_table(&self, timing: &GpTiming) -> Span;
 
-    /// Its time as code that runs on the board's processor; for parts that have no code, that of the table.
+    /// Runs the work as code on the board's processor and returns its time. Parts without code take the time of the
+    /// table.
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault`] when the code does not come to its end.
+    /// [`ProcessorFault`] if the code does not reach its end.
     fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault>;
 
-    /// Vertices that it transforms: each corner of a triangle and each centre of a sphere, once for each view. Most work transforms none.
+    /// Returns the number of vertices that the work transforms. Each corner of a triangle and each centre of a sphere
+    /// counts once for each view. Most work transforms none.
     fn vertex_transforms(&self) -> u64 {
         0
     }
@@ -28,7 +30,7 @@ impl Gp {
     ///
     /// # Errors
     ///
-    /// [`Fault::Processor`] when its code does not come to its end.
+    /// [`Fault::Processor`] if its code does not reach its end.
     pub async fn work(&self, work: &impl Work) -> Result<(), Fault> {
         let span = {
             let shared = &mut *self.shared.borrow_mut();
@@ -42,17 +44,17 @@ impl Gp {
         Ok(())
     }
 
-    /// Whether the time of this board's work comes from code.
+    /// Returns true if the time of this board's work comes from code.
     #[must_use]
     pub fn runs_code(&self) -> bool {
         self.shared.borrow().processor.is_some()
     }
 
-    /// Prepares the memory of a board whose time comes from code; on others there is nothing to do.
+    /// Prepares the memory of a board whose time comes from code. On other boards this does nothing.
     ///
     /// # Errors
     ///
-    /// [`Fault::Processor`] when something does not fit.
+    /// [`Fault::Processor`] if the data do not fit.
     pub fn install(&self, image: impl FnOnce(&mut Processor) -> Result<(), ProcessorFault>) -> Result<(), Fault> {
         let shared = &mut *self.shared.borrow_mut();
         Ok(shared.processor.as_deref_mut().map_or(Ok(()), image)?)
