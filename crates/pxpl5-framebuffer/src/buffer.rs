@@ -182,7 +182,7 @@ mod tests {
         }
     }
 
-    /// Regions of four cuts, whose borders agree nowhere.
+    /// Returns a region of one of four cuts whose borders never coincide.
     fn target(picture: u64, random: u64) -> CopyTarget {
         let cut = |region_width, region_height| RegionGrid { width: 640, height: 240, region_width, region_height };
         let (lines, grid) = [
@@ -196,7 +196,7 @@ mod tests {
         CopyTarget { frame_buffer: NodeId(7), buffer: 0, lines, grid, region, picture }
     }
 
-    /// Notes the number of a region in all its pixels, as the grid and its lines say, whatever segments say.
+    /// Writes the number of a region into all its pixels, by its grid and lines and without `segments`.
     fn paint(frame: &mut [u64], target: &CopyTarget) {
         let [left, top, width, height] = target.grid.rectangle(target.region);
         for row in top..top + height {
@@ -215,8 +215,8 @@ mod tests {
         frame
     }
 
-    /// Pixels decide: what is forgotten is what nothing is seen of, and nothing else; and there is never more to look through than is
-    /// seen at once and twice what was left when it was looked through last.
+    /// The board forgets exactly the regions of which no pixel is visible. The number of kept regions stays below a bound:
+    /// the visible ones and twice the number left by the last search.
     #[test]
     fn what_is_forgotten_is_what_later_regions_have_covered() {
         let video = Video::new(crate::FrameBufferConfig::NTSC.video).expect("valid");

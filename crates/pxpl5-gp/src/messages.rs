@@ -162,7 +162,7 @@ mod tests {
         }
     }
 
-    /// Waits for a message without paying, so that it is there when the other program has stopped the board.
+    /// Waits for a message without paying its cost, so that it is in the inbox when the other program stops the board.
     async fn wait(gp: Gp) -> Result<(), Fault> {
         gp.until("nothing", || None::<()>).await;
         Ok(())
@@ -180,7 +180,7 @@ mod tests {
         board
     }
 
-    /// What a board does with messages of so many words, one after the other: its busy time and how many it has sent.
+    /// Feeds a board messages of the given lengths. Returns its busy time and the number of messages that it has sent.
     fn fed(board: &mut GpBoard, lengths: &[usize]) -> (Span, usize) {
         let mut bench: TestBench<GpEvent, GpOutput> = TestBench::new();
         for (number, words) in (1..).zip(lengths) {

@@ -163,7 +163,7 @@ pub struct Processor {
 /// does not stop at a breakpoint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BreakpointHit {
-    /// The port of the board.
+    /// Port of the board.
     pub gp: NodeId,
     /// Address of the instruction.
     pub address: u32,

@@ -202,7 +202,7 @@ mod tests {
         assert_eq!(HostTiming::PAPERS.out_of_range(), []);
     }
 
-    /// The fits are what the papers' limits ask for, whatever the range of PPHIGS.
+    /// The fitted times follow from the papers' limits and may lie outside the range of PPHIGS.
     #[test]
     fn every_preset_is_within_the_limits() {
         for preset in [GpTiming::SLATS_1994, GpTiming::SLATS_1995, GpTiming::SLATS_OPTIMISED] {
@@ -210,7 +210,8 @@ mod tests {
         }
     }
 
-    /// 30.0 and 55.8 us are fitted to the limits of 110 and 100 triangles, a third of it is what I3D95 expects of code in cache. Slats has no bins.
+    /// 30.0 and 55.8 us are fitted to the limits of 110 and 100 triangles. I3D95 expects a third of the time of 1994 for code
+    /// in cache. Slats has no bins.
     #[test]
     fn slats_takes_what_its_published_limits_ask_for() {
         let presets = [GpTiming::SLATS_1994, GpTiming::SLATS_1995, GpTiming::SLATS_OPTIMISED];
@@ -218,7 +219,7 @@ mod tests {
         assert_eq!(times, [30_000, 55_800, 10_000].map(|ns| [ns, ns, 0]));
     }
 
-    /// Of each code all times that it has stand in its table, whatever stood there; pxpl5-lab holds them to what the code takes.
+    /// Each table of code times replaces all earlier times. A test of pxpl5-lab compares the times with the code.
     #[test]
     fn tables_of_code_leave_no_time_of_code_as_it_was() {
         let mut before = GpTiming::PAPERS;
@@ -261,7 +262,7 @@ mod tests {
 
     #[test]
     fn a_word_on_the_hosts_link_takes_four_bytes_of_its_rate() {
-        // 5 MB/s: 800 ns a word. 3 bytes a second: 4/3 s.
+        // 5 MB/s give 800 ns per word; 3 bytes per second give 4/3 s.
         assert_eq!(HostTiming::PAPERS.link_span(7), Span::from_ns(5_600));
         let slow = HostTiming { link_bytes_per_s: 3, ..HostTiming::PAPERS };
         assert_eq!(slow.link_span(1), Span(1_333_333_333_333));

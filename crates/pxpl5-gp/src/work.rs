@@ -71,7 +71,7 @@ mod tests {
 
     const SCHEDULED: Option<CodeVersion> = Some(CodeVersion::Scheduled);
 
-    /// A loop of a number of turns, or a trap.
+    /// Work whose code is a loop of this many turns, or a trap for `None`.
     struct Turns(Option<u32>);
 
     impl Work for Turns {
@@ -109,11 +109,11 @@ mod tests {
     #[test]
     fn a_board_with_code_spends_its_clocks() {
         let [ten, twenty] = [10, 20].map(|turns| run(GpTiming::PAPERS, SCHEDULED, Some(turns)).busy());
-        // A turn is two instructions and the two clocks of a taken btne.
+        // A turn takes two instructions and the two clocks of a taken btne.
         assert_eq!(twenty.0 - ten.0, 10 * 4 * Processor::CLOCK.0);
     }
 
-    /// One nanosecond in the table once decided whether the code ran.
+    /// Regression test: a table time of one nanosecond once decided whether the code ran.
     #[test]
     fn a_changed_time_per_triangle_still_runs_the_code() {
         let table = run(GpTiming::PAPERS, SCHEDULED, Some(10)).busy();
