@@ -1,5 +1,5 @@
-//! Effects of the halves of a unit, chosen once at decoding, with operands in one form. Execution reads no instruction
-//! bit again.
+//! Effects of instructions and pairs, chosen once at decoding, with operands in one form. Execution reads no
+//! instruction bit again.
 
 use crate::decoded::Decoded;
 use crate::dual_operation::source_widths;
@@ -172,12 +172,12 @@ impl Floating {
     }
 }
 
-/// The effects of both halves of a unit.
+/// The effects of an instruction, or of both halves of a pair.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Action {
     pub(crate) core: CoreAction,
     pub(crate) floating: FloatingAction,
-    /// Number of the unit in its block.
+    /// Index of the instruction or pair in its block.
     pub(crate) number: u8,
 }
 

@@ -13,14 +13,14 @@ use crate::state::Mode;
 use crate::timing::ChipSizes;
 use crate::trap::TrapCause;
 
-/// Most units of a block, without its slot.
+/// Most instructions or pairs in a block, without the delay slot.
 const LONGEST: usize = 32;
 
 /// Code that issues in one clock: an instruction or a pair.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Unit {
     pub(crate) pc: u32,
-    /// Modes in which this unit and the next unit execute.
+    /// Modes in which this instruction or pair and the next one execute.
     pub(crate) mode: Mode,
     pub(crate) after: Mode,
     /// The single instruction, or the floating-point half of a pair.
@@ -68,7 +68,7 @@ impl Unit {
         self.pc.wrapping_add(if self.second.is_some() { 4 } else { 0 })
     }
 
-    /// Returns the address after the unit.
+    /// Returns the address after the instruction or pair.
     #[inline]
     pub(crate) fn next(&self) -> u32 {
         self.pc.wrapping_add(if self.second.is_some() { 8 } else { 4 })
@@ -100,31 +100,32 @@ const LINE_BYTES: u32 = ChipSizes::PAPERS.line_bytes as u32;
 /// Value of [`Block::held_in`] that equals no state of an instruction cache.
 const NEVER: u64 = u64::MAX;
 
-/// A run of units that ends with a branch, before an instruction that cannot be executed, or at its greatest length.
+/// A basic block: instructions and pairs up to a branch, up to one that cannot be executed, or up to the greatest
+/// length.
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
     /// Address and mode in which the block begins.
     pub(crate) pc: u32,
     mode: Mode,
-    /// Mode after the delay slot.
+    /// Pairing mode (single instructions or pairs) after the delay slot.
     pub(crate) after_slot: Mode,
-    /// Mode and address of the code after the units of the block.
+    /// Mode and address of the code after the block.
     pub(crate) after: Mode,
     pub(crate) next: u32,
-    /// Number of units, without the slot.
+    /// Number of instructions or pairs, without the delay slot.
     pub(crate) count: usize,
     /// Number of instructions, including the slot.
     pub(crate) instructions: u64,
-    /// State number of the instruction cache at the last time that the cache held the whole block.
+    /// Number of the instruction-cache state in which the whole block was last found in the cache.
     held_in: u64,
-    /// Effects of the units and of the slot after them.
+    /// Effects of the instructions and pairs, and of the delay slot after them.
     pub(crate) actions: Box<[Action]>,
-    /// Units that access data, in order.
+    /// Instructions and pairs that access data, in order.
     pub(crate) accessing: Box<[AccessingUnit]>,
     pub(crate) remembered: BlockMemory,
-    /// The units, then the slot.
+    /// The instructions and pairs, then the delay slot.
     units: Box<[Unit]>,
-    /// Number of the first unit on each cache line.
+    /// Index of the first instruction or pair on each cache line.
     lines: Box<[u8]>,
     /// Cause of the trap if the slot of the final branch cannot be executed.
     pub(crate) wrong_slot: Option<TrapCause>,
@@ -144,11 +145,11 @@ impl Access {
     }
 }
 
-/// A unit that accesses data.
+/// An instruction or pair that accesses data.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AccessingUnit {
     pub(crate) access: Access,
-    /// Number of the unit in its block.
+    /// Index of the instruction or pair in its block.
     pub(crate) number: u8,
     pub(crate) is_store: bool,
     /// True if the access always goes to the bus, regardless of the cache's contents.
@@ -169,7 +170,7 @@ impl AccessingUnit {
     }
 }
 
-/// Returns the number of the first unit on each cache line.
+/// Returns the index of the first instruction or pair on each cache line.
 fn first_on_lines(units: &[Unit]) -> Box<[u8]> {
     let mut line = None;
     let lines = (0..).zip(units);
@@ -181,10 +182,10 @@ impl Block {
     /// Decodes the block that begins at an address in a mode.
     ///
     /// # Errors
-    /// The cause of the trap if its first unit cannot be executed.
+    /// The cause of the trap if the first instruction or pair cannot be executed.
     pub(crate) fn read<B: Bus>(pc: u32, mode: Mode, code: &mut CodeMap, bus: &mut B) -> Result<Block, TrapCause> {
         let mut last = Unit::read(pc, mode, code, bus)?;
-        // Take units up to a branch, an `st.c`, an illegal unit or the greatest length.
+        // Decode up to a branch, an `st.c`, an illegal instruction or the greatest length.
         let mut units = vec![last];
         while units.len() < LONGEST && !last.core().is_branch() && !last.ends_block() {
             let Ok(unit) = Unit::read(last.next(), last.after, code, bus) else { break };
@@ -219,13 +220,13 @@ impl Block {
         })
     }
 
-    /// Returns the units that were executed.
+    /// Returns the instructions and pairs of the block that were executed.
     #[inline]
     pub(crate) fn executed(&self, execution: Execution) -> &[Unit] {
         self.units.get(..execution.units + usize::from(execution.slot)).unwrap_or_default()
     }
 
-    /// Returns the number of instructions in the executed units.
+    /// Returns the number of executed instructions. A pair counts as two.
     #[inline]
     pub(crate) fn instructions_of(&self, execution: Execution) -> u64 {
         let executed = self.executed(execution);
@@ -236,13 +237,13 @@ impl Block {
         }
     }
 
-    /// Returns a unit by its number. The slot has the number after the last unit.
+    /// Returns an instruction or pair by its index. The delay slot has the last index.
     #[inline]
     pub(crate) fn unit(&self, number: usize) -> &Unit {
         &self.units[number]
     }
 
-    /// Returns an address on the cache line of a unit, and the number of the first unit after that line.
+    /// Returns an address on the cache line of an instruction or pair, and the index of the first one after that line.
     #[inline]
     pub(crate) fn line(&self, number: usize) -> (u32, usize) {
         let next = self.lines.iter().skip(1).position(|first| usize::from(*first) > number);
@@ -272,8 +273,8 @@ impl Block {
         self.pc == pc && self.mode == mode
     }
 
-    /// Returns true if an address lies after the first unit and before the end of the block. The slot does not belong
-    /// to this range.
+    /// Returns true if an address lies after the first instruction or pair and before the end of the block, without its
+    /// delay slot.
     #[inline]
     pub(crate) fn passes(&self, address: u32) -> bool {
         let offset = address.wrapping_sub(self.pc);

@@ -19,7 +19,7 @@ use crate::translation::Translation;
 
 const BUS_BYTES: u32 = ChipSizes::PAPERS.bus_bytes as u32;
 
-/// Addresses of data accesses in order, at most one for each unit of a block.
+/// Addresses of data accesses in order, at most one for each instruction or pair of a block.
 #[derive(Clone, Debug)]
 pub(crate) struct Accesses {
     all: [u32; Accesses::MOST],
@@ -29,7 +29,7 @@ pub(crate) struct Accesses {
 }
 
 impl Accesses {
-    /// Capacity: more than the units of a block, and a power of two.
+    /// Capacity: a power of two, greater than the length of a block.
     const MOST: usize = 64;
 
     pub(crate) fn new() -> Accesses {
@@ -118,7 +118,7 @@ impl Clock {
         self.translation.clear();
     }
 
-    /// Swaps the numbered scoreboards with those of a shelf.
+    /// Exchanges the numbered scoreboards with those of a shelf, which several processors share.
     pub(crate) fn exchange_numbers(&mut self, numbers: &mut Box<Numbers>) {
         self.write_board();
         if let Some(memo) = &mut self.memo {
@@ -133,7 +133,8 @@ impl Clock {
 
     // ---- blocks
 
-    /// Returns true if the clocks of runs are reused. Translation and profiles by address need every unit counted.
+    /// Returns true if remembered clocks are reused. Address translation and profiles by address need every instruction
+    /// counted.
     #[inline]
     pub(crate) fn repeats(&self) -> bool {
         self.on && self.memo.is_some() && !self.translation.is_on() && self.sampler.is_none()
@@ -159,7 +160,7 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks of a block unit by unit.
+    /// Counts the clocks of a block, one instruction or pair after the other.
     fn count<B: Bus>(&mut self, block: &Block, execution: Execution, accesses: &Accesses, bus: &B) {
         self.write_board();
         let mut accesses = accesses.addresses().iter();
@@ -178,7 +179,7 @@ impl Clock {
         });
     }
 
-    // ---- units
+    // ---- instructions and pairs
 
     #[inline]
     pub(crate) fn fetch<B: Bus>(&mut self, unit: &Unit, bus: &B) {
@@ -194,7 +195,7 @@ impl Clock {
         }
     }
 
-    /// Charges the clocks of a unit's data access, branch or `st.c`.
+    /// Charges the clocks of a data access, a branch or `st.c`.
     #[inline]
     pub(crate) fn end<B: Bus>(&mut self, unit: &Unit, taken: bool, accesses: &mut std::slice::Iter<'_, u32>, bus: &B) {
         let core = unit.core();

@@ -5,7 +5,7 @@ use crate::block::Block;
 use crate::code_map::CodeMap;
 use crate::state::Mode;
 
-/// Size of the host's table of decoded blocks; unrelated to the part's instruction cache.
+/// Size of the host's table of decoded blocks; unrelated to the processor's instruction cache.
 const BLOCKS: usize = 1 << 12;
 
 fn place(pc: u32) -> usize {

@@ -7,7 +7,7 @@ use std::ops::Range;
 pub(crate) struct CodeMap {
     /// Addresses of the assembled program; empty without one.
     program: Range<u32>,
-    /// True if a store changed the program.
+    /// True if a store has changed a word of the program.
     is_stored_to: bool,
     /// Lowest and highest address of the program and of the decoded words.
     range: (u32, u32),
@@ -57,7 +57,7 @@ impl CodeMap {
         })
     }
 
-    /// Returns true if all decoded words lie in the program and no store changed it.
+    /// Returns true if every decoded word belongs to the assembled program and no store has changed the program.
     pub(crate) fn is_as_assembled(&self) -> bool {
         !self.is_stored_to && self.range == CodeMap::ends(&self.program)
     }

@@ -18,9 +18,10 @@ pub(crate) struct Common {
     pub(crate) bus: Dram,
     /// Chooses the line that is replaced in a full set.
     pub(crate) chance: Chance,
-    /// End of the latest data-line fill, as a clock. An instruction miss before it waits longer.
+    /// End of the latest data-line fill, as a clock. An instruction miss that begins earlier waits longer.
     pub(crate) data_fill_end: u64,
-    /// End of the latest instruction-line fill, as a clock. A freeze that begins before it lasts at least until then.
+    /// End of the latest instruction-line fill, as a clock. A freeze that begins earlier lasts at least until this
+    /// clock.
     pub(crate) instruction_fill_end: u64,
 }
 

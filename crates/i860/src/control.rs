@@ -1,4 +1,4 @@
-//! Execution of branches, trap instructions and the core half of units.
+//! Execution of branches and trap instructions, and of the core half of pairs.
 
 use crate::action::{Core, CoreAction};
 use crate::block::Unit;
@@ -19,13 +19,14 @@ fn delayed(taken: bool, target: u32) -> Flow {
     if taken { Flow::Delayed(target) } else { Flow::Skip }
 }
 
-/// Returns the address after the delay slot of a unit's branch. The slot is a pair if the next unit is dual.
+/// Returns the address after a branch's delay slot. The slot is a pair if the code after the branch is in
+/// dual-instruction mode.
 fn behind_slot(unit: &Unit) -> u32 {
     unit.core_pc().wrapping_add(if unit.after.is_dual() { 12 } else { 8 })
 }
 
 impl Cpu {
-    /// Executes the core half of a unit.
+    /// Executes a core instruction, or the core half of a pair.
     #[inline(always)]
     pub(crate) fn core<'a, B: Bus>(&mut self, a: &CoreAction, unit: impl Fn() -> &'a Unit, bus: &mut B) -> Flow {
         let done = match a.does {

@@ -28,7 +28,7 @@ pub struct Cpu {
     pub(crate) mode_after_slot: Option<Mode>,
     /// Data addresses that the current block has accessed.
     pub(crate) accesses: Accesses,
-    /// Cause of the trap of the current unit.
+    /// Cause of the trap of the instruction or pair that is being executed.
     cause: Option<TrapCause>,
     /// Value that the current block has written to the directory-base register.
     pub(crate) directory_base: Option<u32>,
@@ -113,7 +113,7 @@ impl Cpu {
         self.time.empty_caches();
     }
 
-    /// Starts to record clocks by address, or stops with `None`.
+    /// Starts to record clocks by address. `None` stops the recording.
     pub fn watch(&mut self, addresses: Option<AddressProfile>) {
         self.time.sampler = addresses;
     }
@@ -132,8 +132,9 @@ impl Cpu {
         self.code_changed = false;
     }
 
-    /// Uses what a shelf knows of `program` from now on, until [`Cpu::close`].
-    /// The memory must hold the program as it was assembled. With `None` all code is decoded anew. No clock changes.
+    /// Takes the decoded code of `program` from a shelf of decoded programs and uses it until [`Cpu::close`].
+    /// The memory must hold the program as it was assembled. With `None` the processor decodes all code anew. No clock
+    /// changes.
     ///
     /// All processors that use a shelf must have the same [`Config::freezes`].
     pub fn open(&mut self, shelf: &mut Shelf, program: Option<&Arc<Program>>) {
@@ -180,8 +181,8 @@ impl Cpu {
         self.advance(bus, None, 1)
     }
 
-    /// Executes the block at pc. Executes only its first unit if the block goes past `stop` or has more than `most`
-    /// instructions.
+    /// Executes the block at pc. Executes only its first instruction or pair if the block goes past `stop` or has more
+    /// than `most` instructions.
     fn advance<B: Bus>(&mut self, bus: &mut B, stop: Option<u32>, most: u64) -> Result<(), Trap> {
         let pc = self.state.pc;
         // Take the decoded block out of the store, or decode it now.
@@ -193,11 +194,11 @@ impl Cpu {
                 Err(cause) => return Err(self.take_trap(cause)),
             },
         };
-        // Execute the whole block where stop and budget allow, else one unit.
+        // Execute the whole block where stop and budget allow, else its first instruction or pair.
         let whole = block.instructions <= most && stop.is_none_or(|stop| !block.passes(stop));
         let units = if whole { block.count } else { 1 };
         self.execute(&mut block, units, bus);
-        // Changes of dirbase take effect after the unit that wrote them.
+        // Changes of dirbase take effect after the instruction that wrote them.
         if let Some(value) = self.directory_base.take() {
             self.obey_directory_base(value);
         }
@@ -212,7 +213,7 @@ impl Cpu {
         }
     }
 
-    /// Executes at most `most` units of a block and the slot of their branch, then counts their clocks.
+    /// Executes at most `most` instructions or pairs of a block and the slot of their branch, then counts their clocks.
     #[inline]
     fn execute<B: Bus>(&mut self, block: &mut Block, most: usize, bus: &mut B) {
         self.accesses.begin(self.time.repeats());
@@ -222,10 +223,11 @@ impl Cpu {
         self.time.pass(block, execution, &self.accesses, bus);
     }
 
-    /// Sets pc and mode for the next block, and executes the delay slot if the last unit was a taken delayed branch.
+    /// Sets pc and mode for the next block. Executes the delay slot first if the last instruction was a taken delayed
+    /// branch.
     #[inline]
     fn go_on<B: Bus>(&mut self, flow: Flow, block: &Block, execution: &mut Execution, bus: &mut B) {
-        // Begin with the place right after the last executed unit; a jump or trap overrides it below.
+        // Begin with the address right after the executed code; a jump or trap overrides it below.
         let (next, after) = match execution.units == block.count {
             true => (block.next, block.after),
             false => {
@@ -271,7 +273,7 @@ impl Cpu {
         }
     }
 
-    /// Returns where control goes after a unit, and records the cause if the unit trapped.
+    /// Returns the control flow of an instruction, and records the cause if it trapped.
     #[inline(always)]
     pub(crate) fn flow(&mut self, done: Result<Flow, TrapCause>) -> Flow {
         done.unwrap_or_else(|cause| self.trapped(cause))
@@ -283,7 +285,8 @@ impl Cpu {
         Flow::Trapped
     }
 
-    /// Executes units of a block until one changes the flow. Returns their number and the flow after the last one.
+    /// Executes instructions and pairs of a block until one changes the flow. Returns their number and the flow after
+    /// the last one.
     fn units<B: Bus>(&mut self, block: &Block, range: Range<usize>, bus: &mut B) -> (usize, Flow) {
         let actions = &block.actions[range];
         for action in actions {
@@ -295,8 +298,8 @@ impl Cpu {
         (actions.len(), Flow::Next)
     }
 
-    /// Executes a unit. Both halves read before either writes. The core half goes first, so that its trap leaves the
-    /// floating-point half undone.
+    /// Executes an instruction or pair. Both halves of a pair read before either writes. The core half goes first, so
+    /// that its trap leaves the floating-point half undone.
     #[inline(always)]
     fn unit<B: Bus>(&mut self, action: &Action, block: &Block, bus: &mut B) -> Flow {
         let unit = || block.unit(usize::from(action.number));

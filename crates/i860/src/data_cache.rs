@@ -29,9 +29,10 @@ impl DataCache {
         self.0.holds(address)
     }
 
-    /// Finds the first access from number `from` on that misses, or the first one of a unit from number `limit` on.
-    /// Returns its number, and the number of its unit if it misses.
-    /// Stores that hit mark their lines dirty, as counted stores do.
+    /// Finds the end of the accesses that hit, from access number `from` to the first one of instruction or pair number
+    /// `limit`.
+    /// Returns the number of the first other access, and the index of its instruction or pair if the access misses.
+    /// Stores that hit mark their lines dirty.
     #[inline]
     pub(crate) fn held(
         &mut self,

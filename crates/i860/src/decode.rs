@@ -3,7 +3,7 @@
 use crate::instruction::{FNOP, Flags, Instruction, Op};
 use crate::syntax::register_mask;
 
-/// A word that encodes no instruction of the XR part.
+/// A word that encodes no instruction of the i860 XR.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0:08x} is not an i860 XR instruction")]
 pub struct IllegalWord(
@@ -27,7 +27,7 @@ fn split16(word: u32) -> i32 {
     signed16((word >> 5 & 0xF800) | (word & 0x07FF))
 }
 
-/// Decodes one word. Reserved fields are ignored, as on the part. Reserved operations are errors.
+/// Decodes one word. Reserved fields are ignored, as on the real chip. Reserved operations are errors.
 ///
 /// # Errors
 /// [`IllegalWord`] for a reserved operation, an XP-only operation, or a precision that the operation does not have.

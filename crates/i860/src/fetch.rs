@@ -61,12 +61,13 @@ impl Fetch {
         Filling { clocks, first: if clocks == 0 { 0 } else { self.first } }
     }
 
-    /// Numbers the states of the cache from `latest` on, because several processors share decoded blocks.
+    /// Continues the numbering of cache states after `latest`, so that states of different processors have different
+    /// numbers.
     pub(crate) fn number_states_from(&mut self, latest: u64) {
         self.cache.number_changes_from(latest);
     }
 
-    /// Returns the number of the current state of the cache.
+    /// Returns the number of the current state of the cache, which changes with every fill.
     pub(crate) fn states(&self) -> u64 {
         self.cache.changes()
     }

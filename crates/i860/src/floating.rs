@@ -10,7 +10,8 @@ use crate::operands::{Operands, last_product};
 use crate::state::{PipeStage, State, fsr, psr};
 
 impl Cpu {
-    /// Executes the floating-point half of a unit with operands that were already read.
+    /// Executes a floating-point instruction, or the floating-point half of a pair, with operands that were already
+    /// read.
     #[inline(always)]
     pub(crate) fn floating<'a>(&mut self, action: &FloatingAction, unit: impl Fn() -> &'a Unit, from: Operands) {
         use Operation::{Add, Multiply, Subtract};
@@ -73,7 +74,7 @@ impl Cpu {
         single(operation, f32::from_bits(a as u32), f32::from_bits(b as u32), self.flush_to_zero())
     }
 
-    /// Returns the pipe of the unit that executes an operation.
+    /// Returns the pipe of the adder or the multiplier, depending on the operation.
     #[inline(always)]
     fn pipe_of(&mut self, operation: Operation) -> &mut [PipeStage; 3] {
         let State { multiplier, adder, .. } = &mut self.state;
@@ -184,7 +185,7 @@ impl Cpu {
         self.state.set_f(i.dest, PipeStage { bits, double: r });
     }
 
-    /// Converts to an integer. The high word of the result is undefined on the part: `fix` clears it here, scalar
+    /// Converts to an integer. The high word of the result is undefined on the real chip: `fix` clears it here, scalar
     /// `ftrunc` keeps it.
     fn integer_part(&mut self, i: &Instruction, x: u64) {
         let wide = if i.has(Flags::SOURCE_DOUBLE) { x } else { widen(x as u32) };
@@ -259,7 +260,7 @@ impl Cpu {
         self.push_sum(PipeStage { bits: u64::from(new_sum), double: false });
     }
 
-    /// Returns the values of all [`Source`]s in the precision of one unit, in the order of the enumeration.
+    /// Returns the values of all [`Source`]s in single or double precision, in the order of the enumeration.
     #[inline(always)]
     fn sources(&self, from: Operands, product: PipeStage, sum: PipeStage, double: bool) -> [u64; 7] {
         let product = self.in_precision(product, double);
@@ -293,7 +294,7 @@ fn push(pipe: &mut [PipeStage; 3], last: usize, result: PipeStage) -> PipeStage 
     leaving
 }
 
-/// Destroys the contents of a pipe, as a scalar operation of its unit does.
+/// Destroys the results in a pipe, as a scalar operation does to the pipe of its unit.
 #[inline(always)]
 fn lose(pipe: &mut [PipeStage; 3]) {
     for stage in pipe {

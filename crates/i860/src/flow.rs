@@ -1,6 +1,6 @@
-//! Control flow after a unit.
+//! Control flow after an instruction or pair.
 
-/// Control flow after a unit (an instruction or a pair).
+/// Control flow after an instruction or pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Flow {
     /// Continue with the instruction that follows in memory.
@@ -11,7 +11,7 @@ pub(crate) enum Flow {
     Jump(u32),
     /// Jump to a target after the delay slot.
     Delayed(u32),
-    /// Skip the next unit.
+    /// Skip the next instruction or pair.
     Skip,
     Trapped,
 }

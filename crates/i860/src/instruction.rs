@@ -1,6 +1,6 @@
 //! The instruction set as a type: operations, fields, and the units and registers that an operation uses.
 
-/// Every operation of the XR part. Precision, addressing form and pipelining are in [`Flags`].
+/// Every operation of the i860 XR. [`Flags`] holds precision, addressing form and pipelining.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Op {

@@ -37,7 +37,7 @@
 //!   Without traps a NaN result is the first NaN operand made quiet, or the default NaN with its sign set.
 //! - A scalar operation, `frcp` and `frsqr` included, destroys the contents of its unit's pipe: they become NaN in this
 //!   model. The assembler warns of code that reads a result from a pipe after a scalar operation.
-//! - The seeds of `frcp` and `frsqr` come from a [`SeedTable`], because the part's table is not public.
+//! - The seeds of `frcp` and `frsqr` come from a [`SeedTable`], because the chip's table is not public.
 //! - A trap leaves the processor at the first instruction of its handler, and [`Cpu::step`] returns its cause. Illegal
 //!   words and pairs, a branch in a delay slot and a misaligned pair are instruction traps.
 //! - No program can make the model panic. A run ends at its stop address, at a trap, or when its instruction budget is
@@ -59,24 +59,24 @@
 //!
 //! # Speed
 //!
-//! Code is decoded once, as blocks: a block goes from an address to the next branch with its delay slot. The processor
-//! executes a block, and the clock then counts its time.
+//! Code is decoded once, as basic blocks: a block goes from an address to the next branch with its delay slot. The
+//! processor executes a block, and the clock then counts its time.
 //!
-//! Runs of units that hit both caches touch neither the bus nor the queues nor the replacement sequence. Their clocks
-//! depend only on the waits left by earlier instructions, on the rest of an arriving instruction line and on taken
-//! branches and traps. The model remembers these clocks and reuses them, as FastSim does (Schnarr and Larus, ASPLOS
-//! 1998). [`Config::memoise`] turns this on.
+//! A *run* is a part of a block whose instructions and data are all in the caches. It uses neither the bus nor the
+//! queues nor the replacement sequence. Its clocks depend only on the waits left by earlier instructions, on the rest
+//! of an arriving instruction line and on taken branches and traps. The model remembers these clocks and reuses them,
+//! as FastSim does (Schnarr and Larus, ASPLOS 1998). [`Config::memoise`] turns this on.
 //!
-//! A block is one such run, or several runs separated by accesses that leave the cache. The model counts these
-//! accesses, and units after a wait of more than 15 clocks, one by one. A block that is not entirely in the instruction
-//! cache is also split at cache lines.
+//! A block is one run, or several runs separated by accesses that leave the cache. The model counts these accesses, and
+//! instructions after a wait of more than 15 clocks, one by one. A block that is not entirely in the instruction cache
+//! is also split at cache lines.
 //!
 //! Counted and reused clocks give the same state, clocks and profile. `tests/memo.rs` checks random programs, also
 //! larger than the caches. `crates/pphigs/tests/memo.rs` checks the triangle kernels with every row switched. The
 //! benchmarks of `crates/pphigs` measure the gain for these kernels.
 //!
 //! A [`Shelf`] keeps decoded programs and their clocks for all processors that run them. Profiles by address
-//! ([`Cpu::watch`]) and address translation always count unit by unit.
+//! ([`Cpu::watch`]) and address translation always count every instruction.
 //!
 //! # Conformance
 //!

@@ -1,12 +1,12 @@
 //! Memoization: clocks of repeated runs of code, reused instead of counted again.
 //!
 //! The idea comes from FastSim (Schnarr and Larus, *Fast Out-Of-Order Processor Simulation Using Memoization*, ASPLOS
-//! 1998). A run of units that hits both caches leaves the bus, the queues and the replacement sequence unchanged. Its
-//! clocks depend on three things: the scoreboard before it, the rest of an arriving instruction line, and the branches
-//! and traps of its execution.
+//! 1998). A run is a part of a basic block whose instructions and data are all in the caches. It leaves the bus, the
+//! queues and the replacement sequence unchanged. Its clocks depend on three things: the scoreboard before it, the rest
+//! of an arriving instruction line, and the branches and traps of its execution.
 //!
-//! Each distinct scoreboard has a number, so that a run is found by comparing integers. Accesses that leave the caches
-//! are counted between two runs. For them the scoreboard is written out again.
+//! Each distinct scoreboard has a number, so that a run is found by comparing integers. Between two runs, accesses that
+//! leave the caches are counted with the full scoreboard.
 
 use crate::profile::Profile;
 use crate::scoreboard::{Leftover, Scoreboard};
@@ -15,10 +15,10 @@ use rustc_hash::FxHashMap;
 
 /// Longest remaining wait, in clocks, of a scoreboard that gets a number.
 pub(crate) const MOST_CLOCKS: u8 = 15;
-/// Most scoreboards that get a number. Later ones are counted unit by unit.
+/// Greatest number of numbered scoreboards. Code after other scoreboards is counted instruction by instruction.
 const MOST_NUMBERS: usize = 1 << 15;
 
-/// The number of a scoreboard, with a bit for an arriving instruction line.
+/// The number of a distinct scoreboard state, with a bit that is set while an instruction line arrives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Number(u32);
 
@@ -32,18 +32,18 @@ impl Number {
     }
 }
 
-/// All numbered scoreboards.
+/// All distinct scoreboard states with their numbers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Numbers {
     numbers: FxHashMap<Leftover, Number>,
     leftovers: Vec<Leftover>,
 }
 
-/// The numbered scoreboards, and the number of the current one.
+/// The memory of scoreboard states, and the number of the current state.
 #[derive(Clone, Debug)]
 pub(crate) struct Memo {
     pub(crate) numbers: Box<Numbers>,
-    /// Number of the current scoreboard if the [`Scoreboard`] itself is out of date.
+    /// Number of the current state if only the number is up to date; `None` if the [`Scoreboard`] itself is.
     present: Option<Number>,
     /// Number of instructions whose clocks were reused.
     pub(crate) instructions: u64,
@@ -54,13 +54,13 @@ impl Memo {
         Memo { numbers: Box::default(), present: None, instructions: 0 }
     }
 
-    /// Returns the number of the current scoreboard, or `None` if the [`Scoreboard`] itself is up to date.
+    /// Returns the number of the current state, or `None` if the [`Scoreboard`] itself is up to date.
     #[inline]
     pub(crate) fn present(&self) -> Option<Number> {
         self.present
     }
 
-    /// Returns the number of a scoreboard, and assigns one if there is room.
+    /// Returns the number of a scoreboard state, and assigns a new number if there is room.
     pub(crate) fn number_of(&mut self, written: &Scoreboard, now: u64, fill: Filling) -> Option<Number> {
         if fill.clocks > u64::from(MOST_CLOCKS) {
             return None;
@@ -80,15 +80,15 @@ impl Memo {
         Some(number)
     }
 
-    /// Makes the scoreboard at the end of a remembered run the current one.
+    /// Makes the state at the end of a remembered run the current one.
     #[inline]
     pub(crate) fn follow(&mut self, remembered: &RememberedClocks) {
         self.present = Some(remembered.exit);
         self.instructions += u64::from(remembered.instructions);
     }
 
-    /// Makes the written-out scoreboard the current one. Returns the waits that it must be restored from, if it is out
-    /// of date.
+    /// Ends the use of numbers. Returns the state to restore the [`Scoreboard`] from, if only its number was up to
+    /// date.
     #[inline]
     pub(crate) fn leave(&mut self) -> Option<&Leftover> {
         self.present.take().map(|number| &self.numbers.leftovers[(number.0 & !Number::FILLING) as usize])
@@ -106,14 +106,13 @@ pub(crate) struct Filling {
     pub(crate) first: u8,
 }
 
-/// Key of one run of a block's execution: a single number, never 0.
+/// The key of a run of code: a single number, never 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Run(u64);
 
 impl Run {
-    /// Makes the key of a run from its first scoreboard and the numbers of its first unit and of the unit after its
-    /// last.
-    /// The flags say that its branch was taken, that its last unit trapped, and that its first fetch is from the
+    /// Makes the key of a run from the scoreboard before it and from its first and last place in the block.
+    /// The flags say that its branch was taken, that its last instruction trapped, and that its first fetch is from the
     /// arriving line.
     #[inline]
     pub(crate) fn new(entry: Number, [from, to]: [usize; 2], [taken, trapped, continues]: [bool; 3]) -> Run {
@@ -121,13 +120,13 @@ impl Run {
         Run(u64::from(entry.0) << 32 | flags << 16 | (from as u64 & 0xFF) << 8 | to as u64 & 0xFF)
     }
 
-    /// Returns the number of the unit after the run.
+    /// Returns the place in the block at which the run ends.
     #[inline]
     pub(crate) fn end(self) -> usize {
         usize::from(self.0 as u8)
     }
 
-    /// Returns a hash that depends on all bits of the key.
+    /// Returns a hash of the key.
     #[inline]
     fn hash(self) -> usize {
         (self.0.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40) as usize
@@ -202,8 +201,7 @@ impl RememberedClocks {
     }
 }
 
-/// The remembered runs of a block: a hash table in which each run lies within [`BlockMemory::REACH`] places of its
-/// hash.
+/// The remembered runs of a block, as a hash table. Each run lies within [`BlockMemory::REACH`] entries of its hash.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BlockMemory(Box<[RememberedClocks]>);
 
@@ -211,7 +209,7 @@ impl BlockMemory {
     /// Smallest and greatest size of the table.
     const LEAST: usize = 8;
     const MOST: usize = 1 << 11;
-    /// Number of places in which a run may lie.
+    /// Number of table entries in which a run may lie.
     const REACH: usize = 4;
 
     #[inline]
@@ -223,7 +221,7 @@ impl BlockMemory {
         })
     }
 
-    /// Adds a run that the table does not contain. If a table of the greatest size has no free place, the run replaces
+    /// Adds a run that the table does not contain. If a table of the greatest size has no free entry, the run replaces
     /// another one.
     pub(crate) fn add(&mut self, remembered: RememberedClocks) {
         while !self.put(remembered) {
@@ -236,7 +234,7 @@ impl BlockMemory {
         }
     }
 
-    /// Puts a run into one of its places. Returns false if none is free.
+    /// Puts a run into a free table entry near its hash. Returns false if none is free.
     fn put(&mut self, remembered: RememberedClocks) -> bool {
         let length = self.0.len();
         let mut places = (0..BlockMemory::REACH.min(length)).map(|n| (remembered.run.hash() + n) & (length - 1));
@@ -244,7 +242,7 @@ impl BlockMemory {
         free.map(|place| self.0[place] = remembered).is_some()
     }
 
-    /// Doubles the size of the table. Runs without a free place in the new table are dropped.
+    /// Doubles the size of the table. Runs without a free entry in the new table are dropped.
     fn grow(&mut self) {
         let larger = vec![RememberedClocks::NOTHING; (2 * self.0.len()).max(BlockMemory::LEAST)];
         let all = std::mem::replace(&mut self.0, larger.into_boxed_slice());

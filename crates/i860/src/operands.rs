@@ -17,7 +17,7 @@ pub(crate) struct Operands {
 }
 
 impl Cpu {
-    /// Reads the sources of a unit's floating-point half.
+    /// Reads the sources of a floating-point instruction or of the floating-point half of a pair.
     #[inline(always)]
     pub(crate) fn read_operands<'a>(&self, a: &FloatingAction, unit: impl Fn() -> &'a Unit) -> Operands {
         let state = &self.state;

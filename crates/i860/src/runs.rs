@@ -1,10 +1,10 @@
-//! The clock of a block, run by run. Runs of units that hit both caches reuse remembered clocks. Accesses between them
-//! that leave the caches are counted.
+//! The clock of a basic block, run by run. A *run* is a part of a block whose instructions and data are all in the
+//! caches; its remembered clocks are reused. Accesses between runs that leave the caches are counted.
 //!
-//! A *place* in a block is three times the number of a unit, plus 1 after its fetch and plus 2 after its issue. A run
-//! ends at one of three points: before an access that leaves the data cache, before a line that the instruction cache
-//! does not hold, or at the end of the executed units. After an access that leaves the data cache, the next run begins
-//! with the state that the access has left.
+//! A *place* in a block is three times the index of an instruction or pair, plus 1 after its fetch and plus 2 after its
+//! issue. A run ends before an access that leaves the data cache, before a line that the instruction cache does not
+//! hold, or at the end of the executed code. After an access that leaves the data cache, the next run begins with the
+//! state that the access has left.
 
 use crate::block::{AccessingUnit, Block};
 use crate::bus::Bus;
@@ -13,22 +13,22 @@ use crate::execution::Execution;
 use crate::memo::{Memo, Number, RememberedClocks, Run};
 use crate::timing::Freeze;
 
-/// Number of places of a unit.
+/// Number of places for each instruction or pair: before its fetch, before its issue, after its issue.
 const PLACES: usize = 3;
 const FETCHED: usize = 1;
 const ISSUED: usize = 2;
 
-/// The executed part of a block, and the part whose clocks are already counted.
+/// The executed part of a block, and the place up to which its clocks are counted.
 struct Course<'a> {
     execution: Execution,
-    /// Number of executed units.
+    /// Number of executed instructions or pairs.
     units: usize,
-    /// Number of the last unit of the block.
+    /// Index of the last instruction or pair of the block.
     last: usize,
-    /// All accesses, and the number of counted ones.
+    /// Addresses of all data accesses, and the number of accesses counted so far.
     accesses: &'a [u32],
     accessed: usize,
-    /// The place up to which clocks are counted.
+    /// Place in the block up to which clocks are counted.
     at: usize,
 }
 
@@ -157,13 +157,14 @@ impl Clock {
         self.fetch(unit, bus);
         course.at += FETCHED;
         if !self.fetch.is_in_line(unit.pc) {
-            // Memory that is not cacheable leaves no line, so the unit is counted as a whole.
+            // Memory that is not cacheable leaves no line, so this instruction or pair is counted alone.
             let to = (course.at / PLACES + 1) * PLACES;
             self.advance(block, course, to, bus);
         }
     }
 
-    /// Counts the clocks up to a place. If the start lies after the issue of a unit, its access was already counted.
+    /// Counts the clocks up to a place in the block. If the start lies after an issue, the access of that instruction
+    /// was already counted.
     fn advance<B: Bus>(&mut self, block: &Block, course: &mut Course<'_>, to: usize, bus: &B) {
         self.write_board();
         let from = course.at;

@@ -1,4 +1,4 @@
-//! Scoreboard: registers that are not ready and units that are busy. Every wait ends at a known clock.
+//! Scoreboard: registers that are not ready and execution units that are busy. Every wait ends at a known clock.
 
 use crate::decoded::{Decoded, arm, float_mask, hazard};
 use crate::freeze::Costs;
@@ -17,12 +17,12 @@ pub(crate) struct Wait {
 
 pub(crate) const NO_WAIT: Wait = Wait { until: 0, why: Freeze::LoadUse };
 
-/// First value of [`Left::place`] for hazards. Values below it are registers; the highest one is the last result.
+/// First value of [`Left::place`] for hazards. Lower values are registers; the highest value is the last result.
 const HAZARDS: u8 = 64;
 const LAST_RESULT: u8 = HAZARDS + hazard::COUNT as u8;
 
-/// A wait relative to a clock, in 16 bits: its place in the upper seven, the remaining clocks in the next four, its
-/// cause in the lower five.
+/// A wait relative to a clock, in 16 bits: what is waited for in the upper seven, the remaining clocks in the next
+/// four, the freeze row in the lower five.
 struct Left {
     place: u8,
     clocks: u8,
@@ -49,21 +49,21 @@ impl Left {
     }
 }
 
-/// Most waits that a [`Leftover`] can hold.
+/// Greatest number of waits in a [`Leftover`].
 const MOST_WAITS: u32 = u128::BITS / Left::BITS;
 
-/// The pending waits of a scoreboard relative to a clock, without those that have ended.
+/// The pending waits of a scoreboard relative to a clock: a compact form of its state.
 ///
 /// Two scoreboards with the same leftover impose the same waits on all later instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Leftover {
-    /// Packed waits in the order of their places, the first one in the lowest bits; zero above the last.
+    /// Packed waits in the order of [`Left::place`], the first one in the lowest bits; zero above the last.
     waits: u128,
     graphics_result: u64,
     stored: u64,
     last_result: u8,
     scalar_double: bool,
-    /// State beside the scoreboard that is part of the key: the rest of an arriving instruction line.
+    /// Rest of an arriving instruction line, which is also part of the state.
     beside: [u8; 2],
 }
 
@@ -133,7 +133,7 @@ impl Scoreboard {
             count += u32::from(is_left);
             is_left
         };
-        // Collect registers, hazards and the last result in the order of their places.
+        // Collect registers, hazards and the last result in the order of [`Left::place`].
         for n in bits(self.pending) {
             add(n, self.ready[usize::from(n)]);
         }
@@ -152,7 +152,7 @@ impl Scoreboard {
         (count <= MOST_WAITS).then_some(left)
     }
 
-    /// Sets the scoreboard so that its leftover at `now` is `left`.
+    /// Restores the scoreboard from its pending waits `left` at clock `now`.
     pub(crate) fn restore(&mut self, left: &Leftover, now: u64) {
         self.pending = 0;
         self.armed = 0;
@@ -162,7 +162,7 @@ impl Scoreboard {
         self.scalar_double = left.scalar_double;
         self.graphics_result = left.graphics_result;
         self.stored = left.stored;
-        // Unpack the waits and put each one back in its place.
+        // Unpack the waits and store each one as a register, a hazard or the last result.
         let mut waits = left.waits;
         while waits != 0 {
             let Left { place, clocks, why } = Left::unpacked(waits);

@@ -16,7 +16,7 @@ pub struct Shelf {
     pub(crate) numbers: Box<Numbers>,
     /// Programs with their code; `None` while a processor uses the code.
     codes: Vec<(Arc<Program>, Option<Code>)>,
-    /// Highest state number of an instruction cache so far.
+    /// Highest number of an instruction-cache state so far.
     pub(crate) cache_states: u64,
 }
 

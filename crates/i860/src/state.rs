@@ -102,14 +102,15 @@ pub enum Mode {
     /// A single instruction at the upper half of an aligned 8 bytes whose lower half had its D bit set. Pairs begin
     /// after it.
     Entering,
-    /// The next unit is a pair. The one after it is a pair only if the next one has its D bit set.
+    /// Dual-instruction mode that is ending or beginning: the next instructions form a pair. Another pair follows only
+    /// if this pair has its D bit set.
     DualOnce,
-    /// The next unit and the one after it are pairs.
+    /// Dual-instruction mode: the next instructions form a pair, and another pair follows.
     Dual,
 }
 
 impl Mode {
-    /// Returns true if the next unit is a pair.
+    /// Returns true if the next instructions form a pair.
     #[must_use]
     pub fn is_dual(self) -> bool {
         matches!(self, Mode::DualOnce | Mode::Dual)

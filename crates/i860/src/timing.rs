@@ -105,7 +105,7 @@ parameters::parameter_table! {
 }
 
 parameters::parameter_table! {
-    /// Sizes of caches, TLB, bus and pipes on the chip. They are fixed by the part and cannot be set.
+    /// Sizes of caches, TLB, bus and pipes on the chip. They cannot be set.
     pub struct ChipSizes {
         /// Size of the instruction cache.
         instruction_cache_bytes: 4096, "bytes", Published, 4096..=4096, "Intel's manual";
@@ -199,7 +199,7 @@ impl Config {
         all.into_iter().filter(|(_, differs, _)| *differs).map(|(key, _, value)| (key, value)).collect()
     }
 
-    /// Returns a configuration with the same results and without clocks.
+    /// Returns a configuration that counts no clocks. Programs compute the same results as with [`Config::cycle`].
     #[must_use]
     pub fn functional() -> Config {
         Config { timing: false, ..Config::cycle() }

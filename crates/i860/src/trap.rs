@@ -13,10 +13,10 @@ pub enum TrapCause {
     /// A pair whose halves are not one floating-point and one core instruction, in this order.
     #[error("a pair must be one floating-point and one core instruction")]
     IllegalPair,
-    /// A branch in a delay slot (undefined on the part).
+    /// A branch in a delay slot (undefined on the real chip).
     #[error("branch in a delay slot")]
     BranchInSlot,
-    /// A jump in dual-instruction mode to an address that is not a multiple of 8 (undefined on the part).
+    /// A jump in dual-instruction mode to an address that is not a multiple of 8 (undefined on the real chip).
     #[error("dual-instruction mode needs a multiple of 8")]
     PairAlignment,
     /// The instruction `trap` was executed.
@@ -47,15 +47,15 @@ pub enum TrapCause {
     Interrupt,
 }
 
-/// A trap that was taken. The state is that of the part at the first instruction of its handler.
+/// A trap that was taken. The processor is at the first instruction of the trap handler.
 /// fir holds `pc`, psr has the trap bit, PU, PIM, DIM and DS, and the next pc is
 /// [`TRAP_VECTOR`](crate::state::TRAP_VECTOR).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("trap at {pc:#010x}: {cause}")]
 pub struct Trap {
     pub cause: TrapCause,
-    /// Address of the instruction or pair, which had no effect. If it was in a delay slot, the branch before it has
-    /// changed r1, LCC and its counter, as on the part.
+    /// Address of the instruction or pair, which had no effect.
+    /// If it was in a delay slot, the branch before it has changed r1, LCC and its counter, as on the real chip.
     pub pc: u32,
 }
 

@@ -217,7 +217,7 @@ impl FrameBuffer {
     }
 }
 
-/// Returns the place of the region that a message belongs to. The first message adds a new region.
+/// Returns the index of the region that a message belongs to. The first message of a region adds it.
 fn arriving(buffer: &mut Buffer, pixels: &RegionPixels, video: &Video) -> Result<usize, FrameBufferFault> {
     let Some(place) = buffer.arriving(&pixels.target) else {
         let region = RegionWrite::new(pixels, video)?;

@@ -1,4 +1,4 @@
-//! One of the two buffers: its regions, as long as one of their pixels can still be seen.
+//! One of the two buffers of a board. It keeps a region as long as one of its pixels can still be seen.
 
 use crate::region::RegionWrite;
 use crate::scans::{Overwritten, Scans};
@@ -20,9 +20,10 @@ pub(crate) struct Buffer {
     /// Shared copy of `held`; `None` after a change.
     shared: Option<Regions>,
     search_above: usize,
-    /// Places of regions that are arriving. There are few, because a port receives one region at a time.
+    /// Indices in `held` of the regions that are still arriving. There are few, because a port receives one region at a
+    /// time.
     arriving: Vec<usize>,
-    /// Place of the newest complete region of each cut. Older regions of the same cut are hidden.
+    /// Index of the newest complete region of each cut (see [`cut`]). Older regions of the same cut are hidden.
     newest: BTreeMap<[u32; 6], usize>,
     scans: Scans,
 }
@@ -45,7 +46,7 @@ impl Buffer {
         }
     }
 
-    /// Returns the place of the arriving region with this target.
+    /// Returns the index of the arriving region with this target.
     pub(crate) fn arriving(&mut self, target: &CopyTarget) -> Option<usize> {
         self.arriving.iter().rev().copied().find(|place| self.held[*place].region.target == *target)
     }
@@ -71,7 +72,7 @@ impl Buffer {
         self.scans.begin(field);
     }
 
-    /// Marks the region that a complete region hides. Returns the place of the older region if this one has overwritten
+    /// Marks the region that a complete region hides. Returns the index of the older region if this one has overwritten
     /// it.
     pub(crate) fn hide_below(&mut self, place: usize) -> Option<usize> {
         self.arriving.retain(|other| *other != place);
@@ -85,14 +86,14 @@ impl Buffer {
         (older != place).then_some(older)
     }
 
-    /// Returns the number of lines of a region that a newer one of the same cut has overwritten before the beam had
-    /// shown all of them.
+    /// Returns the number of lines of a region that a newer region with the same pixels has overwritten before the beam
+    /// had shown all of them.
     pub(crate) fn lines_never_shown(&self, older: usize, newer: usize, video: &Video, word: Span) -> u64 {
         let [older, newer] = [older, newer].map(|place| self.region(place));
         self.scans.lines_never_shown(&Overwritten { older, newer, video, word })
     }
 
-    /// Recomputes the arriving and the newest regions after places have changed.
+    /// Recomputes the indices of the arriving and the newest regions after regions were removed.
     fn index(&mut self) {
         self.arriving.clear();
         self.newest.clear();
@@ -155,7 +156,7 @@ fn regions_of(held: &[Held]) -> Regions {
     held.iter().map(|held| Arc::clone(&held.region)).collect()
 }
 
-/// Returns the key of a region's pixels: regions with the same cut fill the same pixels.
+/// Returns lines, number and grid of a region as a key, its *cut*. Regions with the same cut fill the same pixels.
 fn cut(target: &CopyTarget) -> [u32; 6] {
     let lines = match target.lines {
         Lines::Frame => 2,

@@ -194,7 +194,8 @@ pub fn seen_at(video: &Video, time: Time, fields: &[SeenField]) -> RgbImage {
     screen
 }
 
-/// Returns the first number below `count` without a property that all numbers before it have, or `count`.
+/// Returns the first number below `count` for which `has` is false, or `count`.
+/// `has` must be true for all numbers before it and false for all after it.
 fn first_without(count: u32, has: impl Fn(u32) -> bool) -> u32 {
     let (mut low, mut high) = (0, count);
     while low < high {

@@ -13,7 +13,7 @@ const REMEMBERED: usize = 4;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scans(VecDeque<PeriodNumber>);
 
-/// A complete region that another complete one of the same cut has overwritten.
+/// A complete region that another complete region with the same pixels has overwritten.
 pub(crate) struct Overwritten<'a> {
     pub(crate) older: &'a RegionWrite,
     pub(crate) newer: &'a RegionWrite,

@@ -83,7 +83,7 @@ pub(crate) struct Shared {
     pub(crate) vertex_transforms: u64,
     pub(crate) inbox: VecDeque<Received>,
     pub(crate) batches: VecDeque<Batch>,
-    /// Messages of the current batch that were not accepted yet, as place in the batch and receiver.
+    /// Messages of the current batch that were not accepted yet: their places in the batch and their receivers.
     pub(crate) in_flight: Vec<(u64, NodeId)>,
     /// Receivers that have not accepted any message of the current batch.
     pub(crate) not_begun: Vec<NodeId>,
@@ -92,7 +92,8 @@ pub(crate) struct Shared {
     pub(crate) ends: VecDeque<(Ticket, Mark)>,
     pub(crate) field: PeriodNumber,
     pub(crate) status: Vec<(NodeId, u64)>,
-    /// Last batch of which every receiver has accepted a message, and last batch that was accepted completely.
+    /// Number of the last batch of which every receiver has accepted a message, then number of the last completely
+    /// accepted batch.
     pub(crate) draining: u64,
     pub(crate) accepted: u64,
     pub(crate) issued: u64,

@@ -219,7 +219,8 @@ mod tests {
         assert_eq!(times, [30_000, 55_800, 10_000].map(|ns| [ns, ns, 0]));
     }
 
-    /// Each table of code times replaces all earlier times. A test of pxpl5-lab compares the times with the code.
+    /// A table of times from i860 code replaces every time of the base table. A test of pxpl5-lab compares these times
+    /// with the code.
     #[test]
     fn tables_of_code_leave_no_time_of_code_as_it_was() {
         let mut before = GpTiming::PAPERS;

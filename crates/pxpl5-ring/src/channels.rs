@@ -33,8 +33,8 @@ pub(crate) struct MessageInFlight {
     pub(crate) hold: bool,
     pub(crate) granted: Time,
     pub(crate) latency: Span,
-    /// Remaining word slots, and the message until the receiver is told of it. Used only if the ring moves every word
-    /// by an event.
+    /// Number of word slots until the message ends, and the message until the receiver is told. Both are used only by
+    /// [`Ring::move_every_word`](crate::Ring::move_every_word).
     pub(crate) slots_left: u64,
     pub(crate) message: Option<Box<Message>>,
 }

@@ -31,7 +31,7 @@ pub struct Ring {
     arbitrations: Vec<Time>,
     /// True if every end of a message is an event, even if no message waits for it.
     watched: bool,
-    /// True if every word is an event.
+    /// True if the ring moves every word of a message by an event of its own.
     word_by_word: bool,
     stats: RingStats,
     refusals: Refusals,

@@ -98,7 +98,7 @@ impl Rows<'_> {
     }
 }
 
-/// Returns data as an assembler directive that produces the same bytes.
+/// Returns the text of an assembler directive that produces the data.
 fn text(kind: DataKind, number: u64, bytes: u32) -> String {
     match kind {
         DataKind::Doubles => format!(".double {:?}", f64::from_bits(number)),

@@ -72,7 +72,7 @@ const ADDER: u32 = 4;
 const MULTIPLIER: u32 = 4;
 const MULTIPLIER_DOUBLE: u32 = 5;
 
-/// Returns the operation with a name.
+/// Returns the operation with a name of linear code, such as `mul.sd`.
 pub(super) fn named(text: &str) -> Option<Name> {
     use Unit::{Adder, Graphics, Integer, Multiplier, Prefetch, Seed};
     use Width::{Double, Quad, Single};

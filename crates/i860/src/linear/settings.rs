@@ -5,7 +5,8 @@
 pub(super) struct Settings {
     /// Number of lines, from the first one that has not issued, that may issue.
     pub(super) window: usize,
-    /// Clocks by which a value in a pipe must be more urgent than the best operation to cause a drain.
+    /// Threshold in clocks. The scheduler drains a pipe if a value in it is more urgent than the best operation by more
+    /// than this.
     pub(super) eagerness: u32,
     /// Registers of each file that only the first unissued line may take.
     pub(super) reserve: usize,
