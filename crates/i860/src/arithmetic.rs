@@ -120,7 +120,7 @@ pub(crate) fn round(value: f64, mode: u32) -> f64 {
     }
 }
 
-/// Returns the low word of the result of `fix` or `ftrunc`. The part traps on values out of range; here the value
+/// Returns the low word of the result of `fix` or `ftrunc`. The real chip traps on values out of range; here the value
 /// saturates, and NaN gives 0.
 pub(crate) fn to_integer(rounded: f64) -> u32 {
     rounded as i32 as u32

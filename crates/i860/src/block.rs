@@ -97,7 +97,7 @@ fn is_store(op: Op) -> bool {
 
 const LINE_BYTES: u32 = ChipSizes::PAPERS.line_bytes as u32;
 
-/// Value of [`Block::held_in`] that equals no state of an instruction cache.
+/// Initial value of [`Block::held_in`], which is the number of no cache state.
 const NEVER: u64 = u64::MAX;
 
 /// A basic block: instructions and pairs up to a branch, up to one that cannot be executed, or up to the greatest

@@ -39,7 +39,7 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         self.changes
     }
 
-    /// Raises the change counter above `latest`, so that it equals no earlier state.
+    /// Raises the change counter above `latest`, so that the counter differs from all earlier states.
     pub(crate) fn number_changes_from(&mut self, latest: u64) {
         self.changes = self.changes.max(latest) + 1;
     }

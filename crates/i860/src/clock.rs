@@ -36,7 +36,8 @@ impl Accesses {
         Accesses { all: [0; Accesses::MOST], count: 0, all_held: false }
     }
 
-    /// Forgets all accesses before a new block. If `looks_up` is false, [`Accesses::all_held`] stays false.
+    /// Forgets all accesses before a new block. If `looks_up` is false, the accesses of the block are not looked up in
+    /// the cache.
     #[inline]
     pub(crate) fn begin(&mut self, looks_up: bool) {
         self.count = 0;
@@ -118,7 +119,7 @@ impl Clock {
         self.translation.clear();
     }
 
-    /// Exchanges the numbered scoreboards with those of a shelf, which several processors share.
+    /// Exchanges the numbered scoreboard states with those of a shelf, which several processors share.
     pub(crate) fn exchange_numbers(&mut self, numbers: &mut Box<Numbers>) {
         self.write_board();
         if let Some(memo) = &mut self.memo {
@@ -294,7 +295,7 @@ impl Clock {
         }
     }
 
-    /// Looks `size` bytes up in the data cache. Returns the transfer of a miss.
+    /// Looks `size` bytes up in the data cache. Returns the bus transfer that a miss has started.
     fn load<B: Bus>(&mut self, address: u32, size: u32, bus: &B) -> Option<Transfer> {
         self.translation.translate(address, &mut self.common);
         let transfer = self.data.load(address, size, &mut self.stores, &mut self.common, bus)?;
@@ -303,7 +304,7 @@ impl Clock {
         Some(transfer)
     }
 
-    /// Delays instructions of a hazard class until a clock in the course of a miss, if the freeze row applies.
+    /// Makes instructions of a hazard class wait until clock `until` of a running miss, if the freeze row applies.
     fn hold_up(&mut self, hazard: u16, until: u64, why: Freeze) {
         if self.common.costs.applies(why) {
             self.board.set_hazard_until(hazard, until + self.common.costs.clocks(why), why);

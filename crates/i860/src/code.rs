@@ -1,4 +1,4 @@
-//! Decoded code: blocks by their addresses, and the words that they came from.
+//! Decoded code: basic blocks by address, and the words of memory that they were decoded from.
 
 use crate::assembler::Program;
 use crate::block::Block;
@@ -33,13 +33,13 @@ impl Code {
         Code { words: CodeMap::new(program.base..end), ..Code::new() }
     }
 
-    /// Takes out the block that begins at an address in a mode, if it was decoded.
+    /// Removes and returns the block that begins at an address in a mode, if it was decoded.
     #[inline]
     pub(crate) fn take(&mut self, pc: u32, mode: Mode) -> Option<Box<Block>> {
         self.blocks.get_mut(place(pc))?.take().filter(|block| block.begins(pc, mode))
     }
 
-    /// Stores the block of an address.
+    /// Stores the block that begins at an address.
     #[inline]
     pub(crate) fn put(&mut self, pc: u32, block: Box<Block>) {
         match self.blocks.get_mut(place(pc)) {

@@ -17,7 +17,7 @@ pub(crate) struct Transfer {
 }
 
 impl Transfer {
-    /// Returns the clock at which 8 bytes arrive; number 0 are the needed ones.
+    /// Returns the clock at which the 8 bytes with this number arrive. Number 0 are the requested bytes.
     pub(crate) fn arrival(&self, number: u32) -> u64 {
         self.first + u64::from(number) * self.step
     }

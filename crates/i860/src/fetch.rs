@@ -17,7 +17,7 @@ const BEATS: u32 = LINE_BYTES / ChipSizes::PAPERS.bus_bytes as u32;
 #[derive(Clone, Debug)]
 pub(crate) struct Fetch {
     cache: InstructionTags,
-    /// Number of the line of the last fetch.
+    /// Number of the cache line of the last fetch.
     line: u32,
     /// Clocks at which the transfers of the line arrive, by position in the line.
     arrivals: [u64; BEATS as usize],
@@ -30,13 +30,13 @@ impl Fetch {
         Fetch { cache: InstructionTags::new(), line: NO_LINE, arrivals: [0; BEATS as usize], first: 0 }
     }
 
-    /// Returns the number of the line of the last fetch.
+    /// Returns the number of the cache line of the last fetch.
     #[inline]
     pub(crate) fn line(&self) -> u32 {
         self.line
     }
 
-    /// Continues after a remembered run whose last fetch was from this line.
+    /// Records that the last fetch was from this line, after a remembered run.
     #[inline]
     pub(crate) fn continue_in(&mut self, line: u32) {
         self.line = line;

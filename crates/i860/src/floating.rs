@@ -158,7 +158,7 @@ impl Cpu {
         self.adder_result(i, sum);
     }
 
-    /// Sets CC by a comparison. The part pushes an undefined value into the pipe; this model pushes zero.
+    /// Sets CC by a comparison. The real chip pushes an undefined value into the pipe; this model pushes zero.
     fn compare(&mut self, i: &Instruction, Operands { a, b }: Operands) {
         let double = i.has(Flags::SOURCE_DOUBLE);
         let x = number(a, double);

@@ -43,9 +43,10 @@ pub(crate) struct Numbers {
 #[derive(Clone, Debug)]
 pub(crate) struct Memo {
     pub(crate) numbers: Box<Numbers>,
-    /// Number of the current state if only the number is up to date; `None` if the [`Scoreboard`] itself is.
+    /// Number of the current scoreboard state while remembered runs follow each other; `None` while the [`Scoreboard`]
+    /// itself holds the state.
     present: Option<Number>,
-    /// Number of instructions whose clocks were reused.
+    /// Number of executed instructions whose clocks were reused.
     pub(crate) instructions: u64,
 }
 
@@ -54,7 +55,7 @@ impl Memo {
         Memo { numbers: Box::default(), present: None, instructions: 0 }
     }
 
-    /// Returns the number of the current state, or `None` if the [`Scoreboard`] itself is up to date.
+    /// Returns the number of the current scoreboard state, or `None` while the [`Scoreboard`] itself holds the state.
     #[inline]
     pub(crate) fn present(&self) -> Option<Number> {
         self.present
@@ -80,15 +81,15 @@ impl Memo {
         Some(number)
     }
 
-    /// Makes the state at the end of a remembered run the current one.
+    /// Continues with the scoreboard state at the end of a remembered run.
     #[inline]
     pub(crate) fn follow(&mut self, remembered: &RememberedClocks) {
         self.present = Some(remembered.exit);
         self.instructions += u64::from(remembered.instructions);
     }
 
-    /// Ends the use of numbers. Returns the state to restore the [`Scoreboard`] from, if only its number was up to
-    /// date.
+    /// Stops using the number of the current state. Returns the state that the [`Scoreboard`] must be restored from, or
+    /// `None` if the [`Scoreboard`] is up to date.
     #[inline]
     pub(crate) fn leave(&mut self) -> Option<&Leftover> {
         self.present.take().map(|number| &self.numbers.leftovers[(number.0 & !Number::FILLING) as usize])
@@ -102,7 +103,7 @@ const _: () = assert!(size_of::<RememberedClocks>() == 32);
 pub(crate) struct Filling {
     /// Clocks to the last transfer; 0 if no line is arriving.
     pub(crate) clocks: u64,
-    /// Position of its first transfer in the line.
+    /// Position, within the line, of the transfer that arrives first.
     pub(crate) first: u8,
 }
 
@@ -139,7 +140,7 @@ pub(crate) struct Waited([u16; Waited::MOST]);
 
 impl Waited {
     const CAUSE_BITS: u32 = 5;
-    /// Most causes of one run.
+    /// Greatest number of causes of waits in one run.
     const MOST: usize = 6;
 
     /// Returns the clocks waited between two profiles. Returns `None` if there are too many causes or if one has too
@@ -153,7 +154,7 @@ impl Waited {
         Some(all)
     }
 
-    /// Adds the clocks to the sums of their causes.
+    /// Adds the clocks to `frozen`, which has one sum for each cause.
     #[inline]
     pub(crate) fn add_to(&self, frozen: &mut [u64; N_FREEZES]) {
         for wait in self.0 {
@@ -172,7 +173,7 @@ impl Waited {
 #[repr(align(32))]
 pub(crate) struct RememberedClocks {
     run: Run,
-    /// Scoreboard after the run.
+    /// Number of the scoreboard state after the run.
     exit: Number,
     pub(crate) clocks: u16,
     pub(crate) instructions: u16,
@@ -192,8 +193,8 @@ impl RememberedClocks {
         waited: Waited([0; Waited::MOST]),
     };
 
-    /// Makes the entry of a run from the clocks and profiles before and after it. Returns `None` if a number does not
-    /// fit.
+    /// Makes the entry of a run from its clocks and from the profiles before and after it. Returns `None` if a number
+    /// is too large for its field.
     pub(crate) fn new(run: Run, exit: Number, clocks: u64, line: u32, [before, after]: [&Profile; 2]) -> Option<Self> {
         let waited = Waited::between(before, after)?;
         let instructions = u16::try_from(after.instructions - before.instructions).ok()?;

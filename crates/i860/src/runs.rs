@@ -82,14 +82,14 @@ impl Clock {
         }
     }
 
-    /// Returns the number of the current scoreboard, and assigns one if there is room.
+    /// Returns the number of the current scoreboard state, and assigns a new number if there is room.
     #[inline]
     fn number(&mut self) -> Option<Number> {
         let memo = self.memo.as_mut()?;
         memo.present().or_else(|| memo.number_of(&self.board, self.common.now, self.fetch.filling(&self.common)))
     }
 
-    /// Brings the scoreboard up to date after remembered runs.
+    /// Restores the scoreboard after remembered runs, which change only the number of its state.
     #[inline]
     pub(crate) fn write_board(&mut self) {
         if let Some(left) = self.memo.as_mut().and_then(Memo::leave) {
@@ -199,7 +199,7 @@ impl Clock {
         }
     }
 
-    /// Counts a run and remembers its clocks.
+    /// Counts the clocks of a run and remembers them for later executions.
     #[cold]
     fn learn<B: Bus>(&mut self, block: &mut Block, course: &mut Course<'_>, run: Run, bus: &B) {
         let began = self.common.now;

@@ -21,8 +21,8 @@ pub(crate) const NO_WAIT: Wait = Wait { until: 0, why: Freeze::LoadUse };
 const HAZARDS: u8 = 64;
 const LAST_RESULT: u8 = HAZARDS + hazard::COUNT as u8;
 
-/// A wait relative to a clock, in 16 bits: what is waited for in the upper seven, the remaining clocks in the next
-/// four, the freeze row in the lower five.
+/// A wait relative to a clock, in 16 bits. The upper seven say what is not ready, the next four the remaining clocks,
+/// the lower five the freeze row.
 struct Left {
     place: u8,
     clocks: u8,

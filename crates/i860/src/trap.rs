@@ -48,7 +48,7 @@ pub enum TrapCause {
 }
 
 /// A trap that was taken. The processor is at the first instruction of the trap handler.
-/// fir holds `pc`, psr has the trap bit, PU, PIM, DIM and DS, and the next pc is
+/// Register fir holds `pc`. Register psr has the trap bit, PU, PIM, DIM and DS. The next pc is
 /// [`TRAP_VECTOR`](crate::state::TRAP_VECTOR).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("trap at {pc:#010x}: {cause}")]

@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// Regions as a viewer gets them, oldest first.
 pub(crate) type Regions = Arc<[Arc<RegionWrite>]>;
 
-/// Number of regions above which covered regions are searched for pixel by pixel.
+/// Number of kept regions above which the buffer searches for covered regions pixel by pixel.
 const FEW: usize = 128;
 
 #[derive(Clone, Debug)]

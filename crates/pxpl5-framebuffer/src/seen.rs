@@ -22,7 +22,7 @@ pub struct SeenField {
 }
 
 /// A region of which some pixels were scanned before they had arrived, so that older pixels are seen in their place.
-/// The board does not know the field for which the region was meant; `target.picture` tells it.
+/// The board does not know for which field the region was meant. Compare `target.picture` to find out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SeenLateRegion {
     /// Target of the region, with its picture.

@@ -97,7 +97,7 @@ pub(crate) struct Shared {
     pub(crate) draining: u64,
     pub(crate) accepted: u64,
     pub(crate) issued: u64,
-    /// Number of completed waits. The board polls until it stays the same.
+    /// Number of completed waits. The board polls its programs until this number stays the same.
     pub(crate) progress: u64,
     pub(crate) waits: [Wait; 2],
     /// Fault of the board's own software, which stops all programs.

@@ -109,8 +109,8 @@ impl Gp {
         self.chain(batch.into_iter().map(|(destination, words, body)| (destination, words, body, false)))
     }
 
-    /// Makes a chain from receiver, number of words, content, and true for messages that keep the receiver's port for
-    /// the next one.
+    /// Makes a chain of messages. Each comes as receiver, number of words, content, and true if it keeps the receiver's
+    /// port for the next one.
     fn chain(&self, batch: impl Iterator<Item = (NodeId, u32, Body, bool)>) -> Chain {
         let source = self.node();
         let links = batch.map(|(destination, words, body, hold)| ChainLink {

@@ -157,7 +157,7 @@ pub struct Processor {
     hits: Vec<BreakpointHit>,
 }
 
-/// A snapshot at a breakpoint, taken before its instruction executes.
+/// The state of the processor at a breakpoint, before the instruction executes.
 ///
 /// A call runs from begin to end at one instant of the board, which spends its clocks afterwards. The call therefore
 /// does not stop at a breakpoint.

@@ -6,8 +6,8 @@ use std::ops::Range;
 pub const RING_MEMORY: Range<u32> = 0xF_0000..0x10_0000;
 
 /// First address of the uncacheable window, which ends with [`RING_MEMORY`].
-/// The ring interface accesses the window beside the processor, which does not watch the bus. The board therefore keeps
-/// these addresses out of the caches (KEN#).
+/// The ring interface reads and writes the window directly in memory. The processor does not watch the bus, so the
+/// board keeps these addresses out of the caches (KEN#).
 pub(crate) const WINDOW: u32 = 0xF_4000;
 
 /// Returns true if the caches may hold an address.

@@ -50,7 +50,8 @@ impl Gp {
         self.shared.borrow().processor.is_some()
     }
 
-    /// Prepares the memory of a board whose time comes from code. On other boards this does nothing.
+    /// Lets `image` write to the memory of the processor, if the work of this board runs as i860 code. On other boards
+    /// this does nothing.
     ///
     /// # Errors
     ///

@@ -117,7 +117,8 @@ impl RingChannels {
         Some((channel, ended, self.flights[channel].take()?))
     }
 
-    /// Counts down a word slot of a channel, and takes the message off until [`RingChannels::put_back`].
+    /// Ends one word slot of a channel and returns its message. [`RingChannels::put_back`] returns the message to the
+    /// channel.
     pub(crate) fn take_slot(&mut self, channel: usize) -> Option<MessageInFlight> {
         let flight = self.flights.get_mut(channel)?.take()?;
         Some(MessageInFlight { slots_left: flight.slots_left.saturating_sub(1), ..flight })

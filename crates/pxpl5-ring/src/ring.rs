@@ -19,13 +19,13 @@ pub struct Ring {
     channels: RingChannels,
     /// Number of messages on channels to receivers with a FIFO, at most `fifo_channels`.
     to_fifos: u64,
-    /// Heads of the queues that can send, in the order of grants.
+    /// Heads: the first messages of the queues whose source can send, in the order of grants.
     heads: Vec<QueueHead>,
-    /// Number of heads for receivers with a FIFO.
+    /// Number of messages at the head of a queue whose receiver has a FIFO.
     heads_to_fifos: u32,
     /// Number of sources that send on as many channels as they can.
     at_limit: usize,
-    /// True if a channel or destination that a head may wait for has become free since the last grants.
+    /// True if a channel or destination for which a message may wait has become free since the last grants.
     unblocked: bool,
     /// Instants at which an arbitration is scheduled.
     arbitrations: Vec<Time>,
@@ -55,7 +55,7 @@ struct DestinationPort {
     elastic: bool,
     channel: Option<usize>,
     reserved_for: Option<NodeId>,
-    /// Number of heads that wait for this destination.
+    /// Number of messages at the head of a queue that wait for this destination.
     heads: u32,
 }
 

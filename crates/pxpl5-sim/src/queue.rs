@@ -281,7 +281,7 @@ mod tests {
         queue.schedule(Time(4), Phase::Work, ());
     }
 
-    /// A later event that an event schedules: its delay and its phase. Each is scheduled at most twice.
+    /// Delay and phase of an event that another event schedules, at most twice.
     type Follow = (u64, u8);
 
     /// Reference model: a queue that keeps all events in one sorted list.

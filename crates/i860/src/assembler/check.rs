@@ -1,19 +1,19 @@
 //! Assembler rules for single instructions and their neighbours. Code that breaks a rule has undefined results on the
-//! part.
+//! real chip.
 //!
 //! * a pair is a floating-point instruction, then a core instruction
 //! * the halves of a pair do not write the same register and do not both set CC, and `bc.t` or `bnc.t` is not paired
-//! with a compare
+//!   with a compare
 //! * a delayed branch has no branch in its slot, and the slot of a `call` does not write r1
 //! * `bla` has two different registers
 //!
 //! Some working programs break three more rules ([`Rule`]). The assembler reports these as warnings:
 //!
 //! * a `d.` instruction has an address that is a multiple of 8 (other assemblers accept it in the second word of a pair
-//! too)
+//!   too)
 //! * a pipelined multiply does not have its first source as destination
 //! * no result is read from a pipe after a scalar operation has destroyed it (code that empties a pipe reads such
-//! results and ignores them)
+//!   results and ignores them)
 //!
 //! Pairs are followed in address order. The check does not follow jumps into the middle of dual-instruction code.
 

@@ -138,7 +138,7 @@ fn word_of(bytes: &[u8]) -> u32 {
     bytes.iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte))
 }
 
-/// The contribution of a source line to memory.
+/// The instruction or data that a source line puts into memory.
 #[derive(Clone, Debug)]
 enum Item {
     Instruction {

@@ -39,7 +39,7 @@ impl Budget {
         self.steps * (MOST_TEXT / MOST_STEPS) + self.text
     }
 
-    /// Starts the account of a new source line.
+    /// Starts to count the budget that a new source line uses.
     fn begin(&mut self, line: usize) {
         self.greediest = self.greediest();
         self.current = (line, self.left());

@@ -14,7 +14,7 @@ pub(super) enum Source {
     Text(String),
 }
 
-/// A line of a stretch.
+/// One line of a linear stretch: an operation with its operands.
 #[derive(Clone, Debug)]
 pub(super) struct Operation {
     pub(super) name: Name,
@@ -78,7 +78,7 @@ fn without_comment(text: &str) -> &str {
     text.split("//").next().unwrap_or_default().trim()
 }
 
-/// Expands `for` loops.
+/// Expands the `for` loops of a linear stretch.
 fn repeated(block: &[(usize, &str)]) -> Result<Vec<(usize, String)>, LinearError> {
     let lines: Vec<(usize, String)> = block.iter().map(|(n, text)| (*n, without_comment(text).to_owned())).collect();
     repeat(&lines)

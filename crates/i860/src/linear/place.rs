@@ -16,7 +16,7 @@ const STORE: u32 = 3;
 /// Clocks without progress after which the scheduler fails.
 const PATIENCE: u32 = 80;
 
-/// The pairs of a stretch, floating-point and core half.
+/// The instruction pairs of a schedule: text of the floating-point half and text of the core half.
 pub(super) type Pairs = Vec<(String, String)>;
 
 /// Chooses the clock of every operation and the registers of every value.
@@ -95,7 +95,7 @@ struct Placer<'a> {
     heights: Vec<u32>,
     uses_left: Vec<usize>,
     places: Vec<Place>,
-    /// Clock of issue of each operation.
+    /// Clock at which each operation has issued; `None` before its issue.
     issued: Vec<Option<u32>>,
     now: u32,
     /// First line that has not issued.
@@ -531,8 +531,8 @@ impl<'a> Placer<'a> {
         format!("{letter}{register}")
     }
 
-    /// Records the issue of an operation and frees the registers that it is the last to read: from the next clock on,
-    /// or one clock later for stored registers (row 24).
+    /// Records the issue of an operation and frees the registers that it is the last to read.
+    /// They are free from the next clock on, or one clock later after a store (row 24).
     fn finish_issue(&mut self, n: usize) {
         self.issued[n] = Some(self.now);
         if matches!(self.operations[n].name.unit, Unit::Adder | Unit::Multiplier { .. }) {
