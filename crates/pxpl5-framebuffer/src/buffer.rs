@@ -216,8 +216,8 @@ mod tests {
         frame
     }
 
-    /// The board forgets exactly the regions of which no pixel is visible. The number of kept regions stays below a bound:
-    /// the visible ones and twice the number left by the last search.
+    /// The board forgets exactly the regions of which no pixel is visible. The number of kept regions stays below a
+    /// bound: the visible ones and twice the number left by the last search.
     #[test]
     fn what_is_forgotten_is_what_later_regions_have_covered() {
         let video = Video::new(crate::FrameBufferConfig::NTSC.video).expect("valid");

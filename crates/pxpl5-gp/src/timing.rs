@@ -210,8 +210,8 @@ mod tests {
         }
     }
 
-    /// 30.0 and 55.8 us are fitted to the limits of 110 and 100 triangles. I3D95 expects a third of the time of 1994 for code
-    /// in cache. Slats has no bins.
+    /// 30.0 and 55.8 us are fitted to the limits of 110 and 100 triangles. I3D95 expects a third of the time of 1994
+    /// for code in cache. Slats has no bins.
     #[test]
     fn slats_takes_what_its_published_limits_ask_for() {
         let presets = [GpTiming::SLATS_1994, GpTiming::SLATS_1995, GpTiming::SLATS_OPTIMISED];
