@@ -1,5 +1,5 @@
-//! Host time per simulated instruction: with memoised clocks, with all clocks counted, and without timing. Loops with
-//! code and data in cache; the triangle kernels, which miss, are in crates/pphigs/benches.
+//! Host time per simulated instruction: with memoized clocks, with all clocks counted, and without timing. The loops
+//! hit the caches; `crates/pphigs/benches` has the triangle kernels, which miss.
 
 #![allow(missing_docs, reason = "criterion_group makes an undocumented function")]
 
@@ -39,7 +39,7 @@ loop:   fld.d   0(r4), f8
         fmul.ss f8, f9, f12
 ";
 
-/// The same in dual-instruction mode.
+/// The transform of points in dual-instruction mode.
 const DUAL: &str = "
         mov     0x8000, r4
         nop

@@ -1,50 +1,51 @@
-//! What the halves of a unit do, chosen once when they are decoded, with operands in one form: no bit of an instruction is looked
-//! at again while it executes.
+//! Effects of instructions and pairs, chosen once at decoding, with operands in one form. Execution reads no
+//! instruction bit again.
 
 use crate::decoded::Decoded;
 use crate::dual_operation::source_widths;
 use crate::instruction::{Flags, Instruction, Op};
 
-/// The core half: loads, stores, integer arithmetic. Branches and what moves control registers read their instruction.
+/// The effect of a core half: loads, stores, integer arithmetic. Branches and control-register moves read their
+/// instruction instead.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CoreAction {
     pub(crate) does: Core,
     pub(crate) op: Op,
     pub(crate) dest: u8,
-    /// r0 where the first operand is an immediate.
+    /// First source register; r0 if the first operand is an immediate.
     pub(crate) first: u8,
     pub(crate) second: u8,
-    /// The register that receives the address of an access; r0 where none does.
+    /// Register that receives the address of an access; r0 without auto-increment.
     pub(crate) increments: u8,
     /// Added to the first register: the immediate, or 0.
     pub(crate) immediate: u32,
 }
 
-/// What a core half does.
+/// The kinds of effect of a core half.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Core {
     Nothing,
-    /// Arithmetic, logic, a shift.
+    /// Arithmetic, logic or a shift.
     Integer,
-    /// An access of an integer register, by its bytes.
+    /// Loads and stores of an integer register, by size.
     LoadByte,
     LoadShort,
     LoadLong,
     StoreByte,
     StoreShort,
     StoreLong,
-    /// An access of one, two or four floating-point registers.
+    /// Loads and stores of one, two or four floating-point registers.
     LoadSingle,
     LoadDouble,
     LoadQuad,
     StoreSingle,
     StoreDouble,
     StoreQuad,
-    /// A pipelined load of one or two of them.
+    /// Pipelined loads of one or two floating-point registers.
     PipelinedLoadSingle,
     PipelinedLoadDouble,
     StorePixels,
-    /// What the instruction says.
+    /// Control-register moves, `flush`, `trap`, `lock` and others, which read their instruction.
     System,
     Branch,
 }
@@ -93,7 +94,7 @@ impl CoreAction {
     }
 }
 
-/// The floating-point half.
+/// The effect of a floating-point half.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FloatingAction {
     pub(crate) does: Floating,
@@ -102,31 +103,31 @@ pub(crate) struct FloatingAction {
     pub(crate) second: u8,
 }
 
-/// What a floating-point half does: first those that read singles, then those that read doubles. Of the frequent ones no result leaves
-/// a pipe for a register that is read.
+/// The kinds of effect of a floating-point half: first those that read singles, then those that read doubles.
+/// In the specialized kinds no result that leaves a pipe can be a source of the same instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Floating {
-    /// On singles, pipelined.
+    /// Pipelined operations on singles.
     PipelinedMultiply,
     PipelinedAdd,
     PipelinedSubtract,
-    /// On singles, one at a time.
+    /// Scalar operations on singles.
     Multiply,
     Add,
     Subtract,
-    /// Read two singles and do what the instruction says.
+    /// Other operations that read two singles.
     Singles,
-    /// On doubles, pipelined.
+    /// Pipelined operations on doubles.
     PipelinedMultiplyDoubles,
     PipelinedAddDoubles,
     PipelinedSubtractDoubles,
-    /// On doubles, one at a time.
+    /// Scalar operations on doubles.
     MultiplyDoubles,
     AddDoubles,
     SubtractDoubles,
-    /// Read two doubles and do what it says.
+    /// Other operations that read two doubles.
     Doubles,
-    /// Read what it says, through the pipe if need be, and do what it says.
+    /// Operations with mixed precisions, or with a source that is the result leaving the pipe.
     Any,
     Nothing,
 }
@@ -171,17 +172,17 @@ impl Floating {
     }
 }
 
-/// What a unit does.
+/// The effects of an instruction, or of both halves of a pair.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Action {
     pub(crate) core: CoreAction,
     pub(crate) floating: FloatingAction,
-    /// Number of the unit in its block.
+    /// Index of the instruction or pair in its block.
     pub(crate) number: u8,
 }
 
 impl Action {
-    /// What an instruction does, or a pair with its core half.
+    /// Chooses the effects of a single instruction, or of a pair if `second` is its core half.
     pub(crate) fn new(number: u8, first: &Decoded, second: Option<&Decoded>) -> Action {
         let floating = Some(first).filter(|first| first.is_floating() && !first.is_idle());
         let core = second.or((!first.is_floating()).then_some(first)).filter(|core| !core.is_idle());

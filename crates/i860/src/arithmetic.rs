@@ -1,8 +1,8 @@
 //! IEEE arithmetic on bit patterns: round to nearest even, the same bits on every host.
 //!
-//! Host `f32` and `f64` add, subtract, multiply, divide and square root are exact IEEE operations everywhere; only
-//! the NaN that comes out differs between hosts. So a NaN result is replaced: the first NaN operand made quiet, or
-//! the default NaN (sign set, as Intel's other parts) when the operation made it.
+//! Host `f32` and `f64` addition, subtraction, multiplication, division and square root are exact IEEE operations on
+//! every host. Only the bits of NaN results differ between hosts. A NaN result is therefore replaced: by the first NaN
+//! operand made quiet, or by the default NaN (sign set, as on Intel's other parts) if no operand is NaN.
 
 use crate::state::PipeStage;
 
@@ -11,7 +11,6 @@ const NAN64: u64 = 0xFFF8_0000_0000_0000;
 const QUIET32: u32 = 0x0040_0000;
 const QUIET64: u64 = 0x0008_0000_0000_0000;
 
-/// The four operations of adder and multiplier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Operation {
     Add,
@@ -65,7 +64,7 @@ pub(crate) fn double(operation: Operation, a: f64, b: f64, flush: bool) -> u64 {
     }
 }
 
-/// A single as a double, bit patterns.
+/// Converts a single to a double, as bit patterns.
 #[inline]
 pub(crate) fn widen(bits: u32) -> u64 {
     let value = f32::from_bits(bits);
@@ -78,7 +77,7 @@ fn widen_nan(bits: u32) -> u64 {
     sign | 0x7FF0_0000_0000_0000 | u64::from(bits & 0x007F_FFFF) << 29 | QUIET64
 }
 
-/// A double as a single, rounded to nearest even.
+/// Converts a double to a single, rounded to nearest even, as bit patterns.
 #[inline]
 pub(crate) fn narrow(bits: u64, flush: bool) -> u32 {
     let value = f64::from_bits(bits);
@@ -89,7 +88,7 @@ pub(crate) fn narrow(bits: u64, flush: bool) -> u32 {
     if flush && result.is_subnormal() { result.to_bits() & 0x8000_0000 } else { result.to_bits() }
 }
 
-/// One operation with the precisions of an instruction's S and R bits. Operands are in source precision.
+/// Computes one operation with the precisions of an instruction's S and R bits. Operands are in source precision.
 #[inline]
 pub(crate) fn operate(operation: Operation, a: u64, b: u64, source: bool, result: bool, flush: bool) -> PipeStage {
     if !source && !result {
@@ -101,7 +100,7 @@ pub(crate) fn operate(operation: Operation, a: u64, b: u64, source: bool, result
     PipeStage { bits, double: true }
 }
 
-/// A value made with one precision, read with another.
+/// Converts a value of a pipe to the precision in which it is read.
 #[inline]
 pub(crate) fn convert(value: PipeStage, double: bool, flush: bool) -> u64 {
     match (value.double, double) {
@@ -111,7 +110,7 @@ pub(crate) fn convert(value: PipeStage, double: bool, flush: bool) -> u64 {
     }
 }
 
-/// fsr.RM: to nearest even, down, up, towards zero.
+/// Rounds as fsr.RM selects: to nearest even, down, up, towards zero.
 pub(crate) fn round(value: f64, mode: u32) -> f64 {
     match mode {
         0 => value.round_ties_even(),
@@ -121,12 +120,13 @@ pub(crate) fn round(value: f64, mode: u32) -> f64 {
     }
 }
 
-/// The low word of `fix` and `ftrunc`. Out of range the part traps; here the value saturates, and NaN gives 0.
+/// Returns the low word of the result of `fix` or `ftrunc`. The real chip traps on values out of range; here the value
+/// saturates, and NaN gives 0.
 pub(crate) fn to_integer(rounded: f64) -> u32 {
     rounded as i32 as u32
 }
 
-/// The low 53 bits of the product of two fraction fields.
+/// Returns the low 53 bits of the product of two fraction fields.
 pub(crate) fn multiply_low(a: u64, b: u64) -> u64 {
     const FRACTION: u64 = (1 << 53) - 1;
     (a & FRACTION).wrapping_mul(b & FRACTION) & FRACTION

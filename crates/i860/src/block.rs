@@ -13,17 +13,17 @@ use crate::state::Mode;
 use crate::timing::ChipSizes;
 use crate::trap::TrapCause;
 
-/// Most units of a block, its slot not counted.
+/// Most instructions or pairs in a block, without the delay slot.
 const LONGEST: usize = 32;
 
-/// What issues at once: an instruction, or a pair.
+/// Code that issues in one clock: an instruction or a pair.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Unit {
     pub(crate) pc: u32,
-    /// Mode in which it executes, and that of the unit after it.
+    /// Modes in which this instruction or pair and the next one execute.
     pub(crate) mode: Mode,
     pub(crate) after: Mode,
-    /// The instruction, or the floating-point half.
+    /// The single instruction, or the floating-point half of a pair.
     pub(crate) first: Decoded,
     /// The core half of a pair.
     pub(crate) second: Option<Decoded>,
@@ -56,19 +56,19 @@ impl Unit {
         Ok(Unit { pc, mode, after: mode.after_pair(first.dual()), first, second: Some(second) })
     }
 
-    /// The half that may access memory or branch: that of a pair, or the instruction.
+    /// Returns the half that may access memory or branch: the core half of a pair, or the single instruction.
     #[inline]
     pub(crate) fn core(&self) -> &Decoded {
         self.second.as_ref().unwrap_or(&self.first)
     }
 
-    /// Address of the core half.
+    /// Returns the address of the core half.
     #[inline]
     pub(crate) fn core_pc(&self) -> u32 {
         self.pc.wrapping_add(if self.second.is_some() { 4 } else { 0 })
     }
 
-    /// Address of what follows.
+    /// Returns the address after the instruction or pair.
     #[inline]
     pub(crate) fn next(&self) -> u32 {
         self.pc.wrapping_add(if self.second.is_some() { 8 } else { 4 })
@@ -78,7 +78,7 @@ impl Unit {
         1 + u64::from(self.second.is_some())
     }
 
-    /// Whether a block must end behind it because it changes what code is, or how it is fetched.
+    /// Returns true for `st.c`, which can change code or how it is fetched, so that a block must end after it.
     fn ends_block(&self) -> bool {
         self.core().instruction.op == Op::StC
     }
@@ -97,40 +97,41 @@ fn is_store(op: Op) -> bool {
 
 const LINE_BYTES: u32 = ChipSizes::PAPERS.line_bytes as u32;
 
-/// No state of an instruction cache.
+/// Initial value of [`Block::held_in`], which is the number of no cache state.
 const NEVER: u64 = u64::MAX;
 
-/// A run of units that ends with a branch, before an instruction that cannot be executed, or at its greatest length.
+/// A basic block: instructions and pairs up to a branch, up to one that cannot be executed, or up to the greatest
+/// length.
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
-    /// Where it begins, and in which mode.
+    /// Address and mode in which the block begins.
     pub(crate) pc: u32,
     mode: Mode,
-    /// Mode after its slot.
+    /// Pairing mode (single instructions or pairs) after the delay slot.
     pub(crate) after_slot: Mode,
-    /// Mode and address of what follows its units.
+    /// Mode and address of the code after the block.
     pub(crate) after: Mode,
     pub(crate) next: u32,
-    /// Number of its units, without the slot.
+    /// Number of instructions or pairs, without the delay slot.
     pub(crate) count: usize,
-    /// Instructions, the slot included.
+    /// Number of instructions, including the slot.
     pub(crate) instructions: u64,
-    /// State of the instruction cache in which all of it was held.
+    /// Number of the instruction-cache state in which the whole block was last found in the cache.
     held_in: u64,
-    /// What the units change that a program can see, and the slot behind them.
+    /// Effects of the instructions and pairs, and of the delay slot after them.
     pub(crate) actions: Box<[Action]>,
-    /// The units that access data, in order, each once.
+    /// Instructions and pairs that access data, in order.
     pub(crate) accessing: Box<[AccessingUnit]>,
     pub(crate) remembered: BlockMemory,
-    /// The units, and the slot behind them.
+    /// The instructions and pairs, then the delay slot.
     units: Box<[Unit]>,
-    /// The first unit on each line of the cache.
+    /// Index of the first instruction or pair on each cache line.
     lines: Box<[u8]>,
-    /// Why what follows a delayed branch that ends the block cannot be executed.
+    /// Cause of the trap if the slot of the final branch cannot be executed.
     pub(crate) wrong_slot: Option<TrapCause>,
 }
 
-/// What the clock must know of an access.
+/// Properties of a data access that the clock needs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Access {
     pub(crate) op: Op,
@@ -144,14 +145,14 @@ impl Access {
     }
 }
 
-/// A unit that accesses data.
+/// An instruction or pair that accesses data.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AccessingUnit {
     pub(crate) access: Access,
-    /// Its number in the block.
+    /// Index of the instruction or pair in its block.
     pub(crate) number: u8,
     pub(crate) is_store: bool,
-    /// Whether it goes past the cache, whatever that holds.
+    /// True if the access always goes to the bus, regardless of the cache's contents.
     pub(crate) leaves_cache: bool,
 }
 
@@ -169,7 +170,7 @@ impl AccessingUnit {
     }
 }
 
-/// The first of some units on each line of the cache.
+/// Returns the index of the first instruction or pair on each cache line.
 fn first_on_lines(units: &[Unit]) -> Box<[u8]> {
     let mut line = None;
     let lines = (0..).zip(units);
@@ -178,12 +179,13 @@ fn first_on_lines(units: &[Unit]) -> Box<[u8]> {
 }
 
 impl Block {
-    /// The block that begins at an address in a mode.
+    /// Decodes the block that begins at an address in a mode.
     ///
     /// # Errors
-    /// Why its first unit cannot be executed.
+    /// The cause of the trap if the first instruction or pair cannot be executed.
     pub(crate) fn read<B: Bus>(pc: u32, mode: Mode, code: &mut CodeMap, bus: &mut B) -> Result<Block, TrapCause> {
         let mut last = Unit::read(pc, mode, code, bus)?;
+        // Decode up to a branch, an `st.c`, an illegal instruction or the greatest length.
         let mut units = vec![last];
         while units.len() < LONGEST && !last.core().is_branch() && !last.ends_block() {
             let Ok(unit) = Unit::read(last.next(), last.after, code, bus) else { break };
@@ -192,6 +194,7 @@ impl Block {
         }
         let count = units.len();
         let mut wrong_slot = None;
+        // A delayed branch also needs its slot, in which no branch may stand.
         if last.core().instruction.is_delayed_branch() {
             match Unit::read(last.next(), last.after, code, bus) {
                 Ok(unit) if unit.core().is_branch() => wrong_slot = Some(TrapCause::BranchInSlot),
@@ -217,13 +220,13 @@ impl Block {
         })
     }
 
-    /// The units that were executed.
+    /// Returns the instructions and pairs of the block that were executed.
     #[inline]
     pub(crate) fn executed(&self, execution: Execution) -> &[Unit] {
         self.units.get(..execution.units + usize::from(execution.slot)).unwrap_or_default()
     }
 
-    /// How many instructions those are.
+    /// Returns the number of executed instructions. A pair counts as two.
     #[inline]
     pub(crate) fn instructions_of(&self, execution: Execution) -> u64 {
         let executed = self.executed(execution);
@@ -234,13 +237,13 @@ impl Block {
         }
     }
 
-    /// A unit by its number; the slot has the one behind the last.
+    /// Returns an instruction or pair by its index. The delay slot has the last index.
     #[inline]
     pub(crate) fn unit(&self, number: usize) -> &Unit {
         &self.units[number]
     }
 
-    /// An address on the line of the cache that a unit is on, and the number of the first unit behind that line.
+    /// Returns an address on the cache line of an instruction or pair, and the index of the first one after that line.
     #[inline]
     pub(crate) fn line(&self, number: usize) -> (u32, usize) {
         let next = self.lines.iter().skip(1).position(|first| usize::from(*first) > number);
@@ -249,7 +252,7 @@ impl Block {
         (self.pc.wrapping_add(line as u32 * LINE_BYTES), end)
     }
 
-    /// Whether the instruction cache holds all of it.
+    /// Returns true if the instruction cache holds the whole block.
     #[inline]
     pub(crate) fn is_held(&mut self, cache: &InstructionTags) -> bool {
         self.held_in == cache.changes() || self.look_up(cache)
@@ -264,13 +267,14 @@ impl Block {
         held
     }
 
-    /// Whether it is that of an address and a mode.
+    /// Returns true if the block begins at this address in this mode.
     #[inline]
     pub(crate) fn begins(&self, pc: u32, mode: Mode) -> bool {
         self.pc == pc && self.mode == mode
     }
 
-    /// Whether an address lies behind its first unit and before its end; the slot is behind its end.
+    /// Returns true if an address lies after the first instruction or pair and before the end of the block, without its
+    /// delay slot.
     #[inline]
     pub(crate) fn passes(&self, address: u32) -> bool {
         let offset = address.wrapping_sub(self.pc);

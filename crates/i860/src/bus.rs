@@ -1,30 +1,30 @@
-//! What the processor is plugged into.
+//! The bus interface: memory and devices outside the processor.
 
 use std::fmt;
 
-/// An access that no memory or device answers.
+/// The failure of an access that no memory or device answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no memory and no device answers")]
 pub struct Unmapped;
 
 /// Memory and devices as the processor sees them: little-endian, physical byte addresses.
 ///
-/// The processor checks alignment before it asks, so an address is always a multiple of the access size. A
-/// 16-byte access arrives as two of 8.
+/// The processor checks the alignment first, so an address is always a multiple of the access size. A 16-byte access
+/// arrives as two accesses of 8 bytes.
 pub trait Bus {
     /// Reads `size` (1, 2, 4 or 8) bytes at `address`, zero-extended.
     ///
     /// # Errors
-    /// [`Unmapped`] when nothing answers; the processor takes a data or instruction access trap.
+    /// [`Unmapped`] if no memory or device answers. The processor then takes a data or instruction access trap.
     fn read(&mut self, address: u32, size: u32) -> Result<u64, Unmapped>;
 
     /// Writes the low `size` (1, 2, 4 or 8) bytes of `value` at `address`.
     ///
     /// # Errors
-    /// [`Unmapped`] when nothing answers; the processor takes a data access trap.
+    /// [`Unmapped`] if no memory or device answers. The processor then takes a data access trap.
     fn write(&mut self, address: u32, size: u32, value: u64) -> Result<(), Unmapped>;
 
-    /// Whether the caches may hold the line of `address` (the KEN# pin). Devices answer false.
+    /// Returns true if the caches may hold the line of `address` (the KEN# pin). Devices return false.
     fn is_cacheable(&self, _address: u32) -> bool {
         true
     }
@@ -38,32 +38,32 @@ pub struct Ram {
 }
 
 impl Ram {
-    /// `len` zero bytes from address `base`.
+    /// Makes `len` zero bytes from address `base`.
     #[must_use]
     pub fn new(base: u32, len: usize) -> Ram {
         Ram { base, bytes: vec![0; len] }
     }
 
-    /// The contents, lowest address first.
+    /// Returns the contents, lowest address first.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
-    /// Puts `bytes` at `address`.
+    /// Copies `bytes` to `address`.
     ///
     /// # Errors
-    /// [`Unmapped`] when they do not fit; nothing is written then.
+    /// [`Unmapped`] if the bytes do not fit. Nothing is written then.
     pub fn load(&mut self, address: u32, bytes: &[u8]) -> Result<(), Unmapped> {
         let at = self.offset(address, bytes.len())?;
         self.bytes[at..at + bytes.len()].copy_from_slice(bytes);
         Ok(())
     }
 
-    /// Puts 32-bit words at `address`.
+    /// Copies 32-bit words to `address`.
     ///
     /// # Errors
-    /// [`Unmapped`] when they do not fit; nothing is written then.
+    /// [`Unmapped`] if the words do not fit. Nothing is written then.
     pub fn load_words(&mut self, address: u32, words: &[u32]) -> Result<(), Unmapped> {
         let at = self.offset(address, size_of_val(words))?;
         for (place, word) in self.bytes[at..].as_chunks_mut::<4>().0.iter_mut().zip(words) {
@@ -75,7 +75,7 @@ impl Ram {
     /// Reads `count` 32-bit words from `address`.
     ///
     /// # Errors
-    /// [`Unmapped`] when they are not all there.
+    /// [`Unmapped`] if a word lies outside the memory.
     pub fn words(&self, address: u32, count: usize) -> Result<Vec<u32>, Unmapped> {
         let at = self.offset(address, count.saturating_mul(4))?;
         let words = self.bytes[at..at + count * 4].chunks_exact(4);

@@ -1,21 +1,22 @@
-//! Tag arrays of the caches and the TLB. Contents live in memory: only hits, misses and write-backs matter here.
+//! Tag arrays of the caches and the TLB. Data always come from memory; the arrays decide only hits, misses and
+//! write-backs.
 
 use crate::timing::ChipSizes;
 
-/// A tag array of so many sets and ways, for lines of so many bytes (all powers of two), with pseudo-random replacement.
+/// A set-associative tag array with pseudo-random replacement. All sizes are powers of two.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Tags<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> {
-    /// Addresses of lines with [`VALID`] and [`DIRTY`] in their low bits, 0 for empty.
+    /// Line addresses with [`VALID`] and [`DIRTY`] in their low bits; 0 for an empty way.
     sets: Box<[[u32; WAYS]; SETS]>,
-    /// Fills and clears so far: while it stays, so does what is held.
+    /// Number of fills and clears so far. While it is unchanged, the array holds the same lines.
     changes: u64,
 }
 
-/// Bits of a tag.
+/// Low bits of a tag.
 const VALID: u32 = 1;
 const DIRTY: u32 = 2;
 
-/// The tags of a cache of so many sets.
+/// A tag array with the lines and ways of the on-chip caches.
 type CacheTags<const SETS: usize> = Tags<SETS, CACHE_WAYS, { ChipSizes::PAPERS.line_bytes as u32 }>;
 const CACHE_WAYS: usize = ChipSizes::PAPERS.cache_ways as usize;
 
@@ -23,7 +24,7 @@ const fn sets(cache_bytes: u64) -> usize {
     (cache_bytes / ChipSizes::PAPERS.line_bytes) as usize / CACHE_WAYS
 }
 
-/// Those of the instruction cache and of the data cache.
+/// Tag arrays of the instruction cache and of the data cache.
 pub(crate) type InstructionTags = CacheTags<{ sets(ChipSizes::PAPERS.instruction_cache_bytes) }>;
 pub(crate) type DataTags = CacheTags<{ sets(ChipSizes::PAPERS.data_cache_bytes) }>;
 
@@ -38,7 +39,7 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         self.changes
     }
 
-    /// Counts as changed since any state of a number up to `latest`.
+    /// Raises the change counter above `latest`, so that the counter differs from all earlier states.
     pub(crate) fn number_changes_from(&mut self, latest: u64) {
         self.changes = self.changes.max(latest) + 1;
     }
@@ -48,19 +49,19 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         (address / LINE_BYTES) as usize % SETS
     }
 
-    /// The tag of a clean line.
+    /// Returns the tag of a clean line.
     #[inline]
     fn tag(address: u32) -> u32 {
         address & !(LINE_BYTES - 1) | VALID
     }
 
-    /// Whether an address is held.
+    /// Returns true if the array holds an address.
     #[inline]
     pub(crate) fn holds(&self, address: u32) -> bool {
         self.sets[Self::set(address)].iter().any(|held| held & !DIRTY == Self::tag(address))
     }
 
-    /// Whether an address is held; its line is dirty from now on if `stores`.
+    /// Returns true if the array holds an address, and marks its line dirty if `stores` is true.
     #[inline]
     pub(crate) fn access(&mut self, address: u32, stores: bool) -> bool {
         let ways = &mut self.sets[Self::set(address)];
@@ -76,8 +77,8 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         false
     }
 
-    /// Takes an address in; an empty way first, else the way chosen by `random`. Gives the address of a dirty
-    /// line that had to leave.
+    /// Adds the line of an address, in an empty way if there is one, else in the way chosen by `random`.
+    /// Returns the address of a dirty line that was replaced.
     pub(crate) fn fill(&mut self, address: u32, random: u32) -> Option<u32> {
         self.changes += 1;
         let ways = &mut self.sets[Self::set(address)];
@@ -86,7 +87,7 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         (left & DIRTY != 0).then_some(left & !(VALID | DIRTY))
     }
 
-    /// Makes a held line clean; tells whether it was dirty.
+    /// Makes a held line clean. Returns true if it was dirty.
     pub(crate) fn clean(&mut self, address: u32) -> bool {
         let dirty = Self::tag(address) | DIRTY;
         let way = self.sets[Self::set(address)].iter_mut().find(|held| **held == dirty);
@@ -99,7 +100,7 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
     }
 }
 
-/// A 16-bit maximal-length shift register, the replacement's source of chance.
+/// A 16-bit maximal-length shift register, the pseudo-random source of the replacement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Chance(u16);
 

@@ -1,4 +1,4 @@
-//! The clock: issue, freezes, caches, queues. Told of every block what it executed; changes no value.
+//! The clock: issue, freezes, caches and queues. It receives every executed block and changes no value of the program.
 
 use crate::block::{Access, Block, Unit};
 use crate::bus::Bus;
@@ -19,24 +19,25 @@ use crate::translation::Translation;
 
 const BUS_BYTES: u32 = ChipSizes::PAPERS.bus_bytes as u32;
 
-/// Addresses of data accesses, in order; at most one for each unit of a block.
+/// Addresses of data accesses in order, at most one for each instruction or pair of a block.
 #[derive(Clone, Debug)]
 pub(crate) struct Accesses {
     all: [u32; Accesses::MOST],
     count: usize,
-    /// Whether all were looked up in the data cache as they were made, and found their lines there.
+    /// True while every access was looked up in the data cache and hit.
     pub(crate) all_held: bool,
 }
 
 impl Accesses {
-    /// More than a block has units; a power of two.
+    /// Capacity: a power of two, greater than the length of a block.
     const MOST: usize = 64;
 
     pub(crate) fn new() -> Accesses {
         Accesses { all: [0; Accesses::MOST], count: 0, all_held: false }
     }
 
-    /// Before a block, whose accesses are looked up as they are made if `looks_up`.
+    /// Forgets all accesses before a new block. If `looks_up` is false, the accesses of the block are not looked up in
+    /// the cache.
     #[inline]
     pub(crate) fn begin(&mut self, looks_up: bool) {
         self.count = 0;
@@ -66,7 +67,7 @@ pub(crate) struct Clock {
     pub(crate) data: DataCache,
     stores: StorePipe,
     loads: LoadPipe,
-    /// Blocks whose clocks were counted before; `None` without memoisation.
+    /// Remembered clocks of blocks; `None` without memoization.
     pub(crate) memo: Option<Memo>,
 }
 
@@ -118,7 +119,7 @@ impl Clock {
         self.translation.clear();
     }
 
-    /// Goes on with other numbers of scoreboards, and gives those that it had.
+    /// Exchanges the numbered scoreboard states with those of a shelf, which several processors share.
     pub(crate) fn exchange_numbers(&mut self, numbers: &mut Box<Numbers>) {
         self.write_board();
         if let Some(memo) = &mut self.memo {
@@ -126,20 +127,21 @@ impl Clock {
         }
     }
 
-    /// Page tables at this address, or none.
+    /// Turns translation on with page tables at an address, or off with `None`.
     pub(crate) fn set_translation(&mut self, directory: Option<u32>) {
         self.translation.set_directory(directory);
     }
 
     // ---- blocks
 
-    /// Whether clocks of runs are reused, as it is without anything that looks at single units.
+    /// Returns true if remembered clocks are reused. Address translation and profiles by address need every instruction
+    /// counted.
     #[inline]
     pub(crate) fn repeats(&self) -> bool {
         self.on && self.memo.is_some() && !self.translation.is_on() && self.sampler.is_none()
     }
 
-    /// Counts the clocks of what a block has executed.
+    /// Counts the clocks of the executed part of a block.
     #[inline]
     pub(crate) fn pass<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &Accesses, bus: &B) {
         if !(accesses.all_held && self.repeat_all(block, execution)) {
@@ -147,7 +149,7 @@ impl Clock {
         }
     }
 
-    /// Counts them where not all is known.
+    /// Counts the clocks of a block whose accesses or runs are not all remembered.
     #[inline(never)]
     fn pass_slowly<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &Accesses, bus: &B) {
         if !self.on {
@@ -159,7 +161,7 @@ impl Clock {
         }
     }
 
-    /// Counts them one unit after the other.
+    /// Counts the clocks of a block, one instruction or pair after the other.
     fn count<B: Bus>(&mut self, block: &Block, execution: Execution, accesses: &Accesses, bus: &B) {
         self.write_board();
         let mut accesses = accesses.addresses().iter();
@@ -178,7 +180,7 @@ impl Clock {
         });
     }
 
-    // ---- units
+    // ---- instructions and pairs
 
     #[inline]
     pub(crate) fn fetch<B: Bus>(&mut self, unit: &Unit, bus: &B) {
@@ -194,7 +196,7 @@ impl Clock {
         }
     }
 
-    /// What a unit costs for its access or for how it ends.
+    /// Charges the clocks of a data access, a branch or `st.c`.
     #[inline]
     pub(crate) fn end<B: Bus>(&mut self, unit: &Unit, taken: bool, accesses: &mut std::slice::Iter<'_, u32>, bus: &B) {
         let core = unit.core();
@@ -239,7 +241,7 @@ impl Clock {
         self.common.now += 1;
     }
 
-    /// Issues a pair: both halves wait for the longer freeze.
+    /// Issues a pair. Both halves wait for the longer freeze.
     #[inline]
     fn issue_pair(&mut self, floating: &Decoded, core: &Decoded) {
         let mut longest = NO_WAIT;
@@ -269,7 +271,7 @@ impl Clock {
         }
     }
 
-    /// An integer load: a miss does not block, its destination becomes ready later.
+    /// Counts an integer load. A miss does not block; its destination becomes ready later.
     #[inline]
     fn load_integer<B: Bus>(&mut self, address: u32, dest: u8, bus: &B) {
         self.board.forget(dest);
@@ -281,7 +283,7 @@ impl Clock {
         }
     }
 
-    /// A floating-point load: a miss blocks until all that is needed is there, 16 bytes in two transfers.
+    /// Counts a floating-point load. A miss blocks until all needed bytes have arrived; 16 bytes take two transfers.
     #[inline]
     fn load_floating<B: Bus>(&mut self, address: u32, size: u8, bus: &B) {
         if let Some(transfer) = self.load(address, u32::from(size), bus)
@@ -293,7 +295,7 @@ impl Clock {
         }
     }
 
-    /// Looks `size` bytes up; gives the transfer of a miss.
+    /// Looks `size` bytes up in the data cache. Returns the bus transfer that a miss has started.
     fn load<B: Bus>(&mut self, address: u32, size: u32, bus: &B) -> Option<Transfer> {
         self.translation.translate(address, &mut self.common);
         let transfer = self.data.load(address, size, &mut self.stores, &mut self.common, bus)?;
@@ -302,14 +304,14 @@ impl Clock {
         Some(transfer)
     }
 
-    /// What comes before a clock in the course of a miss waits by the rule of a row, if that applies.
+    /// Makes instructions of a hazard class wait until clock `until` of a running miss, if the freeze row applies.
     fn hold_up(&mut self, hazard: u16, until: u64, why: Freeze) {
         if self.common.costs.applies(why) {
             self.board.set_hazard_until(hazard, until + self.common.costs.clocks(why), why);
         }
     }
 
-    /// A store: into a held line, or through the store pipe to the bus (no allocation on a write miss).
+    /// Counts a store: a hit changes the cache line, a miss goes through the store pipe to the bus without allocation.
     #[inline]
     fn store(&mut self, address: u32, size: u32) {
         self.translation.translate(address, &mut self.common);

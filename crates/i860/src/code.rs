@@ -1,45 +1,45 @@
-//! Code as it was decoded: blocks by their addresses, and which words they were read from.
+//! Decoded code: basic blocks by address, and the words of memory that they were decoded from.
 
 use crate::assembler::Program;
 use crate::block::Block;
 use crate::code_map::CodeMap;
 use crate::state::Mode;
 
-/// Entries of the table of blocks (a host matter, not the part's instruction cache).
+/// Size of the host's table of decoded blocks; unrelated to the processor's instruction cache.
 const BLOCKS: usize = 1 << 12;
 
 fn place(pc: u32) -> usize {
     (pc >> 2) as usize % BLOCKS
 }
 
-/// What was decoded of the code in memory.
+/// The decoded part of the code in memory.
 #[derive(Debug)]
 pub(crate) struct Code {
     blocks: Box<[Option<Box<Block>>]>,
     pub(crate) words: CodeMap,
-    /// Whether some of it was forgotten because memory may hold something else.
+    /// True if decoded code was forgotten because the memory may have changed.
     changed: bool,
 }
 
 impl Code {
-    /// Of whatever lies in memory.
+    /// Makes an empty store for code that comes from no assembled program.
     pub(crate) fn new() -> Code {
         Code { blocks: Box::default(), words: CodeMap::new(0..0), changed: false }
     }
 
-    /// Of a program.
+    /// Makes an empty store for the code of a program.
     pub(crate) fn of(program: &Program) -> Code {
         let end = program.base.saturating_add(program.bytes.len() as u32);
         Code { words: CodeMap::new(program.base..end), ..Code::new() }
     }
 
-    /// Takes the block out that begins at an address in a mode, if it is known.
+    /// Removes and returns the block that begins at an address in a mode, if it was decoded.
     #[inline]
     pub(crate) fn take(&mut self, pc: u32, mode: Mode) -> Option<Box<Block>> {
         self.blocks.get_mut(place(pc))?.take().filter(|block| block.begins(pc, mode))
     }
 
-    /// Puts the block of an address back.
+    /// Stores the block that begins at an address.
     #[inline]
     pub(crate) fn put(&mut self, pc: u32, block: Box<Block>) {
         match self.blocks.get_mut(place(pc)) {
@@ -54,14 +54,14 @@ impl Code {
         self.blocks[place(pc)] = Some(block);
     }
 
-    /// Forgets all of it, because memory may hold something else.
+    /// Forgets all blocks, because the memory may have changed.
     pub(crate) fn clear(&mut self) {
         self.blocks.fill(None);
         self.words.clear();
         self.changed = true;
     }
 
-    /// Whether nothing stored into its program, and it was read from there only.
+    /// Returns true if every decoded word comes from the program and no store changed it.
     pub(crate) fn is_as_assembled(&self) -> bool {
         !self.changed && self.words.is_as_assembled()
     }

@@ -1,17 +1,17 @@
-//! Which words of memory were decoded.
+//! The set of words of memory that were decoded.
 
 use std::ops::Range;
 
-/// Words of code that were decoded, so that a store into them is noticed.
+/// The set of decoded words, so that a store into them is noticed.
 #[derive(Debug)]
 pub(crate) struct CodeMap {
-    /// Addresses of the program, where it is one.
+    /// Addresses of the assembled program; empty without one.
     program: Range<u32>,
-    /// Whether something stored there.
+    /// True if a store has changed a word of the program.
     is_stored_to: bool,
-    /// Lowest and highest address of the program and of the words.
+    /// Lowest and highest address of the program and of the decoded words.
     range: (u32, u32),
-    /// A bit for each word, by its number modulo [`CodeMap::BITS`].
+    /// One bit for each word, by its number modulo [`CodeMap::BITS`].
     words: Box<[u64]>,
 }
 
@@ -23,7 +23,7 @@ impl CodeMap {
         CodeMap { program, is_stored_to: false, range, words: Box::default() }
     }
 
-    /// Lowest and highest address of a range.
+    /// Returns the lowest and highest address of a range.
     fn ends(program: &Range<u32>) -> (u32, u32) {
         if program.is_empty() { (u32::MAX, 0) } else { (program.start, program.end - 1) }
     }
@@ -42,7 +42,7 @@ impl CodeMap {
         self.range = (self.range.0.min(pc), self.range.1.max(pc | 3));
     }
 
-    /// Notes a store of some bytes; tells whether some of them may have been decoded.
+    /// Records a store. Returns true if some of its bytes may have been decoded.
     #[inline]
     pub(crate) fn note_store(&mut self, address: u32, size: u32) -> bool {
         let last = address.wrapping_add(size - 1);
@@ -57,7 +57,7 @@ impl CodeMap {
         })
     }
 
-    /// Whether all lie in the program, into which nothing stored.
+    /// Returns true if every decoded word belongs to the assembled program and no store has changed the program.
     pub(crate) fn is_as_assembled(&self) -> bool {
         !self.is_stored_to && self.range == CodeMap::ends(&self.program)
     }

@@ -1,4 +1,4 @@
-//! What all parts of the clock share: the present clock and where those before it went, the bus, and chance.
+//! State shared by all parts of the clock: the current clock, the profile, the bus and the random source.
 
 use crate::cache::Chance;
 use crate::dram::{Dram, Transfer};
@@ -8,19 +8,20 @@ use crate::timing::{Config, Freeze};
 
 #[derive(Clone, Debug)]
 pub(crate) struct Common {
-    /// The present clock since reset.
+    /// Current clock since reset.
     pub(crate) now: u64,
-    /// Clock at which the profile was started; every clock since then is a freeze or an issue.
+    /// Clock at which the profile was started. Every later clock is a freeze or an issue.
     profile_start: u64,
-    /// Counts of everything but the clocks of issue, which are what the freezes leave.
+    /// All counts except issue clocks, which [`Common::profile`] computes from the other clocks.
     pub(crate) profile: Profile,
     pub(crate) costs: Costs,
     pub(crate) bus: Dram,
-    /// Chooses the line that leaves a full set.
+    /// Chooses the line that is replaced in a full set.
     pub(crate) chance: Chance,
-    /// Clock at which the latest fill of a data line ends; instruction misses before it wait longer.
+    /// End of the latest data-line fill, as a clock. An instruction miss that begins earlier waits longer.
     pub(crate) data_fill_end: u64,
-    /// Clock at which the latest fill of an instruction line ends; a freeze that begins before it lasts as long.
+    /// End of the latest instruction-line fill, as a clock. A freeze that begins earlier lasts at least until this
+    /// clock.
     pub(crate) instruction_fill_end: u64,
 }
 
@@ -55,7 +56,7 @@ impl Common {
         self.bus.page_misses = 0;
     }
 
-    /// Stands still until a clock, and for the rest of an instruction line that comes in meanwhile (row 1).
+    /// Stands still until a clock, and also for the rest of an arriving instruction line (row 1).
     #[inline]
     pub(crate) fn freeze_until(&mut self, until: u64, why: Freeze) {
         if until > self.now {
@@ -67,19 +68,19 @@ impl Common {
         }
     }
 
-    /// Stands still until an instruction is there, which is no other freeze.
+    /// Stands still until an instruction arrives. This wait belongs to row 1a alone.
     #[inline]
     pub(crate) fn await_instruction(&mut self, until: u64) {
         self.stand_still(until, Freeze::InstructionMiss);
     }
 
-    /// What a busy data side adds to the wait for an instruction.
+    /// Stands still for the extra clocks of an instruction miss during a data fill (row 1b).
     pub(crate) fn await_instruction_behind_data(&mut self) {
         let until = self.now + self.costs.clocks(Freeze::InstructionMissBehindData);
         self.stand_still(until, Freeze::InstructionMissBehindData);
     }
 
-    /// Whether an instruction line is still coming in.
+    /// Returns true if an instruction line is still arriving.
     #[inline]
     pub(crate) fn is_filling(&self) -> bool {
         self.now < self.instruction_fill_end
@@ -99,13 +100,13 @@ impl Common {
         self.freeze_until(self.now + self.costs.clocks(why), why);
     }
 
-    /// Reads `beats` transfers of 8 bytes for the data side, once the address pipe has room.
+    /// Reads `beats` transfers of 8 bytes for the data side after the address pipe has room.
     pub(crate) fn read_data(&mut self, address: u32, beats: u32) -> Transfer {
         self.await_address_pipe();
         self.bus.read(self.now, address, beats)
     }
 
-    /// Stands still while three requests are outstanding, whoever made them.
+    /// Stands still while three bus requests are outstanding.
     pub(crate) fn await_address_pipe(&mut self) {
         if self.costs.applies(Freeze::AddressPipeFull) {
             self.freeze_until(self.bus.accepts_at(), Freeze::AddressPipeFull);

@@ -1,4 +1,4 @@
-//! Execution of branches, traps by instruction, and the core half as a whole.
+//! Execution of branches and trap instructions, and of the core half of pairs.
 
 use crate::action::{Core, CoreAction};
 use crate::block::Unit;
@@ -19,13 +19,14 @@ fn delayed(taken: bool, target: u32) -> Flow {
     if taken { Flow::Delayed(target) } else { Flow::Skip }
 }
 
-/// Address behind the delay slot of a unit's branch; the slot is a pair when the next unit is dual.
+/// Returns the address after a branch's delay slot. The slot is a pair if the code after the branch is in
+/// dual-instruction mode.
 fn behind_slot(unit: &Unit) -> u32 {
     unit.core_pc().wrapping_add(if unit.after.is_dual() { 12 } else { 8 })
 }
 
 impl Cpu {
-    /// Executes the core half of a unit.
+    /// Executes a core instruction, or the core half of a pair.
     #[inline(always)]
     pub(crate) fn core<'a, B: Bus>(&mut self, a: &CoreAction, unit: impl Fn() -> &'a Unit, bus: &mut B) -> Flow {
         let done = match a.does {
@@ -106,7 +107,7 @@ impl Cpu {
         immediate(equal == (i.op == Op::Bte), target)
     }
 
-    /// Branches on the old LCC; the new one tells whether the sum of the operands is not negative.
+    /// Executes `bla`: branches if LCC was set, then sets LCC if the sum of the operands is not negative.
     fn branch_on_loop(&mut self, i: &Instruction, target: u32) -> Flow {
         let a = self.state.r(i.src1);
         let b = self.state.r(i.src2);
@@ -117,7 +118,7 @@ impl Cpu {
         if taken { Flow::Delayed(target) } else { Flow::Next }
     }
 
-    /// `bri` also returns from a trap: while a trap bit is set it restores U, IM and the pairing mode.
+    /// Executes `bri`, which also returns from a trap: while a trap bit is set, it restores U, IM and the pairing mode.
     fn branch_indirect(&mut self, i: &Instruction) -> Flow {
         let target = self.state.r(i.src1);
         if self.state.psr & psr::TRAPS != 0 {

@@ -20,19 +20,19 @@ use std::sync::Arc;
 
 /// An i860 XR with its caches and clock; memory is passed in with every run.
 pub struct Cpu {
-    /// What a program can see.
+    /// Registers, pipes and mode that a program can read.
     pub state: State,
     pub(crate) time: Clock,
     pub(crate) seeds: SeedTable,
-    /// Set by a return from a trap.
+    /// Pairing mode after the delay slot, set by a return from a trap.
     pub(crate) mode_after_slot: Option<Mode>,
-    /// Addresses of data that the block in execution has accessed.
+    /// Data addresses that the current block has accessed.
     pub(crate) accesses: Accesses,
-    /// Why the unit in execution trapped.
+    /// Cause of the trap of the instruction or pair that is being executed.
     cause: Option<TrapCause>,
-    /// What the block in execution has written to the directory base.
+    /// Value that the current block has written to the directory-base register.
     pub(crate) directory_base: Option<u32>,
-    /// Whether blocks may differ from the code in memory.
+    /// True if decoded blocks may differ from the code in memory.
     pub(crate) code_changed: bool,
     pub(crate) code: Code,
     config: Config,
@@ -45,7 +45,7 @@ impl fmt::Debug for Cpu {
 }
 
 impl Cpu {
-    /// A processor after reset, at [`TRAP_VECTOR`], with empty caches.
+    /// Makes a processor after reset, at [`TRAP_VECTOR`], with empty caches.
     #[must_use]
     pub fn new(config: Config) -> Cpu {
         Cpu {
@@ -62,7 +62,7 @@ impl Cpu {
         }
     }
 
-    /// A processor about to execute at `pc`.
+    /// Makes a processor that executes at `pc` next.
     #[must_use]
     pub fn at(config: Config, pc: u32) -> Cpu {
         let mut cpu = Cpu::new(config);
@@ -70,7 +70,7 @@ impl Cpu {
         cpu
     }
 
-    /// Back to the state after reset; clocks start from 0 and the caches are empty.
+    /// Returns the processor to its state after reset. Clocks start from 0 and the caches are empty.
     pub fn reset(&mut self) {
         self.state = State::reset();
         self.time = Clock::new(&self.config);
@@ -78,62 +78,65 @@ impl Cpu {
         self.invalidate_code();
     }
 
-    /// Clocks since reset (0 without timing).
+    /// Returns the clocks since reset (0 without timing).
     #[must_use]
     pub fn clocks(&self) -> u64 {
         self.time.now()
     }
 
-    /// Instructions since reset or the last [`Cpu::clear_profile`].
+    /// Returns the number of instructions since reset or the last [`Cpu::clear_profile`].
     #[must_use]
     pub fn instructions(&self) -> u64 {
         self.time.instructions()
     }
 
-    /// Those of all instructions since reset whose clocks were not counted but reused ([`Config::memoise`]).
+    /// Returns the number of instructions since reset whose clocks were reused instead of counted
+    /// ([`Config::memoise`]).
     #[must_use]
     pub fn repeated_instructions(&self) -> u64 {
         self.time.repeated_instructions()
     }
 
-    /// Where the clocks went.
+    /// Returns the clocks and misses by cause.
     #[must_use]
     pub fn profile(&self) -> Profile {
         self.time.profile()
     }
 
-    /// Starts a new profile; caches, queues and the clock go on.
+    /// Starts a new profile. Caches, queues and the clock are unchanged.
     pub fn clear_profile(&mut self) {
         self.time.clear_profile();
     }
 
-    /// Empties the caches and the TLB without writing back, and waits for nothing: a cold start for measurements.
+    /// Empties the caches and the TLB without write-backs or time: a cold start for measurements.
     pub fn empty_caches(&mut self) {
         self.time.empty_caches();
     }
 
-    /// Watches clocks by address from now on (or stops to).
+    /// Starts to record clocks by address. `None` stops the recording.
     pub fn watch(&mut self, addresses: Option<AddressProfile>) {
         self.time.sampler = addresses;
     }
 
-    /// What [`Cpu::watch`] has gathered.
+    /// Returns the clocks by address that [`Cpu::watch`] has recorded.
     #[must_use]
     pub fn watched(&self) -> Option<&AddressProfile> {
         self.time.sampler.as_ref()
     }
 
-    /// Forgets all decoded instructions, which are read ahead up to the next branch. Needed after something other than
-    /// this processor wrote to code; its own stores are seen at once (the part would need a flush and dirbase.ITI).
+    /// Forgets all decoded instructions, which are read ahead up to the next branch.
+    /// Call this function after another device has written to code. The processor's own stores into code take effect at
+    /// once (the real part would need a flush and dirbase.ITI).
     pub fn invalidate_code(&mut self) {
         self.code.clear();
         self.code_changed = false;
     }
 
-    /// From now on, until [`Cpu::close`], it runs with what a shelf knows of `program`, which lies in memory as it was assembled; or of
-    /// none, so that all code is decoded anew. No clock changes.
+    /// Takes the decoded code of `program` from a shelf of decoded programs and uses it until [`Cpu::close`].
+    /// The memory must hold the program as it was assembled. With `None` the processor decodes all code anew. No clock
+    /// changes.
     ///
-    /// All processors that use a shelf have the same [`Config::freezes`].
+    /// All processors that use a shelf must have the same [`Config::freezes`].
     pub fn open(&mut self, shelf: &mut Shelf, program: Option<&Arc<Program>>) {
         self.code = program.map_or_else(Code::new, |program| shelf.take(program));
         self.code_changed = false;
@@ -141,8 +144,8 @@ impl Cpu {
         self.time.fetch.number_states_from(shelf.cache_states);
     }
 
-    /// Gives what it knows of the program back to the shelf that it is from; false where the code in memory is no longer that of the
-    /// program, of which nothing is known then.
+    /// Returns the decoded program and its clocks to its shelf. Returns true if the shelf can reuse them.
+    /// If a store has changed the program in memory, the decoded code is dropped and the result is false.
     pub fn close(&mut self, shelf: &mut Shelf, program: Option<&Arc<Program>>) -> bool {
         self.time.exchange_numbers(&mut shelf.numbers);
         shelf.cache_states = self.time.fetch.states();
@@ -153,7 +156,8 @@ impl Cpu {
     }
 
     /// Runs until `stop` is reached in single-instruction mode, a trap is taken, or `budget` more instructions have
-    /// been executed (a branch and its slot are not parted, so it can be passed by three).
+    /// been executed.
+    /// A branch and its slot stay together, so a run can exceed the budget by up to three instructions.
     pub fn run<B: Bus>(&mut self, bus: &mut B, stop: Option<u32>, budget: u64) -> RunEnd {
         let end = self.instructions().saturating_add(budget);
         loop {
@@ -169,7 +173,7 @@ impl Cpu {
         }
     }
 
-    /// Executes one instruction or pair; a delayed branch together with its slot.
+    /// Executes one instruction or pair, or a delayed branch together with its slot.
     ///
     /// # Errors
     /// The trap that was taken. The next step executes the first instruction of its handler.
@@ -177,9 +181,11 @@ impl Cpu {
         self.advance(bus, None, 1)
     }
 
-    /// Executes the block at pc, or its first unit where the block goes past `stop` or has more than `most` instructions.
+    /// Executes the block at pc. Executes only its first instruction or pair if the block goes past `stop` or has more
+    /// than `most` instructions.
     fn advance<B: Bus>(&mut self, bus: &mut B, stop: Option<u32>, most: u64) -> Result<(), Trap> {
         let pc = self.state.pc;
+        // Take the decoded block out of the store, or decode it now.
         let mode = self.state.mode;
         let mut block = match self.code.take(pc, mode) {
             Some(block) => block,
@@ -188,13 +194,16 @@ impl Cpu {
                 Err(cause) => return Err(self.take_trap(cause)),
             },
         };
+        // Execute the whole block where stop and budget allow, else its first instruction or pair.
         let whole = block.instructions <= most && stop.is_none_or(|stop| !block.passes(stop));
         let units = if whole { block.count } else { 1 };
         self.execute(&mut block, units, bus);
+        // Changes of dirbase take effect after the instruction that wrote them.
         if let Some(value) = self.directory_base.take() {
             self.obey_directory_base(value);
         }
         self.code.put(pc, block);
+        // After a store into decoded code, all blocks must be decoded again.
         if self.code_changed {
             self.invalidate_code();
         }
@@ -204,7 +213,7 @@ impl Cpu {
         }
     }
 
-    /// Executes at most `most` units of a block and the slot of their branch, then counts their clocks.
+    /// Executes at most `most` instructions or pairs of a block and the slot of their branch, then counts their clocks.
     #[inline]
     fn execute<B: Bus>(&mut self, block: &mut Block, most: usize, bus: &mut B) {
         self.accesses.begin(self.time.repeats());
@@ -214,9 +223,11 @@ impl Cpu {
         self.time.pass(block, execution, &self.accesses, bus);
     }
 
-    /// Goes to where the last unit of a block leads, by way of the slot if there is one.
+    /// Sets pc and mode for the next block. Executes the delay slot first if the last instruction was a taken delayed
+    /// branch.
     #[inline]
     fn go_on<B: Bus>(&mut self, flow: Flow, block: &Block, execution: &mut Execution, bus: &mut B) {
+        // Begin with the address right after the executed code; a jump or trap overrides it below.
         let (next, after) = match execution.units == block.count {
             true => (block.next, block.after),
             false => {
@@ -246,7 +257,7 @@ impl Cpu {
         }
     }
 
-    /// Executes the slot of a branch that was taken.
+    /// Executes the delay slot of a taken branch.
     #[inline]
     fn slot<B: Bus>(&mut self, block: &Block, target: u32, execution: &mut Execution, bus: &mut B) {
         if block.wrong_slot.is_some() {
@@ -262,7 +273,7 @@ impl Cpu {
         }
     }
 
-    /// Where control goes from something that may trap.
+    /// Returns the control flow of an instruction, and records the cause if it trapped.
     #[inline(always)]
     pub(crate) fn flow(&mut self, done: Result<Flow, TrapCause>) -> Flow {
         done.unwrap_or_else(|cause| self.trapped(cause))
@@ -274,7 +285,8 @@ impl Cpu {
         Flow::Trapped
     }
 
-    /// Executes units of a block until one does not go on to the next, and tells how many those were.
+    /// Executes instructions and pairs of a block until one changes the flow. Returns their number and the flow after
+    /// the last one.
     fn units<B: Bus>(&mut self, block: &Block, range: Range<usize>, bus: &mut B) -> (usize, Flow) {
         let actions = &block.actions[range];
         for action in actions {
@@ -286,7 +298,8 @@ impl Cpu {
         (actions.len(), Flow::Next)
     }
 
-    /// Executes a unit. Both halves read before either writes, and the core half goes first so that its trap leaves no trace.
+    /// Executes an instruction or pair. Both halves of a pair read before either writes. The core half goes first, so
+    /// that its trap leaves the floating-point half undone.
     #[inline(always)]
     fn unit<B: Bus>(&mut self, action: &Action, block: &Block, bus: &mut B) -> Flow {
         let unit = || block.unit(usize::from(action.number));
@@ -298,7 +311,7 @@ impl Cpu {
         flow
     }
 
-    /// Raises the interrupt pin for one moment; false when psr.IM holds it off.
+    /// Raises the interrupt pin for a moment. Returns false if psr.IM disables interrupts.
     pub fn interrupt(&mut self) -> bool {
         let enabled = self.state.psr & psr::IM != 0;
         if enabled {
@@ -311,6 +324,7 @@ impl Cpu {
     fn take_trap(&mut self, cause: TrapCause) -> Trap {
         let pc = self.state.pc;
         let old = self.state.psr;
+        // Record the cause and the previous mode in psr, and the address in fir, for the handler.
         let bit = match cause {
             TrapCause::InstructionAccess => psr::IAT,
             TrapCause::DataAccess { .. } | TrapCause::Unaligned { .. } => psr::DAT,

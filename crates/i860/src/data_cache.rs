@@ -1,4 +1,4 @@
-//! The data cache: which lines are held and which are dirty; fills, and write-backs of what must leave.
+//! The data cache: held and dirty lines, fills, and write-backs of replaced lines.
 
 use crate::block::AccessingUnit;
 use crate::bus::Bus;
@@ -9,7 +9,7 @@ use crate::store_pipe::StorePipe;
 use crate::timing::ChipSizes;
 
 const BUS_BYTES: u32 = ChipSizes::PAPERS.bus_bytes as u32;
-/// Transfers of a line.
+/// Bus transfers of one cache line.
 const BEATS: u32 = ChipSizes::PAPERS.line_bytes as u32 / BUS_BYTES;
 
 #[derive(Clone, Debug)]
@@ -29,8 +29,10 @@ impl DataCache {
         self.0.holds(address)
     }
 
-    /// The first access from number `from` on that does not find its line, with the number of its unit, or the first one of a unit from
-    /// number `limit` on. Those lines become dirty where they are stored to, as when they are counted.
+    /// Finds the end of the accesses that hit, from access number `from` to the first one of instruction or pair number
+    /// `limit`.
+    /// Returns the number of the first other access, and the index of its instruction or pair if the access misses.
+    /// Stores that hit mark their lines dirty.
     #[inline]
     pub(crate) fn held(
         &mut self,
@@ -59,13 +61,13 @@ impl DataCache {
         (next, None)
     }
 
-    /// Whether the line of an access is held, which becomes dirty if that stores.
+    /// Returns true if an access hits. The line becomes dirty if the access is a store.
     #[inline]
     pub(crate) fn access(&mut self, address: u32, stores: bool) -> bool {
         self.0.access(address, stores)
     }
 
-    /// Brings in the `size` bytes that a load needs; `None` if they are there.
+    /// Fetches the `size` bytes of a load from memory; returns `None` if they hit.
     #[inline]
     pub(crate) fn load<B: Bus>(
         &mut self,
@@ -86,7 +88,7 @@ impl DataCache {
         Some(transfer)
     }
 
-    /// Brings a line in, the needed word first; a dirty line that leaves is written after it.
+    /// Fills a line, the needed word first. A dirty line that it replaces is written back afterwards.
     fn fill_line(&mut self, address: u32, stores: &mut StorePipe, common: &mut Common) -> Transfer {
         common.profile.data_misses += 1;
         let transfer = common.read_data(address, BEATS);

@@ -1,18 +1,18 @@
-//! Instruction words to [`Instruction`].
+//! Decoder from instruction words to [`Instruction`].
 
 use crate::instruction::{FNOP, Flags, Instruction, Op};
 use crate::syntax::register_mask;
 
-/// A word that is no instruction of the XR part.
+/// A word that encodes no instruction of the i860 XR.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0:08x} is not an i860 XR instruction")]
 pub struct IllegalWord(
-    /// The word that was to be decoded.
+    /// The word that could not be decoded.
     pub u32,
 );
 
 const D_BIT: u32 = 1 << 9;
-/// epsr; bear, ccr and p0 to p3 came with the XP.
+/// Number of epsr, the last control register of the XR. The XP added bear, ccr and p0 to p3.
 const LAST_XR_CONTROL_REGISTER: u8 = 5;
 
 fn field(word: u32, low: u32) -> u8 {
@@ -27,10 +27,10 @@ fn split16(word: u32) -> i32 {
     signed16((word >> 5 & 0xF800) | (word & 0x07FF))
 }
 
-/// Decodes one word. Reserved fields are ignored, as on the part; reserved operations are errors.
+/// Decodes one word. Reserved fields are ignored, as on the real chip. Reserved operations are errors.
 ///
 /// # Errors
-/// [`IllegalWord`] for a reserved operation, an XP-only one, or a precision that the operation does not have.
+/// [`IllegalWord`] for a reserved operation, an XP-only operation, or a precision that the operation does not have.
 pub fn decode(word: u32) -> Result<Instruction, IllegalWord> {
     let mut i = Instruction::new(Op::Fnop);
     i.dest = field(word, 16);
@@ -40,6 +40,7 @@ pub fn decode(word: u32) -> Result<Instruction, IllegalWord> {
         i.flags = Flags(0).with(Flags::DUAL, word & D_BIT != 0);
         return Ok(i);
     }
+    // The upper six bits select the group of the operation.
     match word >> 26 {
         0x12 => floating(word, i),
         0x13 => escape(word, i),
@@ -51,7 +52,7 @@ pub fn decode(word: u32) -> Result<Instruction, IllegalWord> {
     .ok_or(IllegalWord(word))
 }
 
-/// Register fields that mean nothing for the operation read as zero.
+/// Clears register fields that the operation does not use.
 fn without_reserved_fields(mut i: Instruction) -> Instruction {
     let mask = register_mask(&i, i.has(Flags::IMMEDIATE));
     i.dest &= field(mask, 16);
@@ -76,6 +77,7 @@ fn memory(word: u32, op: u32, mut i: Instruction) -> Option<Instruction> {
         0x18 | 0x19 => Op::Pfld,
         _ => return None,
     };
+    // The offsets of stores are split over two fields; the low bits of others encode sizes.
     let immediate = (op & 1 == 1 && op != 0x03) || matches!(op, 0x03 | 0x07);
     i.flags = i.flags.with(Flags::IMMEDIATE, immediate);
     match i.op {

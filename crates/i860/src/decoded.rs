@@ -1,9 +1,9 @@
-//! Predecoded instructions: what the timing model asks about an instruction, answered once.
+//! Decoded instructions with the properties that the timing model needs, computed once.
 
 use crate::dual_operation::source_widths;
 use crate::instruction::{Flags, Instruction, Op};
 
-/// What an instruction can be held up by; a bit per hazard that lasts some clocks.
+/// Hazards that can delay an instruction, one bit for each.
 pub(crate) mod hazard {
     pub(crate) const SCALAR: u16 = 1 << 0;
     pub(crate) const DOUBLE_MULTIPLY: u16 = 1 << 1;
@@ -17,7 +17,7 @@ pub(crate) mod hazard {
     pub(crate) const COUNT: usize = 9;
 }
 
-/// What an instruction leaves behind.
+/// Classes of hazards that an instruction leaves for later instructions.
 pub(crate) mod arm {
     pub(crate) const LOAD: u16 = 1 << 0;
     pub(crate) const LONG_LOAD: u16 = 1 << 1;
@@ -33,7 +33,7 @@ pub(crate) mod arm {
     pub(crate) const FLOATING_RESULT: u16 = 1 << 11;
 }
 
-/// Stands for a register where an instruction has none.
+/// Register number of an absent operand.
 pub(crate) const NONE: u8 = 0xFF;
 
 /// A decoded instruction with its timing classes.
@@ -43,7 +43,7 @@ pub(crate) struct Decoded {
     pub(crate) instruction: Instruction,
     pub(crate) sensitive: u16,
     pub(crate) arms: u16,
-    /// First source when the multiplier reads it, else [`NONE`].
+    /// First source register if the multiplier reads it, else [`NONE`].
     pub(crate) multiplier_source: u8,
     marks: u8,
 }
@@ -82,32 +82,33 @@ impl Decoded {
         self.marks & mark::BRANCH != 0
     }
 
-    /// Whether it changes nothing that a program can see: `fnop`, and shifts into r0 that load no shift count, of which `nop` is one.
+    /// Returns true if the instruction has no visible effect: `fnop`, and shifts into r0 that load no shift count, for
+    /// example `nop`.
     pub(crate) fn is_idle(&self) -> bool {
         let Instruction { op, dest, .. } = self.instruction;
         op == Op::Fnop || dest == 0 && matches!(op, Op::Shl | Op::Shra | Op::Shrd)
     }
 
-    /// The D bit: whether it is issued beside an integer instruction.
+    /// Returns the D bit, which requests dual-instruction mode.
     #[inline]
     pub(crate) fn dual(&self) -> bool {
         self.marks & mark::DUAL != 0
     }
 
-    /// Whether it accesses data, or may cost more for how it ends: all that the clock must be told
-    /// of its execution.
+    /// Returns true if the instruction accesses data, branches or is `st.c`. Only these cost clocks that depend on
+    /// their execution.
     #[inline]
     pub(crate) fn is_told(&self) -> bool {
         self.marks & (mark::ACCESSES | mark::BRANCH) != 0
     }
 
-    /// Whether the first and the second source are read as pairs of registers.
+    /// Returns for the first and the second source whether it is a pair of registers.
     #[inline]
     pub(crate) fn source_widths(&self) -> (bool, bool) {
         (self.marks & mark::FIRST_DOUBLE != 0, self.marks & mark::SECOND_DOUBLE != 0)
     }
 
-    /// Whether the destination of a pipelined operation may be one of its sources.
+    /// Returns true if the destination of a pipelined operation may be one of its sources.
     #[inline]
     pub(crate) fn may_bypass(&self) -> bool {
         self.marks & mark::MAY_BYPASS != 0
@@ -132,7 +133,7 @@ fn marks(i: &Instruction) -> u8 {
         | on(mark::ACCESSES, i.op <= Op::Pst || matches!(i.op, Op::Flush | Op::StC))
 }
 
-/// Register mask of `bytes` of floating-point registers from `n`.
+/// Returns the bits of `bytes` of floating-point registers from register `n` in a register mask.
 pub(crate) fn float_mask(n: u8, bytes: u8) -> u64 {
     let n = u32::from(n);
     let low = match bytes {
@@ -244,7 +245,8 @@ fn floating_arms(i: &Instruction) -> u16 {
     }
 }
 
-/// In a dual operation the first source goes to the multiplier for four of the sixteen data paths.
+/// Returns the register of [`Decoded::multiplier_source`]. In a dual operation the first source goes to the multiplier
+/// for four of the sixteen data paths.
 fn multiplier_source(i: &Instruction) -> u8 {
     let reads_first = match i.op {
         Op::Fmul | Op::Fmul3 | Op::Fmlow => true,

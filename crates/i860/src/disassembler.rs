@@ -1,4 +1,4 @@
-//! Instruction words to text.
+//! Disassembler from instruction words to text.
 
 use crate::assembler::instruction_word;
 use crate::decode::decode;
@@ -7,7 +7,8 @@ use crate::instruction::{Flags, Instruction, Op};
 use crate::mnemonic::mnemonic;
 use crate::syntax::{CONTROL_REGISTERS, Syntax};
 
-/// The text of a word at an address, as the assembler takes it; `.long` when no instruction gives the word back.
+/// Returns the text of a word at an address in the assembler's syntax.
+/// Returns a `.long` directive if no instruction assembles to the same word.
 #[must_use]
 pub fn disassemble(word: u32, pc: u32) -> String {
     let text = decode(word).ok().map(|i| text(&i, pc));

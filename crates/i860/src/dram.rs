@@ -1,35 +1,35 @@
-//! The external bus and the page-mode memory behind it, in closed form: a request gives the clocks of its data.
+//! The external bus and the page-mode memory behind it, in closed form: each request returns the clocks of its data.
 
 use crate::timing::{ChipSizes, DramTiming};
 
 const BUS_BYTES: u64 = ChipSizes::PAPERS.bus_bytes;
 const BUS_DEPTH: usize = ChipSizes::PAPERS.bus_depth as usize;
 
-/// When the data of a request pass.
+/// The clocks at which the data of a request arrive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Transfer {
-    /// Clock at which the first (needed) 8 bytes are there.
+    /// Arrival of the first (needed) 8 bytes, as a clock.
     pub(crate) first: u64,
-    /// Clock at which the last 8 bytes are there.
+    /// Arrival of the last 8 bytes, as a clock.
     pub(crate) last: u64,
-    /// Clocks between 8 bytes and the next.
+    /// Clocks between successive 8 bytes.
     step: u64,
 }
 
 impl Transfer {
-    /// Clock at which 8 bytes are there, the needed ones being number 0.
+    /// Returns the clock at which the 8 bytes with this number arrive. Number 0 are the requested bytes.
     pub(crate) fn arrival(&self, number: u32) -> u64 {
         self.first + u64::from(number) * self.step
     }
 }
 
-/// State of bus and memory.
+/// State of the bus and the memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Dram {
     timing: DramTiming,
-    /// Clock from which a read of the open row can start, overlapping with the data of the read before.
+    /// Clock from which a read of the open row can start. Such a read overlaps with the data of the previous read.
     free: u64,
-    /// Clock at which the last data of all requests have passed: before it no write begins, and no other row is opened.
+    /// Clock at which the data of all requests have passed. No write and no other row begins before it.
     data_end: u64,
     open_page: u64,
     next_refresh: u64,
@@ -57,17 +57,17 @@ impl Dram {
         }
     }
 
-    /// Clock at which the address pipe has room.
+    /// Returns the clock at which the address pipe has room.
     pub(crate) fn accepts_at(&self) -> u64 {
         self.outstanding[0]
     }
 
-    /// Clock at which everything requested so far is done.
+    /// Returns the clock at which all requests so far are complete.
     pub(crate) fn idle_at(&self) -> u64 {
         self.data_end.max(self.free)
     }
 
-    /// Refreshes and transfers of other masters that fall due before a request at `now`.
+    /// Inserts refreshes and transfers of other bus masters that are due before a request at `now`.
     fn steal(&mut self, now: u64) {
         let t = self.timing;
         for (interval, clocks, due) in [
@@ -85,7 +85,7 @@ impl Dram {
         }
     }
 
-    /// Whether an address lies in the open row, which that of the address is from now on.
+    /// Opens the row of an address. Returns true if it was open already.
     fn open(&mut self, address: u32) -> bool {
         let page = u64::from(address) / self.timing.page_bytes.max(BUS_BYTES);
         let hit = page == self.open_page;
@@ -104,8 +104,8 @@ impl Dram {
 
     /// Reads `beats` transfers of 8 bytes, the needed one first.
     ///
-    /// Requests to the open row overlap: the next one's first data follow `next` clocks after this one's last. A row is
-    /// closed when its last data have passed.
+    /// Requests to the open row overlap: the first data of the next request follow `next` clocks after the last data of
+    /// this one. A row is closed after its last data have passed.
     pub(crate) fn read(&mut self, now: u64, address: u32, beats: u32) -> Transfer {
         self.steal(now);
         let hit = self.open(address);
@@ -118,7 +118,7 @@ impl Dram {
         self.finish(Transfer { first, last, step: t.next })
     }
 
-    /// Writes `beats` transfers of 8 bytes within one row, once the bus is done with the data of all reads.
+    /// Writes `beats` transfers of 8 bytes within one row, after the data of all reads have passed.
     pub(crate) fn write(&mut self, now: u64, address: u32, beats: u32) -> Transfer {
         self.steal(now);
         let hit = self.open(address);

@@ -2,7 +2,7 @@
 
 use crate::instruction::{Flags, Instruction, Op};
 
-/// Where a dual operation takes an operand from. M and A are the last stages of multiplier and adder.
+/// Source of an operand of a dual operation. M and A are the last stages of multiplier and adder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub(crate) enum Source {
@@ -28,7 +28,7 @@ const fn route(multiplier: [Source; 2], adder: [Source; 2], loads_t: bool, loads
     Route { multiplier, adder, loads_t, loads_k }
 }
 
-/// The sixteen data paths by DPC, written for pfam/pfsm; for pfmam/pfmsm every `A` reads `M`.
+/// The sixteen data paths by DPC for pfam and pfsm. For pfmam and pfmsm, [`MULTIPLIER_ROUTES`] has `M` for every `A`.
 pub(crate) const ROUTES: [Route; 16] = {
     use Source::{A, Ki, Kr, M, S1, S2, T};
     [
@@ -51,7 +51,7 @@ pub(crate) const ROUTES: [Route; 16] = {
     ]
 };
 
-/// The same with every `A` reading `M`.
+/// The data paths of pfmam and pfmsm: [`ROUTES`] with `M` for every `A`.
 pub(crate) const MULTIPLIER_ROUTES: [Route; 16] = {
     let mut routes = ROUTES;
     let mut n = 0;
@@ -71,7 +71,7 @@ const fn multiplier_for_adder(source: Source) -> Source {
     }
 }
 
-/// Whether the first and the second source are read as pairs of registers.
+/// Returns for the first and the second source whether it is a pair of registers.
 pub(crate) fn source_widths(i: &Instruction) -> (bool, bool) {
     let s = i.has(Flags::SOURCE_DOUBLE);
     let r = i.has(Flags::RESULT_DOUBLE);
@@ -88,7 +88,7 @@ pub(crate) fn source_widths(i: &Instruction) -> (bool, bool) {
     }
 }
 
-/// Whether the first source goes to the adder or the graphics unit, which have the bypass.
+/// Returns true if the first source goes to the adder or the graphics unit, which have a bypass.
 pub(crate) fn first_has_bypass(i: &Instruction) -> bool {
     match i.op {
         Op::DualOp => ROUTES[(i.imm & 15) as usize].adder[0] == Source::S1,

@@ -1,4 +1,4 @@
-//! [`Instruction`] to instruction words, the inverse of [`decode`](crate::decode()).
+//! Encoder from [`Instruction`] to words, the inverse of [`decode`](crate::decode()).
 
 use crate::instruction::{FNOP, Flags, Instruction, Op};
 use crate::syntax::register_mask;
@@ -8,7 +8,7 @@ fn join16(imm: i32) -> u32 {
     (offset & 0xF800) << 5 | (offset & 0x07FF)
 }
 
-/// Encodes an instruction whose fields are in range (as [`decode`](crate::decode()) or the assembler makes them).
+/// Encodes an instruction. Its fields must be in range, as [`decode`](crate::decode()) and the assembler ensure.
 #[must_use]
 pub fn encode(i: &Instruction) -> u32 {
     let registers = u32::from(i.src2) << 21 | u32::from(i.dest) << 16 | u32::from(i.src1) << 11;
@@ -36,7 +36,7 @@ fn core_code(i: &Instruction, immediate: u32) -> (u32, u32) {
         Op::Fst => (0x0A | immediate, low16 | size_bits(i)),
         Op::Pfld => (0x18 | immediate, low16 | size_bits(i)),
         Op::Pst => (0x0F, low16 | size_bits(i)),
-        // Bit 2 belongs to the operation.
+        // Bit 2 is part of the opcode.
         Op::Flush => (0x0D, low16 & !7 | 4 | u32::from(i.has(Flags::AUTOINCREMENT))),
         Op::LdC => (0x0C, 0),
         Op::StC => (0x0E, 0),

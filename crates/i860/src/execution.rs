@@ -1,14 +1,14 @@
-//! What was executed of a block.
+//! The executed part of a basic block.
 
-/// How much of a block was executed, and how it ended.
+/// The executed part of a block, and how it ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Execution {
-    /// Units executed, not counting the slot.
+    /// Number of executed instructions or pairs, without the delay slot.
     pub(crate) units: usize,
-    /// Whether the slot was executed.
+    /// True if the slot was executed.
     pub(crate) slot: bool,
-    /// Whether the branch at the end was taken.
+    /// True if the branch at the end was taken.
     pub(crate) taken: bool,
-    /// Whether the last of these units trapped.
+    /// True if the last executed instruction or pair trapped.
     pub(crate) trapped: bool,
 }

@@ -1,4 +1,4 @@
-//! Instruction fetch: the line that is being fetched from, and the instruction cache behind it.
+//! Instruction fetch: the line of the last fetch, and the instruction cache behind it.
 
 use crate::block::Block;
 use crate::bus::Bus;
@@ -8,20 +8,20 @@ use crate::memo::Filling;
 use crate::timing::{ChipSizes, Freeze};
 use crate::translation::Translation;
 
-/// Stands for an address where no line is held.
+/// Value of [`Fetch::line`] when no line is held.
 const NO_LINE: u32 = u32::MAX;
 const LINE_BYTES: u32 = ChipSizes::PAPERS.line_bytes as u32;
-/// Transfers of a line.
+/// Bus transfers of one cache line.
 const BEATS: u32 = LINE_BYTES / ChipSizes::PAPERS.bus_bytes as u32;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Fetch {
     cache: InstructionTags,
-    /// Number of the line of the last fetch.
+    /// Number of the cache line of the last fetch.
     line: u32,
-    /// Clocks at which its transfers arrive, by place in the line.
+    /// Clocks at which the transfers of the line arrive, by position in the line.
     arrivals: [u64; BEATS as usize],
-    /// Place in the line of the first of them.
+    /// Position in the line of the transfer that arrives first.
     first: u8,
 }
 
@@ -30,48 +30,49 @@ impl Fetch {
         Fetch { cache: InstructionTags::new(), line: NO_LINE, arrivals: [0; BEATS as usize], first: 0 }
     }
 
-    /// Number of the line of the last fetch, for what continues there.
+    /// Returns the number of the cache line of the last fetch.
     #[inline]
     pub(crate) fn line(&self) -> u32 {
         self.line
     }
 
-    /// The last fetch was from this line, which is held.
+    /// Records that the last fetch was from this line, after a remembered run.
     #[inline]
     pub(crate) fn continue_in(&mut self, line: u32) {
         self.line = line;
     }
 
-    /// Whether the last fetch was from the line of `pc`.
+    /// Returns true if the last fetch was from the line of `pc`.
     #[inline]
     pub(crate) fn is_in_line(&self, pc: u32) -> bool {
         pc / LINE_BYTES == self.line
     }
 
-    /// Whether a fetch from `pc` goes to the bus.
+    /// Returns true if a fetch from `pc` goes to the bus.
     #[inline]
     pub(crate) fn misses(&self, pc: u32) -> bool {
         !self.is_in_line(pc) && !self.cache.holds(pc)
     }
 
-    /// What is still to come of a line.
+    /// Returns the rest of the instruction line that is arriving.
     #[inline]
     pub(crate) fn filling(&self, common: &Common) -> Filling {
         let clocks = common.instruction_fill_end.saturating_sub(common.now);
         Filling { clocks, first: if clocks == 0 { 0 } else { self.first } }
     }
 
-    /// States of the cache are numbered from here on, for blocks that other processors execute too.
+    /// Continues the numbering of cache states after `latest`, so that states of different processors have different
+    /// numbers.
     pub(crate) fn number_states_from(&mut self, latest: u64) {
         self.cache.number_changes_from(latest);
     }
 
-    /// Number of the present state of the cache.
+    /// Returns the number of the current state of the cache, which changes with every fill.
     pub(crate) fn states(&self) -> u64 {
         self.cache.changes()
     }
 
-    /// Whether all of a block is in the cache.
+    /// Returns true if the cache holds the whole block.
     #[inline]
     pub(crate) fn holds(&self, block: &mut Block) -> bool {
         block.is_held(&self.cache)
@@ -82,7 +83,7 @@ impl Fetch {
         self.line = NO_LINE;
     }
 
-    /// Fetches the word or the pair at `pc`.
+    /// Fetches the word or pair at `pc`.
     #[inline]
     pub(crate) fn fetch<B: Bus>(&mut self, pc: u32, translation: &mut Translation, common: &mut Common, bus: &B) {
         if pc / LINE_BYTES != self.line || common.is_filling() {
@@ -94,10 +95,12 @@ impl Fetch {
         if !common.costs.applies(Freeze::InstructionMiss) {
             return;
         }
+        // A later word of an arriving line waits for its own transfer.
         if pc / LINE_BYTES == self.line {
             let arrival = self.arrivals[(pc / 8 % BEATS) as usize];
             return common.await_instruction(arrival);
         }
+        // A new line waits for the end of the last fill.
         common.await_instruction(common.instruction_fill_end);
         translation.translate(pc, common);
         self.line = pc / LINE_BYTES;

@@ -10,7 +10,8 @@ use crate::operands::{Operands, last_product};
 use crate::state::{PipeStage, State, fsr, psr};
 
 impl Cpu {
-    /// Executes the floating-point half of a unit with its operands already read.
+    /// Executes a floating-point instruction, or the floating-point half of a pair, with operands that were already
+    /// read.
     #[inline(always)]
     pub(crate) fn floating<'a>(&mut self, action: &FloatingAction, unit: impl Fn() -> &'a Unit, from: Operands) {
         use Operation::{Add, Multiply, Subtract};
@@ -73,7 +74,7 @@ impl Cpu {
         single(operation, f32::from_bits(a as u32), f32::from_bits(b as u32), self.flush_to_zero())
     }
 
-    /// The pipe of the unit that does an operation.
+    /// Returns the pipe of the adder or the multiplier, depending on the operation.
     #[inline(always)]
     fn pipe_of(&mut self, operation: Operation) -> &mut [PipeStage; 3] {
         let State { multiplier, adder, .. } = &mut self.state;
@@ -137,7 +138,7 @@ impl Cpu {
         push(&mut self.state.adder, 2, sum);
     }
 
-    /// A result of the adder goes to its register, or into the pipe while the oldest one leaves.
+    /// Writes a scalar result of the adder to its register, or pushes a pipelined one into the adder's pipe.
     #[inline]
     fn adder_result(&mut self, i: &Instruction, result: PipeStage) {
         if i.has(Flags::PIPELINED) {
@@ -157,7 +158,7 @@ impl Cpu {
         self.adder_result(i, sum);
     }
 
-    /// Compares set CC and send an undefined value into the pipe; this model sends zero.
+    /// Sets CC by a comparison. The real chip pushes an undefined value into the pipe; this model pushes zero.
     fn compare(&mut self, i: &Instruction, Operands { a, b }: Operands) {
         let double = i.has(Flags::SOURCE_DOUBLE);
         let x = number(a, double);
@@ -184,7 +185,8 @@ impl Cpu {
         self.state.set_f(i.dest, PipeStage { bits, double: r });
     }
 
-    /// The high word of the result is undefined on the part: `fix` clears it here, scalar `ftrunc` leaves it.
+    /// Converts to an integer. The high word of the result is undefined on the real chip: `fix` clears it here, scalar
+    /// `ftrunc` keeps it.
     fn integer_part(&mut self, i: &Instruction, x: u64) {
         let wide = if i.has(Flags::SOURCE_DOUBLE) { x } else { widen(x as u32) };
         let mode = if i.op == Op::Fix { self.state.fsr >> fsr::RM_SHIFT & 3 } else { 3 };
@@ -200,7 +202,7 @@ impl Cpu {
         self.adder_result(i, PipeStage { bits, double: r });
     }
 
-    /// pfam, pfsm, pfmam, pfmsm. K and T are read before they are reloaded.
+    /// Executes pfam, pfsm, pfmam or pfmsm. K and T are read before they are reloaded.
     fn dual_operation(&mut self, i: &Instruction, from: Operands) {
         let s = i.has(Flags::SOURCE_DOUBLE);
         let r = i.has(Flags::RESULT_DOUBLE);
@@ -209,9 +211,11 @@ impl Cpu {
         let leaving_product = last_product(&self.state, s);
         let leaving_sum = self.state.adder[2];
         let flush = self.flush_to_zero();
+        // All values in single precision: the fast path.
         if !(s || r || leaving_product.double || leaving_sum.double) {
             return self.single_dual_operation(i, route, from, [leaving_product, leaving_sum]);
         }
+        // Select the sources of adder and multiplier by the DPC route.
         let for_adder = self.sources(from, leaving_product, leaving_sum, r);
         let for_multiplier = if s == r { for_adder } else { self.sources(from, leaving_product, leaving_sum, s) };
         let [m1, m2] = route.multiplier.map(|source| for_multiplier[source as usize]);
@@ -219,6 +223,7 @@ impl Cpu {
         let product = operate(Operation::Multiply, m1, m2, s, r, flush);
         let operation = if i.imm & 16 != 0 { Operation::Subtract } else { Operation::Add };
         let sum = operate(operation, a1, a2, r, r, flush);
+        // The destination receives the result that leaves a pipe; T and K are reloaded after their use.
         self.state.set_f(i.dest, if pipelined { leaving_sum } else { leaving_product });
         if route.loads_t {
             self.state.t = convert(leaving_product, r, flush);
@@ -230,11 +235,12 @@ impl Cpu {
         self.push_sum(sum);
     }
 
-    /// The same where all is in single precision.
+    /// Executes a dual operation whose operands and results are all in single precision.
     #[inline]
     fn single_dual_operation(&mut self, i: &Instruction, route: &Route, from: Operands, leaving: [PipeStage; 2]) {
         let flush = self.flush_to_zero();
         let [product, sum] = leaving;
+        // Select the four operands by the DPC route.
         let State { kr, ki, t, .. } = self.state;
         let sources = [kr, ki, t, from.a, from.b, product.bits, sum.bits].map(|bits| f32::from_bits(bits as u32));
         let of = |source: Source| sources[source as usize];
@@ -242,6 +248,7 @@ impl Cpu {
         let new_product = single(Operation::Multiply, m1, m2, flush);
         let operation = if i.imm & 16 != 0 { Operation::Subtract } else { Operation::Add };
         let new_sum = single(operation, a1, a2, flush);
+        // The destination receives the result that leaves a pipe.
         self.state.set_f32(i.dest, (if i.has(Flags::PIPELINED) { sum } else { product }).bits as u32);
         if route.loads_t {
             self.state.t = product.bits;
@@ -253,7 +260,7 @@ impl Cpu {
         self.push_sum(PipeStage { bits: u64::from(new_sum), double: false });
     }
 
-    /// The values of all [`Source`]s in the precision of one unit, in the order of the enumeration.
+    /// Returns the values of all [`Source`]s in single or double precision, in the order of the enumeration.
     #[inline(always)]
     fn sources(&self, from: Operands, product: PipeStage, sum: PipeStage, double: bool) -> [u64; 7] {
         let product = self.in_precision(product, double);
@@ -275,10 +282,10 @@ impl Cpu {
     }
 }
 
-/// No number, in both precisions: what the part leaves undefined should be seen.
+/// NaN in both precisions, so that the use of an undefined value shows in results.
 const LOST: u64 = 0x7FF8_0000_7FC0_0000;
 
-/// A result goes into a pipe, and what its last stage held comes out.
+/// Pushes a result into a pipe and returns the contents of its last stage.
 #[inline(always)]
 fn push(pipe: &mut [PipeStage; 3], last: usize, result: PipeStage) -> PipeStage {
     let [first, second, _] = *pipe;
@@ -287,7 +294,7 @@ fn push(pipe: &mut [PipeStage; 3], last: usize, result: PipeStage) -> PipeStage 
     leaving
 }
 
-/// A scalar operation goes through the pipe of its unit, and what was there is lost.
+/// Destroys the results in a pipe, as a scalar operation does to the pipe of its unit.
 #[inline(always)]
 fn lose(pipe: &mut [PipeStage; 3]) {
     for stage in pipe {
@@ -295,7 +302,7 @@ fn lose(pipe: &mut [PipeStage; 3]) {
     }
 }
 
-/// The number that bits of a precision stand for.
+/// Returns the number that a bit pattern of a precision represents.
 fn number(bits: u64, double: bool) -> f64 {
     f64::from_bits(if double { bits } else { widen(bits as u32) })
 }

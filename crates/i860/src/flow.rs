@@ -1,18 +1,17 @@
-//! Where control goes.
+//! Control flow after an instruction or pair.
 
-/// How control goes on after a unit (an instruction or a pair).
+/// Control flow after an instruction or pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Flow {
-    /// To the instruction that follows in memory.
+    /// Continue with the instruction that follows in memory.
     Next,
-    /// There too, but it may have been stored to.
+    /// Continue with the instruction that follows in memory, which a store may have changed.
     NextOfChangedCode,
-    /// To a target, at once.
+    /// Jump to a target at once.
     Jump(u32),
-    /// To a target, after the next unit.
+    /// Jump to a target after the delay slot.
     Delayed(u32),
-    /// To what follows the next unit.
+    /// Skip the next instruction or pair.
     Skip,
-    /// To a trap, whose cause is noted.
     Trapped,
 }

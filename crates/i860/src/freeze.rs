@@ -1,4 +1,4 @@
-//! Freezes: when the processor stands still. The rules, row by row; their clocks stand in [`FreezeClocks`].
+//! Freezes: reasons for which the processor stands still. This table has the rules; [`FreezeClocks`] has their clocks.
 
 use crate::timing::FreezeClocks;
 use parameters::{ParameterInfo, ParameterTable};
@@ -6,22 +6,22 @@ use parameters::{ParameterInfo, ParameterTable};
 /// One row of the freeze table.
 #[derive(Clone, Copy, Debug)]
 pub struct FreezeRow {
-    /// The row's name in this program.
+    /// Identifier of the row in this program.
     pub id: Freeze,
-    /// Number in Intel's list as recollected, with a letter where one number has several costs.
+    /// Row number in Intel's list, from memory, with a letter where one number has several costs.
     pub number: &'static str,
-    /// What must happen for the row to apply.
+    /// Condition under which the row applies.
     pub condition: &'static str,
-    /// What is added to the constant part, or how it shrinks.
+    /// Variable part of the cost, which is added to or subtracted from the constant part.
     pub variable: &'static str,
-    /// What is known of the constant part, which is the field of this name of [`FreezeClocks`].
+    /// Value, range and source of the constant part, from the field of [`FreezeClocks`] with the same position.
     pub clocks: &'static ParameterInfo,
 }
 
-/// Makes the enum and the table of one list: name, number, condition, variable part.
+/// Declares the enumeration and the table from one list: name, number, condition, variable part.
 macro_rules! freezes {
     ($($id:ident $number:literal $condition:literal $variable:literal;)*) => {
-        /// A reason for which the processor stands still. The order is that of [`FREEZES`].
+        /// A reason for which the processor stands still. The order is the order of [`FREEZES`].
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[repr(u8)]
         #[non_exhaustive]
@@ -32,9 +32,10 @@ macro_rules! freezes {
         /// Number of rows of [`FREEZES`].
         pub const N_FREEZES: usize = [$($number),*].len();
 
-        /// The freeze rules. Simultaneous freezes cost the longest; cache misses add.
+        /// The freeze rules. Simultaneous freezes cost the longest of them; cache misses add up.
         ///
-        /// "Since" counts clocks, so an instruction in between that itself froze shortens the wait by its whole time.
+        /// "Since" counts clocks. An instruction in between that was frozen itself therefore shortens the wait by its
+        /// whole time.
         pub const FREEZES: [FreezeRow; N_FREEZES] = [$(FreezeRow {
             id: Freeze::$id,
             number: $number,
@@ -79,63 +80,63 @@ freezes! {
     SeedUse "25" "result of frcp or frsqr used by the next instruction" "";
 }
 
-/// Which rows apply, and their constant parts.
+/// The rows that apply, and their constant parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FreezeRules {
     enabled: u32,
-    /// The constant parts, whether their rows apply or not.
+    /// Constant parts of all rows, including rows that do not apply.
     pub clocks: FreezeClocks,
-    /// Whether row 8 covers and, andnot, or and xor (open question; default no).
+    /// True if row 8 also covers and, andnot, or and xor. Intel's list leaves this open; the default is false.
     pub logicals_delay_branches: bool,
 }
 
 impl FreezeRules {
-    /// All rows of [`FREEZES`].
+    /// Returns rules with all rows of [`FREEZES`].
     #[must_use]
     pub fn all() -> FreezeRules {
         let enabled = (1 << N_FREEZES) - 1;
         FreezeRules { enabled, clocks: FreezeClocks::PAPERS, logicals_delay_branches: false }
     }
 
-    /// No row: one clock per instruction or pair.
+    /// Returns rules without any row: one clock per instruction or pair.
     #[must_use]
     pub fn none() -> FreezeRules {
         FreezeRules { enabled: 0, ..FreezeRules::all() }
     }
 
-    /// The same rules with one row switched off.
+    /// Returns the same rules with one row switched off.
     #[must_use]
     pub fn without(mut self, id: Freeze) -> FreezeRules {
         self.enabled &= !(1 << id as u32);
         self
     }
 
-    /// The same rules with one row switched on.
+    /// Returns the same rules with one row switched on.
     #[must_use]
     pub fn with(mut self, id: Freeze) -> FreezeRules {
         self.enabled |= 1 << id as u32;
         self
     }
 
-    /// The numbers of the rows that apply, in order, and what is read into row 8.
+    /// Returns the numbers of the rows that apply, in order, and the interpretation of row 8 if it is not the default.
     pub(crate) fn names(&self) -> String {
         let applying = FREEZES.iter().filter(|row| self.applies(row.id)).map(|row| row.number);
         let logicals = self.logicals_delay_branches.then_some("logicals delay branches");
         applying.chain(logicals).collect::<Vec<_>>().join(" ")
     }
 
-    /// Whether a row applies.
+    /// Returns true if a row applies.
     #[must_use]
     pub fn applies(&self, id: Freeze) -> bool {
         self.enabled & 1 << id as u32 != 0
     }
 }
 
-/// The rules as the clock asks for them, many times for every instruction.
+/// The freeze rules in a form that the clock can query quickly.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Costs {
     enabled: u32,
-    /// By row; 0 for one that does not apply.
+    /// Constant part of each row; 0 if the row does not apply.
     clocks: [u64; N_FREEZES],
     pub(crate) logicals_delay_branches: bool,
 }
@@ -156,7 +157,7 @@ impl Costs {
         self.enabled & 1 << id as u32 != 0
     }
 
-    /// Constant part of a row, 0 when it is off.
+    /// Returns the constant part of a row, or 0 if the row is off.
     #[inline]
     pub(crate) fn clocks(&self, id: Freeze) -> u64 {
         self.clocks[id as usize]

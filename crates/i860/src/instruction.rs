@@ -1,106 +1,106 @@
-//! The instruction set as a type: operation, fields, and what each operation touches.
+//! The instruction set as a type: operations, fields, and the units and registers that an operation uses.
 
-/// Every operation of the XR part. Precision, addressing form and pipelining are in [`Flags`].
+/// Every operation of the i860 XR. [`Flags`] holds precision, addressing form and pipelining.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Op {
-    /// Load byte, sign extended.
+    /// `ld.b`: loads a byte and extends its sign.
     LdB,
-    /// Load 16 bits, sign extended.
+    /// `ld.s`: loads 16 bits and extends their sign.
     LdS,
-    /// `ld.l`: load 32 bits.
+    /// `ld.l`: loads 32 bits.
     LdL,
-    /// `st.b`: store the low 8 bits.
+    /// `st.b`: stores the low 8 bits.
     StB,
-    /// `st.s`: store the low 16 bits.
+    /// `st.s`: stores the low 16 bits.
     StS,
-    /// `st.l`: store 32 bits.
+    /// `st.l`: stores 32 bits.
     StL,
-    /// Load one, two or four floating-point registers.
+    /// `fld`: loads one, two or four floating-point registers.
     Fld,
-    /// Store one, two or four floating-point registers.
+    /// `fst`: stores one, two or four floating-point registers.
     Fst,
-    /// Pipelined load: the result of the third `pfld` before this one arrives.
+    /// `pfld`: pipelined load. Its destination receives the data of the third `pfld` before it.
     Pfld,
-    /// Store the pixels selected by psr.PM.
+    /// `pst`: stores the pixels selected by psr.PM.
     Pst,
-    /// Read a control register.
+    /// `ld.c`: reads a control register.
     LdC,
-    /// Write a control register.
+    /// `st.c`: writes a control register.
     StC,
-    /// Integer register to floating-point register.
+    /// `ixfr`: copies an integer register to a floating-point register.
     Ixfr,
-    /// Write back a data-cache line.
+    /// `flush`: writes a data-cache line back.
     Flush,
-    /// `trap`: take the instruction trap.
+    /// `trap`: takes the instruction trap.
     Trap,
-    /// Begin an interlocked sequence.
+    /// `lock`: begins an interlocked sequence.
     Lock,
-    /// End an interlocked sequence.
+    /// `unlock`: ends an interlocked sequence.
     Unlock,
-    /// Call through a register.
+    /// `calli`: calls the address in a register.
     Calli,
-    /// Trap when epsr.OF is set.
+    /// `intovr`: traps if epsr.OF is set.
     Intovr,
-    /// Branch through a register.
+    /// `bri`: branches to the address in a register.
     Bri,
-    /// Branch if equal, no delay slot.
+    /// `bte`: branches if the operands are equal, without a delay slot.
     Bte,
-    /// Branch if not equal, no delay slot.
+    /// `btne`: branches if the operands differ, without a delay slot.
     Btne,
-    /// `br`: branch after the slot.
+    /// `br`: branches after the delay slot.
     Br,
-    /// Call, delayed; r1 receives the return address.
+    /// `call`: calls after the delay slot; r1 receives the return address.
     Call,
-    /// `bc`: branch if CC is set, without a slot.
+    /// `bc`: branches if CC is set, without a delay slot.
     Bc,
-    /// Branch if CC, delayed; skips the slot when not taken.
+    /// `bc.t`: branches if CC is set, after the delay slot. Skips the slot when not taken.
     BcT,
-    /// Branch if not CC.
+    /// `bnc`: branches if CC is clear, without a delay slot.
     Bnc,
-    /// Branch if not CC, delayed; skips the slot when not taken.
+    /// `bnc.t`: branches if CC is clear, after the delay slot. Skips the slot when not taken.
     BncT,
-    /// Branch on LCC and add, delayed.
+    /// `bla`: adds, and branches after the delay slot if LCC was set.
     Bla,
-    /// `addu`: add; OF and CC are the carry.
+    /// `addu`: unsigned add; OF and CC receive the carry.
     Addu,
-    /// `subu`: src1 - src2; CC says src2 <= src1.
+    /// `subu`: src1 - src2, unsigned; sets CC if src2 <= src1.
     Subu,
-    /// `adds`: add; CC says src2 < -src1.
+    /// `adds`: signed add; sets CC if src2 < -src1.
     Adds,
-    /// `subs`: src1 - src2; CC says src2 > src1.
+    /// `subs`: src1 - src2, signed; sets CC if src2 > src1.
     Subs,
-    /// `shl`: shift left; r0 by r0 is `nop`.
+    /// `shl`: shifts left. `shl` of r0 by r0 into r0 is `nop`.
     Shl,
-    /// Shift right logical; loads psr.SC.
+    /// `shr`: shifts right without sign, and loads psr.SC.
     Shr,
-    /// Double shift right by psr.SC.
+    /// `shrd`: shifts a pair of registers right by psr.SC.
     Shrd,
-    /// `shra`: shift right, the sign kept.
+    /// `shra`: shifts right and keeps the sign.
     Shra,
-    /// `and`: bitwise and; CC says that nothing is left.
+    /// `and`: bitwise and; sets CC if the result is 0.
     And,
-    /// And with the immediate in the high half.
+    /// `andh`: bitwise and with the immediate in the high half.
     Andh,
-    /// And with the complement of the first operand.
+    /// `andnot`: bitwise and with the complement of the first operand.
     Andnot,
-    /// The same with the immediate in the high half.
+    /// `andnoth`: bitwise and with the complement of the immediate in the high half.
     Andnoth,
-    /// `or`: bitwise or; CC says that the result is 0.
+    /// `or`: bitwise or; sets CC if the result is 0.
     Or,
-    /// Or with the immediate in the high half.
+    /// `orh`: bitwise or with the immediate in the high half.
     Orh,
-    /// `xor`: bitwise exclusive or; CC says that the result is 0.
+    /// `xor`: bitwise exclusive or; sets CC if the result is 0.
     Xor,
-    /// Exclusive or with the immediate in the high half.
+    /// `xorh`: bitwise exclusive or with the immediate in the high half.
     Xorh,
-    /// No operation of the floating-point half of a pair.
+    /// `fnop`: no operation in the floating-point half of a pair.
     Fnop,
     /// `fmul`, `pfmul`: floating-point multiply.
     Fmul,
-    /// `pfmul3`: pipelined multiply of doubles through three stages, for handlers that fill a pipe again.
+    /// `pfmul3`: pipelined multiply of doubles through three stages, used by trap handlers to refill the pipe.
     Fmul3,
-    /// Low bits of the product of two significands.
+    /// `fmlow`: low bits of the product of two significands.
     Fmlow,
     /// `frcp`: first approximation of a reciprocal.
     Frcp,
@@ -110,35 +110,36 @@ pub enum Op {
     Fadd,
     /// `fsub`, `pfsub`: floating-point subtract.
     Fsub,
-    /// `fix`: to an integer, rounded as fsr.RM says.
+    /// `fix`: converts to an integer, rounded as fsr.RM selects.
     Fix,
-    /// Adder move, converts precision.
+    /// `famov`, `pfamov`: moves through the adder and converts the precision.
     Famov,
-    /// Compare greater, sets CC.
+    /// `pfgt`: sets CC if the first operand is greater.
     Pfgt,
-    /// Compare less or equal, clears CC when it holds.
+    /// `pfle`: clears CC if the first operand is less or equal.
     Pfle,
-    /// Compare equal, sets CC.
+    /// `pfeq`: sets CC if the operands are equal.
     Pfeq,
-    /// To integer, towards zero.
+    /// `ftrunc`: converts to an integer, rounded towards zero.
     Ftrunc,
-    /// Floating-point register to integer register.
+    /// `fxfr`: copies a floating-point register to an integer register.
     Fxfr,
-    /// Long-integer add in the graphics unit.
+    /// `fiadd`: adds long integers in the graphics unit.
     Fiadd,
-    /// Long-integer subtract in the graphics unit.
+    /// `fisub`: subtracts long integers in the graphics unit.
     Fisub,
-    /// Add with pixel merge.
+    /// `faddp`: adds and merges pixels into MERGE.
     Faddp,
-    /// Add with Z merge.
+    /// `faddz`: adds and merges depths into MERGE.
     Faddz,
-    /// `fzchkl`: compare two 32-bit depths, keep the smaller.
+    /// `fzchkl`: compares two 32-bit depths and keeps the smaller ones.
     Fzchkl,
-    /// `form`: or with MERGE, which becomes 0.
+    /// `form`: bitwise or with MERGE, which becomes 0.
     Form,
-    /// `fzchks`: compare four 16-bit depths, keep the smaller.
+    /// `fzchks`: compares four 16-bit depths and keeps the smaller ones.
     Fzchks,
-    /// Dual operation (pfam, pfsm, pfmam, pfmsm); the immediate holds bit 4 = subtract, bits 3:0 = DPC.
+    /// `pfam`, `pfsm`, `pfmam`, `pfmsm`: dual operations. In the immediate, bit 4 selects subtraction and bits 3:0 are
+    /// the DPC field.
     DualOp,
 }
 
@@ -151,22 +152,22 @@ impl Flags {
     pub const IMMEDIATE: Flags = Flags(1);
     /// The base register receives the effective address.
     pub const AUTOINCREMENT: Flags = Flags(2);
-    /// Pipelined form (for a dual operation: pfam/pfsm rather than pfmam/pfmsm).
+    /// The operation is pipelined. For dual operations: `pfam` and `pfsm` instead of `pfmam` and `pfmsm`.
     pub const PIPELINED: Flags = Flags(4);
-    /// The D bit, which begins and keeps up dual-instruction mode.
+    /// The D bit, which starts and continues dual-instruction mode.
     pub const DUAL: Flags = Flags(8);
     /// The S bit: sources are double-precision.
     pub const SOURCE_DOUBLE: Flags = Flags(16);
     /// The R bit: the result is double-precision.
     pub const RESULT_DOUBLE: Flags = Flags(32);
 
-    /// Whether all bits of `other` are set.
+    /// Returns true if all bits of `other` are set.
     #[must_use]
     pub fn has(self, other: Flags) -> bool {
         self.0 & other.0 == other.0
     }
 
-    /// The union of two sets when `condition` holds, else `self`.
+    /// Returns the union of two sets if `condition` is true, else `self`.
     #[must_use]
     pub fn with(self, other: Flags, condition: bool) -> Flags {
         Flags(self.0 | if condition { other.0 } else { 0 })
@@ -175,61 +176,61 @@ impl Flags {
 
 /// One decoded instruction.
 ///
-/// `dest`, `src1`, `src2` are register numbers 0..=31 as encoded; which file they name follows from `op`. For stores
-/// of integer registers the stored register is `src1`, for `fst`/`pst` it is `dest`. `imm` holds the immediate, the
-/// displacement in bytes, or for branches the offset in words. `size` is the operand size in bytes of fld, fst, pfld
-/// and pst (0 for the rest).
+/// `dest`, `src1` and `src2` are register numbers 0..=31 as encoded; `op` decides the register file. The register that
+/// is stored is `src1` for stores of integer registers, and `dest` for `fst` and `pst`. `imm` holds the immediate, the
+/// displacement in bytes, or the branch offset in words. `size` is the operand size in bytes of fld, fst, pfld and pst,
+/// and 0 for other operations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Instruction {
-    /// Which operation, in all its forms.
+    /// Operation in all its precisions and addressing forms.
     pub op: Op,
-    /// Number of the destination register, r or f.
+    /// Number of the destination register, in the integer or the floating-point file.
     pub dest: u8,
-    /// First source register (control register for ld.c and st.c is `src2`).
+    /// First source register. For ld.c and st.c, `src2` selects the control register.
     pub src1: u8,
-    /// Second source register, the base of an address.
+    /// Second source register, or the base register of an address.
     pub src2: u8,
-    /// Operand size in bytes of floating-point loads and stores.
+    /// Operand size in bytes of floating-point loads and stores, 0 for other operations.
     pub size: u8,
-    /// Precision, pipe and addressing bits.
+    /// Bits for precision, pipelining and addressing.
     pub flags: Flags,
     /// Immediate, displacement in bytes, or branch offset in words.
     pub imm: i32,
 }
 
 impl Instruction {
-    /// An instruction with all fields zero.
+    /// Makes an instruction with all fields zero.
     #[must_use]
     pub fn new(op: Op) -> Instruction {
         Instruction { op, dest: 0, src1: 0, src2: 0, size: 0, flags: Flags(0), imm: 0 }
     }
 
-    /// Whether modifier bits are set.
+    /// Returns true if all given modifier bits are set.
     #[must_use]
     pub fn has(&self, flags: Flags) -> bool {
         self.flags.has(flags)
     }
 
-    /// Whether the operation goes to the floating-point half of a pair.
+    /// Returns true if the operation executes in the floating-point half of a pair.
     #[must_use]
     pub fn is_floating(&self) -> bool {
         self.op >= Op::Fnop
     }
 
-    /// Whether the operation transfers control after the next instruction or pair.
+    /// Returns true if the operation transfers control after the next instruction or pair.
     #[must_use]
     pub fn is_delayed_branch(&self) -> bool {
         use Op::{BcT, Bla, BncT, Br, Bri, Call, Calli};
         matches!(self.op, Br | Call | Bri | Calli | Bla | BcT | BncT)
     }
 
-    /// Whether the operation transfers control.
+    /// Returns true if the operation transfers control.
     #[must_use]
     pub fn is_branch(&self) -> bool {
         self.is_delayed_branch() || matches!(self.op, Op::Bc | Op::Bnc | Op::Bte | Op::Btne)
     }
 
-    /// Whether the operation sets psr.CC.
+    /// Returns true if the operation sets psr.CC.
     #[must_use]
     pub fn sets_condition(&self) -> bool {
         use Op::{Addu, And, Andh, Andnot, Andnoth, Or, Orh, Pfeq, Pfgt, Pfle, Subs, Subu, Xor, Xorh};
@@ -237,25 +238,25 @@ impl Instruction {
         logical || matches!(self.op, Addu | Subu | Op::Adds | Subs | Pfgt | Pfle | Pfeq)
     }
 
-    /// Whether the operation uses the multiplier.
+    /// Returns true if the operation uses the multiplier.
     #[must_use]
     pub fn uses_multiplier(&self) -> bool {
         matches!(self.op, Op::Fmul | Op::Fmul3 | Op::Fmlow | Op::Frcp | Op::Frsqr | Op::DualOp)
     }
 
-    /// Whether the operation uses the adder.
+    /// Returns true if the operation uses the adder.
     #[must_use]
     pub fn uses_adder(&self) -> bool {
         use Op::{DualOp, Fadd, Famov, Fix, Fsub, Ftrunc, Pfeq, Pfgt, Pfle};
         matches!(self.op, Fadd | Fsub | Fix | Famov | Pfgt | Pfle | Pfeq | Ftrunc | DualOp)
     }
 
-    /// Whether the operation belongs to the graphics unit (`fxfr` is handled there too).
+    /// Returns true if the operation belongs to the graphics unit (`fxfr` included).
     #[must_use]
     pub fn uses_graphics(&self) -> bool {
         self.op >= Op::Fxfr && self.op < Op::DualOp
     }
 }
 
-/// `fnop`, the shrd of three r0; bit 9 is its D bit.
+/// Encoding of `fnop`, which is `shrd` of three r0. Its bit 9 is the D bit.
 pub(crate) const FNOP: u32 = 0xB000_0000;

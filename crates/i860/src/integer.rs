@@ -1,4 +1,4 @@
-//! Execution of the integer core: arithmetic, logic, shifts, control registers.
+//! Execution in the integer core: arithmetic, logic, shifts, control registers.
 
 use crate::action::CoreAction;
 use crate::cpu::Cpu;
@@ -6,7 +6,7 @@ use crate::instruction::Op;
 use crate::state::{dirbase, epsr, psr};
 
 impl Cpu {
-    /// Arithmetic, logic and shifts.
+    /// Executes arithmetic, logic and shifts.
     #[inline(always)]
     pub(crate) fn integer(&mut self, action: &CoreAction) {
         let a = action.immediate.wrapping_add(self.state.r(action.first));
@@ -95,7 +95,7 @@ impl Cpu {
         }
     }
 
-    /// Writes a control register; in user mode only the user's bits of psr, OF, and fsr change.
+    /// Writes a control register. In user mode only fsr, epsr.OF and the user bits of psr change.
     pub(crate) fn write_control(&mut self, register: u8, value: u32) {
         let user = self.state.psr & psr::U != 0;
         match register {
@@ -114,7 +114,7 @@ impl Cpu {
         self.directory_base = Some(value);
     }
 
-    /// What a write of the directory base does to caches and translation, once its own time is counted.
+    /// Applies a write of the directory base to caches and translation, after its own time was counted.
     #[cold]
     pub(crate) fn obey_directory_base(&mut self, value: u32) {
         if value & dirbase::ITI != 0 {
@@ -133,7 +133,7 @@ impl Cpu {
     }
 }
 
-/// `old` with the bits of the mask as they are in `new`.
+/// Returns `old` with the bits of the mask replaced by those of `new`.
 fn merge(old: u32, new: u32, mask: u32) -> u32 {
     old & !mask | new & mask
 }

@@ -33,59 +33,72 @@
 //!
 //! - All XR instructions: integer core, loads and stores with auto-increment, scalar and pipelined arithmetic, the 62
 //!   dual operations, pipelined loads, graphics unit, delay slots, `bla`, dual-instruction mode, control registers.
-//! - Arithmetic is IEEE, to nearest even, with the same bits on every host; fsr.FZ flushes results. Without traps a
-//!   NaN result is the first NaN operand made quiet, or the default NaN with its sign set.
-//! - A scalar operation, a seed too, destroys what the pipe of its unit holds: it becomes NaN here. The assembler warns of
-//!   code that takes a result out of a pipe behind one.
-//! - The seeds of `frcp` and `frsqr` come from a [`SeedTable`], because the part's table is not public.
-//! - Traps leave the state of the part at the handler's first instruction, and [`Cpu::step`] says which it was.
-//!   Illegal words and pairs, a branch in a slot and a misaligned pair are instruction traps.
-//! - Nothing that a program does panics; a run ends at its stop, at a trap, or when its budget is used up.
+//! - Arithmetic is IEEE, rounded to nearest even, with the same bits on every host. fsr.FZ flushes results to zero.
+//!   Without traps a NaN result is the first NaN operand made quiet, or the default NaN with its sign set.
+//! - A scalar operation, `frcp` and `frsqr` included, destroys the contents of its unit's pipe: they become NaN in this
+//!   model. The assembler warns of code that reads a result from a pipe after a scalar operation.
+//! - The seeds of `frcp` and `frsqr` come from a [`SeedTable`], because the chip's table is not public.
+//! - A trap leaves the processor at the first instruction of its handler, and [`Cpu::step`] returns its cause. Illegal
+//!   words and pairs, a branch in a delay slot and a misaligned pair are instruction traps.
+//! - No program can make the model panic. A run ends at its stop address, at a trap, or when its instruction budget is
+//!   used up.
 //!
 //! # Timing
 //!
-//! An instruction, or a pair, issues in one clock unless a row of [`timing::FREEZES`] holds it. The longest of
-//! simultaneous freezes counts; cache misses add. Every row can be switched off or given another cost, every DRAM
-//! number is a parameter with an allowed range, and a [`Profile`] accounts for every clock. Instruction cache
-//! 4 KB, data cache 8 KB write-back, both 2-way with 32-byte lines and pseudo-random replacement; no allocation on a
-//! write miss; TLB of 64 entries. All rows are *assumed* (recollections of Intel's list); the published anchors are
-//! tests: 2 and 1.5 operations per clock, 39 clocks for three reciprocal roots, about 48 for a square root. The loop of a
-//! period tree code, 117 instructions in 106 clocks, cannot be re-created from its description; the test has a loop of its
-//! shape (pairs, odd entry, taken `bnc.t`), so that anchor checks the rules of issue and not that program.
+//! An instruction or pair issues in one clock unless a row of [`timing::FREEZES`] delays it. Of simultaneous freezes
+//! the longest counts; cache misses add up. Every row can be switched off or given another cost, every DRAM number is a
+//! parameter with an allowed range, and a [`Profile`] accounts for every clock.
+//!
+//! The instruction cache has 4 KB and the write-back data cache 8 KB. Both are 2-way set-associative with 32-byte lines
+//! and pseudo-random replacement. A write miss allocates no line. The TLB has 64 entries.
+//!
+//! All rows are *assumed* (recollections of Intel's list). Published figures are tests: 2 and 1.5 operations per clock,
+//! 39 clocks for three reciprocal roots, about 48 clocks for a square root. One published figure is a tree-traversal
+//! loop of 117 instructions in 106 clocks. Its description does not suffice to write the same code. The test runs a
+//! loop of the same shape (pairs, odd entry, taken `bnc.t`). It therefore checks the issue rules and not that program.
 //!
 //! # Speed
 //!
-//! Code is decoded once and executed block by block, from an address to the next branch and its slot; the clock is told of
-//! each block afterwards. A run of units that finds all its instructions and data in the caches leaves bus, queues and
-//! replacement alone, so that its clocks follow from the waits left by earlier instructions, from what is still to come of an
-//! instruction line and from how it ended: they are remembered, as FastSim does (Schnarr and Larus, ASPLOS 1998). A block is one
-//! such run, or several with accesses past the caches between them; these are counted, so are units behind a wait of more than
-//! 15 clocks. Blocks that are not all in the instruction cache are taken apart at its lines too. Counting everything gives the same
-//! state, clocks and profile after every run (tests/memo.rs: random programs, also larger than the caches; crates/pphigs/tests/memo.rs:
-//! the triangle kernels with every row switched);
-//! [`Config::memoise`] chooses. What it is worth for the triangle kernels, crates/pphigs/benches measures. Programs that take turns
-//! in memory stay decoded, with what they remember, for all processors that run them ([`Shelf`]).
-//! Clocks by address ([`Cpu::watch`]) and translation on are always counted.
+//! Code is decoded once, as basic blocks: a block goes from an address to the next branch with its delay slot. The
+//! processor executes a block, and the clock then counts its time.
+//!
+//! A *run* is a part of a block whose instructions and data are all in the caches. It uses neither the bus nor the
+//! queues nor the replacement sequence. Its clocks depend only on the waits left by earlier instructions, on the rest
+//! of an arriving instruction line and on taken branches and traps. The model remembers these clocks and reuses them,
+//! as FastSim does (Schnarr and Larus, ASPLOS 1998). [`Config::memoise`] turns this on.
+//!
+//! A block is one run, or several runs separated by accesses that leave the cache. The model counts these accesses, and
+//! instructions after a wait of more than 15 clocks, one by one. A block that is not entirely in the instruction cache
+//! is also split at cache lines.
+//!
+//! Counted and reused clocks give the same state, clocks and profile. `tests/memo.rs` checks random programs, also
+//! larger than the caches. `crates/pphigs/tests/memo.rs` checks the triangle kernels with every row switched. The
+//! benchmarks of `crates/pphigs` measure the gain for these kernels.
+//!
+//! A [`Shelf`] keeps decoded programs and their clocks for all processors that run them. Profiles by address
+//! ([`Cpu::watch`]) and address translation always count every instruction.
 //!
 //! # Conformance
 //!
-//! 2,175 vectors of other functional models pass (tests/conformance.rs; module and feature `vectors`). Where
-//! they decide what manuals leave open: `faddz` is one 64-bit addition; scalar `ftrunc` writes the low word only,
-//! `fix` clears the high one; a dual operation that reloads K or T uses their old values.
+//! 2,175 test vectors of other functional models pass (tests/conformance.rs; module and feature `vectors`). They decide
+//! three questions that the manuals leave open. `faddz` is one 64-bit addition. Scalar `ftrunc` writes only the low
+//! word, and `fix` clears the high word. A dual operation that reloads K or T uses their old values.
 //!
 //! # Not modelled
 //!
-//! - Address translation: ATE charges TLB misses, but addresses stay what they are. Page protection likewise.
+//! - Address translation: ATE charges the time of TLB misses, but addresses stay unchanged. There is no page
+//!   protection.
 //! - Big-endian data (epsr.BE), breakpoints (db), floating-point traps (FTE), kill-next (KNF), the 8-bit boot mode.
 //! - Rounding modes other than to nearest, except in `fix`. Status bits of fsr.
 //! - Undefined register choices.
-//! - Contents of the caches: they are always coherent; only time is theirs. Own stores into code are seen at once.
+//! - Contents of the caches. The caches are always coherent and only cost time. A processor executes its own stores
+//!   into code at once.
 //! - XP additions: `pfld.q`, `pfmul3`, registers bear, ccr, p0 to p3.
 //!
 //! # Sources
 //!
-//! Intel, *i860 Microprocessor Programmer's Reference Manual*, as far as remembered; encodings as public assemblers
-//! have them; period kernels with clock comments. What rests on which is in the table of freezes.
+//! Intel, *i860 Microprocessor Programmer's Reference Manual*, from memory; encodings of public assemblers; kernels of
+//! the period with clock comments. [`timing::FREEZES`] and [`timing::FreezeClocks`] name the source of each row.
 
 mod action;
 mod arithmetic;

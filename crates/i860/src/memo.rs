@@ -1,49 +1,52 @@
-//! Clocks of runs of code that repeat, reused instead of counted again.
+//! Memoization: clocks of repeated runs of code, reused instead of counted again.
 //!
-//! The idea is that of FastSim (Schnarr and Larus, *Fast Out-Of-Order Processor Simulation Using Memoization*, ASPLOS
-//! 1998). A run of units whose instructions and data are all in the caches leaves bus, queues and the replacement's chance as
-//! they are, so that its clocks follow from what the scoreboard holds at its beginning, from how much of an instruction line is
-//! still to come, and from how it was executed. All that is known by a number while runs repeat. What goes past the caches is
-//! counted between two runs, for which the scoreboard is written out again.
+//! The idea comes from FastSim (Schnarr and Larus, *Fast Out-Of-Order Processor Simulation Using Memoization*, ASPLOS
+//! 1998). A run is a part of a basic block whose instructions and data are all in the caches. It leaves the bus, the
+//! queues and the replacement sequence unchanged. Its clocks depend on three things: the scoreboard before it, the rest
+//! of an arriving instruction line, and the branches and traps of its execution.
+//!
+//! Each distinct scoreboard has a number, so that a run is found by comparing integers. Between two runs, accesses that
+//! leave the caches are counted with the full scoreboard.
 
 use crate::profile::Profile;
 use crate::scoreboard::{Leftover, Scoreboard};
 use crate::timing::{FREEZES, N_FREEZES};
 use rustc_hash::FxHashMap;
 
-/// Most clocks that a wait may have to go, so that the rest of a long one gets no number.
+/// Longest remaining wait, in clocks, of a scoreboard that gets a number.
 pub(crate) const MOST_CLOCKS: u8 = 15;
-/// Most scoreboards with a number; the rest is counted.
+/// Greatest number of numbered scoreboards. Code after other scoreboards is counted instruction by instruction.
 const MOST_NUMBERS: usize = 1 << 15;
 
-/// The number of a scoreboard.
+/// The number of a distinct scoreboard state, with a bit that is set while an instruction line arrives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Number(u32);
 
 impl Number {
     const FILLING: u32 = 1 << 31;
 
-    /// Whether an instruction line is still coming in.
+    /// Returns true if an instruction line is still arriving.
     #[inline]
     pub(crate) fn is_filling(self) -> bool {
         self.0 & Number::FILLING != 0
     }
 }
 
-/// The scoreboards that were met, by number.
+/// All distinct scoreboard states with their numbers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Numbers {
     numbers: FxHashMap<Leftover, Number>,
     leftovers: Vec<Leftover>,
 }
 
-/// The scoreboards with numbers, and which of them is the present one.
+/// The memory of scoreboard states, and the number of the current state.
 #[derive(Clone, Debug)]
 pub(crate) struct Memo {
     pub(crate) numbers: Box<Numbers>,
-    /// Number of the present scoreboard, where the one written out is out of date.
+    /// Number of the current scoreboard state while remembered runs follow each other; `None` while the [`Scoreboard`]
+    /// itself holds the state.
     present: Option<Number>,
-    /// Instructions whose clocks were reused.
+    /// Number of executed instructions whose clocks were reused.
     pub(crate) instructions: u64,
 }
 
@@ -52,13 +55,13 @@ impl Memo {
         Memo { numbers: Box::default(), present: None, instructions: 0 }
     }
 
-    /// The number of the present scoreboard where that is not the one written out.
+    /// Returns the number of the current scoreboard state, or `None` while the [`Scoreboard`] itself holds the state.
     #[inline]
     pub(crate) fn present(&self) -> Option<Number> {
         self.present
     }
 
-    /// The number of a scoreboard, if it has or gets one.
+    /// Returns the number of a scoreboard state, and assigns a new number if there is room.
     pub(crate) fn number_of(&mut self, written: &Scoreboard, now: u64, fill: Filling) -> Option<Number> {
         if fill.clocks > u64::from(MOST_CLOCKS) {
             return None;
@@ -78,14 +81,15 @@ impl Memo {
         Some(number)
     }
 
-    /// From now on the scoreboard is that at the end of a remembered run.
+    /// Continues with the scoreboard state at the end of a remembered run.
     #[inline]
     pub(crate) fn follow(&mut self, remembered: &RememberedClocks) {
         self.present = Some(remembered.exit);
         self.instructions += u64::from(remembered.instructions);
     }
 
-    /// From now on the scoreboard is the one written out, which must first be brought up to date by this.
+    /// Stops using the number of the current state. Returns the state that the [`Scoreboard`] must be restored from, or
+    /// `None` if the [`Scoreboard`] is up to date.
     #[inline]
     pub(crate) fn leave(&mut self) -> Option<&Leftover> {
         self.present.take().map(|number| &self.numbers.leftovers[(number.0 & !Number::FILLING) as usize])
@@ -94,51 +98,53 @@ impl Memo {
 
 const _: () = assert!(size_of::<RememberedClocks>() == 32);
 
-/// What is still to come of an instruction line.
+/// The rest of an instruction line that is arriving.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Filling {
-    /// Clocks to its last transfer; 0 when none is coming in.
+    /// Clocks to the last transfer; 0 if no line is arriving.
     pub(crate) clocks: u64,
-    /// Place in the line of its first transfer.
+    /// Position, within the line, of the transfer that arrives first.
     pub(crate) first: u8,
 }
 
-/// Which run of a block's execution: one number, which is quickly compared and is never 0.
+/// The key of a run of code: a single number, never 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Run(u64);
 
 impl Run {
-    /// The run with a scoreboard before it, from a place to a later one. Whether the branch in it was taken, whether its last unit
-    /// trapped, and whether its first fetch is from the line that is coming in.
+    /// Makes the key of a run from the scoreboard before it and from its first and last place in the block.
+    /// The flags say that its branch was taken, that its last instruction trapped, and that its first fetch is from the
+    /// arriving line.
     #[inline]
     pub(crate) fn new(entry: Number, [from, to]: [usize; 2], [taken, trapped, continues]: [bool; 3]) -> Run {
         let flags = u64::from(taken) | u64::from(trapped) << 1 | u64::from(continues) << 2;
         Run(u64::from(entry.0) << 32 | flags << 16 | (from as u64 & 0xFF) << 8 | to as u64 & 0xFF)
     }
 
-    /// The place where it ends.
+    /// Returns the place in the block at which the run ends.
     #[inline]
     pub(crate) fn end(self) -> usize {
         usize::from(self.0 as u8)
     }
 
-    /// The bits of a product that depend on all of it.
+    /// Returns a hash of the key.
     #[inline]
     fn hash(self) -> usize {
         (self.0.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40) as usize
     }
 }
 
-/// Clocks waited, by cause: the cause in the lower five bits of each, zero behind the last.
+/// Clocks waited by cause: the cause in the lower five bits of each entry, zero after the last entry.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Waited([u16; Waited::MOST]);
 
 impl Waited {
     const CAUSE_BITS: u32 = 5;
-    /// Most causes.
+    /// Greatest number of causes of waits in one run.
     const MOST: usize = 6;
 
-    /// What was waited between two profiles; `None` for more causes, or more clocks of one than there is room for.
+    /// Returns the clocks waited between two profiles. Returns `None` if there are too many causes or if one has too
+    /// many clocks for its entry.
     fn between(before: &Profile, after: &Profile) -> Option<Waited> {
         let clocks = FREEZES.iter().map(|row| (row.id, after.frozen_by(row.id) - before.frozen_by(row.id)));
         let mut all = Waited::default();
@@ -148,7 +154,7 @@ impl Waited {
         Some(all)
     }
 
-    /// Adds them up by cause.
+    /// Adds the clocks to `frozen`, which has one sum for each cause.
     #[inline]
     pub(crate) fn add_to(&self, frozen: &mut [u64; N_FREEZES]) {
         for wait in self.0 {
@@ -162,18 +168,18 @@ impl Waited {
     }
 }
 
-/// What a run once took: half a cache line of most hosts.
+/// The remembered clocks of a run. The size is half a cache line of most hosts.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub(crate) struct RememberedClocks {
     run: Run,
-    /// Scoreboard after it.
+    /// Number of the scoreboard state after the run.
     exit: Number,
     pub(crate) clocks: u16,
     pub(crate) instructions: u16,
-    /// Line of the last fetch.
+    /// Cache line of the last fetch.
     pub(crate) line: u32,
-    /// Clocks that it waited, by cause.
+    /// Clocks waited in the run, by cause.
     pub(crate) waited: Waited,
 }
 
@@ -187,7 +193,8 @@ impl RememberedClocks {
         waited: Waited([0; Waited::MOST]),
     };
 
-    /// What a run took between two profiles and clocks; `None` for what is not remembered.
+    /// Makes the entry of a run from its clocks and from the profiles before and after it. Returns `None` if a number
+    /// is too large for its field.
     pub(crate) fn new(run: Run, exit: Number, clocks: u64, line: u32, [before, after]: [&Profile; 2]) -> Option<Self> {
         let waited = Waited::between(before, after)?;
         let instructions = u16::try_from(after.instructions - before.instructions).ok()?;
@@ -195,15 +202,15 @@ impl RememberedClocks {
     }
 }
 
-/// What a block remembers: a table of runs, each within a few places of where it belongs.
+/// The remembered runs of a block, as a hash table. Each run lies within [`BlockMemory::REACH`] entries of its hash.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BlockMemory(Box<[RememberedClocks]>);
 
 impl BlockMemory {
-    /// Sizes of the table.
+    /// Smallest and greatest size of the table.
     const LEAST: usize = 8;
     const MOST: usize = 1 << 11;
-    /// Places where a run may lie.
+    /// Number of table entries in which a run may lie.
     const REACH: usize = 4;
 
     #[inline]
@@ -215,7 +222,8 @@ impl BlockMemory {
         })
     }
 
-    /// Remembers a run that it does not know. Where a table of the greatest size has no place for it, another one leaves.
+    /// Adds a run that the table does not contain. If a table of the greatest size has no free entry, the run replaces
+    /// another one.
     pub(crate) fn add(&mut self, remembered: RememberedClocks) {
         while !self.put(remembered) {
             if self.0.len() >= BlockMemory::MOST {
@@ -227,7 +235,7 @@ impl BlockMemory {
         }
     }
 
-    /// Puts a run where it belongs, if one of its places is free.
+    /// Puts a run into a free table entry near its hash. Returns false if none is free.
     fn put(&mut self, remembered: RememberedClocks) -> bool {
         let length = self.0.len();
         let mut places = (0..BlockMemory::REACH.min(length)).map(|n| (remembered.run.hash() + n) & (length - 1));
@@ -235,7 +243,7 @@ impl BlockMemory {
         free.map(|place| self.0[place] = remembered).is_some()
     }
 
-    /// Takes a table of twice the size; what has no place there is forgotten.
+    /// Doubles the size of the table. Runs without a free entry in the new table are dropped.
     fn grow(&mut self) {
         let larger = vec![RememberedClocks::NOTHING; (2 * self.0.len()).max(BlockMemory::LEAST)];
         let all = std::mem::replace(&mut self.0, larger.into_boxed_slice());

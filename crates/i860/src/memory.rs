@@ -15,7 +15,7 @@ impl Cpu {
         if address & (size - 1) == 0 { Ok(address) } else { Err(TrapCause::Unaligned { address, size }) }
     }
 
-    /// What an access leaves behind: its address, in the base register if that is incremented.
+    /// Records an access: its address for the clock and, with auto-increment, for the base register.
     #[inline(always)]
     fn accessed(&mut self, a: &CoreAction, address: u32, stores: bool) {
         self.state.set_r(a.increments, address);
@@ -37,7 +37,7 @@ impl Cpu {
         Ok(())
     }
 
-    /// Where control goes behind a store.
+    /// Returns the control flow after a store.
     #[inline(always)]
     fn after_store(&self) -> Flow {
         if self.code_changed { Flow::NextOfChangedCode } else { Flow::Next }
@@ -142,9 +142,10 @@ impl Cpu {
         Ok(Flow::Next)
     }
 
-    /// Writes the pixels whose PM bit is set, bit 0 at the lowest address, and shifts PM by the pixels passed.
+    /// Writes the pixels whose PM bit is set, bit 0 at the lowest address, and shifts PM by the number of pixels.
     pub(crate) fn store_pixels<B: Bus>(&mut self, a: &CoreAction, bus: &mut B) -> Result<Flow, TrapCause> {
         let address = self.effective_address(a, 8)?;
+        // Trap before any pixel is written if the address is not mapped.
         self.read(bus, address, 8)?;
         let size = 1 << self.state.pixel_size();
         let pixels = 8 / size;
@@ -158,7 +159,7 @@ impl Cpu {
         Ok(self.after_store())
     }
 
-    /// Any address will do.
+    /// Executes `flush` on any address; there is no check of alignment or mapping.
     pub(crate) fn flush_line(&mut self, i: &Instruction) {
         let offset = if i.has(Flags::IMMEDIATE) { i.imm as u32 } else { self.state.r(i.src1) };
         let address = offset.wrapping_add(self.state.r(i.src2));

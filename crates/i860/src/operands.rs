@@ -1,4 +1,4 @@
-//! Operands of the floating-point half, with what leaves a pipe put through.
+//! Operands of the floating-point half, with the bypass of results that leave a pipe.
 
 use crate::action::{Floating, FloatingAction};
 use crate::block::Unit;
@@ -8,7 +8,8 @@ use crate::dual_operation::first_has_bypass;
 use crate::instruction::{Flags, Instruction, Op};
 use crate::state::{PipeStage, State};
 
-/// Source registers as read before either half of a pair writes, with the value leaving the pipe put through.
+/// Source operands as read before either half of a pair writes. A result that leaves the pipe is already visible in
+/// them.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Operands {
     pub(crate) a: u64,
@@ -16,7 +17,7 @@ pub(crate) struct Operands {
 }
 
 impl Cpu {
-    /// Reads the sources of a unit's floating-point half.
+    /// Reads the sources of a floating-point instruction or of the floating-point half of a pair.
     #[inline(always)]
     pub(crate) fn read_operands<'a>(&self, a: &FloatingAction, unit: impl Fn() -> &'a Unit) -> Operands {
         let state = &self.state;
@@ -52,12 +53,12 @@ fn read_through(state: &State, i: &Instruction, first: bool, second: bool) -> Op
     Operands { a, b }
 }
 
-/// The last stage of the multiplier for a source precision: two stages for double, three for single.
+/// Returns the last stage of the multiplier for a source precision: the second for double, the third for single.
 pub(crate) fn last_product(state: &State, source_double: bool) -> PipeStage {
     state.multiplier[if source_double { 1 } else { 2 }]
 }
 
-/// What a pipelined instruction sends to its destination; `None` for a scalar one.
+/// Returns the result that a pipelined instruction sends to its destination; `None` for a scalar instruction.
 fn leaving(state: &State, i: &Instruction) -> Option<PipeStage> {
     if i.op == Op::DualOp {
         let product = last_product(state, i.has(Flags::SOURCE_DOUBLE));
@@ -74,7 +75,7 @@ fn leaving(state: &State, i: &Instruction) -> Option<PipeStage> {
     })
 }
 
-/// Register `n` as if the leaving value had already reached `dest`.
+/// Reads register `n` as if the leaving result had already reached `dest`.
 fn read_bypassed(state: &State, n: u8, double: bool, dest: u8, leaving: PipeStage) -> u64 {
     if dest & 30 != n & 30 || dest < 2 {
         return state.f_bits(n, double);

@@ -1,24 +1,24 @@
-//! Where the clocks of a run went.
+//! Profiles: clocks of a run by cause and by address.
 
 use crate::timing::{FREEZES, Freeze, N_FREEZES};
 use std::fmt;
 
-/// Clocks by cause since reset (or since [`Cpu::clear_profile`](crate::Cpu::clear_profile)).
+/// Clocks by cause since reset or the last [`Cpu::clear_profile`](crate::Cpu::clear_profile).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Profile {
-    /// Instructions executed; a pair counts two, `fnop` and `nop` included.
+    /// Number of executed instructions. A pair counts as two; `fnop` and `nop` are included.
     pub instructions: u64,
     /// Clocks in which an instruction or a pair issued.
     pub issue: u64,
-    /// Clocks lost, in the order of [`FREEZES`].
+    /// Clocks lost to each freeze row, in the order of [`FREEZES`].
     pub frozen: [u64; N_FREEZES],
-    /// Requests on the bus.
+    /// Number of requests on the bus.
     pub bus_requests: u64,
-    /// Requests that had to open a row of the memory.
+    /// Number of requests that had to open a DRAM row.
     pub page_misses: u64,
-    /// Fetches that the instruction cache did not hold.
+    /// Number of instruction-cache misses.
     pub instruction_misses: u64,
-    /// Data-cache misses of loads.
+    /// Number of data-cache misses of loads.
     pub data_misses: u64,
 }
 
@@ -35,13 +35,13 @@ impl Profile {
         }
     }
 
-    /// Clocks lost to one row.
+    /// Returns the clocks lost to one freeze row.
     #[must_use]
     pub fn frozen_by(&self, id: Freeze) -> u64 {
         self.frozen[id as usize]
     }
 
-    /// All clocks: issue and freezes.
+    /// Returns the sum of issue clocks and freezes.
     #[must_use]
     pub fn clocks(&self) -> u64 {
         self.issue + self.frozen.iter().sum::<u64>()
@@ -69,7 +69,7 @@ pub struct AddressProfile {
 }
 
 impl AddressProfile {
-    /// Watches `words` instruction words from `base`.
+    /// Makes an empty profile of `words` instruction words from address `base`.
     #[must_use]
     pub fn new(base: u32, words: usize) -> AddressProfile {
         AddressProfile { base, rows: vec![(0, 0); words] }
@@ -83,14 +83,15 @@ impl AddressProfile {
         }
     }
 
-    /// Clocks and visits of the word (the pair) at an address; zero outside the range.
+    /// Returns the clocks and visits of the instruction or pair at an address; zero outside the range.
     #[must_use]
     pub fn at(&self, pc: u32) -> (u64, u64) {
         let at = (pc.wrapping_sub(self.base) / 4) as usize;
         self.rows.get(at).copied().unwrap_or_default()
     }
 
-    /// Clocks between each label and the next, for labels sorted by address. Clocks before the first are left out.
+    /// Returns the clocks between each label and the next one, for labels sorted by address. Clocks before the first
+    /// label are left out.
     #[must_use]
     pub fn by_label<'a>(&self, labels: &[(&'a str, u32)]) -> Vec<(&'a str, u64)> {
         let end = self.base.wrapping_add(4 * self.rows.len() as u32);

@@ -1,9 +1,10 @@
-//! The clock of a block, run by run: units whose instructions and data are in the caches take clocks that were counted before, and
-//! what goes past the caches between them is counted.
+//! The clock of a basic block, run by run. A *run* is a part of a block whose instructions and data are all in the
+//! caches; its remembered clocks are reused. Accesses between runs that leave the caches are counted.
 //!
-//! A place in a block is three times the number of a unit, plus 1 once that is fetched and 2 once it has issued. A run ends before
-//! an access that goes past the data cache (at a place of the last kind, behind which the next one begins with what the access has
-//! left), before a line that the instruction cache does not hold, or with what was executed of the block.
+//! A *place* in a block is three times the index of an instruction or pair, plus 1 after its fetch and plus 2 after its
+//! issue. A run ends before an access that leaves the data cache, before a line that the instruction cache does not
+//! hold, or at the end of the executed code. After an access that leaves the data cache, the next run begins with the
+//! state that the access has left.
 
 use crate::block::{AccessingUnit, Block};
 use crate::bus::Bus;
@@ -12,27 +13,27 @@ use crate::execution::Execution;
 use crate::memo::{Memo, Number, RememberedClocks, Run};
 use crate::timing::Freeze;
 
-/// Places of a unit.
+/// Number of places for each instruction or pair: before its fetch, before its issue, after its issue.
 const PLACES: usize = 3;
 const FETCHED: usize = 1;
 const ISSUED: usize = 2;
 
-/// What was executed of a block, and how far its clocks are counted.
+/// The executed part of a block, and the place up to which its clocks are counted.
 struct Course<'a> {
     execution: Execution,
-    /// Number of units executed.
+    /// Number of executed instructions or pairs.
     units: usize,
-    /// Number of the last unit of the block.
+    /// Index of the last instruction or pair of the block.
     last: usize,
-    /// All accesses, and how many of them are counted.
+    /// Addresses of all data accesses, and the number of accesses counted so far.
     accesses: &'a [u32],
     accessed: usize,
-    /// The place that was reached.
+    /// Place in the block up to which clocks are counted.
     at: usize,
 }
 
 impl Course<'_> {
-    /// How a run to a place went, as far as it can go in more than one way.
+    /// Returns the flags of a run up to place `to`: branch taken, trapped, first fetch from the arriving line.
     #[inline]
     fn flags(&self, to: usize, continues: bool) -> [bool; 3] {
         let ends = to == PLACES * self.units || to > PLACES * self.last;
@@ -41,8 +42,8 @@ impl Course<'_> {
 }
 
 impl Clock {
-    /// Counts the clocks of what a block has executed where all its data are in the cache: tells whether it did, which is where its code
-    /// is there too and it is remembered as one run.
+    /// Reuses the clocks of a block whose accesses all hit. Returns false if its code is not in the cache, or if it is
+    /// not remembered as one run.
     #[inline]
     pub(crate) fn repeat_all(&mut self, block: &mut Block, execution: Execution) -> bool {
         let Some(entry) = self.memo.as_ref().and_then(Memo::present) else { return false };
@@ -57,13 +58,13 @@ impl Clock {
         true
     }
 
-    /// Whether fetches from a block do not go past the cache.
+    /// Returns true if fetches from a block hit the instruction cache or cost nothing.
     #[inline]
     fn holds(&self, block: &mut Block) -> bool {
         !self.common.costs.applies(Freeze::InstructionMiss) || self.fetch.holds(block)
     }
 
-    /// Counts the clocks of what a block has executed, from one access past the caches to the next.
+    /// Counts the clocks of a block, from one access that leaves the caches to the next.
     #[inline]
     pub(crate) fn go<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &[u32], bus: &B) {
         let units = execution.units + usize::from(execution.slot);
@@ -81,14 +82,14 @@ impl Clock {
         }
     }
 
-    /// The number of the scoreboard, if it has or gets one.
+    /// Returns the number of the current scoreboard state, and assigns a new number if there is room.
     #[inline]
     fn number(&mut self) -> Option<Number> {
         let memo = self.memo.as_mut()?;
         memo.present().or_else(|| memo.number_of(&self.board, self.common.now, self.fetch.filling(&self.common)))
     }
 
-    /// Brings the scoreboard up to date.
+    /// Restores the scoreboard after remembered runs, which change only the number of its state.
     #[inline]
     pub(crate) fn write_board(&mut self) {
         if let Some(left) = self.memo.as_mut().and_then(Memo::leave) {
@@ -96,12 +97,13 @@ impl Clock {
         }
     }
 
-    /// Goes to the end of the present run, and past what ends it.
+    /// Advances to the end of the current run, and past the access or miss that ends it.
     #[inline]
     fn next_run<B: Bus>(&mut self, block: &mut Block, course: &mut Course<'_>, entry: Number, whole: bool, bus: &B) {
         let number = course.at / PLACES;
         let is_unfetched = course.at.is_multiple_of(PLACES);
-        // Where all is held, only a run that begins with a fetch behind a line that is coming in asks for its line.
+        // If the cache holds the whole block, the line matters only to a run that begins with a fetch while another
+        // line is arriving.
         let (line, end) = match whole && !(entry.is_filling() && is_unfetched) {
             true => (0, usize::MAX),
             false => block.line(number),
@@ -110,6 +112,7 @@ impl Clock {
             return self.miss(block, course, bus);
         }
         let limit = if whole { course.units } else { end.min(course.units) };
+        // Find the access that ends the run, then reuse or count the clocks up to it.
         let (held, missing) = self.data.held(course.accesses, &block.accessing, course.accessed, limit);
         let to = missing.map_or(PLACES * limit, |unit| PLACES * unit + ISSUED);
         let continues = entry.is_filling() && is_unfetched && self.fetch.is_in_line(line);
@@ -122,6 +125,7 @@ impl Clock {
             }
             None => self.learn(block, course, run, bus),
         }
+        // The access that ended the run leaves the cache and is counted.
         if missing.is_some() {
             let address = course.accesses[course.accessed];
             self.go_past(&block.accessing[course.accessed], address, bus);
@@ -129,14 +133,14 @@ impl Clock {
         }
     }
 
-    /// Counts an access that goes past the cache.
+    /// Counts an access that leaves the cache.
     #[inline]
     fn go_past<B: Bus>(&mut self, unit: &AccessingUnit, address: u32, bus: &B) {
         if !unit.is_store {
             self.write_board();
             return self.access(unit.access, address, bus);
         }
-        // A store leaves nothing on the scoreboard when it misses: where it need not wait, nothing changes.
+        // A store that misses leaves nothing on the scoreboard. If it does not wait, the scoreboard stays the same.
         let before = self.common.now;
         self.access(unit.access, address, bus);
         if self.common.now != before
@@ -153,13 +157,14 @@ impl Clock {
         self.fetch(unit, bus);
         course.at += FETCHED;
         if !self.fetch.is_in_line(unit.pc) {
-            // No line is held of what may not be cached.
+            // Memory that is not cacheable leaves no line, so this instruction or pair is counted alone.
             let to = (course.at / PLACES + 1) * PLACES;
             self.advance(block, course, to, bus);
         }
     }
 
-    /// Counts to a place. Where it begins behind the issue of a unit, that one's access is counted.
+    /// Counts the clocks up to a place in the block. If the start lies after an issue, the access of that instruction
+    /// was already counted.
     fn advance<B: Bus>(&mut self, block: &Block, course: &mut Course<'_>, to: usize, bus: &B) {
         self.write_board();
         let from = course.at;
@@ -194,7 +199,7 @@ impl Clock {
         }
     }
 
-    /// Counts a run and remembers it.
+    /// Counts the clocks of a run and remembers them for later executions.
     #[cold]
     fn learn<B: Bus>(&mut self, block: &mut Block, course: &mut Course<'_>, run: Run, bus: &B) {
         let began = self.common.now;

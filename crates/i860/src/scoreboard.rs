@@ -1,14 +1,14 @@
-//! What instructions leave behind for those after them: registers not ready, units busy. All waits end by themselves.
+//! Scoreboard: registers that are not ready and execution units that are busy. Every wait ends at a known clock.
 
 use crate::decoded::{Decoded, arm, float_mask, hazard};
 use crate::freeze::Costs;
 use crate::instruction::{Flags, Instruction, Op};
 use crate::timing::{Config, FREEZES, Freeze};
 
-/// Matches no source, not even that of an instruction without one.
+/// Value that equals no source register, not even `NONE` of an instruction without sources.
 const NO_RESULT: u8 = 0xFE;
 
-/// A wait that a hazard imposes: until when, and why.
+/// A wait that a hazard imposes: its end as a clock, and its freeze row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Wait {
     pub(crate) until: u64,
@@ -17,11 +17,12 @@ pub(crate) struct Wait {
 
 pub(crate) const NO_WAIT: Wait = Wait { until: 0, why: Freeze::LoadUse };
 
-/// Places of [`Left::place`]: the registers, then the hazards, then the last result.
+/// First value of [`Left::place`] for hazards. Lower values are registers; the highest value is the last result.
 const HAZARDS: u8 = 64;
 const LAST_RESULT: u8 = HAZARDS + hazard::COUNT as u8;
 
-/// A wait as seen from a clock, in 16 bits: its place in the upper seven, the clocks left, its cause in the lower five.
+/// A wait relative to a clock, in 16 bits. The upper seven say what is not ready, the next four the remaining clocks,
+/// the lower five the freeze row.
 struct Left {
     place: u8,
     clocks: u8,
@@ -48,45 +49,45 @@ impl Left {
     }
 }
 
-/// Most waits of a [`Leftover`].
+/// Greatest number of waits in a [`Leftover`].
 const MOST_WAITS: u32 = u128::BITS / Left::BITS;
 
-/// A scoreboard as seen from a clock: what is over by then is left out.
+/// The pending waits of a scoreboard relative to a clock: a compact form of its state.
 ///
-/// Two scoreboards with the same leftover impose the same waits on all instructions to come.
+/// Two scoreboards with the same leftover impose the same waits on all later instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Leftover {
-    /// The waits in the order of their places, the first one lowest; zero behind the last.
+    /// Packed waits in the order of [`Left::place`], the first one in the lowest bits; zero above the last.
     waits: u128,
     graphics_result: u64,
     stored: u64,
     last_result: u8,
     scalar_double: bool,
-    /// What belongs to it without being on the scoreboard.
+    /// Rest of an arriving instruction line, which is also part of the state.
     beside: [u8; 2],
 }
 
 #[derive(Clone, Debug)]
 pub(crate) struct Scoreboard {
     costs: Costs,
-    /// What instructions leave behind that matters under the rules.
+    /// Hazard classes that the freeze rules take into account.
     arms_seen: u16,
-    /// Registers (r in the low word, f in the high) whose value may not be there yet.
+    /// Registers (r in the low word, f in the high word) whose value may not be ready.
     pending: u64,
     ready: [Wait; 64],
     armed: u16,
     hazards: [Wait; hazard::COUNT],
-    /// Result of the last floating-point instruction, for row 9.
+    /// Destination register of the last floating-point instruction, for row 9.
     last_result: u8,
     last_result_until: u64,
     scalar_double: bool,
     graphics_result: u64,
     stored: u64,
-    /// No wait ends later than this.
+    /// Upper bound of the ends of all waits.
     latest: u64,
 }
 
-/// The numbers of the bits that are set.
+/// Iterates over the numbers of the set bits.
 fn bits(mut set: u64) -> impl Iterator<Item = u8> {
     std::iter::from_fn(move || {
         let lowest = (set != 0).then(|| set.trailing_zeros() as u8);
@@ -113,8 +114,8 @@ impl Scoreboard {
         }
     }
 
-    /// What is left at `now`, with what belongs to it besides; `None` when there is much, or something takes more than `most`
-    /// clocks from then.
+    /// Returns the waits that are pending at `now`, together with `beside`.
+    /// Returns `None` if there are too many waits, or if one lasts longer than `most` clocks.
     pub(crate) fn leftover(&self, now: u64, most: u8, beside: [u8; 2]) -> Option<Leftover> {
         if self.latest > now + u64::from(most) {
             return None;
@@ -122,6 +123,7 @@ impl Scoreboard {
         let mut left =
             Leftover { waits: 0, last_result: NO_RESULT, scalar_double: false, graphics_result: 0, stored: 0, beside };
         let mut count = 0;
+        // Pack each wait that has not ended.
         let mut add = |place: u8, wait: Wait| {
             let is_left = wait.until > now;
             if is_left && count < MOST_WAITS {
@@ -131,6 +133,7 @@ impl Scoreboard {
             count += u32::from(is_left);
             is_left
         };
+        // Collect registers, hazards and the last result in the order of [`Left::place`].
         for n in bits(self.pending) {
             add(n, self.ready[usize::from(n)]);
         }
@@ -149,7 +152,7 @@ impl Scoreboard {
         (count <= MOST_WAITS).then_some(left)
     }
 
-    /// Makes this the scoreboard that leaves `left` at `now`.
+    /// Restores the scoreboard from its pending waits `left` at clock `now`.
     pub(crate) fn restore(&mut self, left: &Leftover, now: u64) {
         self.pending = 0;
         self.armed = 0;
@@ -159,6 +162,7 @@ impl Scoreboard {
         self.scalar_double = left.scalar_double;
         self.graphics_result = left.graphics_result;
         self.stored = left.stored;
+        // Unpack the waits and store each one as a register, a hazard or the last result.
         let mut waits = left.waits;
         while waits != 0 {
             let Left { place, clocks, why } = Left::unpacked(waits);
@@ -179,19 +183,19 @@ impl Scoreboard {
         }
     }
 
-    /// An integer register is about to be loaded: its old value is waited for no longer.
+    /// Forgets the wait for an integer register that a new load is about to overwrite.
     #[inline]
     pub(crate) fn forget(&mut self, dest: u8) {
         self.pending &= !(1 << dest);
     }
 
-    /// Whether [`Scoreboard::wait`] must be asked.
+    /// Returns true if [`Scoreboard::wait`] must be called for an instruction.
     #[inline]
     pub(crate) fn may_wait(&self, d: &Decoded) -> bool {
         d.reads & self.pending != 0 || d.sensitive & self.armed != 0 || d.multiplier_source == self.last_result
     }
 
-    /// The longest wait of an instruction; forgets hazards that are over.
+    /// Returns the longest wait of an instruction, and forgets hazards that have ended.
     pub(crate) fn wait(&mut self, d: &Decoded, now: u64) -> Wait {
         let mut longest = self.wait_for_registers(d.reads, now);
         let mut bits = d.sensitive & self.armed;
@@ -263,9 +267,9 @@ impl Scoreboard {
         if float_mask(i.dest, bytes) & self.stored == 0 || i.dest < 2 { NO_WAIT } else { wait }
     }
 
-    // ---- what an instruction leaves behind
+    // ---- hazards that an instruction leaves
 
-    /// Records the hazards that an instruction leaves. Called once it has executed.
+    /// Records the hazards that an instruction leaves. Called after its execution.
     #[inline]
     pub(crate) fn retire(&mut self, d: &Decoded, now: u64) {
         match d.arms & self.arms_seen {
@@ -321,6 +325,7 @@ impl Scoreboard {
         }
     }
 
+    // Marks the destination of a load or seed as not ready. A miss that takes longer stays in force.
     fn arm_destination(&mut self, d: &Decoded, now: u64) {
         let i = &d.instruction;
         let (mask, why) = match i.op {

@@ -1,27 +1,26 @@
-//! The reciprocal and reciprocal square-root seeds, frcp and frsqr.
+//! The seeds of frcp (reciprocal) and frsqr (reciprocal square root).
 //!
-//! The part's table is not public; what is known is that the fraction error stays below 2^-7. So the table is a
-//! named choice. Programs that refine by Newton steps differ in the last bit or two between the choices, never in
-//! their clocks.
+//! The chip's table is not public. It is only known that the fraction error stays below 2^-7, so the user chooses a
+//! table. Programs that refine by Newton steps differ by the last bit or two between the tables, never in their clocks.
 
 use crate::arithmetic::{narrow, widen};
 
-/// What `frcp` and `frsqr` return.
+/// The table of results of `frcp` and `frsqr`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SeedTable {
-    /// The correctly rounded double, its fraction cut to 8 bits: relative error below 2^-8, always too small in
+    /// The correctly rounded double with its fraction cut to 8 bits: relative error below 2^-8, always too small in
     /// magnitude. Assumed; the usual choice of functional emulators.
     Truncated8,
-    /// The value at the middle of the operand's interval of 8 fraction bits, rounded to 8 fraction bits: what a
-    /// 256-entry ROM (512 for frsqr, by the parity of the exponent) would hold. Assumed.
+    /// The result for the middle of the operand's interval of 8 fraction bits, rounded to 8 fraction bits. A 256-entry
+    /// ROM would hold these values (512 entries for frsqr, by the parity of the exponent). Assumed.
     Midpoint8,
-    /// The correctly rounded result, for telling table effects from others.
+    /// The correctly rounded result, to separate effects of the table from other effects.
     Exact,
 }
 
 impl SeedTable {
-    /// Its name in lists of settings.
+    /// Returns the name of the table in lists of settings.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -52,7 +51,7 @@ fn midpoint(x: f64) -> f64 {
 }
 
 impl SeedTable {
-    /// Relative error that a table keeps below.
+    /// Returns the upper bound of the relative error.
     #[must_use]
     pub fn relative_error_bound(self) -> f64 {
         match self {
@@ -73,32 +72,32 @@ impl SeedTable {
         }
     }
 
-    /// Reciprocal of a double.
+    /// Returns the seed of the reciprocal of a double, as bit patterns.
     #[must_use]
     pub fn reciprocal(self, bits: u64) -> u64 {
         quiet(bits, self.apply(f64::from_bits(bits), |x| 1.0 / x))
     }
 
-    /// Reciprocal square root of a double.
+    /// Returns the seed of the reciprocal square root of a double, as bit patterns.
     #[must_use]
     pub fn reciprocal_root(self, bits: u64) -> u64 {
         quiet(bits, self.apply(f64::from_bits(bits), |x| 1.0 / x.sqrt()))
     }
 
-    /// Reciprocal of a single.
+    /// Returns the seed of the reciprocal of a single, as bit patterns.
     #[must_use]
     pub fn reciprocal32(self, bits: u32) -> u32 {
         narrow(self.reciprocal(widen(bits)), false)
     }
 
-    /// Reciprocal square root of a single.
+    /// Returns the seed of the reciprocal square root of a single, as bit patterns.
     #[must_use]
     pub fn reciprocal_root32(self, bits: u32) -> u32 {
         narrow(self.reciprocal_root(widen(bits)), false)
     }
 }
 
-/// NaN results as the rest of the unit makes them.
+/// Makes NaN results quiet, as the other floating-point operations do.
 fn quiet(operand: u64, result: u64) -> u64 {
     match (f64::from_bits(result).is_nan(), f64::from_bits(operand).is_nan()) {
         (true, true) => operand | 0x0008_0000_0000_0000,

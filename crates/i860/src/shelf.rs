@@ -1,4 +1,4 @@
-//! What processors that are built alike know of programs: decoded code, and the clocks of its runs.
+//! Decoded code and remembered clocks of programs, shared by processors with the same configuration.
 
 use crate::assembler::Program;
 use crate::code::Code;
@@ -6,16 +6,17 @@ use crate::memo::Numbers;
 use std::fmt;
 use std::sync::Arc;
 
-/// Decoded programs with the clocks that their runs took, for processors with the same rules of freezing.
+/// Decoded programs with their remembered clocks, for processors with the same freeze rules.
 ///
-/// Neither depends on which processor has executed them, so several can take turns: what one has decoded and counted, the others
-/// need not ([`Cpu::open`](crate::Cpu::open), [`Cpu::close`](crate::Cpu::close)).
+/// Several processors can use one shelf in turn, because code and clocks do not depend on the processor. A program that
+/// one processor has decoded and counted need not be decoded again by the others ([`Cpu::open`](crate::Cpu::open),
+/// [`Cpu::close`](crate::Cpu::close)).
 #[derive(Default)]
 pub struct Shelf {
     pub(crate) numbers: Box<Numbers>,
-    /// Nothing decoded while a processor has it.
+    /// Programs with their code; `None` while a processor uses the code.
     codes: Vec<(Arc<Program>, Option<Code>)>,
-    /// Number of the latest state of an instruction cache.
+    /// Highest number of an instruction-cache state so far.
     pub(crate) cache_states: u64,
 }
 
@@ -26,7 +27,7 @@ impl fmt::Debug for Shelf {
 }
 
 impl Shelf {
-    /// One without programs.
+    /// Makes a shelf without programs.
     #[must_use]
     pub fn new() -> Shelf {
         Shelf::default()
@@ -41,12 +42,12 @@ impl Shelf {
         &mut self.codes[at].1
     }
 
-    /// Takes out what is known of a program.
+    /// Takes the code of a program out of the shelf, or makes empty code.
     pub(crate) fn take(&mut self, program: &Arc<Program>) -> Code {
         self.place(program).take().unwrap_or_else(|| Code::of(program))
     }
 
-    /// Puts it back.
+    /// Puts the code of a program back.
     pub(crate) fn put(&mut self, program: &Arc<Program>, code: Code) {
         *self.place(program) = Some(code);
     }

@@ -2,119 +2,121 @@
 
 /// Bits of the processor status register.
 pub mod psr {
-    /// Break on data read.
+    /// BR: break on data read.
     pub const BR: u32 = 1 << 0;
-    /// Break on data write.
+    /// BW: break on data write.
     pub const BW: u32 = 1 << 1;
-    /// CC, the condition code that compares, sums and logicals set.
+    /// CC: condition code, set by compares, sums and logical operations.
     pub const CC: u32 = 1 << 2;
-    /// Loop condition code, tested by `bla`.
+    /// LCC: loop condition code, tested by `bla`.
     pub const LCC: u32 = 1 << 3;
-    /// Interrupt mode: interrupts enabled.
+    /// IM: interrupt mode; interrupts are enabled while it is set.
     pub const IM: u32 = 1 << 4;
-    /// IM before the trap.
+    /// PIM: value of IM before the trap.
     pub const PIM: u32 = 1 << 5;
-    /// U, set in user mode.
+    /// U: set in user mode.
     pub const U: u32 = 1 << 6;
-    /// U before the trap.
+    /// PU: value of U before the trap.
     pub const PU: u32 = 1 << 7;
-    /// IT, set by an instruction trap.
+    /// IT: set by an instruction trap.
     pub const IT: u32 = 1 << 8;
-    /// IN, set by an interrupt.
+    /// IN: set by an interrupt.
     pub const IN: u32 = 1 << 9;
-    /// IAT, set by an instruction access trap.
+    /// IAT: set by an instruction access trap.
     pub const IAT: u32 = 1 << 10;
-    /// DAT, set by a data access trap.
+    /// DAT: set by a data access trap.
     pub const DAT: u32 = 1 << 11;
-    /// FT, set by a floating-point trap.
+    /// FT: set by a floating-point trap.
     pub const FT: u32 = 1 << 12;
-    /// Delayed switch: the trap came while the mode was about to change.
+    /// DS, delayed switch: the trap occurred while dual-instruction mode was about to change.
     pub const DS: u32 = 1 << 13;
-    /// The trap came in dual-instruction mode.
+    /// DIM: the trap occurred in dual-instruction mode.
     pub const DIM: u32 = 1 << 14;
-    /// Kill the next floating-point instruction.
+    /// KNF: kill the next floating-point instruction.
     pub const KNF: u32 = 1 << 15;
-    /// Lowest bit of the shift count.
+    /// Position of the lowest bit of the shift count.
     pub const SC_SHIFT: u32 = 17;
-    /// Shift count, five bits.
+    /// SC: shift count, five bits.
     pub const SC: u32 = 31 << SC_SHIFT;
-    /// Lowest bit of the pixel size.
+    /// Position of the lowest bit of the pixel size.
     pub const PS_SHIFT: u32 = 22;
-    /// Pixel size: 0, 1, 2 for 8, 16, 32 bits.
+    /// PS: pixel size; 0, 1, 2 for 8, 16, 32 bits.
     pub const PS: u32 = 3 << PS_SHIFT;
-    /// Lowest bit of the pixel mask.
+    /// Position of the lowest bit of the pixel mask.
     pub const PM_SHIFT: u32 = 24;
-    /// Pixel mask, eight bits.
+    /// PM: pixel mask, eight bits.
     pub const PM: u32 = 0xFF << PM_SHIFT;
-    /// The five trap bits.
+    /// All trap bits.
     pub const TRAPS: u32 = IT | IN | IAT | DAT | FT;
-    /// What a program in user mode can write.
+    /// Bits that a program in user mode can write.
     pub const USER: u32 = CC | LCC | SC | PS | PM;
 }
 
 /// Bits of the extended processor status register.
 pub mod epsr {
-    /// IL, set between `lock` and `unlock`.
+    /// IL: set between `lock` and `unlock`.
     pub const IL: u32 = 1 << 13;
-    /// OF, set by integer overflow and tested by `intovr`.
+    /// OF: set by integer overflow and tested by `intovr`.
     pub const OF: u32 = 1 << 24;
-    /// What software can write: WP, PBM, BE, OF. BE is stored but has no effect in this model.
+    /// Bits that software can write: WP, PBM, BE, OF. BE is stored but has no effect in this model.
     pub const WRITABLE: u32 = 1 << 14 | 1 << 22 | 1 << 23 | OF;
-    /// Type 1 (XR), step 7 (D0), data cache of 2^(12+1) bytes.
+    /// Value after reset: type 1 (XR), step 7 (D0), data cache of 2^(12+1) bytes.
     pub const RESET: u32 = 1 | 7 << 8 | 1 << 18;
 }
 
 /// Bits of the floating-point status register.
 pub mod fsr {
-    /// Flush results that underflow to zero.
+    /// FZ: results that underflow become zero.
     pub const FZ: u32 = 1;
-    /// Lowest bit of the rounding mode (obeyed by `fix` only).
+    /// Position of the lowest bit of the rounding mode, which only `fix` obeys.
     pub const RM_SHIFT: u32 = 2;
 }
 
 /// Bits of the directory-base register.
 pub mod dirbase {
-    /// ATE, which turns address translation on.
+    /// ATE: turns address translation on.
     pub const ATE: u32 = 1;
-    /// BL, which locks the bus.
+    /// BL: locks the bus.
     pub const BL: u32 = 1 << 4;
-    /// Invalidate the TLB and the instruction cache.
+    /// ITI: invalidates the TLB and the instruction cache.
     pub const ITI: u32 = 1 << 5;
-    /// DTB, address of the page directory.
+    /// DTB: address of the page directory.
     pub const DTB: u32 = 0xFFFF_F000;
 }
 
-/// A value in a pipe with the precision that it was made with.
+/// A value in a pipe, with its precision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct PipeStage {
     /// Bit pattern; a single occupies the low word.
     pub bits: u64,
-    /// Whether it is a double (two registers).
+    /// True if the value is a double, which fills two registers.
     pub double: bool,
 }
 
-/// How instructions are paired at present.
+/// Pairing state of dual-instruction mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Mode {
     /// One instruction at a time.
     #[default]
     Single,
-    /// The second half of a word whose first half had its D bit set.
+    /// A single instruction at the upper half of an aligned 8 bytes whose lower half had its D bit set. Pairs begin
+    /// after it.
     Entering,
-    /// This pair is dual; the next one only if this one has its D bit set.
+    /// Dual-instruction mode that is ending or beginning: the next instructions form a pair. Another pair follows only
+    /// if this pair has its D bit set.
     DualOnce,
-    /// This pair and the next one are dual.
+    /// Dual-instruction mode: the next instructions form a pair, and another pair follows.
     Dual,
 }
 
 impl Mode {
-    /// Whether the next unit of execution is a pair.
+    /// Returns true if the next instructions form a pair.
     #[must_use]
     pub fn is_dual(self) -> bool {
         matches!(self, Mode::DualOnce | Mode::Dual)
     }
 
-    /// The mode after a pair with this D bit.
+    /// Returns the mode after a pair with D bit `d`.
     pub(crate) fn after_pair(self, d: bool) -> Mode {
         match (self, d) {
             (Mode::DualOnce, false) => Mode::Single,
@@ -124,14 +126,14 @@ impl Mode {
     }
 }
 
-/// Everything that a program can see.
+/// The complete state that a program can read: registers, pipes and mode.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct State {
-    /// Address of the next instruction, or of the next pair.
+    /// Address of the next instruction or pair.
     pub pc: u32,
-    /// Integer registers; `r[0]` stays 0.
+    /// Integer registers. `r[0]` stays 0.
     pub r: [u32; 32],
-    /// Floating-point registers; `f[0]` and `f[1]` stay 0.
+    /// Floating-point registers. `f[0]` and `f[1]` stay 0.
     pub f: [u32; 32],
     /// psr, processor status: the bits of [`psr`].
     pub psr: u32,
@@ -141,35 +143,35 @@ pub struct State {
     pub fsr: u32,
     /// dirbase, directory base and cache control: the bits of [`dirbase`].
     pub dirbase: u32,
-    /// db, data breakpoint; kept, never compared.
+    /// db, data breakpoint. The value is stored but never compared with addresses.
     pub db: u32,
     /// fir, address of the instruction that trapped.
     pub fir: u32,
-    /// Constant register KR of the dual operations.
+    /// KR, the first constant register of dual operations.
     pub kr: u64,
-    /// KI, the second constant of dual operations.
+    /// KI, the second constant register of dual operations.
     pub ki: u64,
-    /// T, which holds a product for a later addition.
+    /// T, which holds a product for a later addition of a dual operation.
     pub t: u64,
-    /// The graphics unit's MERGE.
+    /// MERGE, the result register of the graphics unit.
     pub merge: u64,
-    /// Adder pipe, last stage at the end.
+    /// Adder pipe; the last element leaves next.
     pub adder: [PipeStage; 3],
-    /// Multiplier pipe; double-precision operations use the first two stages.
+    /// Multiplier pipe. Double-precision operations use only the first two stages.
     pub multiplier: [PipeStage; 3],
-    /// Load pipe of three stages.
+    /// Pipe of the pipelined loads.
     pub load: [PipeStage; 3],
     /// Graphics pipe, of one stage.
     pub graphics: PipeStage,
-    /// Whether instructions issue singly or in pairs.
+    /// Pairing state: single instructions or pairs.
     pub mode: Mode,
 }
 
-/// Where the processor starts, and where every trap goes.
+/// Address at which the processor starts and to which every trap goes.
 pub const TRAP_VECTOR: u32 = 0xFFFF_FF00;
 
 impl State {
-    /// The state after reset: all registers zero, supervisor mode, at [`TRAP_VECTOR`].
+    /// Returns the state after reset: all registers zero, supervisor mode, at [`TRAP_VECTOR`].
     #[must_use]
     pub fn reset() -> State {
         State {
@@ -210,7 +212,7 @@ impl State {
         self.f[usize::from(n & 31)]
     }
 
-    /// The pair of an even register; an odd number names the pair that it lies in.
+    /// Returns the pair of an even register. An odd number selects the pair that contains the register.
     #[inline]
     pub(crate) fn f64_bits(&self, n: u8) -> u64 {
         let low = usize::from(n & 30);
@@ -261,7 +263,7 @@ impl State {
         self.psr = self.psr & !psr::PM | mask << psr::PM_SHIFT;
     }
 
-    /// psr.PS: 0, 1, 2 for 8, 16, 32 bits; the reserved 3 behaves as 2.
+    /// Returns psr.PS: 0, 1, 2 for 8, 16, 32 bits. The reserved 3 behaves as 2.
     pub(crate) fn pixel_size(&self) -> u32 {
         ((self.psr & psr::PS) >> psr::PS_SHIFT).min(2)
     }

@@ -1,8 +1,8 @@
-//! The operands that each instruction is written with, and the register fields of its word.
+//! The operands of each instruction as written, and the register fields of its word.
 
 use crate::instruction::{Instruction, Op};
 
-/// Which operands an instruction is written with, in order.
+/// Operands of an instruction as written, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Syntax {
     /// No operand: the mnemonic stands alone.
@@ -13,9 +13,9 @@ pub(crate) enum Syntax {
     Load,
     /// `src1, address`: a store from a register.
     Store,
-    /// `address, fdest`, perhaps with `++`.
+    /// `address, fdest`, optionally with `++`.
     FloatingLoad,
-    /// `fdest, address`, perhaps with `++`.
+    /// `fdest, address`, optionally with `++`.
     FloatingStore,
     /// `control, dest`: from a control register.
     LoadControl,
@@ -25,9 +25,9 @@ pub(crate) enum Syntax {
     ToFloating,
     /// `fsrc1, dest`: from a floating-point register to an integer one.
     ToInteger,
-    /// `address`, perhaps with `++`.
+    /// `address`, optionally with `++`.
     Flush,
-    /// `src1, src2, dest`, or nothing.
+    /// `src1, src2, dest`, or no operand.
     Trap,
     /// `src1`: one integer register, such as the target of `bri`.
     Register,
@@ -35,13 +35,13 @@ pub(crate) enum Syntax {
     Branch,
     /// `src1 or 5-bit constant, src2, target`.
     CompareBranch,
-    /// `src1, src2, target`: two integer registers, and where to branch to.
+    /// `src1, src2, target`: two integer registers and a branch target.
     LoopBranch,
     /// `fsrc1, fsrc2, fdest`: two floating-point sources and a destination.
     Three,
-    /// `fsrc1, fdest`: a first source alone.
+    /// `fsrc1, fdest`: only the first source.
     First,
-    /// `fsrc2, fdest`: a second source alone.
+    /// `fsrc2, fdest`: only the second source.
     Second,
 }
 
@@ -75,7 +75,7 @@ impl Syntax {
 /// Control registers by number.
 pub(crate) const CONTROL_REGISTERS: [&str; 6] = ["fir", "psr", "dirbase", "db", "fsr", "epsr"];
 
-/// Which register fields of the word mean something for this instruction.
+/// Returns the bits of the register fields that this instruction uses.
 pub(crate) fn register_mask(i: &Instruction, immediate: bool) -> u32 {
     const SRC2: u32 = 31 << 21;
     const DEST: u32 = 31 << 16;

@@ -1,14 +1,15 @@
 //! Every number of the timing model.
 //!
-//! Clocks are those of the processor: 25 ns at 40 MHz. *Intel's list* is the table of instruction timings in the
-//! programmer's manual, as it is remembered.
+//! Clocks are processor clocks: 25 ns at 40 MHz. *Intel's list* is the table of instruction timings in the programmer's
+//! manual, from memory.
 
 pub use crate::freeze::{FREEZES, Freeze, FreezeRow, FreezeRules, N_FREEZES};
 use parameters::ParameterTable;
 
 parameters::parameter_table! {
-    /// The constant part of each row of [`FREEZES`], in its order. Where no published figure narrows it, the range is one
-    /// clock either way, as far as the memory of a list may be wrong.
+    /// The constant part of each row of [`FREEZES`], in the same order.
+    /// Where no published figure narrows a value, its range is one clock less to one clock more, because the list is
+    /// quoted from memory.
     pub struct FreezeClocks {
         /// Row 1a: instruction-cache miss.
         instruction_miss: 0, "clocks", Assumed, 0..=0, "Intel's list, recollected: the wait is all";
@@ -30,17 +31,18 @@ parameters::parameter_table! {
         condition_use: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
         /// Row 9: multiplier operation whose first source is the result of the operation before.
         multiplier_first_source: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 10a: floating-point operation or fst while a scalar fadd, fsub, fix, ftrunc, famov, fmlow, fmul.ss or fmul.sd is in flight.
+        /// Row 10a: floating-point operation or fst while a scalar fadd, fsub, fix, ftrunc, famov, fmlow, fmul.ss or
+        /// fmul.sd is in flight.
         scalar_busy: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected; a measured square root of 48.4 clocks needs it";
-        /// Row 10b: the same behind a scalar fmul.dd.
+        /// Row 10b: floating-point operation or fst while a scalar fmul.dd is in flight.
         scalar_double_multiply_busy: 3, "clocks", Assumed, 2..=4 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 10c: added to 10a or 10b when the precision changes.
+        /// Row 10c: added to row 10a or 10b when the precision changes.
         scalar_precision_change: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 10d: added to 10a or 10b when the new operation is pipelined and has a destination.
+        /// Row 10d: added to row 10a or 10b when the new operation is pipelined and has a destination.
         scalar_then_pipelined: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
         /// Row 11: multiplier operation right after a double-precision multiply.
         double_multiply: 1, "clocks", Assumed, 1..=1 in 0..=1_000_000, "Intel's list, recollected; the published peak of 60 MFLOPS double at 40 MHz needs it";
-        /// Row 12: TLB miss (translation on).
+        /// Row 12: TLB miss (only with address translation on).
         tlb_miss: 5, "clocks", Assumed, 4..=6 in 0..=1_000_000, "Intel's list, recollected";
         /// Row 13: pfld with three outstanding.
         load_pipe_full: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
@@ -60,7 +62,7 @@ parameters::parameter_table! {
         compare_branch_taken: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
         /// Row 20: bri, calli.
         indirect_branch: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 21: st.c, whatever it stores to.
+        /// Row 21: st.c to any control register.
         control_store: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
         /// Row 22a: graphics result used by the next adder or multiplier operation.
         graphics_to_floating: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
@@ -76,87 +78,88 @@ parameters::parameter_table! {
 }
 
 parameters::parameter_table! {
-    /// Memory behind the bus: one bank of page-mode DRAM on 64 bits. The defaults are the middle of what is known of boards
-    /// of the period.
+    /// Timing of the memory behind the bus: one bank of page-mode DRAM on 64 bits.
+    /// The defaults are the middle of what is known of boards of the period.
     pub struct DramTiming {
-        /// Request to the first 8 bytes, row already open.
+        /// Time from a request to the first 8 bytes if the DRAM row is already open.
         first_hit: 8, "clocks", Assumed, 5..=10 in 0..=1_000_000, "line fill of about 14 clocks on boards of the period";
-        /// Request to the first 8 bytes, row to be opened.
+        /// Time from a request to the first 8 bytes if the DRAM row must be opened.
         first_miss: 11, "clocks", Assumed, 8..=16 in 0..=1_000_000, "line fill of about 16 to 18 clocks when the row changes";
-        /// Between successive 8 bytes of a line, and between overlapped requests to the open row.
+        /// Time between successive 8-byte transfers of a line, and between overlapped requests to the open row.
         next: 2, "clocks", Assumed, 2..=4 in 0..=1_000_000, "the bus needs 2 clocks per transfer (160 MB/s at 40 MHz)";
-        /// One write of up to 8 bytes to the open row.
+        /// Time of one write of up to 8 bytes to the open row.
         write_hit: 3, "clocks", Assumed, 2..=4 in 0..=1_000_000, "page-mode write, 2 to 3 clocks per 8 bytes";
-        /// One write, row to be opened.
+        /// Time of one write of up to 8 bytes if the DRAM row must be opened.
         write_miss: 9, "clocks", Assumed, 6..=12 in 0..=1_000_000, "6 to 8 clocks more than in the open row";
-        /// Bytes of a row (what the NENE# pin compares).
+        /// Size of a DRAM row (the NENE# pin reports whether two addresses share a row).
         page_bytes: 4096, "bytes", Assumed, 1024..=16384 in 8..=MAX, "64 bits of 1M x 1 or 256K x 4 parts: 512 to 1,024 columns";
-        /// Between refreshes, 0 for none.
+        /// Time between DRAM refreshes; 0 for no refresh.
         refresh_interval: 625, "clocks", Assumed, 0..=625 in 0..=MAX, "15.6 us at 40 MHz";
-        /// For which a refresh holds the memory; it closes the row.
+        /// Time for which a refresh blocks the memory. A refresh closes the row.
         refresh_clocks: 8, "clocks", Assumed, 0..=12 in 0..=1_000_000, "one row cycle";
-        /// Between transfers of 8 bytes of other bus masters (ring interface), 0 for none.
+        /// Time between 8-byte transfers of other bus masters (the ring interface); 0 for no transfers.
         dma_interval: 0, "clocks", Assumed, 0..=80 in 0..=MAX, "a ring channel at full rate moves 8 bytes every 4 clocks; default: ring idle";
-        /// For which such a transfer holds the memory; it closes the row.
+        /// Time for which a transfer of another bus master blocks the memory. The transfer closes the row.
         dma_clocks: 3, "clocks", Assumed, 0..=6 in 0..=1_000_000, "one page-mode write";
     }
 }
 
 parameters::parameter_table! {
-    /// Sizes of what is on the chip. They are those of the part and cannot be set.
+    /// Sizes of caches, TLB, bus and pipes on the chip. They cannot be set.
     pub struct ChipSizes {
         /// Size of the instruction cache.
         instruction_cache_bytes: 4096, "bytes", Published, 4096..=4096, "Intel's manual";
         /// Size of the data cache.
         data_cache_bytes: 8192, "bytes", Published, 8192..=8192, "Intel's manual";
-        /// Line of either cache.
+        /// Line size of both caches.
         line_bytes: 32, "bytes", Published, 32..=32, "Intel's manual";
-        /// Lines of a set of either cache.
+        /// Associativity of both caches.
         cache_ways: 2, "lines", Published, 2..=2, "Intel's manual";
-        /// Translations that are held.
+        /// Number of translations in the TLB.
         tlb_entries: 64, "entries", Published, 64..=64, "Intel's manual";
-        /// Translations of a set.
+        /// Associativity of the TLB.
         tlb_ways: 4, "entries", Assumed, 2..=8, "recollection of Intel's manual";
-        /// Memory that a translation covers.
+        /// Size of a page, which one translation covers.
         page_bytes: 4096, "bytes", Published, 4096..=4096, "Intel's manual: the page tables are those of the 386";
-        /// Width of the bus: what a transfer moves.
+        /// Bytes of one bus transfer.
         bus_bytes: 8, "bytes", Published, 8..=8, "Intel's manual";
-        /// Bus requests that may be outstanding.
+        /// Bus requests that may be outstanding at a time.
         bus_depth: 3, "requests", Assumed, 1..=3, "the address pipe of the external bus";
-        /// Stores that wait at most.
+        /// Stores that may wait at a time.
         store_depth: 3, "stores", Assumed, 2..=3, "two inside and one on the bus";
-        /// Pipelined loads that may be outstanding.
+        /// Pipelined loads that may be outstanding at a time.
         load_depth: 3, "loads", Published, 3..=3, "Intel's manual: the load pipe has three stages";
     }
 }
 
-/// The first parts of the paths of the tables that can be set.
+/// Path prefixes of the tables that can be set.
 const FREEZES_PATH: &str = "i860.freezes";
 const DRAM_PATH: &str = "i860.dram";
 
-/// The first part of the paths of what is on the chip, which is listed and cannot be set.
+/// Path prefix of the on-chip sizes, which are listed but cannot be set.
 pub const CHIP_PATH: &str = "i860.chip";
 
-/// What the processor is built with.
+/// Configuration of a processor: timing, seeds and optimization.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Config {
-    /// Whether clocks are counted at all; without, only instructions are.
+    /// True if clocks are counted. Without timing only instructions are counted.
     pub timing: bool,
-    /// Which freeze rules apply, and what they cost.
+    /// Freeze rules that apply, and their costs.
     pub freezes: FreezeRules,
-    /// Times of the memory behind the bus.
+    /// Timing of the memory behind the bus.
     pub dram: DramTiming,
-    /// Table of frcp and frsqr.
+    /// Table of the results of frcp and frsqr.
     pub seeds: crate::SeedTable,
     /// Start of the pseudo-random sequence of the cache replacement.
     pub replacement_seed: u16,
-    /// Whether runs of code that repeat with all they need in the caches take the clocks that were counted before instead of being
-    /// counted again, as FastSim does (Schnarr and Larus, 1998). Changes the host's time only; on by default, being faster.
+    /// True if the clocks of repeated code that hits the caches are reused instead of counted again, as in FastSim
+    /// (Schnarr and Larus, 1998).
+    /// This optimization changes only the host's time. It is on by default.
     pub memoise: bool,
 }
 
 impl Config {
-    /// Cycle timing with all rules and the default memory.
+    /// Returns cycle timing with all freeze rules and the default memory.
     #[must_use]
     pub fn cycle() -> Config {
         Config {
@@ -169,19 +172,20 @@ impl Config {
         }
     }
 
-    /// All numbers of the timing, each table with the first part of its paths, for lists of what a machine is made of.
+    /// Returns all tables of timing numbers, each with its path prefix.
     #[must_use]
     pub fn tables(&self) -> [(&'static str, &dyn ParameterTable); 3] {
         [(FREEZES_PATH, &self.freezes.clocks), (DRAM_PATH, &self.dram), (CHIP_PATH, &ChipSizes::PAPERS)]
     }
 
-    /// The tables whose numbers can be set: all but that of what is on the chip.
+    /// Returns the tables whose numbers can be set: all except the on-chip sizes.
     pub fn tables_mut(&mut self) -> [(&'static str, &mut dyn ParameterTable); 2] {
         [(FREEZES_PATH, &mut self.freezes.clocks), (DRAM_PATH, &mut self.dram)]
     }
 
-    /// What stands in no table and changes results, where it is not as in [`Config::cycle`]: for names of experiments. Whether
-    /// blocks are memoised changes none.
+    /// Returns the settings outside the tables that change results and differ from [`Config::cycle`], as keys and
+    /// values.
+    /// Names of experiments include them. Memoization changes no result and is left out.
     #[must_use]
     pub fn unusual_settings(&self) -> Vec<(&'static str, String)> {
         let Config { timing, freezes, dram: _, seeds, replacement_seed, memoise: _ } = self;
@@ -195,7 +199,7 @@ impl Config {
         all.into_iter().filter(|(_, differs, _)| *differs).map(|(key, _, value)| (key, value)).collect()
     }
 
-    /// The same results without clocks.
+    /// Returns a configuration that counts no clocks. Programs compute the same results as with [`Config::cycle`].
     #[must_use]
     pub fn functional() -> Config {
         Config { timing: false, ..Config::cycle() }

@@ -1,11 +1,11 @@
-//! Address translation: the TLB. Addresses stay what they are; only misses are charged.
+//! Address translation: the TLB. Addresses stay unchanged; only the time of misses is charged.
 
 use crate::cache::Tags;
 use crate::common::Common;
 use crate::timing::{ChipSizes, Freeze};
 
 const PAGE_BYTES: u32 = ChipSizes::PAPERS.page_bytes as u32;
-/// Translations of a set, and sets.
+/// Ways and sets of the TLB.
 const WAYS: usize = ChipSizes::PAPERS.tlb_ways as usize;
 const SETS: usize = ChipSizes::PAPERS.tlb_entries as usize / WAYS;
 
@@ -26,7 +26,7 @@ impl Translation {
         self.directory.is_some()
     }
 
-    /// Page tables at this address from now on, or none.
+    /// Turns translation on with page tables at an address, or off with `None`.
     pub(crate) fn set_directory(&mut self, directory: Option<u32>) {
         self.directory = directory;
     }
@@ -35,8 +35,8 @@ impl Translation {
         self.tlb.clear();
     }
 
-    /// Charges a TLB miss: the constant part, a read of the directory, a read of a page table (the tables are
-    /// taken to lie behind the directory).
+    /// Charges a TLB miss: the constant part, a read of the page directory and a read of a page table.
+    /// The page tables are assumed to follow the directory in memory.
     #[inline]
     pub(crate) fn translate(&mut self, address: u32, common: &mut Common) {
         if let Some(directory) = self.directory

@@ -1,10 +1,10 @@
-//! Why the processor traps, and how runs end.
+//! Causes of traps, and ends of runs.
 
-/// Why the processor trapped.
+/// The cause of a trap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TrapCause {
-    /// A word that is no XR instruction.
+    /// A word that encodes no XR instruction.
     #[error("{word:08x} is not an i860 XR instruction")]
     Illegal {
         /// The word that was fetched.
@@ -13,59 +13,59 @@ pub enum TrapCause {
     /// A pair whose halves are not one floating-point and one core instruction, in this order.
     #[error("a pair must be one floating-point and one core instruction")]
     IllegalPair,
-    /// A branch in a delay slot (undefined on the part).
+    /// A branch in a delay slot (undefined on the real chip).
     #[error("branch in a delay slot")]
     BranchInSlot,
-    /// A jump in dual-instruction mode to an address that is not a multiple of 8 (undefined on the part).
+    /// A jump in dual-instruction mode to an address that is not a multiple of 8 (undefined on the real chip).
     #[error("dual-instruction mode needs a multiple of 8")]
     PairAlignment,
     /// The instruction `trap` was executed.
     #[error("trap instruction")]
     Instruction,
-    /// `intovr` with OF set.
+    /// `intovr` was executed while OF was set.
     #[error("intovr with OF set")]
     Overflow,
-    /// Nothing answers the instruction fetch.
+    /// No memory answered the instruction fetch.
     #[error("no memory to fetch an instruction from")]
     InstructionAccess,
-    /// Nothing answers a load or store.
+    /// No memory or device answered a load or store.
     #[error("no memory at {address:#010x}")]
     DataAccess {
-        /// The physical address that was asked for.
+        /// The physical address of the access.
         address: u32,
     },
-    /// An address that is not a multiple of the access size.
+    /// The address of an access was not a multiple of its size.
     #[error("{address:#010x} is not a multiple of {size}")]
     Unaligned {
-        /// The address that was asked for.
+        /// The address of the access.
         address: u32,
         /// The size in bytes.
         size: u32,
     },
-    /// The interrupt pin, while psr.IM is set.
+    /// The interrupt pin was raised while psr.IM was set.
     #[error("interrupt")]
     Interrupt,
 }
 
-/// A trap that was taken. The state is that of the part at the first instruction of its handler: fir holds `pc`,
-/// psr the trap bit, PU, PIM, DIM and DS, and the next pc is [`TRAP_VECTOR`](crate::state::TRAP_VECTOR).
+/// A trap that was taken. The processor is at the first instruction of the trap handler.
+/// Register fir holds `pc`. Register psr has the trap bit, PU, PIM, DIM and DS. The next pc is
+/// [`TRAP_VECTOR`](crate::state::TRAP_VECTOR).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("trap at {pc:#010x}: {cause}")]
 pub struct Trap {
-    /// What went wrong, or was asked for.
     pub cause: TrapCause,
-    /// Address of the instruction or pair, which had no effect. In a delay slot the branch before it had its
-    /// effect on r1, LCC and its counter, as on the part.
+    /// Address of the instruction or pair, which had no effect.
+    /// If it was in a delay slot, the branch before it has changed r1, LCC and its counter, as on the real chip.
     pub pc: u32,
 }
 
-/// How a run ended.
+/// The end of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunEnd {
-    /// The stop address was reached in single-instruction mode; its instruction was not executed.
+    /// The stop address was reached in single-instruction mode. The instruction at the stop address was not executed.
     Stopped,
     /// A trap was taken.
     Trapped(Trap),
-    /// The number of instructions was used up.
+    /// The instruction budget was used up.
     Exhausted,
 }

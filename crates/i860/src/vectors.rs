@@ -1,28 +1,29 @@
-//! Conformance vectors: a program, a starting memory, and what must come out. One JSON object per line.
+//! Conformance vectors: a program, its memory before and the expected state after it. One JSON object per line.
 //!
 //! ```text
 //! {"id","group","what","load","code":["hex32",...],"entry","stop",
 //!  "mem":[[address,"hex32"],...],"expect":{"r":[32 hex],"f":[32 hex],"mem":[[address,"hex32"],...]}}
 //! ```
-//! Every register starts at zero, pc at `entry`; the run ends when pc is `stop` in single-instruction mode.
+//!
+//! Every register starts at zero, pc at `entry`. The run ends when pc is `stop` in single-instruction mode.
 
 use crate::{Bus, Config, Cpu, RunEnd, Trap, Unmapped};
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// A run longer than this fails (vectors stay below 1,000).
+/// Instruction budget of a vector. A longer run fails. The vectors execute fewer than 1,000 instructions.
 pub const BUDGET: u64 = 10_000;
 
 /// One vector: a program, the state before it and the state expected after it.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 pub struct Vector {
-    /// Its name, unique in its file.
+    /// Identifier, unique in its file.
     pub id: String,
-    /// Group of the collection.
+    /// Group within the collection.
     #[serde(default)]
     pub group: String,
-    /// What it tries, in words.
+    /// Description of the tested behaviour.
     #[serde(default)]
     pub what: String,
     /// Address of the first word of `code`.
@@ -34,14 +35,13 @@ pub struct Vector {
     pub entry: u32,
     /// Address at which the run ends.
     pub stop: u32,
-    /// Words placed before the run.
+    /// Addresses and words placed in memory before the run.
     #[serde(default, deserialize_with = "hex_pairs")]
     pub mem: Vec<(u32, u32)>,
-    /// What must come out.
     pub expect: Expectation,
 }
 
-/// The state after a vector.
+/// The expected state after a vector.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 pub struct Expectation {
     /// Integer registers, bit patterns.
@@ -76,7 +76,7 @@ fn registers<'de, D: Deserializer<'de>>(from: D) -> Result<[u32; 32], D::Error> 
     list.try_into().map_err(|_| serde::de::Error::custom(format_args!("expected 32 registers, found {found}")))
 }
 
-/// Memory that exists everywhere and is zero until written.
+/// Memory that exists at every address and is zero until written.
 #[derive(Clone, Debug, Default)]
 struct Sparse(BTreeMap<u32, u32>);
 
@@ -117,12 +117,12 @@ impl Bus for Sparse {
     }
 }
 
-/// One difference between the state expected and the state found.
+/// One difference between the expected and the found state.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
     /// `r5`, `f12`, or the address of a word.
     pub place: String,
-    /// Bit pattern that the vector asks for.
+    /// Bit pattern of the vector.
     pub expected: u32,
     /// Bit pattern of this model.
     pub found: u32,
@@ -134,15 +134,15 @@ impl fmt::Display for Difference {
     }
 }
 
-/// Why a vector failed.
+/// The reason why a vector failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Failure {
-    /// The program trapped where it should have ended.
+    /// The program trapped before its stop address.
     Trapped(Trap),
     /// The program did not reach its stop address.
     Exhausted {
-        /// Address of the instruction that it had come to.
+        /// Address of the next instruction at the end of the budget.
         pc: u32,
     },
     /// Registers or memory differ.
@@ -162,20 +162,19 @@ impl fmt::Display for Failure {
     }
 }
 
-/// A line that is no vector.
+/// A line that is no valid vector.
 #[derive(Debug, thiserror::Error)]
 #[error("line {line}: not a vector: {reason}")]
 pub struct MalformedLine {
-    /// Number of the line, from 1.
     pub line: usize,
-    /// What is wrong with it.
+    /// Description of the error.
     pub reason: String,
 }
 
-/// Reads vectors from JSON lines; empty lines are passed over.
+/// Reads vectors from JSON lines. Empty lines are skipped.
 ///
 /// # Errors
-/// The first line that is no vector, by number.
+/// The first line that is no valid vector.
 pub fn parse(text: &str) -> Result<Vec<Vector>, MalformedLine> {
     let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     lines.map(|(n, line)| parse_line(n + 1, line)).collect()
@@ -203,19 +202,19 @@ impl Vector {
         memory
     }
 
-    /// Runs the vector.
+    /// Runs the vector on a new processor and compares the state.
     ///
     /// # Errors
-    /// What differs, or why the program did not come to its end.
+    /// The differences in the state, or the reason why the program did not reach its stop.
     pub fn check(&self, config: Config) -> Result<(), Failure> {
         let mut cpu = Cpu::at(config, self.entry);
         self.check_on(&mut cpu)
     }
 
-    /// Runs the vector on a processor that was built before; it is reset first.
+    /// Resets a processor, runs the vector on it and compares the state.
     ///
     /// # Errors
-    /// As [`Vector::check`].
+    /// The same as for [`Vector::check`].
     pub fn check_on(&self, cpu: &mut Cpu) -> Result<(), Failure> {
         cpu.reset();
         cpu.state.pc = self.entry;
@@ -240,24 +239,24 @@ impl Vector {
     }
 }
 
-/// Result of a file of vectors.
+/// Results of a set of vectors.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct VectorSummary {
-    /// Vectors that came out as asked.
+    /// Number of vectors that passed.
     pub passed: usize,
-    /// The others: identifier, description, reason.
+    /// Identifier, description and reason of each failed vector.
     pub failures: Vec<(String, String, Failure)>,
 }
 
 impl VectorSummary {
-    /// Number of vectors that failed.
+    /// Returns the number of vectors that failed.
     #[must_use]
     pub fn failed(&self) -> usize {
         self.failures.len()
     }
 }
 
-/// Runs all vectors on one processor, each from its own state.
+/// Runs all vectors on one processor, which is reset before each of them.
 #[must_use]
 pub fn run(vectors: &[Vector], config: Config) -> VectorSummary {
     let mut cpu = Cpu::new(config);

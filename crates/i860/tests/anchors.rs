@@ -1,5 +1,5 @@
-//! Published clock counts of hand-written code, re-created from their descriptions. Nothing is tuned to one of them:
-//! all run with the full freeze table and the default memory, code and data in cache.
+//! Tests against published clock counts of hand-written code, rewritten from their descriptions. No number is tuned to
+//! one of them. All tests run with the full freeze table and the default memory; code and data are in the caches.
 
 use i860::{Config, Cpu, Ram, RunEnd, assemble};
 
@@ -12,7 +12,8 @@ struct Measured {
     cpu: Cpu,
 }
 
-/// Runs from the start to `end` three times; the last run, with warm caches, counts from `begin` to `end`.
+/// Runs a program from its start to `end` three times. The last run, with warm caches, counts the clocks from `begin`
+/// to `end`.
 fn measure(source: &str, floats: &[f32]) -> Measured {
     let program = assemble("anchor.s", CODE, source).unwrap_or_else(|e| panic!("{e}"));
     let mut ram = Ram::new(0, 0x20000);
@@ -33,7 +34,7 @@ fn measure(source: &str, floats: &[f32]) -> Measured {
     Measured { clocks: cpu.clocks() - start.0, instructions: cpu.instructions() - start.1, cpu }
 }
 
-/// 80 MFLOPS at 40 MHz: every m12apm is a multiplication and an addition, one a clock.
+/// 80 MFLOPS at 40 MHz: every m12apm is a multiplication and an addition, one in every clock.
 #[test]
 fn single_precision_peak_is_two_operations_per_clock() {
     let body = "m12apm.ss f8, f9, f0\n".repeat(64);
@@ -41,7 +42,7 @@ fn single_precision_peak_is_two_operations_per_clock() {
     assert_eq!((64 * 2, m.clocks), (128, 64));
 }
 
-/// 60 MFLOPS at 40 MHz: an addition every clock, a multiplication every second one.
+/// 60 MFLOPS at 40 MHz: an addition in every clock and a multiplication in every second clock.
 #[test]
 fn double_precision_peak_is_one_and_a_half() {
     let body = "m12apm.dd f8, f10, f0\npfadd.dd f12, f14, f0\n".repeat(32);
@@ -52,9 +53,10 @@ fn double_precision_peak_is_one_and_a_half() {
     assert_eq!(multiply_only.clocks, 63, "two operations every second clock");
 }
 
-/// The square root of period library code as described: frsqr, two Newton steps y = y(1.5 - 0.5 x y^2), times x;
-/// called in a loop. Measured on the part: 1.21 us, 48.4 clocks. The test for zero is needed (the seed of zero is
-/// infinite), so it is taken to be there; how the original loaded its constants is not known.
+/// The square root of a library of the period, as described: frsqr, two Newton steps y = y(1.5 - 0.5 x y^2), times x,
+/// called in a loop.
+/// Measured on a real chip: 1.21 us, 48.4 clocks. A test for zero is assumed, because it is needed (the seed of zero is
+/// infinite). It is not known how the original loaded its constants.
 #[test]
 fn a_scalar_square_root_with_call_and_return_takes_about_48_clocks() {
     let m = measure(ROOT, &[10.0, 0.0, 0.5, 1.5]);
@@ -96,11 +98,11 @@ zero:    bri     r1
          nop
 ";
 
-/// Three reciprocal square roots through the pipes, two Newton steps each: "39 clocks" in period code.
+/// Three reciprocal square roots through the pipes, two Newton steps each: "39 clocks" in code of the period.
 ///
-/// Own schedule from the formula y(1.5 - 0.5 x y^2): thirteen groups of three, one seed group and per step y^2, times
-/// x, times 0.5, from 1.5, times y, and one group that lets y leave; each group's results leave into the next. So 39
-/// is the number of instructions, and the claim is that none of them waits.
+/// The schedule is our own, from the formula y(1.5 - 0.5 x y^2): thirteen groups of three instructions, one seed group
+/// and six groups for each step. The groups of a step are y^2, times x, times 0.5, from 1.5, times y, and one in which
+/// y leaves the pipe. The code has 39 instructions, and the test claims that none of them waits.
 #[test]
 fn three_reciprocal_square_roots_at_once_take_39_clocks() {
     let m = measure(THREE_ROOTS, &[2.0, 10.0, 0.3]);
@@ -115,9 +117,9 @@ fn singles(n: usize) -> String {
     "pfmul.ss f9, f10, f11\n".repeat(n)
 }
 
-/// The loop of 106 clocks and 117 instructions of period tree code cannot be re-created from its description; what is
-/// known is its shape: 11 pairs, 95 single instructions, a taken bnc.t, its label at 4 mod 8, no freeze. A loop of
-/// that shape must take 106 clocks a turn.
+/// A loop with the shape of a tree code of the period, 117 instructions in 106 clocks, must take 106 clocks a turn.
+/// The original code cannot be rewritten from its description. Only its shape is known: 11 pairs, 95 single
+/// instructions, a taken bnc.t, its label at 4 mod 8, no freeze.
 #[test]
 fn a_loop_of_the_shape_of_the_tree_code_takes_106_clocks_a_turn() {
     // The entry word is two single instructions, then 11 pairs, the last two with D clear.
@@ -128,7 +130,7 @@ fn a_loop_of_the_shape_of_the_tree_code_takes_106_clocks_a_turn() {
     let source = format!("begin: mov 0, r6\nmov 54, r7\nnop\n.align 8\nnop\nturn: {turn}end: nop\nnop");
     let m = measure(&source, &[]);
     assert_eq!(m.cpu.state.r[6], 55, "five turns of eleven pairs");
-    // Five instructions come before; the last bnc.t is not taken, which costs a clock and skips its slot.
+    // Five instructions come before the loop. The last bnc.t is not taken, which costs a clock and skips its slot.
     assert_eq!((m.instructions, m.clocks), (117 * 5 + 5 - 1, 106 * 5 + 5));
 }
 

@@ -1,4 +1,4 @@
-//! Assembler and disassembler: round trips, and every check with its line and reason.
+//! Tests of assembler and disassembler: round trips, and every check with its line and reason.
 
 use i860::{Rule, assemble, decode, disassemble, encode, instruction_word};
 use proptest::prelude::*;
@@ -180,7 +180,7 @@ last:
     assert!(gap.data_at(0x1004).is_some() && gap.data_at(0x1FA3).is_some() && gap.data_at(0x1FA4).is_none());
 }
 
-/// The first warning of a source, as it is told; the source itself assembles.
+/// Returns the first warning of a source that assembles without errors.
 #[track_caller]
 fn warning(source: &str) -> Option<(Rule, String)> {
     let program = assemble("t.s", 0, source).expect(source);
@@ -200,7 +200,7 @@ fn rules_that_programs_break_are_warned_of() {
     }
 }
 
-/// The manual: a scalar operation goes through the pipe of its unit, so that what was in it is lost.
+/// The manual: a scalar operation goes through the pipe of its unit and destroys the results in the pipe.
 #[test]
 fn a_result_taken_out_behind_a_scalar_operation_is_warned_of() {
     let fault = |source: &str| {
@@ -264,7 +264,7 @@ proptest! {
     }
 }
 
-/// What writes itself out without end is refused at the line of the source that does so, soon and in little memory.
+/// Endless expansion is rejected quickly, with little memory and at the source line that causes it.
 #[test]
 fn what_spends_the_budget_is_refused_at_its_line() {
     let spent = "written out to more than";
@@ -293,7 +293,7 @@ fn repetitions_lie_in_each_other_only_so_deep() {
     assert_eq!(assemble("t.s", 0, &nested(32)).expect("allowed").words().len(), 1);
 }
 
-/// A million repetitions of a word are as many words, a fourth of the longest program.
+/// A million repetitions of a word assemble to a million words, a fourth of the longest program.
 #[test]
 fn a_million_words_are_written_out() {
     let program = assemble("t.s", 0, ".rept 1000000\n.long 7\n.endr").expect("within the budget");

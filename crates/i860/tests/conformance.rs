@@ -1,4 +1,4 @@
-//! The published conformance vectors, all of them.
+//! Runs all published conformance vectors.
 
 use flate2::read::GzDecoder;
 use i860::{Config, vectors};

@@ -1,14 +1,15 @@
-//! What happens while memory is busy: fills of instruction lines beside freezes, stores and reads of other rows; loads of 16
-//! bytes; the address pipe. Each program is small enough to be counted by hand, and the count stands beside it.
+//! Tests of a busy memory: fills of instruction lines during freezes, stores and reads of other rows, loads of 16
+//! bytes, the address pipe. Each program is short enough to be counted by hand; comments have the counts.
 //!
-//! Memory of the tests: 11 clocks to the first 8 bytes where a row is opened, 8 in the open row, then 2 for each 8 bytes
-//! more; a write takes 9 or 3. A line of 8 instructions that comes in at clock 0 is there in pairs at 11, 13, 15 and 17.
+//! Memory of the tests: 11 clocks to the first 8 bytes if a row is opened, 8 clocks in the open row, 2 clocks for each
+//! further 8 bytes. A write takes 9 or 3 clocks. The words of a line of 8 instructions that is requested at clock 0
+//! arrive in pairs at 11, 13, 15 and 17.
 
 use i860::timing::{DramTiming, Freeze, FreezeRules};
 use i860::{Config, Cpu, Ram, RunEnd, assemble};
 
 const CODE: u32 = 0x1000;
-/// In another row of the memory than the code.
+/// Address in another DRAM row than the code.
 const DATA: u32 = 0x8000;
 
 fn dram() -> DramTiming {
@@ -50,7 +51,7 @@ fn row_1_another_freeze_while_a_line_comes_in_waits_for_the_rest_of_it() {
     assert_eq!(clocks(&[Freeze::InstructionMiss, Freeze::ConditionUse], late), 20);
 }
 
-/// A constant part of a row that is paid at the end of an instruction is such a freeze too.
+/// The constant part of a freeze row at the end of an instruction is also such a freeze.
 #[test]
 fn row_1_a_branch_within_the_line_waits_for_the_rest_of_it() {
     let source = "bnc on\nnop\nnop\non: nop\nnop\nnop\nnop\nnop";
@@ -58,12 +59,12 @@ fn row_1_a_branch_within_the_line_waits_for_the_rest_of_it() {
     assert_eq!(clocks(&[Freeze::InstructionMiss, Freeze::BranchTaken], source), 22);
 }
 
-/// The data of a read occupy the bus until the last of them, so that a write comes after it.
+/// The data of a read occupy the bus up to the last transfer, so a write comes after them.
 #[test]
 fn a_store_waits_for_the_last_word_of_a_fill() {
     let source = "st.l r5, 0(r4)\nst.l r5, 8(r4)\nst.l r5, 16(r4)\nst.l r5, 24(r4)\nnop\nnop\nnop\nnop";
-    // The first store is requested at 12 and begins behind the line, 17; it opens a row: 26. The fourth issues at 15 and
-    // waits for it to leave and one more, 27; four nops.
+    // The first store is requested at 12 and begins behind the line, 17; it opens a row: 26. The fourth issues at 15
+    // and waits for it to leave and one more, 27; four nops.
     assert_eq!(clocks(&[Freeze::InstructionMiss, Freeze::StorePipeFull], source), 31);
 }
 
@@ -101,7 +102,7 @@ fn row_16_holds_an_instruction_fill_behind_three_requests() {
     assert_eq!(clocks(&[Freeze::InstructionMiss, Freeze::AddressPipeFull], &source), 34);
 }
 
-/// Adds 1 + 2 in the adder's pipe, then does something, then takes the sum out.
+/// Pushes 1 + 2 into the adder's pipe, executes an operation, then reads the sum from the pipe.
 fn sum_behind(operation: &str) -> f32 {
     let source = format!(
         "orh 0x3F80, r0, r5\nixfr r5, f2\norh 0x4000, r0, r5\nixfr r5, f3\n\
@@ -116,7 +117,7 @@ fn sum_behind(operation: &str) -> f32 {
     f32::from_bits(cpu.state.f[10])
 }
 
-/// The manual: a scalar operation goes through the pipe of its unit, and what was in it is lost.
+/// The manual: a scalar operation goes through the pipe of its unit and destroys the results in the pipe.
 #[test]
 fn a_scalar_operation_destroys_what_the_pipe_of_its_unit_holds() {
     for keeps in ["nop", "fmul.ss f2, f3, f4", "frcp.ss f2, f4", "fiadd.ss f2, f3, f4"] {

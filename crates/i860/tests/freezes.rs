@@ -1,9 +1,9 @@
-//! Every row of the freeze table alone: what it costs at its moment, and nothing one instruction later.
+//! Tests of every row of the freeze table: its cost when it applies, and no cost one instruction later.
 //!
-//! A program runs twice, with no row and with the one under test; the difference is the row's cost. Expected clocks are
-//! not read from the table under test: each test quotes what Intel's list says (instruction-timing table of the i860
-//! Programmer's Reference Manual, as it is remembered), and where memory takes part, the wait is a sum of DRAM parameters.
-//! What the rows amount to together is held against published counts in anchors.rs.
+//! A program runs twice, without any row and with the tested row. The difference is the cost of the row. Expected
+//! clocks do not come from the table under test: each test quotes Intel's list (the instruction-timing table of the
+//! i860 Programmer's Reference Manual, from memory). Where memory takes part, the wait is a sum of DRAM parameters.
+//! `anchors.rs` compares the rows together with published counts.
 
 use i860::timing::{DramTiming, FREEZES, Freeze, FreezeRules};
 use i860::{Config, Cpu, Ram, RunEnd, assemble};
@@ -36,7 +36,7 @@ fn cost_beside(others: FreezeRules, row: Freeze, source: &str) -> u64 {
     clocks_with(others.with(row), source) - clocks_with(others, source)
 }
 
-/// A program that pays the constant part of a row once, under the row and what must apply beside it.
+/// A program that pays the constant part of a row once, with the row and the other rows that must apply.
 struct Sample {
     row: Freeze,
     beside: FreezeRules,
@@ -86,7 +86,7 @@ fn samples() -> Vec<Sample> {
     ]
 }
 
-/// A program that loads, loops for so many turns of two clocks, and goes on in the next line.
+/// Returns a program that loads, loops for this many turns of two clocks, and continues in the next cache line.
 fn next_line_behind_load(turns: u64) -> String {
     format!(".align 32\nmov {turns}, r7\nld.l 0(r4), r5\nl: adds -1, r7, r7\nbtne r0, r7, l\nnop\nnop\nnop\nnop\nnop")
 }
@@ -95,8 +95,7 @@ fn stores(n: u64) -> String {
     (0..n).map(|k| format!("st.l r5, {}(r4)\n", 8 * k)).collect()
 }
 
-/// No number of the table is decoration, and none is in two places: five clocks more in it are five clocks more in the
-/// program.
+/// Every number of the table matters and appears once: five more clocks in a row cost five more clocks in its program.
 #[test]
 fn every_row_costs_what_its_number_says() {
     for Sample { row, beside, source } in samples() {
@@ -109,7 +108,7 @@ fn every_row_costs_what_its_number_says() {
     }
 }
 
-/// Rows 1a and 16 of the list are all wait: their constant part is 0 and stays so.
+/// Rows 1a and 16 of the list consist only of waiting: their constant part is 0.
 #[test]
 fn every_row_with_a_constant_part_has_a_sample() {
     let sampled: Vec<_> = samples().iter().map(|sample| sample.row).collect();
@@ -141,7 +140,7 @@ fn row_1_an_instruction_miss_waits_for_the_word_needed() {
 fn row_1_leaving_the_line_early_waits_for_the_rest_of_it() {
     let t = dram();
     let there_and_back = "br away\nnop\nback: br end\nnop\n.align 32\naway: br back\nnop";
-    // Two clocks of br and slot run while the line comes in; its last word is 3 x next behind the first.
+    // Two clocks of br and its slot pass while the line arrives. Its last word is 3 x next after the first.
     let rest = 3 * t.next - 2;
     let second_line = t.first_hit + 3 * t.next - 2;
     assert_eq!(cost(Freeze::InstructionMiss, there_and_back), t.first_miss + rest + second_line);
@@ -159,7 +158,7 @@ fn row_1_a_line_that_is_held_costs_nothing() {
 fn row_1b_an_instruction_miss_behind_a_data_fill_costs_two_more() {
     let t = dram();
     let others = FreezeRules::none().with(Freeze::InstructionMiss);
-    // The data lie in another row, so that they come behind the instructions. The next line is wanted after the first word,
+    // The data lie in another DRAM row and come after the instructions. The next line is needed after the first word,
     // mov, ld, the turns and four nops.
     let fill = 2 * (t.first_miss + 3 * t.next);
     let turns_until_full = (fill - t.first_miss - 6).div_ceil(2);
@@ -169,7 +168,8 @@ fn row_1b_an_instruction_miss_behind_a_data_fill_costs_two_more() {
     assert_eq!(cost_beside(others, row, &next_line_behind_load(turns_until_full + 1)), 0);
 }
 
-/// The list, 2, use of the destination of an integer load that missed: "1 + read clocks - instructions executed since the load".
+/// The list, 2, use of the destination of an integer load that missed: "1 + read clocks - instructions executed since
+/// the load".
 #[test]
 fn row_2_the_destination_of_a_load_that_missed_is_waited_for() {
     let t = dram();
@@ -190,7 +190,7 @@ fn row_3_a_floating_load_that_misses_blocks_and_one_that_hits_does_not() {
     assert_eq!(cost(Freeze::FloatingLoadMiss, "fld.d 0(r4), f8\nfld.d 24(r4), f8"), 1 + read);
 }
 
-/// Two instructions with so many others between them.
+/// Returns two instructions with this many nops between them.
 fn apart(first: &str, nops: u64, next: &str) -> String {
     format!("{first}\n{}{next}", "nop\n".repeat(nops as usize))
 }
@@ -317,8 +317,8 @@ fn rows_10c_and_10d_add_to_a_wait_but_make_none() {
     }
 }
 
-/// The list, 11, multiplier operation after a double-precision multiply: "1". The data sheet's 60 MFLOPS double at 40 MHz is one
-/// multiplication every second clock beside one addition every clock.
+/// The list, 11, multiplier operation after a double-precision multiply: "1". The data sheet's 60 MFLOPS double at 40
+/// MHz is one multiplication every second clock beside one addition every clock.
 #[test]
 fn row_11_the_multiplier_takes_a_double_every_second_clock() {
     let row = Freeze::DoubleMultiply;
@@ -390,8 +390,8 @@ fn row_17_a_load_right_behind_a_store_that_hit_waits() {
     assert_eq!(cost(Freeze::LoadAfterStoreHit, "st.l r5, 4(r4)\nld.l 8(r4), r6"), 0, "the store missed");
 }
 
-/// The list, 18, delayed conditional branch not taken: "1". A taken one costs its slot only: the loop of a period tree code
-/// has 106 clocks with one in it (anchors.rs).
+/// The list, 18, delayed conditional branch not taken: "1". A taken one costs its slot only: the loop of a period tree
+/// code has 106 clocks with one in it (anchors.rs).
 #[test]
 fn row_18_a_delayed_branch_not_taken_costs_one_and_taken_none() {
     let row = Freeze::DelayedBranchNotTaken;
@@ -425,7 +425,8 @@ fn row_21_a_write_to_a_control_register_costs_two() {
     assert_eq!(cost(Freeze::ControlStore, "ld.c fsr, r5"), 0);
 }
 
-/// The list, 22, graphics result used by the next adder or multiplier operation: "1"; by the next graphics operation: "1".
+/// The list, 22, graphics result used by the next adder or multiplier operation: "1"; by the next graphics operation:
+/// "1".
 #[test]
 fn row_22_a_graphics_result_is_late_by_one() {
     let first = "fiadd.ss f8, f9, f10";
@@ -455,8 +456,8 @@ fn row_24_a_pipelined_result_waits_for_the_store_of_its_register() {
     assert_eq!(cost(row, "fst.l f8, 0(r4)\nfadd.ss f2, f3, f8"), 0);
 }
 
-/// Not in the list, whose row 10 leaves frcp and frsqr out: a published three-way reciprocal root of 39 clocks allows a
-/// result that is usable two instructions later.
+/// The list has no such row: its row 10 leaves frcp and frsqr out. A published three-way reciprocal root of 39 clocks
+/// allows a result that is usable two instructions later.
 #[test]
 fn row_25_a_seed_is_late_by_one() {
     assert_eq!(cost(Freeze::SeedUse, "frcp.ss f8, f9\nfmul.ss f9, f9, f10"), 1);
@@ -473,7 +474,7 @@ fn simultaneous_freezes_cost_the_longest() {
     assert_eq!(clocks_with(both, source) - clocks_with(FreezeRules::none(), source), 2);
 }
 
-/// A pair of instructions right behind one that loads f8.
+/// Returns a pair of instructions right after an instruction that loads f8.
 fn pair_behind_a_transfer(low: &str, high: &str) -> String {
     format!("d.fnop\nnop\nd.fnop\nixfr r5, f8\nd.{low}\n{high}\nfnop\nnop\nfnop\nnop")
 }

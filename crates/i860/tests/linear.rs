@@ -1,4 +1,4 @@
-//! Linear code: what is computed does not depend on how it is scheduled, and nothing in it waits.
+//! Tests of the scheduler: the schedule does not change the results, and the scheduled code has no freezes.
 
 use i860::linear::{schedule, slots};
 use i860::timing::{FREEZES, Freeze};
@@ -7,7 +7,8 @@ use i860::{Config, Cpu, Profile, Ram, RunEnd, assemble};
 const CODE: u32 = 0x1000;
 const DATA: u32 = 0x8000;
 
-/// Runs a stretch twice over data at r4, so that the second run finds all in the caches; what is at DATA then, and its profile.
+/// Runs a stretch twice over data at r4, so that the second run hits the caches. Returns the memory at DATA and the
+/// profile of the second run.
 fn run(settings: &str, body: &str, data: &[u32]) -> (Vec<u32>, Profile) {
     let source = format!(
         ".pool r8 r9 r10\nmov 2, r20\n.align 8\nagain: d.fnop\nnop\n.linear {settings}\n{body}\n.endlinear\n\
@@ -26,7 +27,8 @@ fn run(settings: &str, body: &str, data: &[u32]) -> (Vec<u32>, Profile) {
     (ram.words(DATA, 32).expect("inside"), cpu.profile())
 }
 
-/// Sums of products in both precisions, a reciprocal by a Newton step, minima, integers: (a b + c) and so on for three sets.
+/// Sums of products in both precisions, a reciprocal by a Newton step, minima, integers: (a b + c) and so on for three
+/// sets.
 const BODY: &str = "
     for i 0 1 2
 a$i = fld.l 16*$i(r4)
@@ -94,7 +96,7 @@ fn every_schedule_computes_the_same() {
 #[test]
 fn nothing_waits_but_for_what_is_around_the_stretch() {
     let (_, profile) = run("", BODY, &data());
-    // The branch back is outside of the stretch, and so is what follows it, which comes into the cache now.
+    // The branch back and the code after it lie outside the stretch and enter the cache only now.
     let inside = FREEZES.iter().filter(|row| !matches!(row.id, Freeze::CompareBranchTaken | Freeze::InstructionMiss));
     let waits: Vec<_> = inside.filter(|row| profile.frozen_by(row.id) > 0).map(|row| row.number).collect();
     assert_eq!(waits, Vec::<&str>::new(), "{profile}");

@@ -1,10 +1,12 @@
-//! Every instruction of the XR part against a table made from the programmer's manual: text to word, word to text, and no others.
+//! Compares every instruction of the i860 XR with a table made from the programmer's manual: text to word, word to
+//! text, and no other words.
 
 use i860::{Config, Cpu, Ram, RunEnd, assemble, decode, disassemble, instruction_word};
 use std::collections::BTreeSet;
 
-/// Instructions of the core, and `fnop`: a text and its word. Registers are chosen so that every field shows: r1 in the first
-/// source, r2 in the second, r3 in the destination. Branches stand at address 0 and go to 0x10, three words behind the next one.
+/// Core instructions and `fnop`, each with text and word. The registers make every field visible: r1 in the first
+/// source, r2 in the second, r3 in the destination. Branches are at address 0 and go to 0x10, three words after the
+/// next instruction.
 const CORE: [(&str, u32); 113] = [
     ("ld.b r1(r2), r3", 0x0043_0800),
     ("ld.b 5(r2), r3", 0x0443_0005),
@@ -121,15 +123,16 @@ const CORE: [(&str, u32); 113] = [
     ("bte 0, r2, 0x0", 0x5C5F_07FF),
 ];
 
-/// Precisions, and their bits 8 (source) and 7 (result).
+/// Names of precisions with their bits 8 (source) and 7 (result).
 const SS: (&str, u32) = (".ss", 0);
 const SD: (&str, u32) = (".sd", 0x080);
 const DD: (&str, u32) = (".dd", 0x180);
 const DS: (&str, u32) = (".ds", 0x100);
-/// Graphics: no suffix, both bits set.
+/// Graphics operations have no suffix and both bits set.
 const PAIRS: (&str, u32) = ("", 0x180);
 
-/// Which operands are written: all three, the first source, the second one, or from a floating-point register to an integer one.
+/// The operands of an operation: all three, the first source, the second source, or a floating-point register and an
+/// integer register.
 #[derive(Clone, Copy, PartialEq)]
 enum Operands {
     Three,
@@ -138,8 +141,8 @@ enum Operands {
     ToInteger,
 }
 
-/// Instructions of the floating-point unit besides the dual operations: name, the low seven bits, precisions, whether there is a
-/// scalar and a pipelined form, operands.
+/// Instructions of the floating-point unit besides the dual operations: name, the low seven bits, precisions, whether
+/// there is a scalar and a pipelined form, operands.
 type Row = (&'static str, u32, &'static [(&'static str, u32)], [bool; 2], Operands);
 
 const FLOATING: [Row; 21] = {
@@ -178,13 +181,13 @@ const PATHS: [&str; 16] = [
     "iat1p2", "m12tpm", "ia1p2", "m12tpa",
 ];
 
-/// Those of pfmam; there is none of number 15.
+/// The data paths of pfmam by number; number 15 does not exist.
 const MULTIPLIER_PATHS: [&str; 15] = [
     "mr2p1", "mr2pt", "mr2mp1", "mr2mpt", "mi2p1", "mi2pt", "mi2mp1", "mi2mpt", "mrmt1p2", "mm12mpm", "mrm1p2",
     "mm12ttpm", "mimt1p2", "mm12tpm", "mim1p2",
 ];
 
-/// All instructions of the floating-point unit: their texts and words, with f2, f4, f6 and r3 for the operands.
+/// Returns all floating-point instructions with texts and words. The operands are f2, f4, f6 and r3.
 fn floating() -> Vec<(String, u32)> {
     let word = |low: u32, operands: Operands| {
         let fields = match operands {
@@ -214,7 +217,7 @@ fn floating() -> Vec<(String, u32)> {
     for (paths, pipelined) in families {
         for (number, name) in (0..).zip(paths) {
             for (suffix, bits) in [SS, SD, DD] {
-                // Of the names of additions the letter for the sum is the last p.
+                // In names of additions, the last p is the letter for the sum.
                 let at = name.rfind('p').expect("a p");
                 let minus = format!("{}s{}", &name[..at], &name[at + 1..]);
                 for (name, subtract) in [((*name).to_owned(), 0), (minus, 0x10)] {
@@ -247,7 +250,7 @@ fn every_instruction_of_the_floating_point_unit_has_the_word_of_the_manual_in_bo
     }
 }
 
-/// The first word of a text.
+/// Returns the first word of a text.
 fn name(text: &str) -> String {
     text.split(' ').next().unwrap_or_default().to_owned()
 }
@@ -256,7 +259,8 @@ fn name(text: &str) -> String {
 fn there_are_no_instructions_but_those_of_the_manual() {
     let known: BTreeSet<String> =
         CORE.iter().map(|(text, _)| name(text)).chain(floating().iter().map(|(text, _)| name(text))).collect();
-    // Of every operation code all low bits that may choose an operation; of the floating-point one without its D bit.
+    // Try all low bits that may select an operation, for every operation code. Floating-point codes are tried without
+    // the D bit.
     for op in 0..64_u32 {
         for low in (0..2048).filter(|low| low & 0x200 == 0) {
             let word = op << 26 | low;
@@ -264,7 +268,7 @@ fn there_are_no_instructions_but_those_of_the_manual() {
             assert!(text.starts_with(".long") || known.contains(&name(&text)), "{word:08x} {text}");
         }
     }
-    // Words of the XP part, reserved codes, and precisions that an operation does not have.
+    // Words of the i860 XP, reserved codes, and precisions that an operation does not have.
     for word in [
         0x6044_0804,
         0x4C00_0408,

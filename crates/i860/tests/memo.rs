@@ -1,5 +1,5 @@
-//! Memoising the clocks of code that repeats changes nothing but the host's time. The same of the triangle kernels:
-//! crates/pphigs/tests/memo.rs.
+//! Memoization of clocks changes only the host's time. `crates/pphigs/tests/memo.rs` has the same test with the
+//! triangle kernels.
 
 use i860::state::Mode;
 use i860::timing::{DramTiming, FREEZES, Freeze, FreezeRules};
@@ -11,7 +11,7 @@ use std::sync::Arc;
 const CODE: u32 = 0x1000;
 const MEMORY: usize = 0x1_0000;
 
-/// A processor that memoises beside one that counts every clock.
+/// Two processors: one with memoization and one that counts every clock.
 struct Twins([(Cpu, Ram); 2]);
 
 impl Twins {
@@ -26,7 +26,7 @@ impl Twins {
         }))
     }
 
-    /// Executes a step, or up to a number of instructions; code that went astray begins again.
+    /// Executes one step, or up to a number of instructions. Code that has left the program begins again.
     fn go(&mut self, instructions: u64) -> Result<(), TestCaseError> {
         let [memoised, counted] = self.0.each_mut().map(|(cpu, ram)| {
             let outcome = match instructions {
@@ -48,7 +48,7 @@ fn core_word(opcodes: &'static [u32], low: impl Strategy<Value = u32>) -> impl S
     (prop::sample::select(opcodes), low).prop_map(|(op, low)| op << 26 | low)
 }
 
-/// Instructions of all kinds, many of which work in memory near r4 to r7, or branch to words nearby.
+/// Random instructions of all kinds. Many access memory near r4 to r7, or branch to words nearby.
 fn likely_word() -> impl Strategy<Value = u32> {
     let any = (0u32..64, 0u32..1 << 26).prop_map(|(op, low)| op << 26 | low);
     let floating = (0u32..2048, 0u32..1 << 15).prop_map(|(low, high)| 0x12 << 26 | (high << 11 & 0x03FF_F800) | low);
@@ -73,14 +73,14 @@ fn registers() -> impl Strategy<Value = [u32; 32]> {
     })
 }
 
-/// All rows, each alone, all but each, or any.
+/// Freeze rules with all rows, with one row, with all rows but one, or with random rows.
 fn rules() -> impl Strategy<Value = FreezeRules> {
     let row = 0..FREEZES.len() as u32;
     prop_oneof![Just(!0u32), row.clone().prop_map(|n| 1 << n), row.prop_map(|n| !(1 << n)), any::<u32>()]
         .prop_map(rules_of)
 }
 
-/// The rows whose bits are set.
+/// Returns the freeze rules with the rows whose bits are set.
 fn rules_of(bits: u32) -> FreezeRules {
     let on = FREEZES.iter().enumerate().filter(|(n, _)| bits >> n & 1 != 0);
     on.fold(FreezeRules::none(), |rules, (_, row)| rules.with(row.id))
@@ -105,10 +105,10 @@ proptest! {
     }
 }
 
-/// Bytes of a way of the instruction cache: lines so far apart are of the same set.
+/// Bytes of a way of the instruction cache. Lines at this distance are in the same set.
 const WAY: usize = 0x800;
 
-/// Pieces of code that drive each other out of the instruction cache, each with a branch to another one at its end.
+/// Pieces of code that replace each other in the instruction cache. Each ends with a branch to another piece.
 fn pieces() -> impl Strategy<Value = Vec<u32>> {
     let piece = (prop::collection::vec(likely_word(), 0..24), any::<prop::sample::Index>());
     prop::collection::vec(piece, 3..7).prop_map(|pieces| {
@@ -126,7 +126,7 @@ fn pieces() -> impl Strategy<Value = Vec<u32>> {
     })
 }
 
-/// Registers r4 to r7 into more data than their cache holds, or into the code itself.
+/// Values of r4 to r7 that point into more data than the cache holds, or into the code.
 fn far_registers() -> impl Strategy<Value = [u32; 32]> {
     let data = (0u32..0x400).prop_map(|n| 0x8000 + 16 * n);
     let code = (0u32..0x180).prop_map(|n| CODE + 16 * n);
@@ -137,7 +137,7 @@ fn far_registers() -> impl Strategy<Value = [u32; 32]> {
     })
 }
 
-/// Memories of all kinds, some so quick that nothing is waited for.
+/// Random memory timings, some of them so fast that no wait occurs.
 fn memories() -> impl Strategy<Value = DramTiming> {
     let reads = (0u64..12, 0u64..16, 0u64..5);
     let writes = (0u64..5, 0u64..14);
@@ -151,7 +151,7 @@ fn memories() -> impl Strategy<Value = DramTiming> {
     })
 }
 
-/// Rules of which one row has so many clocks that it is felt wherever it applies.
+/// Freeze rules with one row of so many clocks that every use of it shows in the total.
 fn slow_rules() -> impl Strategy<Value = FreezeRules> {
     (rules(), 0..FREEZES.len(), 0u64..40).prop_map(|(mut rules, row, clocks)| {
         rules.clocks.set(FREEZES[row].clocks.name, clocks.into()).expect("the table has all rows");
@@ -184,7 +184,7 @@ proptest! {
     }
 }
 
-/// Code of three times the instruction cache, with stores that miss the data cache, begun again and again.
+/// Code of three times the size of the instruction cache, with stores that miss the data cache, executed repeatedly.
 #[test]
 fn code_that_does_not_fit_the_caches_is_mostly_repeated() {
     let body = "adds 1, r6, r6\n fadd.ss f8, f9, f10\n st.l r6, 0(r4)\n adds 32, r4, r4\n".repeat(768);
@@ -227,8 +227,8 @@ fn run_loop(prepare: impl Fn(&mut Cpu)) -> (Cpu, Ram) {
     (cpu, ram)
 }
 
-/// The first turn misses, the second one finds the cache changed, the next ones are learned, each with what the one before
-/// left behind; the last one goes another way. Of a hundred, ten are more than that.
+/// The first turn misses, the second finds the cache changed, and later turns are remembered with the state that the
+/// turn before left. The last turn exits the loop. At most ten of a hundred turns are counted.
 #[test]
 fn a_loop_in_cache_is_counted_only_until_it_is_known() {
     let (cpu, _) = run_loop(|_| {});
@@ -245,7 +245,7 @@ fn a_profile_by_address_accounts_for_the_same_clocks() {
     assert_eq!(by_address, plain.clocks());
 }
 
-/// A turn on a shelf: which processor runs which program for how many instructions.
+/// Random turns on a shelf: the processor, its program and the number of instructions.
 fn turns() -> impl Strategy<Value = Vec<(usize, usize, u64)>> {
     prop::collection::vec((0usize..3, 0usize..2, 1u64..400), 20..60)
 }
@@ -253,7 +253,7 @@ fn turns() -> impl Strategy<Value = Vec<(usize, usize, u64)>> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 1_000, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Programs may store into themselves; each is loaded again before its turn.
+    /// Programs may store into themselves, so each is loaded again before its turn.
     #[test]
     fn processors_that_share_a_shelf_take_the_clocks_that_each_takes_alone(
         words in prop::collection::vec(prop::collection::vec(likely_word(), 1..60), 2),
@@ -295,7 +295,8 @@ fn two_loops() -> [Arc<Program>; 2] {
     sources.map(|source| Arc::new(assemble("loop.s", CODE, &source).unwrap_or_else(|e| panic!("{e}"))))
 }
 
-/// Programs that take turns at the same addresses, their code exchanged or forgotten: the same state at the same clock.
+/// Programs that take turns at the same addresses, with their code exchanged or forgotten, reach the same state at the
+/// same clock.
 #[test]
 fn programs_that_take_turns_are_decoded_once_and_take_the_same_clocks() {
     let programs = two_loops();
@@ -323,7 +324,7 @@ fn programs_that_take_turns_are_decoded_once_and_take_the_same_clocks() {
     assert!(exchanged.2 > forgotten.2, "what was remembered is used again");
 }
 
-/// Misses of the instruction cache and of the data cache.
+/// Returns the misses of the instruction cache and of the data cache.
 fn misses(cpu: &Cpu) -> (u64, u64) {
     (cpu.profile().instruction_misses, cpu.profile().data_misses)
 }

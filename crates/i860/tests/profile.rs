@@ -1,4 +1,4 @@
-//! Profiles account for every clock, by cause and by label.
+//! Tests that profiles account for every clock, by cause and by label.
 
 use i860::timing::{Freeze, FreezeRules};
 use i860::{AddressProfile, Config, Cpu, Ram, RunEnd, assemble};
@@ -13,7 +13,8 @@ fn run(source: &str, freezes: FreezeRules) -> (Cpu, i860::Program) {
     (cpu, program)
 }
 
-/// Three turns of a loop of four clocks (adds, btne and its cost of two when taken), one before, two after.
+/// Three turns of a loop of four clocks (adds, btne and two more clocks when taken), with one instruction before and
+/// two after.
 const LOOP: &str = "start: mov 3, r5\nloop: adds -1, r5, r5\nbtne r0, r5, loop\nlast: nop\nnop\nend: nop";
 
 #[test]

@@ -1,4 +1,4 @@
-//! Nothing that a user can hand in makes the processor panic or run on for ever.
+//! Tests that no input of a user makes the processor panic or run without end.
 
 use i860::state::{TRAP_VECTOR, psr};
 use i860::{Config, Cpu, Ram, RunEnd, TrapCause, assemble};
@@ -16,7 +16,7 @@ fn run_words(words: &[u32], registers: &[u32; 8], budget: u64) -> (Cpu, RunEnd) 
     (cpu, outcome)
 }
 
-/// Major opcodes and floating-point codes are chosen evenly, so that most words are instructions.
+/// Random words. Major opcodes and floating-point codes are equally likely, so most words are instructions.
 fn likely_word() -> impl Strategy<Value = u32> {
     let core = (0u32..64, 0u32..0x0400_0000).prop_map(|(op, low)| op << 26 | low);
     let floating = (0u32..2048, 0u32..0x8000).prop_map(|(low, high)| 0x12 << 26 | (high << 11 & 0x03FF_F800) | low);
@@ -99,7 +99,7 @@ fn traps_by_instruction_set_their_bits() {
 
 #[test]
 fn a_handler_returns_to_the_trapped_pair_in_dual_mode() {
-    // The handler maps nothing: it moves r9 to an aligned address and returns to fir.
+    // The handler maps no memory: it moves r9 to an aligned address and returns to fir.
     let program = assemble(
         "t.s", 0x1000,
         "mov 0x8002, r9\nnop\nd.fnop\nnop\nd.fnop\nadds 1, r10, r10\nd.fnop\nst.l r10, 0(r9)\nfnop\nadds 1, r10, r10\nfnop\nadds 1, r10, r10\nend: nop\nnop",

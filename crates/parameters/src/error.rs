@@ -1,42 +1,42 @@
-//! What can go wrong when a number is read, set or checked.
+//! Errors of reading, setting or checking a number.
 
 use crate::{ParameterInfo, Value};
 use thiserror::Error;
 
-/// A parameter that could not be read or set, or that the model cannot take.
+/// The reason why a parameter cannot be read or set, or why the model cannot use it.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum ParameterError {
     /// No parameter has this name.
     #[error("there is no parameter `{name}`; expected one of {}", valid.join(", "))]
     Unknown {
-        /// The name that was asked for.
+        /// Requested name.
         name: String,
-        /// The names of the table, in its order.
+        /// Names of the table, in its order.
         valid: Vec<&'static str>,
     },
-    /// A field of whole numbers was given something else.
+    /// A field of whole numbers cannot hold the value.
     #[error("{name} must be a whole number, found {found}")]
     NotWhole {
         /// Field name within its table.
         name: &'static str,
-        /// What it was to become.
+        /// Rejected value.
         found: Value,
     },
-    /// A value lies beyond the limits of the model.
+    /// A value lies outside the limits of the model.
     #[error("{name} must be {} to {}, found {found}", limits.0, limits.1)]
     OutOfLimits {
         /// Field name within its table.
         name: &'static str,
-        /// Smallest and largest value that the model can take.
+        /// Smallest and largest value that the model can use.
         limits: (Value, Value),
-        /// The value that the field has.
+        /// Rejected value.
         found: Value,
     },
 }
 
 impl ParameterError {
-    /// The error of a table that has no such name, for tables not made by the macro too.
+    /// Makes the error of a table that lacks the name. Tables not made by the macro can use it too.
     #[must_use]
     pub fn unknown(name: &str, infos: &[ParameterInfo]) -> Self {
         let valid = infos.iter().map(|info| info.name).collect();

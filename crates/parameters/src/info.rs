@@ -1,18 +1,18 @@
-//! What is known of a number besides its value.
+//! Unit, provenance, range and source of a number.
 
 use crate::Value;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// How well a number is known.
+/// The provenance of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Standing {
-    /// Printed in a paper or manual that we have read.
+    /// Printed in a paper or manual that the authors of this program have read.
     Published,
     /// Follows by arithmetic from published figures.
     Derived,
-    /// Recollection or engineering judgement, with the range that the published figures allow.
+    /// A recollection or an engineering estimate, with the range that the published figures allow.
     Assumed,
 }
 
@@ -26,27 +26,27 @@ impl fmt::Display for Standing {
     }
 }
 
-/// What is known of one number of a table.
+/// Unit, provenance, range and source of one number of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct ParameterInfo {
     /// Field name within its table.
     pub name: &'static str,
     /// Unit of value, range and limits; "1" for a pure number.
     pub unit: &'static str,
-    /// How well the value is known.
+    /// Provenance of the value.
     pub standing: Standing,
-    /// The value that the papers give or allow: what a table holds before anybody changes it.
+    /// Initial value of a table, which the papers give or allow.
     pub papers: Value,
     /// Smallest and largest value that the sources allow.
     pub range: (Value, Value),
-    /// Smallest and largest value that the model can take.
+    /// Smallest and largest value that the model can use.
     pub limits: (Value, Value),
-    /// Where it comes from: a paper's short name, a formula or a reason.
+    /// Source of the value: a paper's short name, a formula or a reason.
     pub source: &'static str,
 }
 
 impl ParameterInfo {
-    /// The range of a whole number; `None` for a real one.
+    /// Returns the range of a whole number; `None` for a real number.
     #[must_use]
     pub fn whole_range(&self) -> Option<(u64, u64)> {
         match self.range {

@@ -1,6 +1,6 @@
-//! What is a number? A value with a unit, a standing, a range and a source.
+//! Tables of numbers with unit, provenance, range and source.
 //!
-//! A [`parameter_table!`] declares numbers once; from the one declaration come
+//! A [`parameter_table!`] declares the numbers once. The declaration has four uses:
 //!
 //! ```text
 //!                        +--> table.word_ns        code reads a plain public field
@@ -16,8 +16,9 @@
 //! word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94";
 //! ```
 //!
-//! Value, unit, standing, the *range* that the sources allow, the *limits* within which the model works, source. Where
-//! no limits are given they are the range. Numbers are whole (`u64`, exact) unless the line says `f64`:
+//! The parts are value, unit, provenance, the *range* that the sources allow, the *limits* within which the model
+//! works, and source. Without limits, the range also serves as the limits. Numbers are whole (`u64`, exact) unless the
+//! line says `f64`:
 //!
 //! ```text
 //! /// Error of each axis, rms.
@@ -26,11 +27,11 @@
 //!
 //! # Range and limits
 //!
-//! A value out of its range is an experiment: possible, but no source allows it
-//! ([`ParameterTable::out_of_range`] lists those). A value beyond its limits is an error
+//! A value outside its range is possible in an experiment, although no source allows it
+//! ([`ParameterTable::out_of_range`] lists such values). A value outside its limits is an error
 //! ([`ParameterTable::check`]).
 //!
-//! **Not here:** rules between numbers ("at most the length of a line"); the crate that owns the table checks those.
+//! **Not here:** rules between numbers ("at most the length of a line"). The crate that owns the table checks them.
 
 mod error;
 mod info;

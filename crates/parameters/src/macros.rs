@@ -1,8 +1,9 @@
 //! The macro that declares a table.
 
-/// Declares a struct of numbers, each with its preset value, unit, standing, range, limits and source.
+/// Declares a struct of numbers, each with initial value, unit, provenance, range, limits and source.
 ///
-/// Limits may end at `MAX`, which is [`MAX`](crate::MAX). The calling crate needs `serde`: a table reads and writes itself by field names and refuses unknown ones.
+/// Limits may end at `MAX`, which is [`MAX`](crate::MAX). The calling crate needs `serde`: a table is serialized by
+/// field names and rejects unknown ones.
 ///
 /// ```
 /// parameters::parameter_table! {
@@ -48,7 +49,7 @@ macro_rules! parameter_table {
             /// The values that the papers give or allow.
             $vis const PAPERS: Self = Self { $($field: $value,)* };
 
-            /// What is known of each number, in the order of the fields.
+            /// Unit, provenance, range and source of each number, in the order of the fields.
             $vis const INFOS: &'static [$crate::ParameterInfo] = &[$($crate::ParameterInfo {
                 name: stringify!($field),
                 unit: $unit,
@@ -83,7 +84,7 @@ macro_rules! parameter_table {
                 }
             }
 
-            // Without names to compare: who checks many machines does it for each of them.
+            // Compares constants without looking names up, because programs check many machines.
             fn check(&self) -> ::core::result::Result<(), $crate::ParameterError> {
                 $($crate::check_value(
                     stringify!($field),
@@ -110,7 +111,7 @@ macro_rules! parameter_table {
     };
 }
 
-/// Types and values of the fields: whole, unless the line says `f64`.
+/// Types and values of fields: whole numbers, or real numbers if the line says `f64`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! number {
@@ -120,7 +121,7 @@ macro_rules! number {
     (value f64 : $value:literal) => { $crate::Value::Real($value) };
     (pair : $low:literal, $high:literal) => { ($crate::Value::Whole($low), $crate::Value::Whole($high)) };
     (pair f64 : $low:literal, $high:literal) => { ($crate::Value::Real($low), $crate::Value::Real($high)) };
-    // With limits, the pair is theirs.
+    // If a line has limits, they replace the range.
     (pair $($real:ident)? : $low:literal, $high:literal, $least:literal, MAX) => {
         ($crate::Value::Whole($least), $crate::Value::Whole($crate::MAX))
     };

@@ -1,7 +1,8 @@
-//! The nearest of some names, for error messages.
+//! Search for the most similar name, for error messages.
 
-/// The candidate that begins with `name`, such as a number of the table of that name; or else the one with the fewest single-letter changes to it.
-/// `None` of no candidates.
+/// Returns the candidate that begins with `name`, such as a number of the table `name`, or else the one with the fewest
+/// single-letter changes.
+/// Returns `None` without candidates.
 #[must_use]
 pub fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     candidates.min_by_key(|candidate| (!candidate.starts_with(name), strsim::levenshtein(name, candidate)))

@@ -1,17 +1,17 @@
-//! The types that a number can have in code, and the check of one by its limits.
+//! Types of numbers in code, and the check against limits.
 
 use crate::{ParameterError, Value};
 
 /// A type that a field of a table can have.
 pub trait Number: Copy + Into<Value> {
-    /// The value in this type; `None` where a whole number is wanted and it is none.
+    /// Converts a value to this type; `None` if a whole number is required and the value is not whole.
     fn from_value(value: Value) -> Option<Self>;
 
-    /// Gives the field of that name a value.
+    /// Assigns a value to the field `name`.
     ///
     /// # Errors
     ///
-    /// [`ParameterError::NotWhole`] where a whole number is wanted and it is none.
+    /// [`ParameterError::NotWhole`] if a whole number is required and the value is not whole.
     fn assign(&mut self, name: &'static str, value: Value) -> Result<(), ParameterError> {
         *self = Self::from_value(value).ok_or(ParameterError::NotWhole { name, found: value })?;
         Ok(())
@@ -30,16 +30,16 @@ impl Number for f64 {
     }
 }
 
-/// Checks a number that stands in no table, or whose limits follow from others, as a table checks its own.
+/// Checks a number that is in no table, or whose limits depend on other numbers, as a table checks its own numbers.
 ///
 /// # Errors
 ///
-/// [`ParameterError::OutOfLimits`] if it is beyond the limits, which are the smallest and the largest value allowed.
+/// [`ParameterError::OutOfLimits`] if the number is outside `limits`, the smallest and largest allowed value.
 pub fn check<N: Number>(name: &'static str, found: N, limits: (N, N)) -> Result<(), ParameterError> {
     check_value(name, found.into(), (limits.0.into(), limits.1.into()))
 }
 
-/// The same of a value. Where the limits are constants it is two comparisons.
+/// Checks a [`Value`] against its limits. With constant limits this takes two comparisons.
 #[doc(hidden)]
 #[inline]
 pub fn check_value(name: &'static str, found: Value, limits: (Value, Value)) -> Result<(), ParameterError> {

@@ -1,25 +1,25 @@
-//! Tables as their users see them: by name, without knowing which table it is.
+//! Access to tables by name, without their types.
 
 use crate::{ParameterError, ParameterInfo, Value};
 
-/// A number of a table: what is known of it, and its value.
+/// A number of a table with its value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// Name, unit, standing, range, limits and source.
+    /// Name, unit, provenance, range, limits and source.
     pub info: &'static ParameterInfo,
-    /// The value that the table holds now.
+    /// Current value in the table.
     pub value: Value,
 }
 
 impl Entry {
-    /// Whether the sources allow the value.
+    /// Returns true if the sources allow the value.
     #[must_use]
     pub fn is_in_range(&self) -> bool {
         let (low, high) = self.info.range;
         (low..=high).contains(&self.value)
     }
 
-    /// Whether the model can take the value.
+    /// Returns true if the model can use the value.
     #[must_use]
     pub fn is_within_limits(&self) -> bool {
         let (least, most) = self.info.limits;
@@ -27,32 +27,33 @@ impl Entry {
     }
 }
 
-/// A table made by [`parameter_table!`](crate::parameter_table); a machine can hold many as `&dyn ParameterTable`.
+/// A table made by [`parameter_table!`](crate::parameter_table). A machine can hold many as `&dyn ParameterTable`.
 pub trait ParameterTable {
-    /// What is known of each number, in order. Without a table at hand, its type has the same as `INFOS`.
+    /// Returns unit, provenance, range and source of each number, in order. The constant `INFOS` of the table's type
+    /// has the same contents.
     fn infos(&self) -> &'static [ParameterInfo];
 
-    /// The value of a parameter.
+    /// Returns the value of a parameter.
     ///
     /// # Errors
     ///
-    /// [`ParameterError::Unknown`] when no parameter has this name.
+    /// [`ParameterError::Unknown`] if no parameter has this name.
     fn get(&self, name: &str) -> Result<Value, ParameterError>;
 
-    /// Changes a parameter, whatever its range and limits: see [`ParameterTable::check`].
+    /// Changes a parameter without a check of range and limits: see [`ParameterTable::check`].
     ///
     /// # Errors
     ///
-    /// [`ParameterError::Unknown`] when no parameter has this name, [`ParameterError::NotWhole`] when the field holds
-    /// whole numbers and the value is none.
+    /// [`ParameterError::Unknown`] if no parameter has this name. [`ParameterError::NotWhole`] if the field holds whole
+    /// numbers and the value is not whole.
     fn set(&mut self, name: &str, value: Value) -> Result<(), ParameterError>;
 
-    /// All numbers with their values, in order.
+    /// Returns all numbers with their values, in order.
     fn entries(&self) -> Vec<Entry> {
         self.infos().iter().filter_map(|info| Some(Entry { info, value: self.get(info.name).ok()? })).collect()
     }
 
-    /// The numbers whose values no source allows: what an experiment supposes.
+    /// Returns the numbers whose values no source allows, for example those that an experiment has changed.
     fn out_of_range(&self) -> Vec<Entry> {
         self.entries().into_iter().filter(|entry| !entry.is_in_range()).collect()
     }
@@ -61,7 +62,7 @@ pub trait ParameterTable {
     ///
     /// # Errors
     ///
-    /// [`ParameterError::OutOfLimits`] for the first number that is beyond its own.
+    /// [`ParameterError::OutOfLimits`] for the first number outside its limits.
     fn check(&self) -> Result<(), ParameterError> {
         for info in self.infos() {
             let value = self.get(info.name)?;

@@ -1,10 +1,10 @@
-//! Text of files that users hand in.
+//! Text of files from users.
 
 /// Returns the bytes of a file as text.
 ///
 /// # Errors
 ///
-/// The line and the byte in it, both from 1, where the bytes are no UTF-8.
+/// The line and the byte within it, both from 1, of the first byte that is not UTF-8.
 pub fn text_of(bytes: &[u8]) -> Result<&str, String> {
     std::str::from_utf8(bytes).map_err(|error| {
         let before = &bytes[..error.valid_up_to()];

@@ -1,25 +1,25 @@
-//! What a number's value can be.
+//! Values of numbers.
 
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 use std::fmt;
 use std::hash::{Hash, Hasher};
 
-/// A value of any table. Files and reports write it as the bare number.
+/// A value of a table. Files and reports contain the bare number.
 ///
-/// Two values are equal, or in order, only if they are of the same kind. Real ones compare in IEEE's total order, so that
-/// tables are comparable and NaN lies outside every range.
+/// Two values are equal or ordered only if they are of the same kind. Real values compare in IEEE's total order, so
+/// that tables can be compared and NaN lies outside every range.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Value {
-    /// An exact number: counts, and times in whole units.
+    /// An exact number: a count, or a time in whole units.
     Whole(u64),
-    /// A measured one, such as an rms error.
+    /// A measured number, such as an rms error.
     Real(f64),
 }
 
 impl Value {
-    /// The value as an exact number; `None` if it has a fraction, a sign or more than 64 bits.
+    /// Returns the value as an exact number; `None` if it has a fraction, a sign or more than 64 bits.
     #[must_use]
     pub fn whole(self) -> Option<u64> {
         match self {
@@ -28,7 +28,7 @@ impl Value {
         }
     }
 
-    /// The value as a real number, rounded to nearest above 2^53.
+    /// Returns the value as a real number, rounded to nearest above 2^53.
     #[must_use]
     pub fn real(self) -> f64 {
         match self {
@@ -94,8 +94,8 @@ impl From<f64> for Value {
     }
 }
 
-/// The greatest whole number that is of use to a model: 10^12, so that sums and products of a few times, in nanoseconds or
-/// clocks, stay in 64 bits.
+/// The greatest whole number that is useful to a model: 10^12. Sums and products of a few times, in nanoseconds or
+/// clocks, then fit into 64 bits.
 pub const MAX: u64 = 1_000_000_000_000;
 
 #[cfg(test)]

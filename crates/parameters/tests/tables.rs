@@ -1,4 +1,4 @@
-//! What the code that holds a table can rely on.
+//! Tests of tables through their interface.
 
 use parameters::{ParameterError, ParameterTable, Standing, Value, parameter_table};
 
@@ -67,7 +67,7 @@ fn a_refusal_says_what_was_expected_and_found() {
 #[test]
 fn tables_of_different_types_are_listed_together() {
     parameter_table! {
-        /// Another one.
+        /// A second table with one number.
         struct Other {
             /// A count.
             n_channels: 8, "channels", Published, 8..=8, "TR94";

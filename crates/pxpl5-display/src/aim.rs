@@ -1,37 +1,37 @@
-//! For which instant a picture is drawn.
+//! The instant for which a picture is drawn.
 
 use pxpl5_sim::Time;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// When that which is drawn of one view is shown.
+/// The times at which the picture of one view is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LightSpan {
-    /// The tick of the display (the retrace) from which on it is shown.
+    /// Tick of the display (retrace) from which the picture is shown.
     pub tick: Time,
-    /// When its first pixel lights.
+    /// Time at which the first pixel lights.
     pub first: Time,
-    /// When its last pixel lights for the last time.
+    /// Time at which the last pixel lights for the last time.
     pub last: Time,
 }
 
-/// The instant of its [`LightSpan`] that a view is predicted for, the same for all pipelines.
+/// The instant of a [`LightSpan`] for which a view is predicted. All pipelines use the same one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Aim {
-    /// Half-way between the first and the last pixel: of all instants the one with the least error under a steady turn.
+    /// Half-way between the first and the last pixel. This instant has the least error under a steady turn.
     #[default]
     Middle,
-    /// When the first pixel lights.
+    /// The time at which the first pixel lights.
     FirstPixel,
-    /// When the last pixel lights.
+    /// The time at which the last pixel lights.
     LastPixel,
-    /// The retrace (the display's tick) from which on it is shown.
+    /// The retrace (the display's tick) from which the picture is shown.
     Retrace,
 }
 
 impl Aim {
-    /// All, by the name on the command line.
+    /// All instants with their names on the command line.
     pub const ALL: [(&str, Self); 4] = [
         ("middle", Self::Middle),
         ("first-pixel", Self::FirstPixel),
@@ -39,7 +39,7 @@ impl Aim {
         ("retrace", Self::Retrace),
     ];
 
-    /// The instant of what is shown from a view that it is drawn for.
+    /// Returns the instant for which a view is drawn, from the times at which it is shown.
     #[must_use]
     pub fn instant(self, shown: &LightSpan) -> Time {
         match self {

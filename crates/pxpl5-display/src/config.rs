@@ -1,4 +1,4 @@
-//! What a display is built of.
+//! Configuration of displays.
 
 use crate::Display;
 use parameters::ParameterTable;
@@ -6,58 +6,61 @@ use pxpl5_wire::NodeId;
 use std::any::Any;
 use std::fmt::Debug;
 
-/// The numbers of a display, and how one is built of them.
+/// The numbers of a display, and the function that builds the display from them.
 pub trait DisplayConfig: Any + Debug + Send + Sync {
-    /// Name of its kind, as in `--display`.
+    /// Returns the name of the display's kind, as in `--display`.
     fn name(&self) -> &'static str;
 
-    /// What it is and where it was published.
+    /// Returns a description of the display with its source.
     fn about(&self) -> &'static str;
 
-    /// Its tables of numbers, each with the first part of their paths, such as `video` in `video.frame_lines`.
+    /// Returns the tables of numbers, each with its path prefix, such as `video` in `video.frame_lines`.
     fn tables(&self) -> Vec<(&'static str, &dyn ParameterTable)>;
 
-    /// The same tables, to change numbers in.
+    /// Returns the tables of numbers for changes, each with its path prefix.
     fn tables_mut(&mut self) -> Vec<(&'static str, &mut dyn ParameterTable)>;
 
-    /// Ring ports that it has when a pipeline draws so many pictures at a time (1, or 2 for two eyes): one for
-    /// each, unless said.
+    /// Returns the number of ring ports for a pipeline that draws `pictures` pictures at a time (1, or 2 for two eyes).
+    /// The default is one port for each picture.
     fn ports(&self, pictures: usize) -> usize {
         pictures
     }
 
-    /// Checks that it can be built: every number against the limits of its table, unless there are more rules.
+    /// Checks that the display can be built. The default checks every number against the limits of its table.
     ///
     /// # Errors
     ///
-    /// [`DisplayError`] names the number, what was expected and what was found.
+    /// [`DisplayError`] with the name of the number, the expected range and the found value.
     fn check(&self) -> Result<(), DisplayError> {
         let mut tables = self.tables().into_iter();
         tables.try_for_each(|(name, table)| table.check().map_err(|error| DisplayError(format!("{name}.{error}"))))
     }
 
-    /// Builds it at as many ports of the ring as [`DisplayConfig::ports`] said.
+    /// Builds the display at ring ports `nodes`, whose number [`DisplayConfig::ports`] returns.
     ///
     /// # Errors
     ///
-    /// As [`DisplayConfig::check`].
+    /// The errors of [`DisplayConfig::check`].
     fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError>;
 
-    /// A copy of the numbers.
+    /// Returns a boxed copy of the numbers.
     fn boxed(&self) -> Box<dyn DisplayConfig>;
 
-    /// Has it remember so many past periods, where it remembers any; 2 unless said.
+    /// Sets the number of past periods that the display remembers. Without this call it is 2; displays without memory
+    /// ignore it.
     fn remember(&mut self, _periods: u64) {}
 
-    /// Tells it what is to be seen where nothing is drawn, 0x00RRGGBB; without effect where pictures hold their own background.
+    /// Sets the background colour 0x00RRGGBB of places where nothing is drawn. Displays whose pictures contain their
+    /// own background ignore it.
     fn show_behind_all(&mut self, _background: u32) {}
 
-    /// Whether it shows faces of a cube around the head, with depth, instead of pictures of what an eye sees.
+    /// Returns true if the display shows faces of a cube around the head, with depth, instead of pictures of an eye's
+    /// view.
     fn takes_faces(&self) -> bool {
         false
     }
 
-    /// Whether two displays are of one kind and of the same numbers.
+    /// Returns true if both displays are of one kind and have the same numbers.
     fn equals(&self, other: &dyn DisplayConfig) -> bool {
         self.name() == other.name() && values(self.tables()) == values(other.tables())
     }
@@ -69,15 +72,15 @@ impl Clone for Box<dyn DisplayConfig> {
     }
 }
 
-/// The values of all tables, in order.
+/// Returns the values of all tables, in order.
 fn values(tables: Vec<(&'static str, &dyn ParameterTable)>) -> Vec<parameters::Entry> {
     tables.into_iter().flat_map(|(_, table)| table.entries()).collect()
 }
 
-/// Why a display cannot be built.
+/// The reason why a display cannot be built.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct DisplayError(
-    /// What was expected and what was found, for people.
+    /// Message with the expected and the found value.
     pub String,
 );

@@ -1,17 +1,17 @@
-//! Two buffers of whole regions: what a display needs that swaps at its ticks.
+//! A double buffer of whole regions, for displays that swap at their ticks.
 
 use image::{Rgb, RgbImage};
 use pxpl5_sim::Time;
 use pxpl5_wire::{Body, MAX_MESSAGE_WORDS, RegionId, RegionPixels, Word, read_swap_request};
 use std::collections::BTreeMap;
 
-/// A region as far as its messages have arrived.
+/// A region, complete or not, with the messages that have arrived.
 #[derive(Clone, Debug)]
 struct Arriving {
     pixels: RegionPixels,
     /// Left, top, width and height on the surface.
     rectangle: [u32; 4],
-    /// One bit a message.
+    /// Bit set of the messages that have arrived.
     arrived: u32,
     first_part_at: Time,
 }
@@ -26,35 +26,35 @@ type Regions = BTreeMap<RegionId, Arriving>;
 
 /// Two buffers for one surface, of which one is shown.
 ///
-/// **Not modelled:** pixels that arrive while they are lit; whoever needs them keeps the times of all messages, as the
-/// NTSC frame buffer does.
+/// **Not modelled:** pixels that arrive while they are lit. A display that models them keeps the times of all messages,
+/// as the NTSC frame buffer does.
 #[derive(Clone, Debug)]
 pub struct DoubleBuffer {
     width: u32,
     height: u32,
     buffers: [Regions; 2],
     shown: u8,
-    /// What was shown before the last tick.
+    /// Contents of the buffer that was shown before the last tick.
     scanned: Regions,
-    /// The last request, and when it arrived.
+    /// Arrival time and buffer of the last swap request.
     requested: Option<(Time, u8)>,
     faults: u64,
     first_fault: Option<String>,
 }
 
-/// What a message was to a [`DoubleBuffer`].
+/// The effect of a message on a [`DoubleBuffer`].
 #[derive(Clone, Debug)]
 pub enum BufferReceipt {
-    /// The last message of a region, the first of which arrived at this time.
+    /// The last message of a region. The time is the arrival of the region's first message.
     Region(RegionPixels, Time),
-    /// Another message of a region, or a request to swap.
+    /// Another message of a region, or a swap request.
     Part,
-    /// Nothing that it can use: see [`DoubleBuffer::faults`].
+    /// A message that the buffer cannot use: see [`DoubleBuffer::faults`].
     Fault,
 }
 
 impl DoubleBuffer {
-    /// Two empty buffers for a surface of so many pixels, of which the first is shown.
+    /// Makes two empty buffers for a surface of `width` x `height` pixels. Buffer 0 is shown.
     #[must_use]
     pub const fn new(width: u32, height: u32) -> Self {
         Self {
@@ -69,7 +69,7 @@ impl DoubleBuffer {
         }
     }
 
-    /// Takes a message that arrives at `now`.
+    /// Handles a message that arrives at `now`.
     pub fn receive(&mut self, body: Body, now: Time) -> BufferReceipt {
         let receipt = match body {
             Body::Pixels(pixels) => self.receive_pixels(pixels, now),
@@ -83,7 +83,7 @@ impl DoubleBuffer {
         })
     }
 
-    /// Messages that it could not use, and what was wrong with the first.
+    /// Returns the number of messages that the buffer could not use, and the reason of the first.
     #[must_use]
     pub fn faults(&self) -> (u64, Option<&str>) {
         (self.faults, self.first_fault.as_deref())
@@ -91,6 +91,7 @@ impl DoubleBuffer {
 
     fn receive_pixels(&mut self, pixels: RegionPixels, now: Time) -> Result<BufferReceipt, String> {
         let RegionPixels { target, part, parts, .. } = pixels;
+        // The region must lie on the surface and have the right number of messages.
         let place = target.grid.rectangle_within(target.region, self.width, self.height);
         let outside = || {
             let (region, grid) = (target.region.0, target.grid);
@@ -102,6 +103,7 @@ impl DoubleBuffer {
             return Err(format!("expected one of {expected} messages of a region, found message {part} of {parts}"));
         }
         let buffer = self.buffers.get_mut(usize::from(target.buffer)).ok_or_else(|| no_such_buffer(target.buffer))?;
+        // The first message of a new copy replaces the old region.
         let fresh = Arriving { pixels, rectangle, arrived: 0, first_part_at: now };
         let region = buffer.entry(target.region).or_insert_with(|| fresh.clone());
         if region.pixels.target != target || region.is_complete() {
@@ -126,7 +128,7 @@ impl DoubleBuffer {
         Ok(BufferReceipt::Part)
     }
 
-    /// At a tick: shows the buffer that was asked for before (not at) this instant, if one was; which.
+    /// Shows the buffer requested before (not at) this tick and returns it, or returns `None` without a request.
     pub fn swap(&mut self, now: Time) -> Option<u8> {
         self.scanned.clone_from(&self.buffers[usize::from(self.shown)]);
         let (_, buffer) = self.requested.take_if(|(asked_at, _)| *asked_at < now)?;
@@ -134,13 +136,13 @@ impl DoubleBuffer {
         Some(buffer)
     }
 
-    /// The buffer that is shown, with every region of which a message has arrived; black elsewhere.
+    /// Returns the shown buffer, with all regions of which a message has arrived; black elsewhere.
     #[must_use]
     pub fn picture(&self) -> RgbImage {
         self.picture_of(&self.buffers[usize::from(self.shown)])
     }
 
-    /// What was shown until the last tick, in the same way.
+    /// Returns the picture that was shown until the last tick, black where no region has arrived.
     #[must_use]
     pub fn scanned_picture(&self) -> RgbImage {
         self.picture_of(&self.scanned)
@@ -187,7 +189,7 @@ mod tests {
         assert_eq!(buffers.faults(), (1, Some("expected buffer 0 or 1, found 2")));
     }
 
-    /// Every pixel of one colour.
+    /// A picture whose pixels all have one colour.
     #[derive(Debug)]
     struct Plain(Word);
 
@@ -197,7 +199,7 @@ mod tests {
         }
     }
 
-    /// A message of a region of 64 x 32, two of which make it whole, on a surface of 100 x 60.
+    /// Returns one of the two messages of a 64 x 32 region on a surface of 100 x 60.
     fn part(region: u16, part: u32, picture: u64, colour: Word) -> RegionPixels {
         let grid = RegionGrid { width: 100, height: 60, region_width: 64, region_height: 32 };
         let target = CopyTarget {
@@ -247,7 +249,7 @@ mod tests {
         let mut buffers = DoubleBuffer::new(100, 60);
         receive(&mut buffers, part(0, 0, 1, 1), 1);
         let wrong = [
-            // Twice, of another number, one that the region has not, of a buffer or a region that is not there.
+            // A repeated message, a wrong number of messages, a message, a buffer and a region that do not exist.
             part(0, 0, 1, 1),
             RegionPixels { parts: 3, ..part(0, 1, 1, 1) },
             part(0, 2, 1, 1),

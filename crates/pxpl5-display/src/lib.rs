@@ -1,4 +1,4 @@
-//! What a display is to the machine: the interface of everything that takes pixels from the ring and shows them.
+//! The interface between the machine and its displays: boards that take pixels from the ring and show them.
 //!
 //! ```text
 //!   ring --Delivered(port, body)--> [ Display ] --RegionArrived, Swapped--> machine: trace, status to the first GP
@@ -6,17 +6,16 @@
 //!                                       +--> what a surface shows in a period, and when each of its pixels lights
 //! ```
 //!
-//! A display has *ports* on the ring, a *clock* of its own that ticks (a retrace, an update of cube faces, a strobe), and
-//! *surfaces* that somebody looks at (an eye's picture, a face of a cube, a slice of a volume). The span from one tick to
-//! the next is a *period*. The machine owns any number of displays and knows nothing else of them; the first one is its
-//! sync generator: its ticks reach the first graphics processor, and runs are as long as so many of its periods.
+//! A display has *ports* on the ring, a *clock* that ticks (a retrace, an update of cube faces, a strobe), and visible
+//! *surfaces* (an eye's picture, a face of a cube, a slice of a volume). A *period* is the time from one tick to the
+//! next. The machine owns any number of displays and uses only this interface. The first display is the machine's sync
+//! generator: its ticks reach the first graphics processor, and the length of a run is a number of its periods.
 //!
-//! A display is a device crate that implements two traits: [`DisplayConfig`], the numbers that one is built of, and
-//! [`Display`], the boards themselves. Timelines, traces, reports, pictures, films and pixel errors ask nothing but what
-//! stands here.
+//! A display is a crate that implements two traits: [`DisplayConfig`] for the numbers of a display, and [`Display`] for
+//! its boards. Timelines, traces, reports, pictures, films and pixel errors use only these traits.
 //!
-//! **Not here:** what firmware must know of a display to draw for it (fields, beams): a pipeline that is written for one
-//! display finds it by its type: a display is [`Any`].
+//! **Not here:** knowledge that firmware needs to draw for one display (fields, beams). A pipeline for one display
+//! finds that display by its type, because a display is [`Any`].
 
 #![warn(missing_docs)]
 
@@ -36,103 +35,103 @@ use pxpl5_wire::{Body, CopyTarget, NodeId, PeriodNumber};
 use std::any::Any;
 use std::fmt::Debug;
 
-/// What happens to a display.
+/// An event of a display.
 #[derive(Clone, Debug)]
 pub enum DisplayEvent {
-    /// Its clock begins a period, at exactly [`Display::tick`]. Phase `Arrive`.
+    /// The display's clock begins a period, at exactly [`Display::tick`]. Phase `Arrive`.
     Tick(PeriodNumber),
     /// The last word of a message has arrived at a port. Phase `Arrive`.
     Delivered {
-        /// The port, counted from the display's first.
+        /// Index of the port, counted from the display's first port.
         port: usize,
-        /// What the message carries.
+        /// Content of the message.
         body: Body,
     },
-    /// An instant that the display itself scheduled, with a number that it chose.
+    /// An event that the display itself has scheduled, with a number of its choice.
     Timer(u64),
 }
 
-/// What a display tells the machine.
+/// An output of a display to the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DisplayOutput {
     /// All messages of a region have arrived.
     RegionArrived {
-        /// The surface that it is for, counted from the display's first.
+        /// Surface of the region, counted from the display's first surface.
         surface: usize,
-        /// Where on it the region belongs.
+        /// Target of the region.
         target: CopyTarget,
-        /// When its first message had arrived.
+        /// Arrival time of the first message.
         first_part_at: Time,
-        /// When its last message had arrived.
+        /// Arrival time of the last message.
         last_part_at: Time,
     },
-    /// A surface shows its other buffer from a tick on; the first graphics processor is told.
+    /// A surface shows its other buffer from a tick on. The first graphics processor is notified.
     Swapped {
-        /// The surface, counted from the display's first.
+        /// Surface that has swapped, counted from the display's first surface.
         surface: usize,
-        /// The buffer that is shown now.
+        /// Buffer that is shown from now on, 0 or 1.
         buffer: u8,
-        /// The period that begins with the tick.
+        /// Period that begins with the tick.
         tick: PeriodNumber,
     },
-    /// What is behind one of several ports of a surface (a display memory) shows its other buffer from a tick on; the first graphics
-    /// processor is told by a line of that port.
+    /// A display memory behind one of several ports of a surface shows its other buffer from a tick on. The first
+    /// graphics processor is notified by the status line of that port.
     Updated {
-        /// The surface that is made of it, counted from the display's first.
+        /// Surface that is made from the display memory, counted from the display's first surface.
         surface: usize,
-        /// The port.
+        /// Ring port of the display memory.
         port: NodeId,
-        /// The buffer that is shown now.
+        /// Buffer that is shown from now on, 0 or 1.
         buffer: u8,
-        /// The period that begins with the tick.
+        /// Period that begins with the tick.
         tick: PeriodNumber,
     },
 }
 
-/// Where a display puts what it schedules for itself and what leaves it.
+/// The context through which a display schedules its own events and sends its outputs.
 pub type DisplayContext = Context<DisplayEvent, DisplayOutput>;
 
 /// Boards that take pixels from the ring and show them.
 pub trait Display: Any + Debug + Send + Sync {
-    /// Name of its kind, as in `--display`.
+    /// Returns the name of the display's kind, as in `--display`.
     fn name(&self) -> &'static str;
 
-    /// Its ports on the ring, in rising order.
+    /// Returns the display's ring ports, in rising order.
     fn nodes(&self) -> &[NodeId];
 
-    /// Its surfaces, in the order of their numbers.
+    /// Returns the display's surfaces, in the order of their numbers.
     fn surfaces(&self) -> &[Surface];
 
-    /// The tick that begins a period; the first period begins at time zero.
+    /// Returns the time of the tick that begins a period. The first period begins at time zero.
     fn tick(&self, period: PeriodNumber) -> Time;
 
-    /// The period in which an instant lies; at a tick the one that begins.
+    /// Returns the period that contains an instant. At a tick this is the period that begins.
     fn period_at(&self, time: Time) -> PeriodNumber;
 
-    /// Handles one event.
+    /// Handles one event; events and outputs that follow go to `context`.
     fn handle(&mut self, event: DisplayEvent, context: &mut DisplayContext);
 
-    /// When pixel (x, y) of a surface lights in a period; `None` when it does not.
+    /// Returns the time at which pixel (x, y) of a surface lights in a period; `None` if it does not light.
     fn lights(&self, surface: usize, x: u32, y: u32, period: PeriodNumber) -> Option<Time>;
 
-    /// The buffer from which a surface is shown now, with everything that has arrived in it.
+    /// Returns the buffer that a surface shows now, with all pixels that have arrived.
     fn shown(&self, surface: usize) -> Option<RgbImage>;
 
-    /// What stands before a viewer at the end of a period: what was lit in it and what still stands from before. `None`
-    /// until it is over, and when it is no longer remembered.
+    /// Returns the picture that a viewer sees at the end of a period: pixels lit in this period, and pixels that are
+    /// still visible from earlier ones.
+    /// Returns `None` before the end of the period, and after the display has forgotten it.
     fn seen(&self, surface: usize, period: PeriodNumber) -> Option<RgbImage>;
 
-    /// What stands before a viewer at an instant of a period that is remembered; what he sees at the end of the period,
-    /// for a display that is lit as a whole.
+    /// Returns the picture that a viewer sees at an instant of a remembered period. The default is the picture at the
+    /// end of the period, for displays that light all pixels at once.
     fn seen_at(&self, surface: usize, time: Time) -> Option<RgbImage> {
         self.seen(surface, self.period_at(time))
     }
 
-    /// What stands before a viewer while the simulation is at `now`: what has been lit in the period that goes on, and what still
-    /// stands from before; black where nothing was lit yet. Looking changes nothing.
+    /// Returns the picture that a viewer sees while the simulation is at `now`: pixels lit in the current period so
+    /// far, and pixels still visible from earlier ones. Unlit pixels are black. The display stays unchanged.
     ///
-    /// Unless a display says it better, the buffer that is shown counts as filled when its period began, which is so of double
-    /// buffers.
+    /// The default assumes that the shown buffer was complete when its period began, which is true for double buffers.
     fn seen_so_far(&self, surface: usize, now: Time) -> Option<RgbImage> {
         let period = self.period_at(now);
         let size = self.surfaces().get(surface)?;
@@ -147,32 +146,33 @@ pub trait Display: Any + Debug + Send + Sync {
         Some(screen)
     }
 
-    /// The last period that [`Display::seen`] knows.
+    /// Returns the last period for which [`Display::seen`] has a picture.
     fn last_seen(&self) -> Option<PeriodNumber>;
 
-    /// What the rows that are lit in a period are, when a picture is shifted line by line on its way: the number of the
-    /// surface's first one and their distance.
+    /// Returns the first row of the surface that is lit in a period, and the distance of lit rows. Code that shifts a
+    /// picture line by line needs them.
     fn rows_lit(&self, _period: PeriodNumber) -> (u32, u32) {
         (0, 1)
     }
 
-    /// What it has counted since the start.
+    /// Returns the display's counters since the start of the run.
     fn counters(&self) -> Vec<Counter>;
 
-    /// Messages that it could not use, and what was wrong with the first, where it knows.
+    /// Returns the number of messages that the display could not use, and the reason of the first if it is known.
     fn faults(&self) -> (u64, Option<String>);
 
-    /// When the first pixel of a line lights in a period; that of the next line, where a period skips lines.
+    /// Returns the time at which the first pixel of a line lights in a period. If the period skips the line, the next
+    /// line counts.
     fn line_lights(&self, surface: usize, x: u32, y: u32, period: PeriodNumber) -> Option<Time> {
         self.lights(surface, x, y, period).or_else(|| self.lights(surface, x, y + 1, period))
     }
 
-    /// When the first visible pixel of a surface lights in a period.
+    /// Returns the time at which the first visible pixel of a surface lights in a period.
     fn first_light(&self, surface: usize, period: PeriodNumber) -> Option<Time> {
         self.line_lights(surface, 0, 0, period)
     }
 
-    /// When the last visible pixel of a surface lights in a period.
+    /// Returns the time at which the last visible pixel of a surface lights in a period.
     fn last_light(&self, surface: usize, period: PeriodNumber) -> Option<Time> {
         let size = self.surfaces().get(surface)?;
         self.line_lights(surface, size.width - 1, size.height.saturating_sub(2), period).max(self.lights(
@@ -183,7 +183,7 @@ pub trait Display: Any + Debug + Send + Sync {
         ))
     }
 
-    /// When the middle of a surface lights in a period.
+    /// Returns the time at which the middle of a surface lights in a period.
     fn middle_light(&self, surface: usize, period: PeriodNumber) -> Option<Time> {
         let size = self.surfaces().get(surface)?;
         self.line_lights(surface, size.width / 2, size.height / 2, period)

@@ -1,23 +1,23 @@
-//! What somebody looks at.
+//! Surfaces of displays and their counters.
 
 use pxpl5_wire::{Eye, REGION_SIZE, RegionGrid};
 use serde::Serialize;
 
-/// A picture that somebody looks at: that of an eye, a face of a cube, a slice of a volume.
+/// A visible picture of a display: an eye's picture, a face of a cube, or a slice of a volume.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Surface {
-    /// Short name, as in the names of files: `left`.
+    /// Short name, used in file names: `left`.
     pub label: &'static str,
-    /// What it is called in timelines and traces: `left frame buffer`.
+    /// Name in timelines and traces: `left frame buffer`.
     pub title: &'static str,
-    /// Visible pixels of a line.
+    /// Number of visible pixels of a line.
     pub width: u32,
-    /// Visible lines from top to bottom.
+    /// Number of visible lines.
     pub height: u32,
 }
 
 impl Surface {
-    /// The surfaces of as many frame buffers of one size: one, or those of two eyes.
+    /// Returns the surfaces of `count` frame buffers of one size: a single picture, or two eyes.
     #[must_use]
     pub fn of_frame_buffers(count: usize, width: u32, height: u32) -> Vec<Self> {
         let titles = if count == 1 { ["frame buffer"; 2] } else { ["left frame buffer", "right frame buffer"] };
@@ -25,19 +25,19 @@ impl Surface {
         eyes.map(|(eye, title)| Self { label: eye.name(), title, width, height }).collect()
     }
 
-    /// The whole surface in regions of a renderer's size.
+    /// Returns the division of the whole surface into regions of a renderer's size.
     #[must_use]
     pub const fn grid(&self) -> RegionGrid {
         RegionGrid { width: self.width, height: self.height, region_width: REGION_SIZE, region_height: REGION_SIZE }
     }
 
-    /// The letter that stands for it in timelines: `L`.
+    /// Returns the letter for the surface in timelines: `L`.
     #[must_use]
     pub fn letter(&self) -> char {
         self.label.chars().next().unwrap_or(' ').to_ascii_uppercase()
     }
 
-    /// What it is called where a legend has no room for its title: `left eye`, and else its label.
+    /// Returns the name for legends without room for the title: `left eye` for an eye, else the label.
     #[must_use]
     pub fn legend(&self) -> String {
         let is_eye = Eye::BOTH.into_iter().any(|eye| eye.name() == self.label);
@@ -45,17 +45,17 @@ impl Surface {
     }
 }
 
-/// Something that a display has counted.
+/// A counter of a display.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Counter {
-    /// What was counted, as reports and sweeps name it.
+    /// Name of the counter in reports and sweeps.
     pub name: &'static str,
-    /// How many there were in the whole run.
+    /// Value of the counter for the whole run.
     pub count: u64,
 }
 
 impl Counter {
-    /// Name of the count of lines that were overwritten before the display had shown them, where a display counts them: not
-    /// one that shows whole buffers.
+    /// Name of the counter of lines that were overwritten before the display had shown them. Displays that show whole
+    /// buffers do not have it.
     pub const LINES_NEVER_SHOWN: &'static str = "lines never shown";
 }

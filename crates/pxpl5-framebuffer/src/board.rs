@@ -1,4 +1,4 @@
-//! The board: two buffers, the port of the ring and the scan.
+//! The frame buffer board: two buffers, the ring port and the scan.
 
 use crate::buffer::{Buffer, Regions};
 use crate::region::RegionWrite;
@@ -13,7 +13,7 @@ use std::collections::VecDeque;
 
 type Out = Context<FrameBufferEvent, FrameBufferOutput>;
 
-/// A frame-buffer board: two buffers of pixels, its port on the ring, and the scan.
+/// A frame buffer board: two buffers of pixels, its port on the ring, and the scan.
 #[derive(Clone, Debug)]
 pub struct FrameBuffer {
     node: NodeId,
@@ -22,9 +22,9 @@ pub struct FrameBuffer {
     fields_kept: usize,
     buffers: [Buffer; 2],
     displayed: u8,
-    /// The field that is being scanned.
+    /// Field that is being scanned.
     scanning: Option<PeriodNumber>,
-    /// Requests that have not taken effect: (when, buffer).
+    /// Swap requests that have not taken effect: time of arrival and buffer.
     swaps: Vec<(Time, u8)>,
     seen: VecDeque<SeenField>,
     stats: FrameBufferStats,
@@ -32,7 +32,7 @@ pub struct FrameBuffer {
 }
 
 impl FrameBuffer {
-    /// A board with two black buffers of which the first is displayed, at a port of the ring.
+    /// Makes a board at a port of the ring. Both buffers are black, and buffer 0 is displayed.
     ///
     /// # Errors
     ///
@@ -54,7 +54,7 @@ impl FrameBuffer {
         })
     }
 
-    /// Takes what happens to it: pixels from the ring, swap requests, retraces.
+    /// Handles an event: pixels from the ring, a swap request or a retrace. Impossible events are recorded as faults.
     pub fn handle(&mut self, event: FrameBufferEvent, context: &mut Out) {
         let done = match event {
             FrameBufferEvent::Pixels(pixels) => self.receive(&pixels, context),
@@ -66,44 +66,44 @@ impl FrameBuffer {
         }
     }
 
-    /// Where the board is plugged into the ring.
+    /// Returns the board's port on the ring.
     #[must_use]
     pub const fn node(&self) -> NodeId {
         self.node
     }
 
-    /// Where the beam is.
+    /// Returns the video signal, which computes the position of the beam.
     #[must_use]
     pub const fn video(&self) -> &Video {
         &self.video
     }
 
-    /// The displayed buffer, 0 or 1.
+    /// Returns the displayed buffer, 0 or 1.
     #[must_use]
     pub const fn displayed(&self) -> u8 {
         self.displayed
     }
 
-    /// The field that is being scanned; `None` before the first retrace.
+    /// Returns the field that is being scanned; `None` before the first retrace.
     #[must_use]
     pub const fn scanning(&self) -> Option<PeriodNumber> {
         self.scanning
     }
 
-    /// A field as it was scanned; `None` until it has been, and when it is no longer remembered.
+    /// Returns a field as it was scanned; `None` before its end, and after the board has forgotten it.
     #[must_use]
     pub fn seen(&self, field: PeriodNumber) -> Option<SeenField> {
         self.seen.iter().find(|seen| seen.field == field).cloned()
     }
 
-    /// The field scanned last.
+    /// Returns the field that was scanned last; `None` before the end of the first field.
     #[must_use]
     pub fn last_seen(&self) -> Option<SeenField> {
         self.seen.back().cloned()
     }
 
-    /// The field that is being scanned, as far as the beam has come at `now`: what has not arrived by then is not in it. `None` before
-    /// the first retrace.
+    /// Returns the current field as scanned up to `now`. Pixels that arrive later are not in it. `None` before the
+    /// first retrace.
     #[must_use]
     pub fn scanned_so_far(&self, now: Time) -> Option<SeenField> {
         let buffer = self.displayed;
@@ -111,26 +111,26 @@ impl FrameBuffer {
         Some(SeenField { field: self.scanning?, buffer, ends_at: now, video: self.video, word: self.word, regions })
     }
 
-    /// The whole displayed buffer with everything that has arrived.
+    /// Returns the contents of the displayed buffer, with all pixels that have arrived.
     #[must_use]
     pub fn displayed_frame(&self) -> BufferContents {
         BufferContents { video: self.video, regions: self.buffers[usize::from(self.displayed)].regions() }
     }
 
-    /// A whole buffer, 0 or 1, with everything that has arrived; `None` when there is no such buffer.
+    /// Returns the contents of a buffer, 0 or 1, with all pixels that have arrived; `None` for other numbers.
     #[must_use]
     pub fn buffer(&self, buffer: u8) -> Option<BufferContents> {
         let regions = self.buffers.get(usize::from(buffer))?.regions();
         Some(BufferContents { video: self.video, regions })
     }
 
-    /// What the board has done.
+    /// Returns the counts of fields, messages, regions and swaps.
     #[must_use]
     pub const fn stats(&self) -> &FrameBufferStats {
         &self.stats
     }
 
-    /// What it could not do.
+    /// Returns the events that the board could not handle.
     #[must_use]
     pub const fn faults(&self) -> &Faults {
         &self.faults
@@ -146,6 +146,7 @@ impl FrameBuffer {
         let place = arriving(buffer, pixels, &self.video)?;
         buffer.region_mut(place).arrive(pixels.part, context.now());
         self.stats.messages += 1;
+        // The region is complete: hide the older region below it and report its arrival.
         if let Some(last_part_at) = buffer.region(place).last_at() {
             self.stats.regions += 1;
             if let Some(older) = buffer.hide_below(place) {
@@ -170,10 +171,12 @@ impl FrameBuffer {
     }
 
     fn retrace(&mut self, field: PeriodNumber, context: &mut Out) -> Result<(), FrameBufferFault> {
+        // Keep the field that ends now.
         let now = context.now();
         if let Some(scanned) = self.scanning {
             self.remember(scanned, now);
         }
+        // Forget hidden regions, then swap and begin the next field.
         for buffer in &mut self.buffers {
             buffer.prune(self.video.width(), self.video.height());
         }
@@ -214,7 +217,7 @@ impl FrameBuffer {
     }
 }
 
-/// The place of the region that a message belongs to, a new one if it is the first.
+/// Returns the index of the region that a message belongs to. The first message of a region adds it.
 fn arriving(buffer: &mut Buffer, pixels: &RegionPixels, video: &Video) -> Result<usize, FrameBufferFault> {
     let Some(place) = buffer.arriving(&pixels.target) else {
         let region = RegionWrite::new(pixels, video)?;
@@ -229,7 +232,7 @@ fn arriving(buffer: &mut Buffer, pixels: &RegionPixels, video: &Video) -> Result
     Err(unexpected_part(pixels))
 }
 
-/// A message that has come before, or of a number that its region does not have.
+/// Returns the fault of a message that has arrived before, or whose number its region does not have.
 const fn unexpected_part(pixels: &RegionPixels) -> FrameBufferFault {
     FrameBufferFault::Part { target: pixels.target, found: pixels.part, parts: pixels.parts }
 }

@@ -1,4 +1,4 @@
-//! One of the two buffers: the regions written into it, as far as one of their pixels can still be seen.
+//! One of the two buffers of a board. It keeps a region as long as one of its pixels can still be seen.
 
 use crate::region::RegionWrite;
 use crate::scans::{Overwritten, Scans};
@@ -8,21 +8,22 @@ use pxpl5_wire::{CopyTarget, Lines, PeriodNumber};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Regions as they are handed to a viewer, oldest first.
+/// Regions as a viewer gets them, oldest first.
 pub(crate) type Regions = Arc<[Arc<RegionWrite>]>;
 
-/// Regions that may be kept before the hidden ones are searched for pixel by pixel.
+/// Number of kept regions above which the buffer searches for covered regions pixel by pixel.
 const FEW: usize = 128;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Buffer {
     held: Vec<Held>,
-    /// `held` as it was handed out last; `None` when it has changed since.
+    /// Shared copy of `held`; `None` after a change.
     shared: Option<Regions>,
     search_above: usize,
-    /// Places of regions that are arriving; a port takes one at a time, so there are few.
+    /// Indices in `held` of the regions that are still arriving. There are few, because a port receives one region at a
+    /// time.
     arriving: Vec<usize>,
-    /// Place of the newest complete region of each cut: those below it are hidden already.
+    /// Index of the newest complete region of each cut (see [`cut`]). Older regions of the same cut are hidden.
     newest: BTreeMap<[u32; 6], usize>,
     scans: Scans,
 }
@@ -45,7 +46,7 @@ impl Buffer {
         }
     }
 
-    /// The region of this target that is arriving.
+    /// Returns the index of the arriving region with this target.
     pub(crate) fn arriving(&mut self, target: &CopyTarget) -> Option<usize> {
         self.arriving.iter().rev().copied().find(|place| self.held[*place].region.target == *target)
     }
@@ -60,18 +61,19 @@ impl Buffer {
         &self.held[place].region
     }
 
-    /// The region for a change; a viewer keeps what it was given.
+    /// Returns a region for a change. A viewer keeps the state that it was given.
     pub(crate) fn region_mut(&mut self, place: usize) -> &mut RegionWrite {
         self.shared = None;
         Arc::make_mut(&mut self.held[place].region)
     }
 
-    /// Notes that a field is scanned from this buffer.
+    /// Records that a field is scanned from this buffer.
     pub(crate) fn scan(&mut self, field: PeriodNumber) {
         self.scans.begin(field);
     }
 
-    /// Marks what a complete region hides; the place of the older one whose pixels it has overwritten.
+    /// Marks the region that a complete region hides. Returns the index of the older region if this one has overwritten
+    /// it.
     pub(crate) fn hide_below(&mut self, place: usize) -> Option<usize> {
         self.arriving.retain(|other| *other != place);
         let newest = self.newest.entry(cut(&self.held[place].region.target)).or_insert(place);
@@ -84,13 +86,14 @@ impl Buffer {
         (older != place).then_some(older)
     }
 
-    /// Lines of one region that another of the same cut has overwritten before the beam had shown all of them.
+    /// Returns the number of lines of a region that a newer region with the same pixels has overwritten before the beam
+    /// had shown all of them.
     pub(crate) fn lines_never_shown(&self, older: usize, newer: usize, video: &Video, word: Span) -> u64 {
         let [older, newer] = [older, newer].map(|place| self.region(place));
         self.scans.lines_never_shown(&Overwritten { older, newer, video, word })
     }
 
-    /// Finds again what is arriving and what is newest, when places have changed.
+    /// Recomputes the indices of the arriving and the newest regions after regions were removed.
     fn index(&mut self) {
         self.arriving.clear();
         self.newest.clear();
@@ -103,7 +106,7 @@ impl Buffer {
         }
     }
 
-    /// Everything written, oldest first.
+    /// Returns all regions, oldest first.
     pub(crate) fn share(&mut self) -> Regions {
         let held = &self.held;
         Arc::clone(self.shared.get_or_insert_with(|| regions_of(held)))
@@ -113,7 +116,7 @@ impl Buffer {
         self.shared.clone().unwrap_or_else(|| regions_of(&self.held))
     }
 
-    /// Forgets what cannot be seen any more.
+    /// Forgets regions that can no longer be seen.
     pub(crate) fn prune(&mut self, width: u32, height: u32) {
         if self.held.iter().any(|held| held.hidden) {
             self.held.retain(|held| !held.hidden);
@@ -126,9 +129,12 @@ impl Buffer {
         }
     }
 
-    /// Regions of different cuts hide each other only in parts, so pixels decide. What is still arriving is the newest, since a port takes
-    /// one region at a time, and nothing covers that.
+    /// Forgets regions whose every pixel is covered by newer ones. Regions of different cuts hide each other only in
+    /// parts, so pixels decide.
+    /// An arriving region is the newest one, because a port receives one region at a time, so no other region covers
+    /// it.
     fn forget_covered(&mut self, width: u32, height: u32) {
+        // Go from the newest region to the oldest and mark the pixels of each.
         let mut covered = vec![false; (width * height) as usize];
         for held in self.held.iter_mut().rev() {
             held.hidden = true;
@@ -150,7 +156,7 @@ fn regions_of(held: &[Held]) -> Regions {
     held.iter().map(|held| Arc::clone(&held.region)).collect()
 }
 
-/// What two regions that fill the same pixels have in common.
+/// Returns lines, number and grid of a region as a key, its *cut*. Regions with the same cut fill the same pixels.
 fn cut(target: &CopyTarget) -> [u32; 6] {
     let lines = match target.lines {
         Lines::Frame => 2,
@@ -177,7 +183,7 @@ mod tests {
         }
     }
 
-    /// Regions of four cuts, whose borders agree nowhere.
+    /// Returns a region of one of four cuts whose borders never coincide.
     fn target(picture: u64, random: u64) -> CopyTarget {
         let cut = |region_width, region_height| RegionGrid { width: 640, height: 240, region_width, region_height };
         let (lines, grid) = [
@@ -191,7 +197,7 @@ mod tests {
         CopyTarget { frame_buffer: NodeId(7), buffer: 0, lines, grid, region, picture }
     }
 
-    /// Notes the number of a region in all its pixels, as the grid and its lines say, whatever segments say.
+    /// Writes the number of a region into all its pixels, by its grid and lines and without `segments`.
     fn paint(frame: &mut [u64], target: &CopyTarget) {
         let [left, top, width, height] = target.grid.rectangle(target.region);
         for row in top..top + height {
@@ -210,8 +216,8 @@ mod tests {
         frame
     }
 
-    /// Pixels decide: what is forgotten is what nothing is seen of, and nothing else; and there is never more to look through than is
-    /// seen at once and twice what was left when it was looked through last.
+    /// The board forgets exactly the regions of which no pixel is visible. The number of kept regions stays below a
+    /// bound: the visible ones and twice the number left by the last search.
     #[test]
     fn what_is_forgotten_is_what_later_regions_have_covered() {
         let video = Video::new(crate::FrameBufferConfig::NTSC.video).expect("valid");

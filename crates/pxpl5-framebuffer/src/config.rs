@@ -1,30 +1,30 @@
-//! What a frame buffer is built from.
+//! Configuration of a frame buffer.
 
 use crate::error::FrameBufferConfigError;
 use crate::timing::{PortTiming, VideoTiming};
 use parameters::{ParameterTable, check};
 
-/// Numbers of one frame-buffer board.
+/// Numbers of one frame buffer board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrameBufferConfig {
-    /// When lines and pixels are scanned.
+    /// Timing of lines and pixels of the scan.
     pub video: VideoTiming,
-    /// Port to the ring.
+    /// Timing of the port to the ring.
     pub port: PortTiming,
-    /// Scanned fields that are remembered, 1 to 1,000; an interlaced picture takes two.
+    /// Number of scanned fields that the board remembers, 1 to 1,000. An interlaced picture needs two.
     pub fields_kept: u64,
 }
 
 impl FrameBufferConfig {
-    /// The NTSC frame buffer of TR94; the last two fields are remembered.
+    /// The NTSC frame buffer of TR94, which remembers the last two fields.
     pub const NTSC: Self = Self { video: VideoTiming::PAPERS, port: PortTiming::PAPERS, fields_kept: 2 };
 
     /// Checks that a board can be built.
     ///
     /// # Errors
     ///
-    /// [`FrameBufferConfigError::Number`] names the number, what was expected and what was found.
+    /// [`FrameBufferConfigError::Number`] with the name of the number, the expected range and the found value.
     pub fn check(&self) -> Result<(), FrameBufferConfigError> {
         self.video.check()?;
         self.port.check()?;

@@ -14,7 +14,7 @@ use std::ops::Range;
 
 /// Frame buffers that share a sync generator: one for a single picture, two for the eyes of a stereo pair.
 ///
-/// Its clock ticks at every retrace, so its periods are fields; its surfaces are the eyes.
+/// The display's clock ticks at every retrace, so its periods are fields. Its surfaces are the eyes.
 #[derive(Debug)]
 pub struct NtscDisplay {
     video: Video,
@@ -25,19 +25,19 @@ pub struct NtscDisplay {
 }
 
 impl NtscDisplay {
-    /// Where the beams are.
+    /// Returns the video signal, which computes the positions of the beams.
     #[must_use]
     pub const fn video(&self) -> &Video {
         &self.video
     }
 
-    /// The frame buffers: left, right.
+    /// Returns the frame buffers: left, then right.
     #[must_use]
     pub fn boards(&self) -> &[FrameBuffer] {
         &self.boards
     }
 
-    /// Gives a board an event and passes on what it puts out.
+    /// Handles an event on a board and passes on its outputs.
     fn board_event(&mut self, board: usize, event: FrameBufferEvent, context: &mut DisplayContext) {
         self.boards[board].handle(event, self.context.at(context.now()));
         for (time, output) in self.context.drain_outputs() {
@@ -45,13 +45,13 @@ impl NtscDisplay {
         }
     }
 
-    /// A counter of all boards together.
+    /// Returns the sum of a counter over all boards.
     fn sum(&self, count: fn(&FrameBuffer) -> u64) -> u64 {
         self.boards.iter().map(count).sum()
     }
 }
 
-/// A board's output as that of the display.
+/// Converts an output of a board to an output of the display.
 const fn passed_on(board: usize, output: FrameBufferOutput) -> DisplayOutput {
     match output {
         FrameBufferOutput::RegionArrived { target, first_part_at, last_part_at } => {
@@ -61,7 +61,8 @@ const fn passed_on(board: usize, output: FrameBufferOutput) -> DisplayOutput {
     }
 }
 
-/// What a message is to a frame buffer, which counts a request for a buffer that it does not have as a fault.
+/// Converts a message to an event of a frame buffer. An invalid message becomes a request for a buffer that does not
+/// exist, which is counted as a fault.
 fn received(body: Body) -> FrameBufferEvent {
     match body {
         Body::Pixels(pixels) => FrameBufferEvent::Pixels(pixels),
@@ -161,15 +162,17 @@ impl Display for NtscDisplay {
     }
 }
 
-/// What a viewer sees at `time`, which lies in the field that is scanned last: where the beam has been since its
-/// retrace that field, below the beam the one two fields older, between their lines the one a field older. Fields
-/// that are not given are black. A screen keeps what the beam drew until the beam comes again; phosphor does not fade.
+/// Returns the screen as a viewer sees it at `time`, which must lie in the last scanned field.
+/// Above the beam the screen shows the current field, below the beam the field two before it, and between their lines
+/// the field before it. Fields that are not in `fields` are black. A screen keeps each line until the beam comes again,
+/// because the model's phosphor does not fade.
 #[must_use]
 pub fn seen_at(video: &Video, time: Time, fields: &[SeenField]) -> RgbImage {
     let now = video.field_at(time);
     let ages = [0, 1, 2].map(|age| picture_of(fields, now.before(age)));
     let mut screen = RgbImage::new(video.width(), video.height());
     let row_bytes = video.width() as usize * 3;
+    // Take each line from the field whose beam passed it last.
     for (y, row) in (0..).zip(screen.chunks_exact_mut(row_bytes)) {
         let mut copy = |age: usize, bytes: Range<usize>| {
             if let Some(field) = &ages[age] {
@@ -177,11 +180,12 @@ pub fn seen_at(video: &Video, time: Time, fields: &[SeenField]) -> RgbImage {
                 row[bytes.clone()].copy_from_slice(&field.as_raw()[first..][bytes]);
             }
         };
+        // This line belongs to the other parity.
         if video.when(0, y, now).is_none() {
             copy(1, 0..row_bytes);
             continue;
         }
-        // The beam goes from left to right.
+        // The beam moves from left to right, so it has passed all pixels up to some x.
         let has_been = |x: u32| video.when(x, y, now).is_some_and(|scanned_at| scanned_at <= time);
         let scanned = first_without(video.width(), has_been) as usize * 3;
         copy(0, 0..scanned);
@@ -190,7 +194,8 @@ pub fn seen_at(video: &Video, time: Time, fields: &[SeenField]) -> RgbImage {
     screen
 }
 
-/// How many numbers from 0 on, of so many, have what all before one have and none behind it.
+/// Returns the first number below `count` for which `has` is false, or `count`.
+/// `has` must be true for all numbers before it and false for all after it.
 fn first_without(count: u32, has: impl Fn(u32) -> bool) -> u32 {
     let (mut low, mut high) = (0, count);
     while low < high {
@@ -200,12 +205,12 @@ fn first_without(count: u32, has: impl Fn(u32) -> bool) -> u32 {
     low
 }
 
-/// The lines of one of some fields.
+/// Returns the scanned lines of the wanted field.
 fn picture_of(fields: &[SeenField], wanted: Option<PeriodNumber>) -> Option<RgbImage> {
     fields.iter().find(|field| Some(field.field()) == wanted).map(SeenField::picture)
 }
 
-/// Its name on the command line.
+/// Name of the display on the command line.
 const NAME: &str = "ntsc";
 
 impl DisplayConfig for FrameBufferConfig {

@@ -6,16 +6,16 @@ use pxpl5_wire::Word;
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// Mark of a pixel that has been put.
+/// Flag of a pixel that is already written.
 const PUT: Word = 0xff00_0000;
 
-/// Words 0x00RRGGBB, row by row. A pixel that has been put is not put again: the newest comes first.
+/// Pixels as words 0x00RRGGBB, row by row. A written pixel is not written again, because the newest region comes first.
 pub(crate) struct Canvas {
     width: u32,
     words: Vec<Word>,
 }
 
-/// Some pixels of one row.
+/// A run of pixels in one row.
 pub(crate) struct CanvasRow<'a>(&'a mut [Word]);
 
 impl Canvas {
@@ -24,7 +24,7 @@ impl Canvas {
         Self { width, words }
     }
 
-    /// `length` pixels of which the first stands at [x, y]; they must lie in the canvas.
+    /// Returns `length` pixels of which the first is at [x, y]. They must lie in the canvas.
     pub(crate) fn row(&mut self, [x, y]: [u32; 2], length: u32) -> CanvasRow<'_> {
         let begin = (y * self.width + x) as usize;
         CanvasRow(&mut self.words[begin..begin + length as usize])
@@ -42,15 +42,15 @@ impl Canvas {
 }
 
 impl CanvasRow<'_> {
-    /// Puts the pixels of a segment; the image is computed only when one of them is missing.
+    /// Writes the pixels of a segment. The image is computed only if one of them is missing.
     pub(crate) fn put(self, image: &impl Deref<Target = Arc<[Word]>>, segment: &Segment) {
-        // An image that is too short leaves black.
+        // An image that is too short leaves the rest black.
         for (word, pixel) in self.missing(image, segment) {
             *word = if *word & PUT == 0 { pixel | PUT } else { *word };
         }
     }
 
-    /// The same of those that are chosen.
+    /// Writes the pixels of a segment for which `chosen` returns true.
     pub(crate) fn put_chosen(
         self,
         image: &impl Deref<Target = Arc<[Word]>>,
@@ -64,7 +64,7 @@ impl CanvasRow<'_> {
         }
     }
 
-    /// All pixels with those of the image, unless none is missing.
+    /// Returns all pixels with those of the image, or none if all are written.
     fn missing<'a, I: Deref<Target = Arc<[Word]>>>(
         self,
         image: &'a I,

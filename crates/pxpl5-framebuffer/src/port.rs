@@ -1,106 +1,106 @@
-//! What comes into a frame buffer and what goes out of it.
+//! Events, outputs and faults of a frame buffer.
 
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, NodeId, PeriodNumber, RegionPixels};
 use thiserror::Error;
 
-/// What happens to a frame buffer.
+/// An event of a frame buffer.
 #[derive(Clone, Debug)]
 pub enum FrameBufferEvent {
     /// The last word of a message of pixels has arrived. Phase `Arrive`.
     Pixels(RegionPixels),
-    /// Software asks for a buffer, 0 or 1, to be displayed from the next retrace on. Phase `Arrive`.
+    /// Software requests that buffer 0 or 1 is displayed from the next retrace on. Phase `Arrive`.
     SwapRequested {
-        /// The buffer.
+        /// Requested buffer, 0 or 1.
         buffer: u8,
     },
     /// The sync generator starts a field, at exactly [`Video::retrace`](crate::Video::retrace). Phase `Arrive`.
     ///
-    /// Requests that have arrived before (not at) this instant take effect, the last of them.
+    /// The last swap request that arrived before (not at) this instant takes effect.
     Retrace {
-        /// The field that begins.
+        /// Field that begins.
         field: PeriodNumber,
     },
 }
 
-/// What a frame buffer puts out, one word time after the event that caused it.
+/// An output of a frame buffer, one word time after the event that caused it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrameBufferOutput {
     /// All messages of a region have arrived.
     RegionArrived {
-        /// The region.
+        /// Target of the region.
         target: CopyTarget,
-        /// When its first message had arrived.
+        /// Arrival time of the first message.
         first_part_at: Time,
-        /// When its last message had arrived.
+        /// Arrival time of the last message.
         last_part_at: Time,
     },
-    /// The swap that was asked for has taken effect, at the retrace at which `field` began.
+    /// A requested swap has taken effect, at the retrace that began `field`.
     Swapped {
-        /// The displayed buffer.
+        /// Buffer that is displayed from now on.
         buffer: u8,
-        /// The first field that is scanned from it.
+        /// First field that is scanned from the buffer.
         field: PeriodNumber,
     },
 }
 
-/// Something that a frame buffer cannot do. It is counted, recorded and otherwise without effect.
+/// An event that a frame buffer cannot handle. It is counted and recorded, and has no other effect.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum FrameBufferFault {
-    /// Pixels for another board came here.
+    /// The pixels were meant for another board.
     #[error("pixels for node {} came to the frame buffer at node {}", found.0, expected.0)]
     WrongBoard {
-        /// This board's port.
+        /// Port of this board.
         expected: NodeId,
-        /// Where the pixels were to go.
+        /// Port in the target of the pixels.
         found: NodeId,
     },
-    /// There are two buffers, 0 and 1.
+    /// The requested buffer is neither 0 nor 1.
     #[error("expected buffer 0 or 1, found {found}")]
     NoSuchBuffer {
-        /// The buffer that was asked for.
+        /// Number of the requested buffer.
         found: u8,
     },
-    /// A region does not lie in the frame, or is larger than a renderer's array.
+    /// The region does not lie in the frame, or is larger than a renderer's array.
     #[error(
         "region {} of {:?}, {:?}, does not lie in the frame of {} x {} or exceeds 128 x 128",
         target.region.0, target.grid, target.lines, frame[0], frame[1]
     )]
     Region {
-        /// Where the pixels were to go.
+        /// Target of the pixels.
         target: CopyTarget,
-        /// Width and height of the frame.
+        /// Width and height of the frame in pixels.
         frame: [u32; 2],
     },
-    /// A region's number of messages does not fit its number of pixels.
+    /// The number of messages of a region does not fit its number of pixels.
     #[error("region {} needs {expected} messages of pixels, found {found}", target.region.0)]
     Parts {
-        /// Where the pixels were to go.
+        /// Target of the pixels.
         target: CopyTarget,
-        /// Messages that the region needs.
+        /// Number of messages that the region needs.
         expected: u32,
-        /// Messages that it was said to have.
+        /// Number of messages according to the sender.
         found: u32,
     },
-    /// A message does not exist in its region, or has arrived already.
+    /// The message does not exist in its region, or has arrived already.
     #[error("message {found} of {parts} of region {} does not exist or has arrived already", target.region.0)]
     Part {
-        /// Where the pixels were to go.
+        /// Target of the pixels.
         target: CopyTarget,
-        /// The message's number.
+        /// Number of the message within the region, from 0.
         found: u32,
-        /// Messages of the region.
+        /// Number of messages of the region.
         parts: u32,
     },
-    /// A retrace came at another time than the video timing says.
+    /// A retrace came at another time than that of the video timing.
     #[error("retrace {field} expected at {expected}, found at {found}")]
     Retrace {
-        /// The field.
+        /// Field that begins.
         field: PeriodNumber,
-        /// When it should begin.
+        /// Time of the retrace by the video timing.
         expected: Time,
-        /// When it did.
+        /// Time at which the retrace came.
         found: Time,
     },
 }
@@ -108,9 +108,9 @@ pub enum FrameBufferFault {
 /// Faults of one board.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Faults {
-    /// How many faults there were in the whole run.
+    /// Number of faults in the whole run.
     pub count: u64,
-    /// The first, with its time.
+    /// First fault with its time.
     pub first: Option<(Time, FrameBufferFault)>,
 }
 

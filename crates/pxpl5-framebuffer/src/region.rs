@@ -1,4 +1,4 @@
-//! One region on its way into a buffer, and after.
+//! A region during and after its arrival in a buffer.
 
 use crate::FrameBufferFault;
 use crate::video::{Video, frame_line, rectangle};
@@ -10,7 +10,7 @@ use std::sync::Arc;
 const MAX_PARTS: usize = (REGION_SIZE * REGION_SIZE).div_ceil(MAX_MESSAGE_WORDS) as usize;
 const NEVER: Time = Time(u64::MAX);
 
-/// A region with the arrival of each of its messages.
+/// A region with the arrival time of each of its messages.
 #[derive(Clone, Debug)]
 pub(crate) struct RegionWrite {
     pub(crate) target: CopyTarget,
@@ -21,25 +21,25 @@ pub(crate) struct RegionWrite {
     arrived: [Time; MAX_PARTS],
 }
 
-/// Pixels of one line of a region that came with one message.
+/// Pixels of one line of a region that came in one message.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Segment {
     /// Line of the frame.
     pub(crate) y: u32,
-    /// First pixel.
+    /// Column of the first pixel.
     pub(crate) x: u32,
     /// Number of pixels.
     pub(crate) length: u32,
-    /// Place of the first pixel in the region's image.
+    /// Index of the first pixel in the region's image.
     pub(crate) index: u32,
-    /// When the first pixel's word arrived.
+    /// Arrival time of the first pixel's word.
     first_at: Time,
-    /// When the message's last word arrived.
+    /// Arrival time of the message's last word.
     pub(crate) message_at: Time,
 }
 
 impl Segment {
-    /// When the word of the `i`-th pixel arrived.
+    /// Returns the arrival time of the word of the `i`-th pixel.
     pub(crate) fn arrival(&self, i: u32, word: Span) -> Time {
         self.first_at + word * u64::from(i)
     }
@@ -50,7 +50,7 @@ impl Segment {
 }
 
 impl RegionWrite {
-    /// A region of which nothing has arrived.
+    /// Makes a region without any arrived message.
     pub(crate) fn new(pixels: &RegionPixels, video: &Video) -> Result<Self, FrameBufferFault> {
         let target = pixels.target;
         let outside = FrameBufferFault::Region { target, frame: [video.width(), video.height()] };
@@ -71,7 +71,7 @@ impl RegionWrite {
         })
     }
 
-    /// Whether message `part` exists and is missing.
+    /// Returns true if message `part` exists and has not arrived.
     pub(crate) fn lacks(&self, part: u32) -> bool {
         part < self.parts && self.arrived[part as usize] == NEVER
     }
@@ -85,24 +85,24 @@ impl RegionWrite {
         self.n_arrived == self.parts
     }
 
-    /// When the first message arrived; never, if none has.
+    /// Returns the arrival time of the first message, or `NEVER` if none has arrived.
     pub(crate) fn first_at(&self) -> Time {
         self.arrived.iter().copied().min().unwrap_or(NEVER)
     }
 
-    /// When the last message arrived; `None` while one is missing.
+    /// Returns the arrival time of the last message; `None` while one is missing.
     pub(crate) fn last_at(&self) -> Option<Time> {
         let arrived = &self.arrived[..self.parts as usize];
         self.is_complete().then(|| arrived.iter().copied().max())?
     }
 
-    /// The pixels that have arrived, line by line, each line cut where one message ends and the next begins.
+    /// Returns the pixels that have arrived, line by line. A line is split where one message ends and the next begins.
     pub(crate) fn segments(&self, word: Span) -> impl Iterator<Item = Segment> + '_ {
         let [_, _, _, height] = self.rectangle;
         (0..height).flat_map(move |row| self.row(row, word)).filter(|segment| segment.message_at != NEVER)
     }
 
-    /// As `segments`, with those that never arrived.
+    /// Returns the segments of one row, including segments that have not arrived.
     pub(crate) fn row(&self, row: u32, word: Span) -> impl Iterator<Item = Segment> + '_ {
         let [_, _, width, _] = self.rectangle;
         let begin = row * width;

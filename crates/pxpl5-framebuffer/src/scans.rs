@@ -1,4 +1,4 @@
-//! Which fields were scanned from a buffer, and so which of its lines were shown before they were overwritten.
+//! Record of the fields scanned from a buffer, which tells which lines were shown before they were overwritten.
 
 use crate::region::RegionWrite;
 use crate::video::Video;
@@ -6,14 +6,14 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, PeriodNumber};
 use std::collections::VecDeque;
 
-/// Fields that are remembered: the newest two of either parity, of which the very last may not have reached a line.
+/// Number of remembered fields: the newest two of each parity. The very last field may not have reached a line.
 const REMEMBERED: usize = 4;
 
 /// The last fields that were scanned from a buffer, newest first.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scans(VecDeque<PeriodNumber>);
 
-/// A region that another one of the same cut has overwritten, both complete.
+/// A complete region that another complete region with the same pixels has overwritten.
 pub(crate) struct Overwritten<'a> {
     pub(crate) older: &'a RegionWrite,
     pub(crate) newer: &'a RegionWrite,
@@ -27,7 +27,8 @@ impl Scans {
         self.0.push_front(field);
     }
 
-    /// Lines of the older region that were overwritten before the beam had shown them from the first pixel to the last.
+    /// Returns the number of lines of the older region that were overwritten before the beam had shown them from the
+    /// first pixel to the last.
     pub(crate) fn lines_never_shown(&self, pair: &Overwritten<'_>) -> u64 {
         if self.shows_all(pair) {
             return 0;
@@ -35,15 +36,15 @@ impl Scans {
         pair.older.rows().filter(|row| !self.shows_row(*row, pair)).count() as u64
     }
 
-    /// Whether a field has shown the outermost of its lines, and so those between them, after the end of one write and before
-    /// the begin of the other. Saves looking at each line.
+    /// Returns true if a field has shown the outermost lines of the older region after its write and before the newer
+    /// write. Then it has also shown the lines between them, which need no check.
     fn shows_all(&self, pair: &Overwritten<'_>) -> bool {
         let Some(written) = pair.older.last_at() else { return false };
-        // No word of a message comes earlier before its last one.
+        // The last word of a message comes at most this long after its first.
         let overwritten =
             Time(pair.newer.first_at().0.saturating_sub((pair.word * u64::from(MAX_MESSAGE_WORDS - 1)).0));
         let rows = pair.older.rows();
-        // Every second row lies in the other field, where the region is one of a frame.
+        // In a region of a frame, every second row lies in the other field.
         rows.clone().take(2).all(|first| {
             let last = rows.clone().skip(first as usize).step_by(2).next_back().unwrap_or(first);
             let shows = |(at, field)| scan(at, field, pair).is_some_and(|scan| written <= scan && scan < overwritten);
@@ -52,7 +53,7 @@ impl Scans {
     }
 
     fn shows_row(&self, row: u32, pair: &Overwritten<'_>) -> bool {
-        // Of a word that arrives with the beam the new value is shown.
+        // A pixel shows the new value if the word arrives at the instant of the beam.
         let shows = |field| {
             let beam = |at| scan(at, field, pair);
             let stood = ends(pair.older, row, pair.word).all(|(at, came)| beam(at).is_some_and(|scan| came <= scan));
@@ -62,20 +63,21 @@ impl Scans {
     }
 }
 
-/// When the beam passes over a pixel in a field; `None` where it does not.
+/// Returns the time at which the beam passes a pixel in a field; `None` if the field does not scan the pixel.
 fn scan([x, y]: [u32; 2], field: PeriodNumber, pair: &Overwritten<'_>) -> Option<Time> {
     pair.video.when(x, y, field)
 }
 
-/// The first pixel of the first of two rows, and the last one of the last.
+/// Returns the first pixel of the first of two rows, and the last pixel of the last row.
 fn corners(region: &RegionWrite, [first, last]: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
     let [first, last] = [first, last].map(|row| ends(region, row, Span::ZERO));
     let [first, last] = [first.map(|end| end.0).next(), last.map(|end| end.0).last()];
     first.into_iter().chain(last)
 }
 
-/// The ends of what each message brought of a complete region's row, and when their words came. Words of a message and the beam both
-/// advance evenly, so the ends decide; between two messages there is a pause.
+/// Returns the end pixels of each message's part of a row, with the arrival times of their words. The row is of a
+/// complete region.
+/// The words of a message and the beam both advance evenly, so the ends decide. Between two messages there is a pause.
 fn ends(region: &RegionWrite, row: u32, word: Span) -> impl Iterator<Item = ([u32; 2], Time)> + '_ {
     region.row(row, word).flat_map(move |segment| {
         [0, segment.length - 1].map(|i| ([segment.x + i, segment.y], segment.arrival(i, word)))

@@ -1,4 +1,4 @@
-//! What a viewer sees.
+//! Fields and pictures as a viewer sees them.
 
 use crate::buffer::Regions;
 use crate::picture::Canvas;
@@ -9,7 +9,8 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{CopyTarget, FieldParity, PeriodNumber};
 use std::cell::LazyCell;
 
-/// One field as it was scanned: lazy, cheap to clone, independent of what the board does later.
+/// One field as it was scanned. Its pixels are computed when they are read. It is cheap to clone and independent of
+/// later events.
 #[derive(Clone, Debug)]
 pub struct SeenField {
     pub(crate) field: PeriodNumber,
@@ -20,43 +21,43 @@ pub struct SeenField {
     pub(crate) regions: Regions,
 }
 
-/// A region of which pixels were scanned before they had arrived, so that older ones are seen in their place. For
-/// which field it was meant the board cannot know: compare `target.picture`.
+/// A region of which some pixels were scanned before they had arrived, so that older pixels are seen in their place.
+/// The board does not know for which field the region was meant. Compare `target.picture` to find out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SeenLateRegion {
-    /// Which region of which picture came.
+    /// Target of the region, with its picture.
     pub target: CopyTarget,
-    /// When its last message arrived; `None` when that was not before the end of the field.
+    /// Arrival time of the last message; `None` if it did not arrive before the end of the field.
     pub arrived_at: Option<Time>,
-    /// The first line of the frame with an older pixel.
+    /// First line of the frame with an older pixel.
     pub first_line: u32,
-    /// Number of such lines in this field.
+    /// Number of lines with an older pixel in this field.
     pub lines: u32,
-    /// Longest time between the scan of a pixel and its arrival; for a pixel whose message did not end in this field the
-    /// time to the field's end.
+    /// Longest time between the scan of a pixel and its arrival. For a pixel whose message did not end in this field,
+    /// the time to the field's end counts.
     pub lateness: Span,
 }
 
 impl SeenField {
-    /// The number of the field.
+    /// Returns the number of the field.
     #[must_use]
     pub const fn field(&self) -> PeriodNumber {
         self.field
     }
 
-    /// The buffer that was scanned.
+    /// Returns the buffer that was scanned, 0 or 1.
     #[must_use]
     pub const fn buffer(&self) -> u8 {
         self.buffer
     }
 
-    /// Which lines of the frame were scanned.
+    /// Returns the parity of the scanned lines of the frame.
     #[must_use]
     pub const fn parity(&self) -> FieldParity {
         FieldParity::of_field(self.field)
     }
 
-    /// The scanned lines alone, black where nothing was ever written: 640 x 240 for NTSC.
+    /// Returns the scanned lines alone, black where no pixel was ever written: 640 x 240 for NTSC.
     #[must_use]
     pub fn picture(&self) -> RgbImage {
         let mut canvas = Canvas::new(self.video.width(), self.video.height() / 2);
@@ -64,8 +65,8 @@ impl SeenField {
         canvas.into_image()
     }
 
-    /// Two fields interlaced, as on a screen: 640 x 480 for NTSC. Two fields of the same lines give the later one
-    /// on a black frame.
+    /// Returns two fields interlaced, as on a screen: 640 x 480 for NTSC. If both have the same parity, the later one
+    /// is shown on a black frame.
     #[must_use]
     pub fn interlaced_with(&self, other: &Self) -> RgbImage {
         let (earlier, later) = if self.field < other.field { (self, other) } else { (other, self) };
@@ -77,7 +78,7 @@ impl SeenField {
         canvas.into_image()
     }
 
-    /// Regions that came too late for this field, in order of their arrival.
+    /// Returns the regions that came too late for this field, in order of their arrival.
     #[must_use]
     pub fn late_regions(&self) -> Vec<SeenLateRegion> {
         let during = self.regions.iter().filter(|region| self.may_be_late(region));
@@ -89,7 +90,7 @@ impl SeenField {
         begun && region.last_at().is_none_or(|last| last > self.video.retrace(self.field))
     }
 
-    /// Newest first, so that regions that are hidden are never computed.
+    /// Paints the regions, newest first, so that hidden regions are never computed.
     fn paint(&self, canvas: &mut Canvas, row_of: impl Fn(u32) -> u32) {
         for region in self.regions.iter().rev() {
             let pixels = LazyCell::new(|| region.image.pixels());
@@ -111,9 +112,10 @@ impl SeenField {
         self.lateness(segment, i) == Some(Span::ZERO)
     }
 
-    /// How much later than the beam a pixel's word came; `None` where the field scans no pixel. Words of a message that is under way when the
-    /// field ends have not come: the board learns of whole messages. On a ring whose words come faster than the beam goes over pixels, as the
-    /// published one's do, no such word is in time anyhow.
+    /// Returns the delay of a pixel's word after the beam; `None` if the field does not scan the pixel.
+    /// Words of a message that has not ended at the end of the field count as missing, because the board learns of
+    /// whole messages. On a ring that is faster than the beam, as the published one is, none of these words is in time
+    /// anyway.
     fn lateness(&self, segment: &Segment, i: u32) -> Option<Span> {
         let scanned_at = self.video.when(segment.x + i, segment.y, self.field)?;
         let has_come = segment.message_at < self.ends_at;
@@ -130,7 +132,7 @@ impl SeenField {
             lateness: Span::ZERO,
         };
         for row in region.rows() {
-            // Beam and words both advance evenly, so the worst pixel stands at one end of a segment.
+            // Beam and words both advance evenly, so the worst pixel is at one end of a segment.
             let ends = region.row(row, self.word).flat_map(|s| [(s, 0), (s, s.length - 1)]);
             let worst = ends.filter_map(|(s, i)| Some((s.y, self.lateness(&s, i)?))).max_by_key(|w| w.1);
             if let Some((y, lateness)) = worst.filter(|w| w.1 > Span::ZERO) {
@@ -151,7 +153,7 @@ impl SeenLateRegion {
     }
 }
 
-/// A whole buffer as it is: lazy, cheap to clone.
+/// The contents of a whole buffer. The pixels are computed when they are read; cloning is cheap.
 #[derive(Clone, Debug)]
 pub struct BufferContents {
     pub(crate) video: Video,
@@ -159,7 +161,7 @@ pub struct BufferContents {
 }
 
 impl BufferContents {
-    /// Both fields, with all messages that have arrived; black where nothing was ever written.
+    /// Returns both fields, with all messages that have arrived; black where no pixel was ever written.
     #[must_use]
     pub fn picture(&self) -> RgbImage {
         let mut canvas = Canvas::new(self.video.width(), self.video.height());

@@ -1,18 +1,19 @@
-//! What a frame buffer has done.
+//! Statistics of a frame buffer.
 
-/// Counts since the start.
+/// Counts of a frame buffer since the start of the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct FrameBufferStats {
-    /// Fields whose scan has begun so far.
+    /// Number of fields whose scan has begun.
     pub fields: u64,
-    /// Messages of pixels received.
+    /// Number of received messages of pixels.
     pub messages: u64,
-    /// Regions received as a whole.
+    /// Number of completely received regions.
     pub regions: u64,
-    /// Swap requests that took effect.
+    /// Number of swap requests that took effect.
     pub swaps: u64,
-    /// Lines of regions that a region of the same place has overwritten before the beam had shown them from the first pixel
-    /// to the last: the newer one came too early, or the older one too late to be shown at all, or its buffer was shown for
-    /// one field only, which scans every second line.
+    /// Number of lines of regions that were overwritten before the beam had shown them from the first pixel to the
+    /// last.
+    /// There are three causes: the newer region came too early, the older one came too late, or the buffer was shown
+    /// for one field only, which scans every second line.
     pub lines_never_shown: u64,
 }

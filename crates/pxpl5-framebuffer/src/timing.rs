@@ -5,43 +5,44 @@ use parameters::{MAX, ParameterTable, check};
 use pxpl5_sim::Clock;
 
 parameters::parameter_table! {
-    /// NTSC video. All times follow from one pixel clock: a line is 780 of its periods (4004/63 us), a field 262.5
-    /// lines (1001/60000 s), both exactly.
+    /// Timing of NTSC video. All times follow from one pixel clock: a line has 780 of its periods (4004/63 us) and a
+    /// field 262.5 lines (1001/60000 s), both exactly.
     pub struct VideoTiming {
-        /// Period of the pixel clock, times `pixel_divisor`.
+        /// Period of the pixel clock, multiplied by `pixel_divisor`.
         pixel_ps: 11_000_000, "ps", Derived, 11000000..=11000000 in 1..=MAX, "NTSC square pixels: 135/11 MHz = 12.2727 MHz, 640 in 52.15 us";
         /// Divisor of the period of the pixel clock.
         pixel_divisor: 135, "1", Derived, 135..=135 in 1..=MAX, "NTSC square pixels: 135/11 MHz";
-        /// Pixel periods in a line.
+        /// Number of pixel periods in a line.
         line_pixels: 780, "pixels", Derived, 780..=780 in 1..=16_384, "(4004/63 us) x (135/11 MHz)";
-        /// Lines in a frame of two fields.
+        /// Number of lines in a frame of two fields.
         frame_lines: 525, "lines", Published, 525..=525 in 2..=16_384, "NTSC: 262.5 lines a field";
-        /// Visible pixels of a line.
+        /// Number of visible pixels of a line.
         visible_pixels: 640, "pixels", Published, 640..=640 in 1..=16_384, "TR94";
-        /// Visible lines of a field.
+        /// Number of visible lines of a field.
         visible_lines: 240, "lines", Published, 240..=240 in 1..=16_384, "TR94: 480 lines in two fields";
-        /// Blanked pixel periods before the visible ones of a line.
+        /// Number of blanked pixel periods before the visible ones of a line.
         left_blanking: 140, "pixels", Assumed, 0..=140 in 0..=16_384, "all of the horizontal blanking comes first";
-        /// Blanked whole lines after a retrace. An odd field has the half line that is left over as well, so that its first line is scanned half a line later than that of an even field.
+        /// Number of blanked whole lines after a retrace. An odd field also has the remaining half line, so its first
+        /// line is scanned half a line later than in an even field.
         top_blanking: 22, "lines", Assumed, 0..=22 in 0..=16_384, "all of the vertical blanking comes first";
     }
 }
 
 parameters::parameter_table! {
-    /// The port to the ring.
+    /// Timing of the port to the ring.
     pub struct PortTiming {
-        /// Time of one word: the words of a message arrive at this distance, the last with the message.
+        /// Time of one word. The words of a message arrive this far apart, the last one with the message.
         word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94, F89: 20 Mwords/s per channel";
     }
 }
 
 impl VideoTiming {
-    /// Checks that a picture can be scanned with these numbers: each within its limits, and visible pixels and lines
-    /// with their blanking within a line and a field.
+    /// Checks that a picture can be scanned with these numbers. Each number must lie within its limits, and visible
+    /// pixels and lines with their blanking must fit into a line and a field.
     ///
     /// # Errors
     ///
-    /// [`FrameBufferConfigError::Number`] names the number, what was expected and what was found.
+    /// [`FrameBufferConfigError::Number`] with the name of the number, the expected range and the found value.
     pub fn check(&self) -> Result<(), FrameBufferConfigError> {
         ParameterTable::check(self)?;
         check("pixel_ps", self.pixel_ps, (self.pixel_divisor, MAX))?;

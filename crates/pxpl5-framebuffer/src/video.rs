@@ -1,13 +1,13 @@
-//! Where the beam is, exactly.
+//! Exact times of the video signal and the position of the beam.
 
 use crate::{FrameBufferConfigError, VideoTiming};
 use pxpl5_sim::{Clock, Time};
 use pxpl5_wire::{CopyTarget, FieldParity, Lines, PeriodNumber};
 
-/// Times of retraces, lines and pixels, all computed from zero.
+/// Times of retraces, lines and pixels, all computed from time zero.
 ///
-/// Field `n` begins at retrace `n`, scans the even lines of the frame if `n` is even, and else the odd ones. Lines
-/// follow an uninterrupted line clock; since a field has 262.5 of them, an odd field begins in the middle of one.
+/// Field `n` begins at retrace `n`. It scans the even lines of the frame if `n` is even, else the odd lines. Lines
+/// follow an uninterrupted line clock. A field has 262.5 lines, so an odd field begins in the middle of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Video {
     timing: VideoTiming,
@@ -17,11 +17,11 @@ pub struct Video {
 }
 
 impl Video {
-    /// Video of these numbers.
+    /// Makes the video signal of a timing table.
     ///
     /// # Errors
     ///
-    /// As [`VideoTiming::check`], and [`FrameBufferConfigError::Clock`].
+    /// The errors of [`VideoTiming::check`], and [`FrameBufferConfigError::Clock`].
     pub fn new(timing: VideoTiming) -> Result<Self, FrameBufferConfigError> {
         timing.check()?;
         Ok(Self {
@@ -32,26 +32,28 @@ impl Video {
         })
     }
 
-    /// The retrace at which a field starts.
+    /// Returns the time of the retrace at which a field starts.
     #[must_use]
     pub const fn retrace(&self, field: PeriodNumber) -> Time {
         self.field.edge(field.0)
     }
 
-    /// The field that is being scanned at `time`; at a retrace the one that begins.
+    /// Returns the field that is being scanned at `time`. At a retrace this is the field that begins.
     #[must_use]
     pub const fn field_at(&self, time: Time) -> PeriodNumber {
         let n = self.field.edge_at_or_after(time);
         PeriodNumber(if self.field.edge(n).0 == time.0 { n } else { n - 1 })
     }
 
-    /// When the beam begins line `y` of the frame (its blanking) in a field; `None` when that field does not scan it.
+    /// Returns the time at which the beam begins line `y` of the frame (with its blanking) in a field; `None` if the
+    /// field does not scan the line.
     #[must_use]
     pub fn line_start(&self, y: u32, field: PeriodNumber) -> Option<Time> {
         Some(self.line.edge(self.line_number(y, field)?))
     }
 
-    /// When the beam is at pixel `x` of line `y` of the frame in a field; `None` when that field does not scan it.
+    /// Returns the time at which the beam is at pixel `x` of line `y` of the frame in a field; `None` if the field does
+    /// not scan the pixel.
     #[must_use]
     pub fn when(&self, x: u32, y: u32, field: PeriodNumber) -> Option<Time> {
         if x >= self.width() {
@@ -62,33 +64,34 @@ impl Video {
         Some(self.pixel.edge(blanked.saturating_add(u64::from(x))))
     }
 
-    /// When the beam is at the first pixel of a region that a field scans: the region must have arrived by then.
-    /// `None` for a region outside of the frame, or without a line in that field.
+    /// Returns the time at which the beam reaches the first pixel of a region in a field. The region must have arrived
+    /// by then.
+    /// Returns `None` for a region outside the frame, or without a line in that field.
     #[must_use]
     pub fn reaches(&self, target: &CopyTarget, field: PeriodNumber) -> Option<Time> {
         let [left, top, _, height] = rectangle(self, target)?;
         (top..top + height).find_map(|row| self.when(left, frame_line(target.lines, row), field))
     }
 
-    /// Visible pixels of a line.
+    /// Returns the number of visible pixels of a line.
     #[must_use]
     pub const fn width(&self) -> u32 {
         self.timing.visible_pixels as u32
     }
 
-    /// Visible lines of a frame.
+    /// Returns the number of visible lines of a frame.
     #[must_use]
     pub const fn height(&self) -> u32 {
         self.timing.visible_lines as u32 * 2
     }
 
-    /// The numbers that all this follows from.
+    /// Returns the timing table of the signal.
     #[must_use]
     pub const fn timing(&self) -> &VideoTiming {
         &self.timing
     }
 
-    /// The number of a line since time zero. The half line of an odd field's start is blanked.
+    /// Returns the number of a line since time zero. The half line at the start of an odd field is blanked.
     fn line_number(&self, y: u32, field: PeriodNumber) -> Option<u64> {
         let parity = FieldParity::of_field(field);
         if y >= self.height() || y % 2 != parity.first_line() {
@@ -99,7 +102,7 @@ impl Video {
     }
 }
 
-/// The line of the frame that row `row` of a picture fills.
+/// Returns the line of the frame that row `row` of a picture fills.
 pub(crate) const fn frame_line(lines: Lines, row: u32) -> u32 {
     match lines {
         Lines::Frame => row,
@@ -107,8 +110,8 @@ pub(crate) const fn frame_line(lines: Lines, row: u32) -> u32 {
     }
 }
 
-/// Left, top, width and height of a region in the rows of its picture; `None` when it does not lie in the frame or is larger than a
-/// renderer's array.
+/// Returns left, top, width and height of a region in the rows of its picture.
+/// Returns `None` if the region does not lie in the frame or is larger than a renderer's array.
 pub(crate) fn rectangle(video: &Video, target: &CopyTarget) -> Option<[u32; 4]> {
     let rows = match target.lines {
         Lines::Frame => video.height(),

@@ -1,4 +1,4 @@
-//! Buffers, swaps and what is seen, rule by rule.
+//! Tests of buffers, swaps and scanned fields, rule by rule.
 
 mod support;
 
@@ -19,7 +19,7 @@ fn word(picture: &RgbImage, x: u32, y: u32) -> u32 {
     u32::from_be_bytes([0, red, green, blue])
 }
 
-/// A board whose buffer 0 is red and buffer 1 green before field 2 begins.
+/// Makes a board whose buffer 0 is red and buffer 1 green before field 2 begins.
 fn painted() -> Board {
     let mut board = Board::new();
     for region in 0..20 {
@@ -124,7 +124,8 @@ fn two_fields_make_an_interlaced_frame_in_either_order() {
     assert_eq!([0, 1].map(|y| word(&alone, 0, y)), [RED, 0]);
 }
 
-/// The last pixel of a message arrives with it: message 0 of a field region ends with row 7, pixel 127.
+/// The last pixel of a message arrives at the time of the message: message 0 of a field region ends with row 7, pixel
+/// 127.
 #[test]
 fn a_word_that_arrives_with_the_beam_is_seen_and_one_a_picosecond_later_is_not() {
     for (late, expected) in [(0, GREEN), (1, RED)] {
@@ -254,7 +255,7 @@ fn what_cannot_be_seen_any_more_is_forgotten() {
         board.run();
     }
     let alive = images.iter().filter(|image| image.strong_count() > 0).count();
-    // Two buffers of two fields of ten regions, and what the two remembered fields hold of older ones.
+    // Two buffers hold two fields of ten regions each; the two remembered fields hold older ones.
     assert!((40..=80).contains(&alive), "{alive}");
 }
 
@@ -346,7 +347,7 @@ fn a_board_that_cannot_be_built_says_why() {
     assert_eq!(error.to_string(), "frame buffer: fields_kept must be 1 to 1000, found 0");
 }
 
-/// Regions 0 of a field, one after the other, each complete at a time; how many of its lines were never shown.
+/// Writes region 0 of a field several times, complete at the given times. Returns the number of lines never shown.
 fn never_shown(parity: FieldParity, at: &[Time]) -> u64 {
     let mut board = Board::new();
     board.retraces(0..=8);
@@ -364,14 +365,15 @@ fn lines_that_are_overwritten_before_their_scan_are_counted_one_by_one() {
     let beam = |row: u32, field| video.when(0, 2 * row, PeriodNumber(field)).expect("scanned");
     let retrace = |field| video.retrace(PeriodNumber(field));
     let span = MESSAGE * 15;
-    // Between two fields of its parity nothing is lost, whether the region comes early or late in the other one.
+    // No line is lost if each picture has a field of its parity, whether the region comes early or late in the other
+    // field.
     let shown = [retrace(1) + span, retrace(3) + span, retrace(5)];
     assert_eq!(never_shown(FieldParity::Even, &shown), 0);
     // Two pictures between two fields of their parity: all 120 lines of the first are lost.
     let early = [retrace(1) + span, retrace(1) + span * 2, retrace(3) + span];
     assert_eq!(never_shown(FieldParity::Even, &early), 120);
-    // A region complete when the beam is at its row 60, its words 15 messages of 8 rows long: the rows that were there before
-    // the beam stay to be shown; those that came after it are overwritten before the next field. Row k came at
+    // A region complete when the beam is at its row 60, its words 15 messages of 8 rows long: the rows that were there
+    // before the beam stay to be shown; those that came after it are overwritten before the next field. Row k came at
     // last - (119 - k) rows of 6.5 us; the beam passes it at begin + k x 63.556 us.
     let last = beam(60, 2);
     let late_rows = (0..120).filter(|row| {
@@ -396,7 +398,7 @@ fn a_buffer_that_is_not_displayed_shows_nothing() {
             &colour(RED),
         );
     }
-    // Picture 0 is overwritten unseen; picture 1 is shown in fields 4 and 5.
+    // Picture 0 is overwritten before it is shown; picture 1 is shown in fields 4 and 5.
     board.swap(Time(retrace(4).0 - 1), 1);
     board.swap(Time(retrace(6).0 - 1), 0);
     board.run();

@@ -1,4 +1,5 @@
-//! The NTSC display as the machine knows it: an independent model of the beam and of a screen says what stands before a viewer.
+//! Tests of the NTSC display through its interface. An independent model of beam and screen gives the expected
+//! pictures.
 
 mod support;
 
@@ -16,19 +17,19 @@ use support::{WORD, n_parts};
 
 const NODES: [NodeId; 2] = [NodeId(30), NodeId(31)];
 const SIZE: [u32; 2] = [640, 480];
-/// From a retrace to the first line that is seen more than a millisecond passes.
+/// More than a millisecond passes from a retrace to the first visible line.
 const BEFORE_THE_PICTURE: Span = Span::from_us(200);
 
 fn video() -> Video {
     Video::new(FrameBufferConfig::NTSC.video).expect("the papers' numbers")
 }
 
-/// The colour of a pixel of a picture: its row, its column, and which picture it is.
+/// Returns the colour of a pixel, which encodes its row, column and picture.
 const fn colour_at(x: u32, y: u32, picture: u8) -> [u8; 3] {
     [y as u8, x as u8, picture]
 }
 
-/// The part of a picture in a region.
+/// The pixels of a picture within a region.
 #[derive(Debug)]
 struct Painted {
     rectangle: [u32; 4],
@@ -46,7 +47,7 @@ impl PixelSource for Painted {
     }
 }
 
-/// A display on a bench, and how far its ticks are scheduled.
+/// A display on a test bench, with the number of scheduled ticks.
 struct Rig {
     display: Box<dyn Display>,
     bench: TestBench<DisplayEvent, DisplayOutput>,
@@ -68,7 +69,7 @@ impl Rig {
         self.bench.feed(at, Phase::Arrive, DisplayEvent::Delivered { port, body });
     }
 
-    /// A whole picture for a port, all of whose messages arrive at an instant.
+    /// Sends a whole picture to a port. All its messages arrive at one instant.
     fn paint(&mut self, at: Time, port: usize, buffer: u8, picture: u8) {
         for region in 0..RegionGrid::FRAME.regions() as u16 {
             let (lines, grid, region) = (Lines::Frame, RegionGrid::FRAME, RegionId(region));
@@ -93,12 +94,13 @@ impl Rig {
     }
 }
 
-/// The picture that is painted for the left eye before the first line of a field is scanned.
+/// Returns the number of the picture that is sent to the left eye before the first line of a field is scanned.
 const fn picture_of(field: u64) -> u8 {
     10 + field as u8
 }
 
-/// A display of which fields 0 to `last` have begun, each with its own picture before the left eye; of the last one nothing is scanned.
+/// Makes a display with fields 0 to `last`, each with a picture of its own for the left eye. Field `last` has begun,
+/// but no pixel of it is scanned.
 fn coloured(last: u64) -> Rig {
     let mut rig = Rig::new();
     for field in 0..=last {
@@ -110,7 +112,8 @@ fn coloured(last: u64) -> Rig {
     rig
 }
 
-/// What stands before the left eye at an instant of field `now`: a pixel is of the picture of the last field that has lit it.
+/// Returns the expected screen of the left eye at an instant of field `now`: each pixel shows the picture of the last
+/// field that lit it.
 fn screen(now: u64, time: Time) -> RgbImage {
     let video = video();
     RgbImage::from_fn(SIZE[0], SIZE[1], |x, y| {
@@ -119,7 +122,7 @@ fn screen(now: u64, time: Time) -> RgbImage {
     })
 }
 
-/// The same pixels, with the first that differs where they are not.
+/// Asserts that two pictures are equal, and names the first different pixel.
 fn assert_same(found: Option<RgbImage>, expected: &RgbImage, what: &str) {
     let found = found.unwrap_or_else(|| panic!("{what}: nothing"));
     assert_eq!(found.dimensions(), expected.dimensions(), "{what}");
@@ -218,7 +221,7 @@ fn a_viewer_sees_each_line_as_the_beam_drew_it_last() {
     let black = RgbImage::new(SIZE[0], SIZE[1]);
     assert_same(rig.display.seen(1, PeriodNumber(3)), &black, "the other eye");
 
-    // Before, at and behind the pixel that the beam is at.
+    // Instants before, at and after the pixel under the beam.
     let at = video().when(300, 201, PeriodNumber(3)).expect("an odd field has the odd lines");
     for time in [Time(at.0 - 1), at, end_of(3)] {
         assert_same(rig.display.seen_at(0, time), &screen(3, time), &format!("{time}"));

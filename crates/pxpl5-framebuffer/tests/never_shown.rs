@@ -1,5 +1,5 @@
-//! Lines that are overwritten before the beam has shown all of them, against a model that asks of every pixel: was its old word there when
-//! the beam came, and the new one not yet?
+//! Compares the number of lines overwritten before the beam had shown them with a model. For every pixel the model
+//! checks that at the scan its old word was there and its new word was not.
 
 mod support;
 
@@ -8,17 +8,17 @@ use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, FieldParity, Lines, PeriodNumber, RegionGrid};
 use support::{Board, MESSAGE, colour, n_parts, target};
 
-/// Fields that begin during a test.
+/// Number of fields of a test.
 const FIELDS: u64 = 8;
 
-/// Where a region comes, and when the beam meets one of its words.
+/// The time of a region, given by the meeting of the beam with one of its words.
 #[derive(Clone, Copy, Debug)]
 struct Met {
     field: u64,
-    /// Row of the region, as a part of all of them in thousandths, and whether it is the row's last pixel instead of the first.
+    /// Row in thousandths of the region's height, and true for the last pixel of the row instead of the first.
     row: u32,
     last: bool,
-    /// How much later than the beam the word comes, picoseconds.
+    /// Delay of the word after the beam, in picoseconds.
     later: i64,
 }
 
@@ -28,7 +28,7 @@ fn met(fields: std::ops::Range<u64>) -> impl Strategy<Value = Met> {
     all.prop_map(|(field, row, last, later)| Met { field, row, last, later })
 }
 
-/// A region of which two pictures come one after the other, and of 50 ns, the time of a word.
+/// A region that is written twice, and the word time in units of 50 ns.
 #[derive(Clone, Copy, Debug)]
 struct Place(CopyTarget, u64);
 
@@ -47,8 +47,8 @@ impl Place {
         }
     }
 
-    /// When the word of pixel `i` comes, picoseconds after that of the first message's last word; messages follow each other on the
-    /// ring and end with their last word, those before it a word's time apart.
+    /// Returns the arrival time of the word of pixel `i` in picoseconds after the last word of the first message.
+    /// Messages follow each other and end with their last word; earlier words come a word time apart.
     fn comes(self, i: u32) -> i64 {
         let [_, _, width, height] = self.rectangle();
         let message_end = (width * height).min((i / 1_024 + 1) * 1_024);
@@ -56,7 +56,8 @@ impl Place {
         slowness * (MESSAGE.0 as i64 * i64::from(i / 1_024) - 50_000 * i64::from(message_end - 1 - i))
     }
 
-    /// When the first message of a picture is there whose word comes where a [`Met`] says.
+    /// Returns the arrival time of the first message of a picture, so that one word meets the beam as [`Met`]
+    /// describes.
     fn begins(self, board: &Board, met: Met) -> i64 {
         let [left, _, width, height] = self.rectangle();
         let row = met.row * height / 1_000;
@@ -67,7 +68,7 @@ impl Place {
         beam.expect("one of two fields has the line").0 as i64 + met.later - self.comes(row * width + column)
     }
 
-    /// Rows of the older picture of which no field has shown every pixel.
+    /// Returns the number of rows of the older picture of which no field has shown every pixel.
     fn never_shown(self, board: &Board, [older, newer]: [i64; 2]) -> u64 {
         let [left, _, width, height] = self.rectangle();
         let shows = |field, row: u32| {
@@ -88,7 +89,7 @@ fn places() -> impl Strategy<Value = Place> {
         Just((Lines::Field(FieldParity::Even), RegionGrid::FIELD)),
         Just((Lines::Field(FieldParity::Odd), RegionGrid::FIELD)),
         Just((Lines::Field(FieldParity::Odd), cut)),
-        // Regions of one message, all of whose rows the beam may meet while they come.
+        // Regions of one message. The beam may meet any of its rows during the arrival.
         (1..9_u32).prop_map(|region_height| {
             (Lines::Field(FieldParity::Even), RegionGrid { region_height, ..RegionGrid::FIELD })
         }),

@@ -1,4 +1,4 @@
-//! What is seen, pixel by pixel, against a model that asks of every pixel which word had arrived last.
+//! Compares scanned fields pixel by pixel with a model that finds for every pixel the last word that had arrived.
 
 mod support;
 
@@ -9,7 +9,7 @@ use pxpl5_wire::{CopyTarget, FieldParity, Lines, PeriodNumber, RegionGrid};
 use std::sync::Arc;
 use support::{Board, Counted, MESSAGE, n_parts, source, target};
 
-/// The scanned field.
+/// Number of the scanned field.
 const FIELD: u64 = 5;
 const BEGINS: u64 = 83_416_666_666;
 const ENDS: u64 = 100_100_000_000;
@@ -18,10 +18,10 @@ const ENDS: u64 = 100_100_000_000;
 struct Copied {
     target: CopyTarget,
     image: Arc<Counted>,
-    /// When message 0 arrived.
+    /// Arrival time of message 0.
     first_at: u64,
     gap: u64,
-    /// Of 50 ns, the time of a word.
+    /// Word time in units of 50 ns.
     slowness: u64,
 }
 
@@ -34,8 +34,8 @@ impl Copied {
         }
     }
 
-    /// When the word of pixel `i` arrived: the last word of its message came with it, those before a word's time apart. Of a message that is
-    /// under way at the end of the field the board knows nothing.
+    /// Returns the arrival time of the word of pixel `i`. The last word of a message arrives with it, earlier words a
+    /// word time apart. Words of a message that has not ended at the end of the field do not count.
     fn arrival(&self, i: u32) -> u64 {
         let [_, _, width, height] = self.target.grid.rectangle(self.target.region);
         let message_end = (width * height).min((i / 1_024 + 1) * 1_024);
@@ -46,7 +46,7 @@ impl Copied {
         message_at - 50_000 * self.slowness * u64::from(message_end - 1 - i)
     }
 
-    /// Calls with column, frame line and number of each pixel.
+    /// Calls `call` with column, frame line and number of each pixel.
     fn each_pixel(&self, mut call: impl FnMut(u32, u32, u32)) {
         let [left, top, width, height] = self.target.grid.rectangle(self.target.region);
         for i in 0..width * height {
@@ -55,8 +55,8 @@ impl Copied {
     }
 }
 
-/// When the odd field 5 scans a pixel, from the standard: the frame before it has 2 x 525 lines, the even field's
-/// 262.5 and the half, 22 blank ones.
+/// Returns the time at which odd field 5 scans a pixel, from the standard: two frames of 525 lines, 262.5 lines of the
+/// even field and the half line, 22 blank lines.
 fn scanned_at(x: u32, y: u32) -> Option<u64> {
     let line = 2 * 525 + 263 + 22 + u64::from(y / 2);
     (y % 2 == 1).then(|| (line * 780 + 140 + u64::from(x)) * 11_000_000 / 135)
@@ -101,7 +101,7 @@ fn seen(copies: &[Copied], shuffle: u64) -> SeenField {
     board.device.seen(PeriodNumber(FIELD)).expect("kept")
 }
 
-/// Per pixel the youngest word that had arrived when it was scanned.
+/// Returns for each pixel the newest word that had arrived when it was scanned.
 fn model_picture(copies: &[Copied]) -> Vec<u32> {
     let mut words = vec![0; 640 * 240];
     for copy in copies {
@@ -127,7 +127,7 @@ fn model_late(copy: &Copied) -> Option<SeenLateRegion> {
     });
     lines.dedup();
     let last_at = copy.first_at + copy.gap * u64::from(n_parts(&copy.target) - 1);
-    // Of a region whose first message is still under way at the end the board knows nothing.
+    // A region counts as unknown if its first message has not ended at the end of the field.
     (copy.first_at < ENDS && !lines.is_empty()).then(|| SeenLateRegion {
         target: copy.target,
         arrived_at: (last_at < ENDS).then_some(Time(last_at)),
@@ -154,7 +154,7 @@ proptest! {
     }
 }
 
-/// A message that arrives at the instant of a retrace is seen or not, and listed or not, whatever comes first.
+/// A message at the instant of a retrace gives the same result in any order of the events.
 #[test]
 fn simultaneous_events_commute() {
     let image = source(1, 1, 128 * 128);
@@ -178,12 +178,12 @@ fn simultaneous_events_commute() {
     assert!(results.iter().all(|result| *result == results[0]));
 }
 
-/// A board that remembers more than the last two fields.
+/// Makes a board that remembers more than two fields.
 fn remembering() -> Board {
     Board::with(FrameBufferConfig { fields_kept: 8, ..FrameBufferConfig::NTSC })
 }
 
-/// Two fields of one frame, written in one colour each.
+/// Makes a board with two fields of one frame, each in one colour.
 fn two_fields() -> Board {
     let mut board = Board::new();
     board.retraces(0..=6);
@@ -216,7 +216,7 @@ fn two_fields_of_a_frame_lie_between_each_other_whichever_is_named_first() {
     }
 }
 
-/// Of two fields of the same lines the later one is shown, on a black frame.
+/// If both fields have the same parity, the later one is shown on a black frame.
 #[test]
 fn two_fields_of_the_same_lines_give_the_later_one() {
     let mut board = remembering();
@@ -253,10 +253,11 @@ fn a_field_knows_which_buffer_was_scanned_and_the_last_one_is_the_last_scanned()
     assert_eq!(board.device.displayed(), 1);
 }
 
-/// A region that came whole before its field, or began after it, is not late in it; the one between is.
+/// A region is late only if it arrives while the field is scanned.
 #[test]
 fn late_is_what_came_while_its_field_was_scanned() {
-    // The first of its 16 messages comes 15 before the last: where that is the end of the field, either may come first.
+    // The first of its 16 messages comes 15 messages before the last. At the end of the field, either event may come
+    // first.
     let begins_at_the_end = ENDS + MESSAGE.0 * 15;
     let cases = [(BEGINS, false), (BEGINS + MESSAGE.0 * 60, true), (begins_at_the_end, false)];
     for ((last, is_late), shuffle) in cases.into_iter().flat_map(|case| (0..8).map(move |shuffle| (case, shuffle))) {
@@ -271,7 +272,8 @@ fn late_is_what_came_while_its_field_was_scanned() {
     }
 }
 
-/// The second of a region's two messages comes at the very end of the field: whichever comes first, its words were not there.
+/// The second message of a region comes exactly at the end of the field. In either order of events, its words count as
+/// missing.
 #[test]
 fn a_message_that_comes_with_the_end_of_a_field_has_not_come() {
     let grid = RegionGrid { region_height: 16, ..RegionGrid::FIELD };
@@ -295,7 +297,7 @@ fn a_message_that_comes_with_the_end_of_a_field_has_not_come() {
     }
 }
 
-/// Of a region that begins as the field ends that field has nothing to say, whichever is known first.
+/// A region that begins at the end of a field is not late in that field, in either order of events.
 #[test]
 fn a_region_that_begins_with_the_end_of_a_field_is_not_late_for_it() {
     let grid = RegionGrid { region_height: 16, ..RegionGrid::FIELD };

@@ -1,20 +1,20 @@
-//! A board alone, for tests of programs.
+//! A test bench with one board, for tests of programs.
 
 use crate::board::{GpBoard, GpEvent, GpOutput};
 use pxpl5_sim::{Phase, TestBench, Time};
 use pxpl5_wire::Message;
 
-/// A board on a bench of its own, as [`TestBench`] is for any device: whoever holds it says what other boards would have said.
+/// A board with its events in a [`TestBench`]. The test supplies the messages and acceptances of other boards.
 #[derive(Debug)]
 pub struct BoardBench {
-    /// The board with its programs.
+    /// The board under test with its programs.
     pub board: GpBoard,
     bench: TestBench<GpEvent, GpOutput>,
     accepted: usize,
 }
 
 impl BoardBench {
-    /// The board is switched on at time zero.
+    /// Makes a bench and schedules the first poll of the programs at time zero.
     #[must_use]
     pub fn new(board: GpBoard) -> Self {
         let mut bench = TestBench::new();
@@ -22,12 +22,12 @@ impl BoardBench {
         Self { board, bench, accepted: 0 }
     }
 
-    /// Something arrives at the board at an instant.
+    /// Schedules an event for the board at an instant, in phase `Arrive`.
     pub fn feed(&mut self, at: Time, event: GpEvent) {
         self.bench.feed(at, Phase::Arrive, event);
     }
 
-    /// Receivers accept, at an instant, all messages that the board has sent and of which they had not said so.
+    /// Accepts, at an instant, all messages that the board has sent and that were not accepted before.
     pub fn accept_all(&mut self, at: Time) {
         while let Some((_, GpOutput::Send { ticket, .. })) = self.bench.outputs.get(self.accepted) {
             let accepted = GpEvent::Accepted(*ticket);
@@ -36,12 +36,12 @@ impl BoardBench {
         }
     }
 
-    /// Goes on up to and including an instant.
+    /// Handles all events up to and including an instant.
     pub fn run_until(&mut self, until: Time) {
         self.bench.run_until(until, |event, context| self.board.handle(event, context));
     }
 
-    /// What it has sent and when, in order.
+    /// Returns the sent messages with the times at which they left the board, in order.
     pub fn sent(&self) -> impl Iterator<Item = (Time, &Message)> {
         self.bench.outputs.iter().map(|(time, GpOutput::Send { message, .. })| (*time, message))
     }

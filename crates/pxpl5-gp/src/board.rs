@@ -1,4 +1,4 @@
-//! The board: it polls its programs whenever something has happened to them.
+//! The graphics processor board: it polls its programs after each event that can end one of their waits.
 
 use crate::cpu::{Cpu, Priority};
 use crate::firmware::{Cause, ChainLink, Fault, Firmware, Gp, Shared, Wait};
@@ -15,43 +15,43 @@ use std::fmt;
 use std::rc::Rc;
 use std::task::{Context as TaskContext, Poll, Waker};
 
-/// What can happen to the board.
+/// An event of a graphics processor board.
 #[derive(Clone, Debug)]
 pub enum GpEvent {
     /// The last word of a message has arrived (phase `Arrive`).
     Delivered(Message),
-    /// A receiver has accepted a message of a batch (phase `Arrive`).
+    /// A receiver has accepted a message of a batch (phase `Arrive`). The number is the ticket of [`GpOutput::Send`].
     Accepted(u64),
     /// A field begins (phase `Arrive`).
     Retrace(PeriodNumber),
     /// A status line of another board changes (phase `Arrive`).
     Status {
-        /// The port of that board.
+        /// Port of the board whose line changes.
         from: NodeId,
-        /// What the line says from now on.
+        /// New value of the line.
         value: u64,
     },
-    /// The programs look at what has arrived.
+    /// The programs run and read the arrivals of this instant.
     Poll,
-    /// The running work may end: where an interrupt has delayed it, it does so later.
+    /// The running work may end now. An interrupt may have delayed the end to a later time.
     WorkEnds,
 }
 
-/// What leaves the board for others.
+/// Output of a graphics processor board.
 #[derive(Debug)]
 pub enum GpOutput {
-    /// A message for the ring; `ticket` comes back when it was accepted.
+    /// A message for the ring. `ticket` comes back in [`GpEvent::Accepted`].
     Send {
-        /// What is sent, with its destination.
+        /// Message with its destination.
         message: Message,
-        /// Its batch, and its place in it in the lower [`PLACE_BITS`].
+        /// Number of the batch, with the place of the message in the batch in the lower [`PLACE_BITS`].
         ticket: u64,
-        /// Whether the receiver's port stays reserved for the next message.
+        /// True if the receiver's port stays reserved for the next message.
         hold: bool,
     },
 }
 
-/// Bits of a ticket that give the place of a message in its batch.
+/// Number of bits of a ticket that hold the place of a message in its batch.
 pub const PLACE_BITS: u32 = 20;
 const PLACE_MASK: u64 = (1 << PLACE_BITS) - 1;
 
@@ -61,11 +61,12 @@ struct Task {
     has_ended: bool,
 }
 
-/// One board with its programs.
+/// A graphics processor board with its programs.
 pub struct GpBoard {
     shared: Rc<RefCell<Shared>>,
     tasks: Vec<Task>,
-    /// Instants at which an end of work is scheduled: the next end, and earlier announcements that an interrupt has delayed.
+    /// Instants at which a [`GpEvent::WorkEnds`] is scheduled: the next end of work, and ends that an interrupt has
+    /// delayed.
     announced: Vec<Time>,
     poll_pending: bool,
     cycle: Span,
@@ -79,7 +80,7 @@ impl fmt::Debug for GpBoard {
 }
 
 impl GpBoard {
-    /// A board at a port, without a program. `cycle` is the time that anything needs to leave it.
+    /// Makes a board at a port of the ring, without a program. `cycle` is the delay of every output of the board.
     #[must_use]
     pub fn new(node: NodeId, timing: GpTiming, cycle: Span) -> Self {
         let shared = Shared {
@@ -109,8 +110,9 @@ impl GpBoard {
         Self { shared, tasks: Vec::new(), announced: Vec::new(), poll_pending: false, cycle, fault: None }
     }
 
-    /// Has the time of [`Work`](crate::Work) come from this code on such a core from now on, whatever the timing table says; what is
-    /// known of its programs is shared with the boards of the same shelf.
+    /// Takes the time of [`Work`](crate::Work) from i860 code on a core with this configuration, instead of the timing
+    /// table.
+    /// Boards with the same shelf share decoded programs and their clocks.
     pub fn run_code(&mut self, version: CodeVersion, core: i860::Config, shelf: &Rc<RefCell<i860::Shelf>>) {
         let shared = &mut *self.shared.borrow_mut();
         let mut processor = Processor::new(shared.node, shared.timing.memory_bytes, version, core);
@@ -118,20 +120,20 @@ impl GpBoard {
         shared.processor = Some(Box::new(processor));
     }
 
-    /// Has the processor that runs code memoise nothing; to be called before programs run.
+    /// Turns memoization of the processor off, so that every clock is counted. Must be called before programs run.
     pub fn count_every_clock(&mut self) {
         if let Some(processor) = &mut self.shared.borrow_mut().processor {
             processor.count_every_clock();
         }
     }
 
-    /// A handle to the board for a program of a priority.
+    /// Returns a handle to the board for a program of a priority.
     #[must_use]
     pub fn handle_for(&self, priority: Priority) -> Gp {
         Gp { shared: Rc::clone(&self.shared), priority }
     }
 
-    /// Loads a program; there is one for each priority.
+    /// Loads a program. Each priority may have one program.
     pub fn load(&mut self, priority: Priority, firmware: Firmware) {
         self.shared.borrow_mut().waits[priority as usize] = Wait::TO_BEGIN;
         self.tasks.push(Task { firmware, priority, has_ended: false });
@@ -142,6 +144,7 @@ impl GpBoard {
     pub fn handle(&mut self, event: GpEvent, context: &mut Context<GpEvent, GpOutput>) {
         let mut shared = self.shared.borrow_mut();
         shared.now = context.now();
+        // Record the event; the programs see it at their next poll.
         let cause = match event {
             GpEvent::Delivered(message) => shared.latch(message),
             GpEvent::Accepted(ticket) => shared.note_accepted(ticket >> PLACE_BITS, ticket & PLACE_MASK),
@@ -156,13 +159,14 @@ impl GpBoard {
                 return self.end_of_work(context);
             }
         };
+        // Poll only if the event can end a wait, and only once for all events of an instant.
         if !self.poll_pending && shared.is_woken_by(cause) {
             self.poll_pending = true;
             context.schedule(context.now(), Phase::Work, GpEvent::Poll);
         }
     }
 
-    /// The programs look at this instant's arrivals together, if one of them waits for such.
+    /// Polls the programs, starts the next batch of messages and schedules the end of work.
     fn work(&mut self, context: &mut Context<GpEvent, GpOutput>) {
         self.poll_pending = false;
         {
@@ -182,7 +186,7 @@ impl GpBoard {
         self.announce(end, context);
     }
 
-    /// Lets the programs go on if work ends now. An interrupt may have delayed it since its end was announced.
+    /// Polls the programs if work ends now. An interrupt may have delayed the end since the event was scheduled.
     fn end_of_work(&mut self, context: &mut Context<GpEvent, GpOutput>) {
         let now = context.now();
         self.announced.retain(|at| *at > now);
@@ -191,7 +195,7 @@ impl GpBoard {
         }
     }
 
-    /// Schedules an event at the end of work, once.
+    /// Schedules [`GpEvent::WorkEnds`] at an instant, unless it is scheduled there already.
     fn announce(&mut self, end: Option<Time>, context: &mut Context<GpEvent, GpOutput>) {
         if let Some(end) = end.filter(|end| !self.announced.contains(end)) {
             self.announced.push(end);
@@ -199,8 +203,9 @@ impl GpBoard {
         }
     }
 
-    /// Asks programs in turn until all of them wait for what another would have to do. A program goes as far as it can when it is asked,
-    /// so it is asked again only when another has come on since.
+    /// Polls the programs in turn until all of them wait for an event outside the board.
+    /// Each poll runs a program as far as possible, so another poll makes sense only after the other program has
+    /// progressed.
     fn poll_until_quiet(&mut self) {
         let mut task_context = TaskContext::from_waker(Waker::noop());
         let mut quiet = 0;
@@ -227,7 +232,7 @@ impl GpBoard {
         }
     }
 
-    /// Ends all programs where a fault of the board's own software has stopped it.
+    /// Ends all programs if a fault of the board's own software has stopped the board. Returns true if it did.
     fn stop(&mut self) -> bool {
         let Some(fault) = self.shared.borrow_mut().stopped_by.take() else { return false };
         self.fault.get_or_insert(fault);
@@ -235,13 +240,13 @@ impl GpBoard {
         true
     }
 
-    /// The fault that stopped a program, or the board.
+    /// Returns the fault that stopped a program or the board.
     #[must_use]
     pub const fn fault(&self) -> Option<&Fault> {
         self.fault.as_ref()
     }
 
-    /// Takes what the programs have told the observer, in order.
+    /// Removes the marks that the programs have recorded and passes them to `take`, in order.
     pub fn drain_marks(&mut self, take: impl FnMut(Mark)) {
         let marks = &mut self.shared.borrow_mut().marks;
         if !marks.is_empty() {
@@ -249,56 +254,59 @@ impl GpBoard {
         }
     }
 
-    /// CPU time spent so far.
+    /// Returns the CPU time spent so far.
     #[must_use]
     pub fn busy(&self) -> Span {
         self.shared.borrow().cpu.busy()
     }
 
-    /// Vertices that its programs have transformed since the start: see [`Work::vertex_transforms`](crate::Work::vertex_transforms).
+    /// Returns the number of vertices that the programs have transformed
+    /// ([`Work::vertex_transforms`](crate::Work::vertex_transforms)).
     #[must_use]
     pub fn vertex_transforms(&self) -> u64 {
         self.shared.borrow().vertex_transforms
     }
 
-    /// Most bytes of memory ever in use.
+    /// Returns the greatest number of memory bytes in use at any time so far.
     #[must_use]
     pub fn memory_peak_bytes(&self) -> u64 {
         self.shared.borrow().memory.peak()
     }
 
-    /// What the board does at an instant that is not before the last event. Looking changes nothing.
+    /// Returns a snapshot of the board at an instant that is not before the last event. The board stays unchanged.
     #[must_use]
     pub fn look(&self, now: Time) -> GpLook {
         GpLook::of(&self.shared.borrow(), self.tasks.iter().map(|task| task.priority), now)
     }
 
-    /// Shows somebody the processor, where the time of work comes from code.
+    /// Calls `look` with the processor, if the time of work comes from code.
     pub fn with_processor<T>(&self, look: impl FnOnce(&Processor) -> T) -> Option<T> {
         self.shared.borrow().processor.as_deref().map(look)
     }
 
-    /// Has calls keep what they find at some addresses of code ([`Processor::break_at`]); without a processor nothing happens.
+    /// Sets the code addresses at which calls record [`BreakpointHit`]s ([`Processor::break_at`]). Without a processor
+    /// this does nothing.
     pub fn break_at(&mut self, addresses: &BTreeSet<u32>) {
         if let Some(processor) = &mut self.shared.borrow_mut().processor {
             processor.break_at(addresses.clone());
         }
     }
 
-    /// Breakpoints that were met since the last call of this.
+    /// Returns and removes the breakpoint hits since the last call of this function.
     #[must_use]
     pub fn take_hits(&mut self) -> Vec<BreakpointHit> {
         self.shared.borrow_mut().processor.as_mut().map(|processor| processor.take_hits()).unwrap_or_default()
     }
 
-    /// Returns the name of the wait that keeps the board from going on: the foreground's, if it waits, else the interrupt's.
+    /// Returns the name of the wait that blocks the board: the foreground's wait if the foreground waits, else the
+    /// interrupt's.
     #[must_use]
     pub fn blocked(&self, name: &str) -> Option<Blocked> {
         let waits_for = self.wait()?.what.to_owned();
         Some(Blocked { board: name.to_owned(), waits_for })
     }
 
-    /// Returns true if the board waits for something that no retrace brings.
+    /// Returns true if the board waits for an event other than a retrace.
     #[must_use]
     pub fn waits_for_a_board(&self) -> bool {
         self.wait().is_some_and(|wait| wait.ended_by != Cause::Retrace)

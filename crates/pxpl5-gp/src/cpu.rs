@@ -1,13 +1,13 @@
-//! The processor's time, shared by the programs of two priorities.
+//! CPU time of a board, shared by the programs of two priorities.
 
 use pxpl5_sim::{Span, Time};
 
-/// Which program may interrupt which.
+/// CPU priority of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Priority {
-    /// Runs at once; the foreground stands still meanwhile.
+    /// The interrupt program. The foreground stands still while it spends time.
     Interrupt,
-    /// Runs while no interrupt program spends time.
+    /// The foreground program. It runs while the interrupt program spends no time.
     Foreground,
 }
 
@@ -15,7 +15,7 @@ impl Priority {
     pub(crate) const ALL: [Self; 2] = [Self::Interrupt, Self::Foreground];
 }
 
-/// Time that the program of each priority still has to spend, and who is running.
+/// Remaining CPU time of the program of each priority, and the running program.
 #[derive(Debug, Default)]
 pub(crate) struct Cpu {
     remaining: [Option<Span>; 2],
@@ -24,14 +24,14 @@ pub(crate) struct Cpu {
 }
 
 impl Cpu {
-    /// The program of a priority begins to spend `span`.
+    /// Starts CPU work of length `span` for the program of a priority.
     pub(crate) fn begin(&mut self, priority: Priority, span: Span, now: Time) {
         self.settle(now);
         self.remaining[priority as usize] = Some(span);
         self.dispatch(now);
     }
 
-    /// Brings the accounts up to `now`; work that ends exactly now is finished, whoever asks first.
+    /// Advances the accounts to `now`. Work that ends exactly at `now` is finished.
     pub(crate) fn settle(&mut self, now: Time) {
         let Some((priority, since)) = self.running else {
             return;
@@ -48,18 +48,18 @@ impl Cpu {
         self.running = first.map(|priority| (priority, now));
     }
 
-    /// Whether the program of a priority has spent all it asked for.
+    /// Returns true if the program of a priority has spent all its requested time.
     pub(crate) fn is_done(&self, priority: Priority) -> bool {
         self.remaining[priority as usize].is_none()
     }
 
-    /// When the running work ends, if nothing interrupts it.
+    /// Returns the end of the running work without further interrupts.
     pub(crate) fn next_end(&self) -> Option<Time> {
         let (priority, since) = self.running?;
         Some(since + self.remaining[priority as usize]?)
     }
 
-    /// What is left at an instant of the work of a priority; `None` where it has none.
+    /// Returns the remaining work of a priority at an instant; `None` if it has none.
     pub(crate) fn left(&self, priority: Priority, now: Time) -> Option<Span> {
         let left = self.remaining[priority as usize]?;
         match self.running {
@@ -68,7 +68,6 @@ impl Cpu {
         }
     }
 
-    /// Time spent so far.
     pub(crate) const fn busy(&self) -> Span {
         self.busy
     }

@@ -14,61 +14,62 @@ use std::pin::Pin;
 use std::rc::Rc;
 use std::task::Poll;
 
-/// A program loaded onto a board; it ends only with a fault. It waits for one thing at a time: of futures that are polled side by side the
-/// board would know the last one's wait alone.
+/// A program on a board. It ends only with a fault.
+/// A program must wait for one future at a time. If it polls several futures side by side, the board knows only the
+/// last wait.
 pub type Firmware = Pin<Box<dyn Future<Output = Result<(), Fault>>>>;
 
 /// A fault of the simulated machine that stops a program.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Fault {
-    /// Something did not fit into the board's memory.
+    /// Data did not fit into the board's memory.
     #[error(transparent)]
     Memory(#[from] OutOfMemory),
-    /// A message that the program does not understand.
+    /// A message that the program does not expect.
     #[error("node {}: unexpected message {found}", node.0)]
     Protocol {
-        /// The port of the board.
+        /// Port of the board that received the message.
         node: NodeId,
-        /// What arrived, in words.
+        /// Description of the message.
         found: String,
     },
-    /// Code did not come to its end.
+    /// i860 code trapped, did not end or had no memory.
     #[error(transparent)]
     Processor(#[from] ProcessorFault),
 }
 
-/// A message and when its last word arrived.
+/// A message, with the arrival time of its last word.
 #[derive(Clone, Debug)]
 pub struct Received {
-    /// When its last word had arrived.
+    /// Arrival time of the last word.
     pub arrived: Time,
-    /// The port of the sender.
+    /// Port of the sender.
     pub source: NodeId,
-    /// What it carried: words, or what makes them when asked.
+    /// Content of the message: words, commands or pixels.
     pub body: Body,
 }
 
-/// A batch of messages given to the DMA.
+/// The number of a batch of messages given to the DMA.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Ticket(pub(crate) u64);
 
-/// A chain of messages that the DMA sends at once, after the chain before has been accepted.
+/// A chain of messages that the DMA sends at once, after the previous chain was accepted.
 #[derive(Debug)]
 pub(crate) struct Batch {
     pub(crate) ticket: Ticket,
     pub(crate) links: Vec<ChainLink>,
 }
 
-/// A message in its chain.
+/// One message of a chain.
 #[derive(Debug)]
 pub(crate) struct ChainLink {
     pub(crate) message: Message,
-    /// Whether the receiver's port stays reserved for the next one.
+    /// True if the receiver's port stays reserved for the next message.
     pub(crate) hold: bool,
 }
 
-/// What the board and its programs share.
+/// State shared by the board and its programs.
 #[derive(Debug)]
 pub(crate) struct Shared {
     pub(crate) node: NodeId,
@@ -76,51 +77,52 @@ pub(crate) struct Shared {
     pub(crate) timing: GpTiming,
     pub(crate) cpu: Cpu,
     pub(crate) memory: Memory,
-    /// Where the time of work comes from code.
+    /// Processor that runs i860 code; `None` if times come from the timing table.
     pub(crate) processor: Option<Box<Processor>>,
-    /// Vertices transformed since the start.
+    /// Number of vertices transformed since the start.
     pub(crate) vertex_transforms: u64,
     pub(crate) inbox: VecDeque<Received>,
     pub(crate) batches: VecDeque<Batch>,
-    /// Receivers of the messages of the batch being sent that have not been accepted, by place in the batch.
+    /// Messages of the current batch that were not accepted yet: their places in the batch and their receivers.
     pub(crate) in_flight: Vec<(u64, NodeId)>,
-    /// Receivers that have not taken any message of that batch.
+    /// Receivers that have not accepted any message of the current batch.
     pub(crate) not_begun: Vec<NodeId>,
     pub(crate) marks: Vec<Mark>,
-    /// Ends of stages that come with the acceptance of a batch, in order.
+    /// Marks for ends of stages that wait for the acceptance of a batch, in order.
     pub(crate) ends: VecDeque<(Ticket, Mark)>,
     pub(crate) field: PeriodNumber,
     pub(crate) status: Vec<(NodeId, u64)>,
-    /// Last batch of which every receiver has taken a message, and last one of which all were accepted.
+    /// Number of the last batch of which every receiver has accepted a message, then number of the last completely
+    /// accepted batch.
     pub(crate) draining: u64,
     pub(crate) accepted: u64,
     pub(crate) issued: u64,
-    /// Counts completed waits, so that the board polls until nothing moves.
+    /// Number of completed waits. The board polls its programs until this number stays the same.
     pub(crate) progress: u64,
     pub(crate) waits: [Wait; 2],
-    /// What stopped the board: software of its own that no program could do anything about.
+    /// Fault of the board's own software, which stops all programs.
     pub(crate) stopped_by: Option<Fault>,
 }
 
-/// What a program waits for: its name, and what can end the wait.
+/// A wait of a program: its name, and the cause that can end it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wait {
     pub(crate) what: &'static str,
     pub(crate) ended_by: Cause,
 }
 
-/// What can end a wait.
+/// A cause that can end a wait.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Cause {
     /// The end of work on the board's CPU.
     Work,
-    /// The acceptance of a message.
+    /// The acceptance of a message by its receiver.
     Acceptance,
-    /// A message, a retrace, a status line, or the board's other program.
+    /// A message, a retrace, a status line, or progress of the board's other program.
     Arrival,
     /// A retrace, which always comes.
     Retrace,
-    /// Nothing: there is no program.
+    /// No cause: no program is loaded.
     Nothing,
 }
 
@@ -132,26 +134,27 @@ impl Cause {
 }
 
 impl Wait {
-    /// Where no program is loaded.
+    /// The wait of a priority without a program.
     pub(crate) const NONE: Self = Self { what: "", ended_by: Cause::Nothing };
 
-    /// Before a program has run for the first time.
+    /// The wait of a program that has not run yet.
     pub(crate) const TO_BEGIN: Self = Self { what: "", ended_by: Cause::Arrival };
 }
 
 impl Shared {
-    /// Whether a program's wait, or the DMA's, could be over after something has happened.
+    /// Returns true if a cause can end the wait of a program or of the DMA.
     pub(crate) fn is_woken_by(&self, cause: Cause) -> bool {
         let next_chain = cause == Cause::Acceptance && self.in_flight.is_empty() && !self.batches.is_empty();
         next_chain || self.waits.iter().any(|wait| wait.ended_by.includes(cause))
     }
 
-    /// Whether a program waits for the end of work that goes on.
+    /// Returns true if a program waits for the end of work that is not finished.
     pub(crate) fn is_at_work(&self, priority: Priority) -> bool {
         self.waits[priority as usize].ended_by == Cause::Work && !self.cpu.is_done(priority)
     }
 
-    /// Messages of one instant are kept in order of their senders, whatever the order of their events.
+    /// Adds a message to the inbox. Messages of one instant are sorted by sender, so that the order of their events
+    /// does not matter.
     pub(crate) fn latch(&mut self, Message { source, body, .. }: Message) -> Cause {
         let arrived = self.now;
         let before = self.inbox.iter().rposition(|other| (other.arrived, other.source) <= (arrived, source));
@@ -165,12 +168,14 @@ impl Shared {
     }
 
     pub(crate) fn note_accepted(&mut self, batch: u64, place: u64) -> Cause {
+        // Messages of a batch are accepted one by one, in any order.
         let Some(i) = self.in_flight.iter().position(|flight| flight.0 == place) else { return Cause::Acceptance };
         let (_, receiver) = self.in_flight.swap_remove(i);
         self.not_begun.retain(|node| *node != receiver);
         if self.not_begun.is_empty() {
             self.draining = batch;
         }
+        // The whole batch is accepted: stages that waited for it end now.
         if self.in_flight.is_empty() {
             self.accepted = batch;
             while let Some((_, mark)) = self.ends.front().filter(|end| end.0.0 <= batch) {
@@ -181,7 +186,7 @@ impl Shared {
         Cause::Acceptance
     }
 
-    /// The next batch, if the DMA is free.
+    /// Returns the next batch if the DMA is free, and records its receivers.
     pub(crate) fn next_batch(&mut self) -> Option<Batch> {
         let batch = if self.in_flight.is_empty() { self.batches.pop_front() } else { None }?;
         self.in_flight.extend((0..).zip(batch.links.iter().map(|link| link.message.destination)));
@@ -199,7 +204,7 @@ impl Shared {
     }
 }
 
-/// A program's handle to its board, which knows at which priority the program runs.
+/// A program's handle to its board, with the priority of the program.
 #[derive(Clone, Debug)]
 pub struct Gp {
     pub(crate) shared: Rc<RefCell<Shared>>,
@@ -207,46 +212,47 @@ pub struct Gp {
 }
 
 impl Gp {
-    /// The same board for a program of another priority.
+    /// Returns a handle to the same board for a program of another priority.
     #[must_use]
     pub fn at_priority(&self, priority: Priority) -> Self {
         Self { shared: Rc::clone(&self.shared), priority }
     }
 
-    /// The ring port of this board.
+    /// Returns the ring port of this board.
     #[must_use]
     pub fn node(&self) -> NodeId {
         self.shared.borrow().node
     }
 
-    /// The present instant of simulated time.
+    /// Returns the current simulated time.
     #[must_use]
     pub fn now(&self) -> Time {
         self.shared.borrow().now
     }
 
-    /// The board's timing table.
+    /// Returns the board's timing table.
     #[must_use]
     pub fn timing(&self) -> GpTiming {
         self.shared.borrow().timing
     }
 
-    /// The period that the first display is in: the field that is being scanned, which the last retrace began.
+    /// Returns the current field of the first display: the period that began with the last retrace.
     #[must_use]
     pub fn field(&self) -> PeriodNumber {
         self.shared.borrow().field
     }
 
-    /// The status line of another board (how often a frame buffer has swapped); zero before it first changed.
+    /// Returns the value of another board's status line, for example the number of swaps of a frame buffer. It is zero
+    /// before its first change.
     #[must_use]
     pub fn status(&self, from: NodeId) -> u64 {
         self.shared.borrow().status.iter().find(|status| status.0 == from).map_or(0, |status| status.1)
     }
 
-    /// Waits until `ready` gives something; `what` names the wait in a report of a deadlock.
+    /// Waits until `ready` returns a value. `what` names the wait in a report of a deadlock.
     ///
-    /// `ready` is asked again when a message, a retrace or a status line has arrived and when a program of this board has
-    /// come on; for the acceptance of messages there is [`Gp::accepted`].
+    /// The board calls `ready` again after a message, a retrace or a change of a status line, and after progress of
+    /// another program of this board. To wait for the acceptance of messages, use [`Gp::accepted`].
     pub async fn until<T>(&self, what: &'static str, ready: impl FnMut() -> Option<T>) -> T {
         self.wait(Wait { what, ended_by: Cause::Arrival }, ready).await
     }
@@ -283,56 +289,57 @@ impl Gp {
         self.field_from(self.field().next()).await
     }
 
-    /// Waits until the present field is `first` or a later one, and returns it.
+    /// Waits until the current field is `first` or a later one, and returns it.
     pub async fn field_from(&self, first: PeriodNumber) -> PeriodNumber {
         let wait = Wait { what: "a retrace", ended_by: Cause::Retrace };
         self.wait(wait, || Some(self.field()).filter(|field| *field >= first)).await
     }
 
-    /// Waits until the clump buffer is free: everything sent before has been accepted.
+    /// Waits until the clump buffer is free, that is, until all earlier messages were accepted.
     pub async fn clump_buffer_free(&self) {
         let issued = self.shared.borrow().issued;
         self.accepted(Ticket(issued)).await;
     }
 
-    /// Waits until every receiver of a batch has accepted a message of it: its clump buffer is being emptied.
+    /// Waits until every receiver of a batch has accepted at least one message, so that the clump buffer is being
+    /// emptied.
     pub async fn draining(&self, ticket: Ticket) {
         let wait = Wait { what: "all receivers to begin with a clump", ended_by: Cause::Acceptance };
         self.wait(wait, || (self.shared.borrow().draining >= ticket.0).then_some(())).await;
     }
 
-    /// Waits until a batch has been accepted by its receivers.
+    /// Waits until the receivers have accepted all messages of a batch.
     pub async fn accepted(&self, ticket: Ticket) {
         let wait = Wait { what: "a receiver to accept a message", ended_by: Cause::Acceptance };
         self.wait(wait, || (self.shared.borrow().accepted >= ticket.0).then_some(())).await;
     }
 
-    /// Sets the bytes that an account of the memory holds.
+    /// Sets the number of bytes that an account of the memory holds.
     ///
     /// # Errors
     ///
-    /// [`Fault::Memory`] when they do not fit.
+    /// [`Fault::Memory`] if the bytes do not fit.
     pub fn reserve(&self, account: Account, bytes: u64, region: Option<RegionId>) -> Result<(), Fault> {
         Ok(self.shared.borrow_mut().memory.set(account, bytes, region)?)
     }
 
-    /// Whether the bins of a context would fit beside those that the other context holds now.
+    /// Returns true if `bytes` of bins of a context fit beside the bins that the other context holds now.
     #[must_use]
     pub fn has_room_for_bins(&self, context: u8, bytes: u64) -> bool {
         bytes <= self.shared.borrow().memory.room_for_bins(context)
     }
 
-    /// Tells the observer that a stage begins.
+    /// Records the begin of a stage for the observer.
     pub fn begin(&self, stage: Stage, picture: PictureNumber, surface: Option<SurfaceId>) {
         self.mark(stage, picture, surface, StageEdge::Begin, self.now());
     }
 
-    /// Tells the observer that a stage ends.
+    /// Records the end of a stage for the observer.
     pub fn end(&self, stage: Stage, picture: PictureNumber, surface: Option<SurfaceId>) {
         self.mark(stage, picture, surface, StageEdge::End, self.now());
     }
 
-    /// Tells the observer that a stage ends when a batch is accepted; the program goes on.
+    /// Records the end of a stage for the time at which a batch is accepted. The program continues at once.
     pub fn end_when_accepted(&self, ticket: Ticket, stage: Stage, picture: PictureNumber) {
         let shared = &mut *self.shared.borrow_mut();
         let time = shared.now;
@@ -342,14 +349,14 @@ impl Gp {
             .push_back((ticket, Mark { time, node, picture, surface: None, stage, edge: StageEdge::End, view: None }));
     }
 
-    /// Tells the observer of a stage's edge at a time that the program has read off a message.
+    /// Records a begin or end of a stage at a time that the program has read from a message.
     pub fn mark(&self, stage: Stage, picture: PictureNumber, surface: Option<SurfaceId>, edge: StageEdge, time: Time) {
         let shared = &mut *self.shared.borrow_mut();
         let node = shared.node;
         shared.marks.push(Mark { time, node, picture, surface, stage, edge, view: None });
     }
 
-    /// Tells the observer that a stage begins on a picture that shows view number `view`.
+    /// Records the begin of a stage for a picture that shows view number `view`.
     pub fn begin_view(&self, stage: Stage, picture: PictureNumber, view: ViewNumber) {
         let shared = &mut *self.shared.borrow_mut();
         let time = shared.now;

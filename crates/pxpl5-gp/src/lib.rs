@@ -12,25 +12,24 @@
 //! In the order of the signal:
 //!
 //! - A message that has arrived waits in the inbox, in order of arrival.
-//! - *Firmware* is straight-line `async fn` code that holds a [`Gp`]. Every `.await` is a visible cost
-//!   ([`Gp::spend`]) or wait ([`Gp::receive`], [`Gp::retrace`], [`Gp::until`]).
-//! - Programs have two priorities: that of [`Priority::Interrupt`] stops that of [`Priority::Foreground`] while it
-//!   spends time. There is one program for each.
-//! - [`Gp::send`] costs the CPU a fixed software time and hands the messages to the DMA, which sends in the
-//!   background. There is one clump buffer, so a second batch waits until the first was accepted. Messages that belong
-//!   together ([`Gp::send_groups`]) keep their receiver's port from the first to the last.
-//! - [`Memory`] accounts for 8 MB; what does not fit is a [`Fault`] that names the board and the region.
+//! - *Firmware* is straight-line `async fn` code that holds a [`Gp`]. Every `.await` is a visible cost ([`Gp::spend`])
+//!   or wait ([`Gp::receive`], [`Gp::retrace`], [`Gp::until`]).
+//! - There are two priorities with one program each. The program of [`Priority::Interrupt`] stops the program of
+//!   [`Priority::Foreground`] while it spends time.
+//! - [`Gp::send`] costs the CPU a fixed software time and passes the messages to the DMA, which sends in the
+//!   background. There is one clump buffer, so a second batch waits until the first was accepted. A group of messages
+//!   ([`Gp::send_groups`]) keeps its receiver's port from the first message to the last.
+//! - [`Memory`] accounts for 8 MB. A request that does not fit is a [`Fault`] that names the board and the region.
+//! - The time of [`Work`] comes from the timing table, or from i860 code on the board's [`Processor`]
+//!   ([`GpBoard::run_code`]). Programs do not depend on this choice. The message software exists as code too
+//!   (kernels/ring.s), with memory of its own ([`RING_MEMORY`]).
 //!
 //! The host workstation runs on the same board model with its own timing table.
 //!
-//! - The time of [`Work`] comes from the timing table, or from i860 code that runs on the board's [`Processor`]
-//!   ([`GpBoard::run_code`]); programs do not know which. The software of messages is such code too (kernels/ring.s), with
-//!   memory of its own ([`RING_MEMORY`]).
+//! **Not modelled here:** the bus between CPU and DMA, and the instant of an interrupt within a call of i860 code. A
+//! call runs as a whole when it begins, so the interrupt's code finds the caches as the end of the call leaves them.
 //!
-//! **Not modelled here:** the bus between CPU and DMA, and the instant within a call at which an interrupt comes: a call runs
-//! whole when it begins, so that the interrupt's code finds the caches as the end of the call leaves them.
-//!
-//! Sources: TR94 (memory, clock, background rendering); the timing table states each number's own.
+//! Sources: TR94 (memory, clock, background rendering). The timing table states the source of each number.
 
 mod bench;
 mod board;

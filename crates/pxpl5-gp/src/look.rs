@@ -1,4 +1,4 @@
-//! What somebody who looks at a graphics processor while it works sees.
+//! Snapshots of a graphics processor board for display.
 
 use crate::cpu::Priority;
 use crate::firmware::Shared;
@@ -6,42 +6,42 @@ use crate::memory::Account;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{NodeId, PeriodNumber};
 
-/// What a board does at an instant.
+/// A snapshot of a graphics processor board at an instant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GpLook {
-    /// Its programs, that of interrupts first.
+    /// Programs of the board, the interrupt program first.
     pub programs: Vec<ProgramLook>,
     /// Messages that have arrived and that no program has taken, in order.
     pub inbox: Vec<WaitingMail>,
-    /// Receivers of the chain that the DMA sends which have not accepted their message, in the order of the chain.
+    /// Receivers that have not accepted their message of the current chain, in the order of the chain.
     pub unaccepted: Vec<NodeId>,
-    /// Messages of each chain that waits behind it.
+    /// Number of messages of each waiting chain, the next one first.
     pub chains: Vec<usize>,
     /// Bytes of memory in use by each account.
     pub memory: Vec<(Account, u64)>,
     /// CPU time spent up to the last event of the board.
     pub busy: Span,
-    /// The period of the first display that its last retrace began.
+    /// Current period (field) of the first display, which began at its last retrace.
     pub period: PeriodNumber,
 }
 
-/// What a program does.
+/// A snapshot of one program of a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProgramLook {
-    /// Which program.
     pub priority: Priority,
-    /// What it waits for, in words; empty before it has run for the first time.
+    /// Name of the program's wait; empty before its first run.
     pub waits_for: &'static str,
-    /// How much of its work is left; `None` where it does no work. That of the foreground stands still while that of interrupts goes on.
+    /// Remaining CPU time of the program's work; `None` without work. The foreground's value stands still while the
+    /// interrupt program works.
     pub work_left: Option<Span>,
 }
 
 /// A message in the inbox.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WaitingMail {
-    /// When its last word had arrived.
+    /// Arrival time of the last word.
     pub arrived: Time,
-    /// The port of the sender.
+    /// Port of the sender.
     pub source: NodeId,
 }
 

@@ -1,10 +1,10 @@
-//! The 8 MB of a board, accounted for by use. Bins have a part of their own.
+//! The memory of a board, accounted for by use. Bins have a limit of their own.
 
 use pxpl5_wire::{NodeId, RegionId};
 use serde::Serialize;
 use std::fmt;
 
-/// What memory is used for.
+/// A use of a board's memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 pub enum Account {
     /// Program, stacks and message buffers.
@@ -20,7 +20,7 @@ pub enum Account {
 impl Account {
     const SLOTS: usize = 6;
 
-    /// Every account, of both bin contexts.
+    /// All accounts, including both bin contexts.
     pub const ALL: [Self; Self::SLOTS] =
         [Self::Program, Self::DisplayList, Self::Commands(0), Self::Commands(1), Self::Bins(0), Self::Bins(1)];
 
@@ -45,7 +45,7 @@ impl fmt::Display for Account {
     }
 }
 
-/// A request that did not fit.
+/// A memory request that did not fit.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, thiserror::Error)]
 #[error(
     "graphics processor at node {}: {account} {}needs {needed_bytes} bytes, {available_bytes} are available",
@@ -53,15 +53,15 @@ impl fmt::Display for Account {
     named(*region)
 )]
 pub struct OutOfMemory {
-    /// The port of the board.
+    /// Port of the board.
     pub gp: NodeId,
-    /// What the memory was for.
+    /// Account of the request.
     pub account: Account,
-    /// The region whose bin overflowed, where it was a bin.
+    /// Region whose bin overflowed, for a request of bins.
     pub region: Option<RegionId>,
     /// Bytes that the account would have needed.
     pub needed_bytes: u64,
-    /// Bytes that it could have had.
+    /// Bytes that were available to the account.
     pub available_bytes: u64,
 }
 
@@ -80,18 +80,19 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// Memory of `capacity` bytes, all free, of which the bins of both contexts may take `bins`.
+    /// Makes an empty memory of `capacity` bytes. The bins of both contexts together may take `bins` bytes of it.
     #[must_use]
     pub const fn new(gp: NodeId, capacity: u64, bins: u64) -> Self {
         Self { gp, capacity, bins, used: [0; Account::SLOTS], peak: 0 }
     }
 
-    /// Sets the bytes that an account holds.
+    /// Sets the number of bytes that an account holds.
     ///
     /// # Errors
     ///
-    /// [`OutOfMemory`] when they do not fit beside the other accounts; nothing changes then.
+    /// [`OutOfMemory`] if the bytes do not fit beside the other accounts. Nothing changes then.
     pub fn set(&mut self, account: Account, bytes: u64, region: Option<RegionId>) -> Result<(), OutOfMemory> {
+        // The request replaces the old value of the account, so only the other accounts count.
         let others = self.used() - self.used[account.slot()];
         let free = self.capacity.saturating_sub(others);
         let available_bytes = match account {
@@ -106,25 +107,25 @@ impl Memory {
         Ok(())
     }
 
-    /// Bytes that the bins of a context may take beside those of the other one.
+    /// Returns the bytes that the bins of a context may take beside the bins of the other context.
     #[must_use]
     pub const fn room_for_bins(&self, context: u8) -> u64 {
         self.bins.saturating_sub(self.used[Account::Bins(context ^ 1).slot()])
     }
 
-    /// Bytes in use by one account.
+    /// Returns the bytes in use by one account.
     #[must_use]
     pub const fn used_by(&self, account: Account) -> u64 {
         self.used[account.slot()]
     }
 
-    /// Bytes in use by all accounts.
+    /// Returns the bytes in use by all accounts.
     #[must_use]
     pub fn used(&self) -> u64 {
         self.used.iter().sum()
     }
 
-    /// Most bytes that were ever in use at once.
+    /// Returns the greatest number of bytes in use at any time so far.
     #[must_use]
     pub const fn peak(&self) -> u64 {
         self.peak

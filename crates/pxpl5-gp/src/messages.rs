@@ -1,7 +1,7 @@
-//! Messages as a program sees them: taken from the inbox, sent in chains, each at the price of its software.
+//! Messages as a program sees them: received from the inbox and sent in chains, each with the cost of its software.
 //!
-//! That price is `message_ns` of the timing table, or the time of the code that handles the message on the board's processor
-//! ([`Processor::receive_message`], [`Processor::send_chain`]); programs do not know which.
+//! The cost is `message_ns` of the timing table, or the time of the i860 code that handles the message on the board's
+//! processor ([`Processor::receive_message`], [`Processor::send_chain`]).
 
 use crate::firmware::{Batch, ChainLink, Fault, Gp, Received, Ticket};
 use crate::processor::Processor;
@@ -9,40 +9,41 @@ use crate::work::Work;
 use pxpl5_sim::Span;
 use pxpl5_wire::{Body, Message, NodeId};
 
-/// Messages whose software has been paid for ([`Gp::prepare`]): one chain of the DMA, to be started when the program says so.
+/// A chain of messages whose software cost is already paid ([`Gp::prepare`]). [`Gp::start`] sends it.
 #[derive(Debug)]
 pub struct Chain(Vec<ChainLink>);
 
 impl Gp {
-    /// Waits for the next message in order of arrival and pays the software cost of receiving it.
+    /// Waits for the next message in order of arrival, and pays the software cost of its reception.
     pub async fn receive(&self) -> Received {
         let received = self.next_message().await;
         self.pay_for(&received).await;
         received
     }
 
-    /// Waits for the next message in order of arrival, without cost; pay for it with [`Gp::pay_for`].
+    /// Waits for the next message in order of arrival, without cost. The program pays the cost with [`Gp::pay_for`].
     pub async fn next_message(&self) -> Received {
         self.until("a message", || self.shared.borrow_mut().inbox.pop_front()).await
     }
 
-    /// Takes a message if one has arrived, without cost; pay for it with [`Gp::pay_for`].
+    /// Takes the next message if one has arrived, without cost. The program pays the cost with [`Gp::pay_for`].
     #[must_use]
     pub fn take_message(&self) -> Option<Received> {
         self.shared.borrow_mut().inbox.pop_front()
     }
 
-    /// Pays the software cost of receiving a message: that of the table, or of the code that takes it.
+    /// Pays the software cost of the reception of a message: the time of the table, or of the code.
     pub async fn pay_for(&self, received: &Received) {
         self.software(|processor| processor.receive_message(received.source, &received.body)).await;
     }
 
-    /// Answers a message: pays for receiving it, does work, sends some messages one after the other, each when the clump buffer is free, and
-    /// one more in the background.
+    /// Answers a message: pays for its reception, does work, sends messages one by one, then a last one in the
+    /// background.
+    /// Each of `messages` waits until the clump buffer is free. The program does not wait for `last`.
     ///
     /// # Errors
     ///
-    /// [`Fault::Processor`] when code does not come to its end.
+    /// [`Fault::Processor`] if i860 code does not reach its end.
     pub async fn answer(
         &self,
         received: &Received,
@@ -62,20 +63,21 @@ impl Gp {
         Ok(())
     }
 
-    /// Sends one message in the background: pays the software cost, then queues it behind earlier ones.
+    /// Sends one message in the background: pays the software cost, then queues the message behind earlier ones.
     pub async fn send(&self, destination: NodeId, words: u32, body: Body) -> Ticket {
         self.send_batch(vec![(destination, words, body)]).await
     }
 
-    /// Sends several messages as one chain of the DMA: one software cost, then all go in the background, at the same
-    /// time where they have different receivers. A chain waits for the one before it.
+    /// Sends several messages as one DMA chain, for one software cost, in the background.
+    /// Messages to different receivers are sent at the same time. A chain waits for the previous chain.
     pub async fn send_batch(&self, batch: Vec<(NodeId, u32, Body)>) -> Ticket {
         let chain = self.prepare(batch).await;
         self.start(chain)
     }
 
-    /// As [`Gp::send_batch`], for messages that belong together, in groups of one receiver each: between the first and the
-    /// last of a group the receiver takes no message of another board, because the group keeps its port.
+    /// Sends groups of messages as one DMA chain, as [`Gp::send_batch`] does. Each group has one receiver.
+    /// A group keeps its receiver's port from its first message to its last, so that no other board's message comes
+    /// between.
     pub async fn send_groups(&self, groups: Vec<(NodeId, Vec<(u32, Body)>)>) -> Ticket {
         let links = groups.into_iter().flat_map(|(destination, group)| {
             let last = group.len().saturating_sub(1);
@@ -86,12 +88,12 @@ impl Gp {
         self.start(chain)
     }
 
-    /// Pays the software cost of a chain that [`Gp::start`] will send.
+    /// Pays the software cost of a chain that [`Gp::start`] sends later.
     pub async fn prepare(&self, batch: Vec<(NodeId, u32, Body)>) -> Chain {
         self.pay_for_chain(self.unheld(batch)).await
     }
 
-    /// Hands a chain to the DMA; it goes behind earlier ones.
+    /// Passes a chain to the DMA, which sends it after earlier chains.
     pub fn start(&self, Chain(links): Chain) -> Ticket {
         let shared = &mut *self.shared.borrow_mut();
         if links.is_empty() {
@@ -107,7 +109,8 @@ impl Gp {
         self.chain(batch.into_iter().map(|(destination, words, body)| (destination, words, body, false)))
     }
 
-    /// A chain: of each message its receiver, words, what it carries, and whether it keeps the receiver's port for the next one.
+    /// Makes a chain of messages. Each comes as receiver, number of words, content, and true if it keeps the receiver's
+    /// port for the next one.
     fn chain(&self, batch: impl Iterator<Item = (NodeId, u32, Body, bool)>) -> Chain {
         let source = self.node();
         let links = batch.map(|(destination, words, body, hold)| ChainLink {
@@ -137,7 +140,7 @@ impl Gp {
         }
     }
 
-    /// Stops the board with a fault of its own software, as a trap there would: its programs do not go on.
+    /// Stops the board with a fault of its own software. The program never continues.
     async fn stop(&self, fault: Fault) {
         self.shared.borrow_mut().stopped_by = Some(fault);
         std::future::pending().await
@@ -159,7 +162,7 @@ mod tests {
         }
     }
 
-    /// Waits for a message without paying, so that it is there when the other program has stopped the board.
+    /// Waits for a message without paying its cost, so that it is in the inbox when the other program stops the board.
     async fn wait(gp: Gp) -> Result<(), Fault> {
         gp.until("nothing", || None::<()>).await;
         Ok(())
@@ -177,7 +180,7 @@ mod tests {
         board
     }
 
-    /// What a board does with messages of so many words, one after the other: its busy time and how many it has sent.
+    /// Feeds a board messages of the given lengths. Returns its busy time and the number of messages that it has sent.
     fn fed(board: &mut GpBoard, lengths: &[usize]) -> (Span, usize) {
         let mut bench: TestBench<GpEvent, GpOutput> = TestBench::new();
         for (number, words) in (1..).zip(lengths) {

@@ -1,26 +1,26 @@
-//! What firmware tells the observer; it costs nothing and changes nothing.
+//! Marks that firmware records for the observer. They cost no simulated time and change nothing.
 
 use pxpl5_sim::Time;
 use pxpl5_wire::{NodeId, PictureNumber, SurfaceId, ViewNumber};
 use serde::{Deserialize, Serialize};
 
-/// A stage of a pipeline, in the papers' words.
+/// A stage of a pipeline, named as in the papers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Stage {
-    /// The tracker's pose that the picture shows was sampled.
+    /// The tracker sampled the pose that the picture shows.
     Sample,
-    /// Host to GPs: edits, attributes, transforms.
+    /// The host sends edits, attributes and transforms to the GPs.
     Send,
-    /// GPs apply the edits.
+    /// The GPs apply the edits.
     Edit,
-    /// Primitives to screen space, commands into bins.
+    /// The GPs transform primitives to screen space and put commands into bins.
     Transform,
-    /// Commands to the renderers until the last is accepted.
+    /// The GPs send commands to the renderers until the last one is accepted.
     Render,
-    /// Regions to the frame buffer.
+    /// The renderers send regions to the frame buffer.
     Copy,
-    /// The finished picture is shown from the retrace on.
+    /// The display shows the finished picture from this retrace on.
     Swap,
 }
 
@@ -28,27 +28,27 @@ pub enum Stage {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StageEdge {
-    /// The stage begins: its program turns to it.
+    /// The program starts the stage.
     Begin,
-    /// The stage ends: its last work or message is done.
+    /// The last work or message of the stage is complete.
     End,
 }
 
-/// One fact about the pipeline.
+/// A record of the begin or end of a stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Mark {
-    /// When it happened, in simulated time.
+    /// Simulated time of the record.
     pub time: Time,
-    /// The port of the board on which it happened.
+    /// Port of the board.
     pub node: NodeId,
-    /// The picture. A host that sends views apart from pictures counts its transmissions here.
+    /// Number of the picture. A host that sends views independently of pictures counts its transmissions instead.
     pub picture: PictureNumber,
-    /// The surface that it is drawn for, for stages that take one eye at a time.
+    /// Surface that the stage draws, for stages that draw one eye at a time.
     pub surface: Option<SurfaceId>,
-    /// Which part of its work the firmware begins or ends.
+    /// Stage that begins or ends.
     pub stage: Stage,
-    /// Whether the stage began or ended.
+    /// Begin or end.
     pub edge: StageEdge,
-    /// The view that the picture shows, where the program says it.
+    /// View that the picture shows, if the program reports it.
     pub view: Option<ViewNumber>,
 }

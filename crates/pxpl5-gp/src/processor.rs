@@ -1,4 +1,4 @@
-//! The board's i860 with its memory, where programs run and clocks are counted.
+//! The board's i860 with its memory, which runs code and counts clocks.
 
 use crate::window;
 use i860::{Bus, Cpu, Program, Ram, RunEnd, Shelf, State, Trap, Unmapped};
@@ -12,21 +12,22 @@ use std::ops::Range;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Which code a board runs, where the time of its work comes from code.
+/// Version of the i860 code that a board runs when the time of its work comes from code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CodeVersion {
-    /// As a compiler without optimisation would give it, nearly twice as large as the instruction cache.
+    /// Code as from a compiler without optimization, nearly twice as large as the instruction cache.
     Unoptimised,
-    /// As a good compiler of about 1990 would give it: the Slats of 1994 and 1995, whose code did not fit the instruction cache (I3D95).
+    /// Code as from a good compiler of about 1990. Slats of 1994 and 1995 had such code, which did not fit the
+    /// instruction cache (I3D95).
     Compiled,
-    /// Scheduled by hand in dual-instruction mode, in cache: optimised PPHIGS (TR94), and what Slats would have been with
-    /// code that fits, faster by a factor of about 3 (I3D95).
+    /// Code scheduled by hand in dual-instruction mode, which fits the cache: optimized PPHIGS (TR94). Slats with code
+    /// that fits would have been faster by a factor of about 3 (I3D95).
     Scheduled,
 }
 
 impl CodeVersion {
-    /// As experiment files name it.
+    /// Returns the name in experiment files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -37,69 +38,69 @@ impl CodeVersion {
     }
 }
 
-/// Why a program on the processor did not come to its end.
+/// The reason why a program on the processor did not reach its end.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ProcessorFault {
-    /// It took a trap.
+    /// The program took a trap.
     #[error("graphics processor at node {}: {trap}", gp.0)]
     Trap {
-        /// The port of the board.
+        /// Port of the board.
         gp: NodeId,
-        /// What, and at which address.
+        /// Cause and address of the trap.
         trap: Trap,
     },
-    /// It did not return within its budget.
+    /// The program did not return within its instruction budget.
     #[error("graphics processor at node {}: no return within {budget} instructions, at {address:#010x}", gp.0)]
     Endless {
-        /// The port of the board.
+        /// Port of the board.
         gp: NodeId,
-        /// Where it was when they were used up.
+        /// Address of the next instruction at the end of the budget.
         address: u32,
-        /// Instructions that it was given.
+        /// Instruction budget of the call.
         budget: u64,
     },
-    /// Data that its memory does not hold were asked for.
+    /// An access to data outside the memory.
     #[error("graphics processor at node {}: no memory for {words} words at {address:#010x}", gp.0)]
     Unmapped {
-        /// The port of the board.
+        /// Port of the board.
         gp: NodeId,
         /// Address of the first word.
         address: u32,
-        /// How many words were asked for.
+        /// Number of requested words.
         words: usize,
     },
-    /// Two bin contexts would meet in memory.
+    /// Two bin contexts would overlap in memory.
     #[error("graphics processor at node {}: output of bin context {context} needs {needed_bytes} bytes, {available_bytes} are available", gp.0)]
     NoRoom {
-        /// The port of the board.
+        /// Port of the board.
         gp: NodeId,
-        /// The bin context that asked for a place.
+        /// Bin context that requested memory.
         context: u8,
-        /// Bytes that it needs.
+        /// Bytes that the context needs.
         needed_bytes: u32,
-        /// Bytes between the data before it and the other context, or the end of memory.
+        /// Bytes between the data before the context and the other context or the end of memory.
         available_bytes: u32,
     },
-    /// A program without the label at which it is called.
+    /// The program lacks the label of its entry.
     #[error("graphics processor at node {}: the program has no label `{label}`", gp.0)]
     NoEntry {
-        /// The port of the board.
+        /// Port of the board.
         gp: NodeId,
-        /// The label that it lacks.
+        /// Name of the missing label.
         label: String,
     },
 }
 
-/// Where a called program returns to; nothing is there.
+/// Return address of called programs. No code is there; the run stops at this address.
 const RETURN: u32 = 0x0800;
 
-/// The addresses that a program takes.
+/// Returns the range of addresses of a program.
 fn extent(program: &Program) -> Range<u32> {
     program.base..program.base.saturating_add(program.bytes.len() as u32)
 }
 
-/// Memory as the core sees it: the part that the ring's interface shares is not for its caches.
+/// Memory as the core sees it. The part shared with the ring interface is not cacheable.
 struct Memory(Ram);
 
 impl Bus for Memory {
@@ -119,50 +120,50 @@ impl Bus for Memory {
     }
 }
 
-/// Bytes of a line of the data cache, to which the output of a bin context is aligned.
+/// Bytes of a data-cache line, to which the output of a bin context is aligned.
 const LINE: u32 = i860::timing::ChipSizes::PAPERS.line_bytes as u32;
 
-/// Register of the return address.
+/// Number of the register with the return address.
 const LINK: usize = 1;
 
 /// An i860 with the memory of a board.
 ///
-/// Its clock stands still between calls; caches, queues and the open row of the memory are as the last call left them.
-/// What is written from outside counts as put there by code before the call: it takes no time and changes no cache.
+/// The clock stands still between calls. Caches, queues and the open DRAM row stay as the last call left them. A write
+/// from outside counts as a write by code before the call: it takes no time and changes no cache.
 ///
-/// No call is remembered for a later one, because none repeats. Of those of a still head 96 % have the code, arguments and
-/// parameters of an earlier one (188 of Slats with 110 triangles, 2,800 of Rendering Control with the aircraft, 48 fields
-/// each), of those of a moving head none; but not one finds the same lines in the caches, whose replacement is
-/// pseudo-random, to say nothing of the phase of the memory's refresh. Runs of instructions do repeat: see
+/// Calls are not memoized as a whole, because no call repeats exactly. For a still head, 96 % of the calls have the
+/// code, arguments and parameters of an earlier call (188 calls of Slats with 110 triangles, 2,800 of Rendering Control
+/// with the aircraft, 48 fields each). For a moving head none have. But no call finds the same lines in the caches,
+/// whose replacement is pseudo-random, or the same phase of the memory's refresh. Runs of instructions do repeat: see
 /// [`i860::Config::memoise`].
 pub struct Processor {
     gp: NodeId,
     version: CodeVersion,
-    /// What its core is built with, again at every reset.
+    /// Configuration of the core, used again at every reset.
     core: i860::Config,
     cpu: Cpu,
     memory: Memory,
     loaded: Option<Arc<Program>>,
-    /// Whether memory holds that one as it was loaded.
+    /// True if the memory holds the loaded program unchanged.
     is_as_loaded: bool,
-    /// What is known of programs, by other boards as well.
+    /// Decoded programs and their clocks, shared with other boards.
     shelf: Rc<RefCell<Shelf>>,
-    /// All that were ever loaded.
+    /// All programs that were ever loaded.
     programs: Vec<Arc<Program>>,
-    /// Places of the output of both bin contexts.
+    /// Address ranges of the output of both bin contexts.
     outputs: [Option<Range<u32>>; 2],
-    /// Addresses whose execution somebody wants to see, and what was seen since he last looked.
+    /// Addresses of breakpoints, and the hits since the last [`Processor::take_hits`].
     breakpoints: BTreeSet<u32>,
     hits: Vec<BreakpointHit>,
 }
 
-/// An instruction at a breakpoint, about to be executed.
+/// The state of the processor at a breakpoint, before the instruction executes.
 ///
-/// A call runs from its begin to its end at one instant of the board, which spends its clocks afterwards; so what a hit shows is kept,
-/// and the call goes on.
+/// A call runs from begin to end at one instant of the board, which spends its clocks afterwards. The call therefore
+/// does not stop at a breakpoint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BreakpointHit {
-    /// The port of the board.
+    /// Port of the board.
     pub gp: NodeId,
     /// Address of the instruction.
     pub address: u32,
@@ -172,7 +173,7 @@ pub struct BreakpointHit {
     pub state: Box<State>,
 }
 
-/// Hits that are kept until somebody looks; further ones of the same calls are not.
+/// Most hits that are kept until [`Processor::take_hits`]. Later hits are dropped.
 pub const KEPT_HITS: usize = 64;
 
 impl fmt::Debug for Processor {
@@ -182,10 +183,10 @@ impl fmt::Debug for Processor {
 }
 
 impl Processor {
-    /// Time of a clock: 40 MHz (TR94).
+    /// Period of the clock: 40 MHz (TR94).
     pub const CLOCK: Span = Span(25_000);
 
-    /// A processor after reset, its memory all zero; `core` gives the clocks of its instructions and of the memory.
+    /// Makes a processor after reset with zeroed memory. `core` gives the timing of its instructions and of the memory.
     #[must_use]
     pub fn new(gp: NodeId, memory_bytes: u64, version: CodeVersion, core: i860::Config) -> Self {
         let memory = Memory(Ram::new(0, memory_bytes as usize));
@@ -205,43 +206,45 @@ impl Processor {
         }
     }
 
-    /// Shares what it knows of programs with others of the same core from now on, which changes no time.
+    /// Shares decoded programs and their clocks with other processors of the same core configuration. No simulated time
+    /// changes.
     pub fn share(&mut self, shelf: &Rc<RefCell<Shelf>>) {
         self.shelf = Rc::clone(shelf);
     }
 
-    /// Resets it to a processor that memoises nothing; every time stays the same.
+    /// Resets the processor and turns memoization off. No simulated time changes.
     pub fn count_every_clock(&mut self) {
         self.core.memoise = false;
         self.cpu = Cpu::new(self.core);
     }
 
-    /// Which version of the code the board runs.
+    /// Returns the version of the code that the board runs.
     #[must_use]
     pub const fn version(&self) -> CodeVersion {
         self.version
     }
 
-    /// The port of the board.
+    /// Returns the port of the board.
     #[must_use]
     pub const fn node(&self) -> NodeId {
         self.gp
     }
 
-    /// Size of the memory in bytes.
+    /// Returns the size of the memory in bytes.
     #[must_use]
     pub fn memory_bytes(&self) -> u32 {
         self.memory.0.bytes().len() as u32
     }
 
-    /// Puts words into memory, beside all caches.
+    /// Writes words to memory without any effect on caches.
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault::Unmapped`] when they do not fit; nothing is written then.
+    /// [`ProcessorFault::Unmapped`] if the words do not fit. Nothing is written then.
     pub fn write(&mut self, address: u32, words: &[Word]) -> Result<(), ProcessorFault> {
         self.memory.0.load_words(address, words).map_err(|_| self.unmapped(address, words.len()))?;
         let end = address.saturating_add(4 * words.len() as u32);
+        // A write over the loaded program changes it.
         self.is_as_loaded &= self.loaded.as_ref().is_none_or(|loaded| {
             let taken = extent(loaded);
             end <= taken.start || taken.end <= address
@@ -253,12 +256,12 @@ impl Processor {
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault::Unmapped`] when they are not all there.
+    /// [`ProcessorFault::Unmapped`] if a word lies outside the memory.
     pub fn read(&self, address: u32, words: usize) -> Result<Vec<Word>, ProcessorFault> {
         self.memory.0.words(address, words).map_err(|_| self.unmapped(address, words))
     }
 
-    /// Reads one of them.
+    /// Reads one word of memory.
     pub(crate) fn word(&self, address: u32) -> Result<Word, ProcessorFault> {
         let bytes = self.memory.0.bytes().get(address as usize..).and_then(<[u8]>::first_chunk);
         bytes.map(|bytes| Word::from_le_bytes(*bytes)).ok_or_else(|| self.unmapped(address, 1))
@@ -268,19 +271,21 @@ impl Processor {
         ProcessorFault::Unmapped { gp: self.gp, address, words }
     }
 
-    /// Takes a place for the output of a bin context, 0 or 1, instead of the one that it had, and gives its address.
-    /// Context 0 lies behind what ends at `end_of_data`, context 1 at the end of memory.
+    /// Reserves memory for the output of bin context 0 or 1, instead of its previous reservation. Returns the address.
+    /// Context 0 begins after the data, which end at `end_of_data`. Context 1 lies at the end of memory.
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault::NoRoom`] when it does not fit beside the other context; nothing changes then.
+    /// [`ProcessorFault::NoRoom`] if the output does not fit beside the other context. Nothing changes then.
     pub fn place_output(&mut self, context: u8, end_of_data: u32, bytes: u32) -> Result<u32, ProcessorFault> {
+        // Find the free range beside the other context.
         let [lower, upper] = &self.outputs;
         let (first, last) = match context {
             0 => (end_of_data, upper.as_ref().map_or(self.memory_bytes(), |upper| upper.start)),
             _ => (lower.as_ref().map_or(end_of_data, |lower| lower.end), self.memory_bytes()),
         };
         let first = first.next_multiple_of(LINE);
+        // Context 0 begins at the lowest line of the range, context 1 at the highest that fits.
         let available_bytes = last.saturating_sub(first);
         let highest = last.checked_sub(bytes).map(|begin| begin / LINE * LINE).filter(|begin| *begin >= first);
         let no_room = ProcessorFault::NoRoom { gp: self.gp, context, needed_bytes: bytes, available_bytes };
@@ -290,19 +295,19 @@ impl Processor {
         Ok(begin)
     }
 
-    /// What an integer register holds, 0 to 31.
+    /// Returns the value of integer register `number`, 0 to 31.
     #[must_use]
     pub const fn register(&self, number: usize) -> Word {
         self.cpu.state.r[number]
     }
 
-    /// Calls a program at its label `entry` with some registers set, and gives the time until it returns.
+    /// Calls a program at its label `entry` with some registers set. Returns the time until the program returns.
     ///
-    /// The program is loaded first where another one was called before; that takes no time.
+    /// If another program was called before, this one is loaded first, which takes no time.
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault`] when it traps, or does not return within `budget` instructions.
+    /// [`ProcessorFault`] if the program traps, or does not return within `budget` instructions.
     pub fn call(
         &mut self,
         program: &Arc<Program>,
@@ -328,10 +333,11 @@ impl Processor {
         }
     }
 
-    /// Runs what was loaded with what is known of it, until it returns.
+    /// Runs the loaded program until it returns, with its decoded code from the shelf.
     fn run(&mut self, program: &Arc<Program>, begin: u64, budget: u64) -> RunEnd {
         let shelf = Rc::clone(&self.shelf);
         let shelf = &mut *shelf.borrow_mut();
+        // Code that has changed in memory must be decoded anew.
         let known = self.is_as_loaded.then_some(program);
         self.cpu.open(shelf, known);
         let end = if self.breakpoints.is_empty() {
@@ -343,7 +349,7 @@ impl Processor {
         end
     }
 
-    /// Runs one instruction (or pair, or branch with its slot) after the other, and keeps what it finds at breakpoints.
+    /// Runs step by step (an instruction, a pair, or a branch with its slot) and records a hit at each breakpoint.
     fn run_watched(&mut self, begin: u64, budget: u64) -> RunEnd {
         let last = self.cpu.instructions().saturating_add(budget);
         loop {
@@ -360,35 +366,36 @@ impl Processor {
         }
     }
 
-    /// Has calls keep what they find at some addresses, instead of those given before. No clock changes.
+    /// Sets the addresses at which calls record hits, instead of earlier ones. No clock changes.
     pub fn break_at(&mut self, addresses: BTreeSet<u32>) {
         self.breakpoints = addresses;
     }
 
-    /// Hits since the last call of this, at most [`KEPT_HITS`].
+    /// Returns and removes the hits since the last call of this function, at most [`KEPT_HITS`].
     pub fn take_hits(&mut self) -> Vec<BreakpointHit> {
         std::mem::take(&mut self.hits)
     }
 
-    /// What the last call left in the registers; its program counter stands behind the return.
+    /// Returns the state that the last call left. Its program counter is the return address of the call.
     #[must_use]
     pub const fn state(&self) -> &State {
         &self.cpu.state
     }
 
-    /// Clocks of all calls so far.
+    /// Returns the clocks of all calls so far.
     #[must_use]
     pub fn clocks(&self) -> u64 {
         self.cpu.clocks()
     }
 
-    /// The program that was called last.
+    /// Returns the program that was called last.
     #[must_use]
     pub const fn program(&self) -> Option<&Arc<Program>> {
         self.loaded.as_ref()
     }
 
-    /// The programs that were called and lie in memory as they were loaded: the one called last, then in the order of their first calls.
+    /// Returns the programs that memory still holds as loaded: the last called one first, then the others in the order
+    /// of their first calls.
     pub fn programs(&self) -> impl Iterator<Item = &Arc<Program>> {
         let is_last = |program: &&Arc<Program>| self.loaded.as_ref().is_some_and(|last| Arc::ptr_eq(last, program));
         let others = self.programs.iter().filter(move |program| !is_last(program));
@@ -399,6 +406,7 @@ impl Processor {
         if self.loaded.as_ref().is_some_and(|loaded| Arc::ptr_eq(loaded, program)) {
             return Ok(());
         }
+        // The memory may still hold the program from an earlier call.
         if !self.holds(program) {
             let unmapped = self.unmapped(program.base, program.bytes.len() / 4);
             self.memory.0.load(program.base, &program.bytes).map_err(|_| unmapped)?;
@@ -411,7 +419,7 @@ impl Processor {
         Ok(())
     }
 
-    /// Whether memory holds a program as it was loaded.
+    /// Returns true if memory holds a program as it was loaded.
     fn holds(&self, program: &Program) -> bool {
         let Range { start, end } = extent(program);
         self.memory.0.bytes().get(start as usize..end as usize) == Some(program.bytes.as_slice())

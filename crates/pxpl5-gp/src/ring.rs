@@ -1,4 +1,5 @@
-//! The software of messages as code of the board (kernels/ring.s), and the part of memory that it shares with the ring's interface.
+//! The message software as i860 code of the board (kernels/ring.s), and the part of memory that it shares with the ring
+//! interface.
 //!
 //! ```text
 //!   CODE      DATA                REQUESTS     WINDOW, never in a cache
@@ -6,10 +7,12 @@
 //!   |         | frame, stack      | to send    | of messages and chains | that have arrived   |
 //! ```
 //!
-//! The original software is not published; kernels/ring_rules.md says what the code stands for and what it is made by. The
-//! interface's DMA is played from outside before each call: a message is put into the next buffer when its software begins, since
-//! the board's inbox counts no buffers, and every chain before has been sent when the next one is built, since the board's queue of
-//! chains is simulated elsewhere ([`crate::Gp::start`]).
+//! The original software is not published. kernels/ring_rules.md states what the code assumes about it and how the code
+//! was written.
+//!
+//! Before each call, Rust code plays the part of the interface's DMA. It puts a message into the next buffer when its
+//! software begins, because the board's inbox has no limited number of buffers. When a chain is built, all earlier
+//! chains have been sent, because [`crate::Gp::start`] simulates the queue of chains.
 
 use crate::firmware::Fault;
 use crate::processor::{Processor, ProcessorFault};
@@ -26,22 +29,22 @@ const STACK: u32 = 0xF_3000;
 const REQUESTS: u32 = STACK;
 const BUFFERS: u32 = WINDOW + 0x3000;
 
-// Sizes of rings, queue and buffers are assumed, as the interface is (kernels/ring_rules.md, its last table).
+// Sizes of rings, queue and buffers are assumed, because the interface itself is (kernels/ring_rules.md, last table).
 
-/// Buffers of messages that have arrived, and their descriptors.
+/// Number of receive buffers and of their descriptors.
 const RX_COUNT: u32 = 8;
 const RX: u32 = WINDOW + 256;
-/// A header of two words and the longest message, in whole cache lines.
+/// Size of a receive buffer: a header of two words and the longest message, in whole cache lines.
 const BUFFER_BYTES: u32 = 4608;
-/// Descriptors of messages in chains.
+/// Number of descriptors for messages in chains.
 const TX_COUNT: u32 = 256;
 const TX: u32 = WINDOW + 0x1000;
 const DESCRIPTOR_BYTES: u32 = 16;
-/// Entries of the queue.
+/// Number of entries of the receive queue.
 const ENTRY_COUNT: u32 = 16;
 const ENTRY_BYTES: u32 = 64;
 
-// What the software keeps at DATA, as ring.s names it.
+// Variables of the software in the data area DATA, with the names of ring.s.
 const NODE: u32 = DATA;
 const RX_NEXT: u32 = DATA + 4;
 const FREE: u32 = DATA + 16;
@@ -49,33 +52,34 @@ const TX_NEXT: u32 = DATA + 28;
 const TX_ROOM: u32 = DATA + 32;
 const ISSUED: u32 = DATA + 36;
 const HANDLERS: u32 = DATA + 64;
-// Registers of the interface.
+// Registers of the ring interface.
 const CAUSE: u32 = WINDOW;
 const DONE: u32 = WINDOW + 12;
 
-/// Kinds of messages, as headers have them: words for a program, commands, pixels.
+/// Number of message kinds in headers: words for a program, commands, pixels.
 const KINDS: u32 = 3;
 
-/// Flag of a request that keeps the receiver's port.
+/// Flag of a request that keeps the receiver's port for the next message.
 const HOLD: Word = 1;
 
-/// Instructions after which a call is taken to be endless: many times what a message needs.
+/// Instruction budget of a call: many times the need of a message.
 const BUDGET: u64 = 10_000;
 
 impl Processor {
-    /// Runs the software that receives a message: interrupt, dispatch, queue, and what a program does to take it and to give its
-    /// buffer back.
+    /// Runs the software that receives a message: interrupt, dispatch, queue, and the program's part, which takes the
+    /// message and releases its buffer.
     ///
     /// # Errors
     ///
-    /// [`Fault::Protocol`] for a message that has no handler on a processor or a length that no message has, [`Fault::Processor`]
-    /// when the code does not come to its end.
+    /// [`Fault::Protocol`] for a message of commands or pixels or with an invalid length. [`Fault::Processor`] if the
+    /// code does not reach its end.
     pub fn receive_message(&mut self, source: NodeId, body: &Body) -> Result<Span, Fault> {
         let (kind, length, words) = match body {
             Body::Words(words) => (0, words.len() as u32, &words[..]),
             Body::Commands(list) => (1, list.words(), [].as_slice()),
             Body::Pixels(_) => (2, 1, [].as_slice()),
         };
+        // Only words are copied into the buffer; other kinds are refused by their header.
         let (span, taken) = deliver(self, source, kind << 16 | length.min(0xFFFF), words)?;
         let what = || match kind {
             0 => format!("of {length} words from node {}", source.0),
@@ -84,14 +88,16 @@ impl Processor {
         taken.map(|_| span).map_err(|_| Fault::Protocol { node: self.node(), found: what() })
     }
 
-    /// Runs the software that sends a chain of messages, each with whether it keeps its receiver's port: header and descriptor of
-    /// each, and what is done with the chains before. A chain of more messages than there are descriptors goes in several.
+    /// Runs the software that sends a chain of messages: header and descriptor of each message, and release of the
+    /// descriptors of earlier chains.
+    /// Each message comes with true if it keeps its receiver's port. If there are more messages than descriptors, they
+    /// form several chains.
     ///
     /// # Errors
     ///
-    /// [`Fault::Protocol`] for a length that no message has, [`Fault::Processor`] when the code does not come to its end.
+    /// [`Fault::Protocol`] for an invalid length. [`Fault::Processor`] if the code does not reach its end.
     pub fn send_chain<'a>(&mut self, links: impl Iterator<Item = (&'a Message, bool)>) -> Result<Span, Fault> {
-        // Where the words lie nobody asks: they travel beside memory.
+        // The address of the words is 0, because their content does not travel through this memory.
         let request = |(message, hold): (&Message, bool)| {
             let kind = match message.body {
                 Body::Words(_) => 0,
@@ -115,10 +121,10 @@ impl Processor {
     }
 }
 
-/// A message to be sent: receiver; kind and flags; length in words; address.
+/// A message to be sent: receiver, kind and flags, length in words, address.
 type Request = [Word; 4];
 
-/// A queue entry as a program gets it.
+/// A queue entry as the program receives it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Taken {
     place: u32,
@@ -126,17 +132,19 @@ struct Taken {
     sender: u32,
 }
 
-/// What the software refuses, as ring.s numbers it.
+/// The number of an error of the software, as in ring.s.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Refusal(Word);
 
-/// Puts a message into memory as the interface does, and has it received: `header` is its kind and length.
+/// Puts a message into the next buffer, as the interface does, and runs the code that receives it. `header` has its
+/// kind and length.
 fn deliver(
     processor: &mut Processor,
     source: NodeId,
     header: Word,
     words: &[Word],
 ) -> Result<(Span, Result<Taken, Refusal>), ProcessorFault> {
+    // Write the message and its descriptor as the interface's DMA would.
     install(processor)?;
     let descriptor = processor.word(RX_NEXT)?;
     let buffer = processor.word(descriptor + 4)?;
@@ -146,12 +154,14 @@ fn deliver(
     processor.write(buffer + 8, &words[..words.len().min(room)])?;
     processor.write(descriptor, &[1])?;
     processor.write(CAUSE, &[1])?;
+    // Registers 16 to 19 hold the results of `receive`.
     let span = processor.call(&PROGRAM, "receive", &[(2, STACK)], BUDGET)?;
     let [entry, place, words, sender] = [16, 17, 18, 19].map(|number| processor.register(number));
     Ok((span, if entry == 0 { Err(Refusal(place)) } else { Ok(Taken { place, words, sender }) }))
 }
 
-/// Has a chain built and started; `Some` place of the message that the software refuses.
+/// Runs the code that builds and starts a chain. Returns its time, and the place of the first message that the software
+/// refuses.
 fn chain(
     processor: &mut Processor,
     requests: &[Request],
@@ -159,6 +169,7 @@ fn chain(
 ) -> Result<(Span, Option<usize>), ProcessorFault> {
     install(processor)?;
     processor.write(REQUESTS, requests.as_flattened())?;
+    // All earlier chains have been sent.
     let sent = processor.word(ISSUED)?;
     processor.write(DONE, &[sent])?;
     let count = requests.len() as Word;
@@ -167,7 +178,7 @@ fn chain(
     Ok((span, (processor.register(16) != 0).then(|| processor.register(17) as usize)))
 }
 
-/// Puts empty queues, descriptors and the table of handlers into a memory that has none yet.
+/// Initializes queues, descriptors and the table of handlers, unless the memory has them already.
 fn install(processor: &mut Processor) -> Result<(), ProcessorFault> {
     if processor.word(RX_NEXT)? != 0 {
         return Ok(());

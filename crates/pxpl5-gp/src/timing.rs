@@ -1,24 +1,24 @@
-//! Every number of the board, and of the host that runs on the same model.
+//! Every number of the board, and of the host, which runs on the same model.
 
 use crate::CodeVersion;
 use pxpl5_sim::Span;
 
 parameters::parameter_table! {
-    /// Times and sizes of a graphics processor and of the code that it runs.
+    /// Times and sizes of a graphics processor and of its code.
     pub struct GpTiming {
-        /// Memory of a board.
+        /// Size of a board's memory.
         memory_bytes: 8_388_608, "bytes", Published, 8388608..=8388608 in 0..=1_073_741_824, "TR94: 8 MB";
-        /// Part of the memory in which the bins of Rendering Control are kept, those of both contexts together.
+        /// Part of the memory for the bins of Rendering Control, both contexts together.
         bin_bytes: 51_360, "bytes", Derived, 51_040..=51_680 in 0..=MAX, "TR94: the bins of 12 slaves hold 7,700 triangles that cover the screen: 642 a slave in 20 bins, 4 bytes a pointer; printed to three digits. If they hold so many for each eye it is twice that";
-        /// CPU time to send a batch of messages or to receive one.
+        /// CPU time to send a batch of messages or to receive one message.
         message_ns: 12_000, "ns", Assumed, 10000..=25000 in 0..=MAX, "software of a message; the range is what the published latencies allow";
         /// CPU time of one triangle and eye: transform, light, set up, make commands.
         triangle_ns: 21_700, "ns", Derived, 18000..=32000 in 0..=MAX, "870 clocks at 40 MHz for optimised PPHIGS; 1M/32 GPs gives 32 us as design figure";
         /// CPU time of one entry in a bin.
         bin_entry_ns: 1_000, "ns", Assumed, 500..=2000 in 0..=MAX, "a pointer store and a count, partly out of cache";
-        /// CPU time to hand over an entry of a bin with the token of its region.
+        /// CPU time of one bin entry that is handed over with the token of its region.
         token_entry_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "part of the time of a message: nothing was published of it; times of code count it by itself";
-        /// CPU time besides of a triangle that the clipper cuts.
+        /// Additional CPU time of a triangle that is clipped.
         guard_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "part of the time of a triangle in what was published; times of code count it by itself";
         /// CPU time of one sphere and eye.
         sphere_ns: 21_700, "ns", Assumed, 10000..=32000 in 0..=MAX, "one centre to transform instead of three vertices, but a conic to set up; taken as a triangle";
@@ -26,23 +26,25 @@ parameters::parameter_table! {
         edit_ns: 10_000, "ns", Assumed, 2000..=50000 in 0..=MAX, "a few hundred instructions of display-list traversal";
         /// CPU time to begin a pass over the display list.
         pass_ns: 5_000, "ns", Assumed, 1000..=20000 in 0..=MAX, "concatenate matrices, reset bins";
-        /// CPU time besides to put a structure in its place for an eye.
+        /// Additional CPU time to transform a structure to its place for an eye.
         structure_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "part of the time of a pass: nothing was published of either; times of code count it by itself";
-        /// CPU time besides of a structure that has spheres: what they need of a view.
+        /// Additional CPU time of a structure with spheres, for data of the view that spheres need.
         sphere_view_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "part of the time of a pass, as that of a structure; times of code count it by itself";
     }
 }
 
 impl GpTiming {
-    /// The Slats prototype of 1994: 30.0 us per triangle and eye, fitted to the limit of 110 triangles without the COPY
-    /// optimisation (TR94). 29.8 to 30.1 us give exactly 110.
+    /// Timing of the Slats prototype of 1994: 30.0 us per triangle and eye.
+    /// The value is fitted to the limit of 110 triangles without the COPY optimization (TR94). Values of 29.8 to 30.1
+    /// us give exactly 110.
     pub const SLATS_1994: Self = Self { triangle_ns: 30_000, sphere_ns: 30_000, bin_entry_ns: 0, ..Self::PAPERS };
 
-    /// The Slats code of 1995: 55.8 us per triangle and eye, fitted to the limit of about 100 triangles with the COPY
-    /// optimisation (I3D95). 55.4 to 56.3 us give exactly 100.
+    /// Timing of the Slats code of 1995: 55.8 us per triangle and eye.
+    /// The value is fitted to the limit of about 100 triangles with the COPY optimization (I3D95). Values of 55.4 to
+    /// 56.3 us give exactly 100.
     pub const SLATS_1995: Self = Self { triangle_ns: 55_800, sphere_ns: 55_800, bin_entry_ns: 0, ..Self::PAPERS };
 
-    /// Slats with code that fits the instruction cache: a third of the time of 1994 (I3D95).
+    /// Timing of Slats with code that fits the instruction cache: a third of the triangle time of 1994 (I3D95).
     pub const SLATS_OPTIMISED: Self = Self {
         triangle_ns: Self::SLATS_1994.triangle_ns / 3,
         sphere_ns: Self::SLATS_1994.sphere_ns / 3,
@@ -61,12 +63,13 @@ pub enum CodeUse {
     SlatsLit,
 }
 
-// Times of primitives that follow from i860 code (derived from code): means over the three application scenes as
-// `pxpl5_lab::code_times` measures them; its test holds these constants to the code. `message_ns` is what kernels/ring.s takes for a message
-// or a chain, which differs with the scene (docs/gp-timing.md), with what kernels/token.s takes however many entries it hands over;
-// `token_entry_ns` is each of these.
-// `pass_ns` is what structures leave of the beginning of a pass: bins that are reset, and code that comes into the caches. A structure
-// that culls takes 3.2 us more than one that does not, which is not in the table.
+// Times of primitives that follow from i860 code (derived from code). They are means over the three application scenes,
+// measured by `pxpl5_lab::code_times`. A test of that module compares these constants with the code.
+// `message_ns` is the time of kernels/ring.s for a message or a chain, which differs with the scene
+// (docs/gp-timing.md), and of kernels/token.s for a token without entries. `token_entry_ns` is the time for each entry
+// of a token.
+// `pass_ns` is the time at the begin of a pass that does not belong to structures: to reset bins and to load code into
+// the caches. A structure that culls takes 3.2 us more than others; the table does not contain this difference.
 impl GpTiming {
     /// Returns this table with the times of primitives that follow from the code of a version in one use.
     ///
@@ -82,7 +85,7 @@ impl GpTiming {
         }
     }
 
-    /// This table with the times of the scheduled code for Phong triangles of a frame, in bins: PPHIGS.
+    /// Returns this table with the times of the scheduled code for Phong triangles of a frame, in bins: PPHIGS.
     #[must_use]
     pub const fn of_scheduled_phong(self) -> Self {
         Self {
@@ -100,8 +103,8 @@ impl GpTiming {
         }
     }
 
-    /// This table with the times of the compiled code for triangles of a field whose colours are precomputed, thirty in a clump, both eyes in
-    /// one pass: Slats.
+    /// Returns this table with the times of the compiled code for field triangles with precomputed colours: Slats.
+    /// A clump has thirty triangles, and one pass makes both eyes.
     #[must_use]
     pub const fn of_compiled_precomputed(self) -> Self {
         Self {
@@ -118,7 +121,7 @@ impl GpTiming {
         }
     }
 
-    /// The same of the scheduled code.
+    /// Returns this table with the times of the scheduled code for field triangles with precomputed colours, in clumps.
     #[must_use]
     pub const fn of_scheduled_precomputed(self) -> Self {
         Self {
@@ -135,8 +138,8 @@ impl GpTiming {
         }
     }
 
-    /// This table with the times of the compiled code for Gouraud triangles of a field, thirty in a clump: Slats with light on the
-    /// GP.
+    /// Returns this table with the times of the compiled code for Gouraud triangles of a field: Slats with lighting on
+    /// the GP. A clump has thirty triangles.
     #[must_use]
     pub const fn of_compiled_gouraud(self) -> Self {
         Self {
@@ -153,7 +156,7 @@ impl GpTiming {
         }
     }
 
-    /// The same of the scheduled code.
+    /// Returns this table with the times of the scheduled code for Gouraud triangles of a field, in clumps.
     #[must_use]
     pub const fn of_scheduled_gouraud(self) -> Self {
         Self {
@@ -174,27 +177,28 @@ impl GpTiming {
 parameters::parameter_table! {
     /// Times of the host workstation and of its link to the ring.
     pub struct HostTiming {
-        /// Rate of the link from the host to the ring.
+        /// Data rate of the link from the host to the ring.
         link_bytes_per_s: 5_000_000, "bytes/s", Assumed, 4000000..=10000000 in 1_000..=MAX, "a workstation's parallel interface";
         /// CPU time of the host to send or receive a message.
         message_ns: 20_000, "ns", Assumed, 10000..=100000 in 0..=MAX, "a system call";
-        /// Time between two poses of the scene's own motion that the host sends unasked; with a tracker it sends what that delivers.
+        /// Time between two poses of the scene's own motion that the host sends without a request. With a tracker, the
+        /// host sends the tracker's reports instead.
         view_period_ns: 16_683_333, "ns", Assumed, 8333333..=50000000 in 1_000..=MAX, "a tracker at about the field rate; TR94 gives 20 to 120 Hz";
-        /// Mean time that the application takes from EDIT of a frame to the next frame, where the host waits for EDIT.
+        /// Mean time of the application between the EDIT of a frame and the next frame, if the host waits for EDIT.
         application_ns: 0, "ns", Assumed, 0..=20000000 in 0..=MAX, "0: it asks at once; with the jitter it leaves a trivial scene its printed 30 frames/s";
-        /// Half width of the even spread of that time, never more than its mean.
+        /// Half width of the uniform distribution of the application's time; at most its mean.
         application_jitter_ns: 0, "ns", Assumed, 0..=10000000 in 0..=MAX, "a tick of a Unix clock of 100 Hz";
     }
 }
 
 impl HostTiming {
-    /// Time of `words` words on the link, rounded down to a picosecond.
+    /// Returns the time of `words` words on the link, rounded down to a picosecond.
     #[must_use]
     pub const fn link_span(&self, words: u32) -> Span {
         Span((words as u128 * 4 * 1_000_000_000_000 / self.link_bytes_per_s as u128) as u64)
     }
 
-    /// Time of the application for one frame: evenly spread around its mean, by a number drawn from all 64-bit numbers.
+    /// Returns the application's time for one frame: uniformly distributed around its mean, by a random 64-bit number.
     #[must_use]
     pub const fn application_span(&self, drawn: u64) -> Span {
         let jitter = if self.application_jitter_ns < self.application_ns {
@@ -206,7 +210,7 @@ impl HostTiming {
         Span::from_ns(self.application_ns - jitter + spread as u64)
     }
 
-    /// The host as a board: only its software costs and the size of its memory matter.
+    /// Returns the host as a board. Only its software costs and its memory size matter.
     #[must_use]
     pub const fn board(&self) -> GpTiming {
         GpTiming { message_ns: self.message_ns, ..GpTiming::PAPERS }
@@ -224,7 +228,7 @@ mod tests {
         assert_eq!(HostTiming::PAPERS.out_of_range(), []);
     }
 
-    /// The fits are what the papers' limits ask for, whatever the range of PPHIGS.
+    /// The fitted times follow from the papers' limits and may lie outside the range of PPHIGS.
     #[test]
     fn every_preset_is_within_the_limits() {
         for preset in [GpTiming::SLATS_1994, GpTiming::SLATS_1995, GpTiming::SLATS_OPTIMISED] {
@@ -232,7 +236,8 @@ mod tests {
         }
     }
 
-    /// 30.0 and 55.8 us are fitted to the limits of 110 and 100 triangles, a third of it is what I3D95 expects of code in cache. Slats has no bins.
+    /// 30.0 and 55.8 us are fitted to the limits of 110 and 100 triangles. I3D95 expects a third of the time of 1994
+    /// for code in cache. Slats has no bins.
     #[test]
     fn slats_takes_what_its_published_limits_ask_for() {
         let presets = [GpTiming::SLATS_1994, GpTiming::SLATS_1995, GpTiming::SLATS_OPTIMISED];
@@ -240,7 +245,8 @@ mod tests {
         assert_eq!(times, [30_000, 55_800, 10_000].map(|ns| [ns, ns, 0]));
     }
 
-    /// Of each code all times that it has stand in its table, whatever stood there; pxpl5-lab holds them to what the code takes.
+    /// A table of times from i860 code replaces every time of the base table. A test of pxpl5-lab compares these times
+    /// with the code.
     #[test]
     fn tables_of_code_leave_no_time_of_code_as_it_was() {
         let mut before = GpTiming::PAPERS;
@@ -283,7 +289,7 @@ mod tests {
 
     #[test]
     fn a_word_on_the_hosts_link_takes_four_bytes_of_its_rate() {
-        // 5 MB/s: 800 ns a word. 3 bytes a second: 4/3 s.
+        // 5 MB/s give 800 ns per word; 3 bytes per second give 4/3 s.
         assert_eq!(HostTiming::PAPERS.link_span(7), Span::from_ns(5_600));
         let slow = HostTiming { link_bytes_per_s: 3, ..HostTiming::PAPERS };
         assert_eq!(slow.link_span(1), Span(1_333_333_333_333));

@@ -1,23 +1,25 @@
-//! Work of the CPU, whose time comes from the timing table or from code.
+//! Work of the CPU, with its time from the timing table or from code.
 
 use crate::firmware::{Fault, Gp};
 use crate::processor::{Processor, ProcessorFault};
 use crate::timing::GpTiming;
 use pxpl5_sim::Span;
 
-/// A piece of work in both forms in which a board can tell its time.
+/// A piece of work whose time is known from the timing table and from code.
 pub trait Work {
-    /// Its time by the timing table.
+    /// Returns the time of the work by the timing table.
     fn by_table(&self, timing: &GpTiming) -> Span;
 
-    /// Its time as code that runs on the board's processor; for parts that have no code, that of the table.
+    /// Runs the work as code on the board's processor and returns its time. Parts without code take the time of the
+    /// table.
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault`] when the code does not come to its end.
+    /// [`ProcessorFault`] if the code does not reach its end.
     fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault>;
 
-    /// Vertices that it transforms: each corner of a triangle and each centre of a sphere, once for each view. Most work transforms none.
+    /// Returns the number of vertices that the work transforms. Each corner of a triangle and each centre of a sphere
+    /// counts once for each view. Most work transforms none.
     fn vertex_transforms(&self) -> u64 {
         0
     }
@@ -28,7 +30,7 @@ impl Gp {
     ///
     /// # Errors
     ///
-    /// [`Fault::Processor`] when its code does not come to its end.
+    /// [`Fault::Processor`] if its code does not reach its end.
     pub async fn work(&self, work: &impl Work) -> Result<(), Fault> {
         let span = {
             let shared = &mut *self.shared.borrow_mut();
@@ -42,17 +44,18 @@ impl Gp {
         Ok(())
     }
 
-    /// Whether the time of this board's work comes from code.
+    /// Returns true if the time of this board's work comes from code.
     #[must_use]
     pub fn runs_code(&self) -> bool {
         self.shared.borrow().processor.is_some()
     }
 
-    /// Prepares the memory of a board whose time comes from code; on others there is nothing to do.
+    /// Lets `image` write to the memory of the processor, if the work of this board runs as i860 code. On other boards
+    /// this does nothing.
     ///
     /// # Errors
     ///
-    /// [`Fault::Processor`] when something does not fit.
+    /// [`Fault::Processor`] if the data do not fit.
     pub fn install(&self, image: impl FnOnce(&mut Processor) -> Result<(), ProcessorFault>) -> Result<(), Fault> {
         let shared = &mut *self.shared.borrow_mut();
         Ok(shared.processor.as_deref_mut().map_or(Ok(()), image)?)
@@ -69,7 +72,7 @@ mod tests {
 
     const SCHEDULED: Option<CodeVersion> = Some(CodeVersion::Scheduled);
 
-    /// A loop of a number of turns, or a trap.
+    /// Work whose code is a loop of this many turns, or a trap for `None`.
     struct Turns(Option<u32>);
 
     impl Work for Turns {
@@ -107,11 +110,11 @@ mod tests {
     #[test]
     fn a_board_with_code_spends_its_clocks() {
         let [ten, twenty] = [10, 20].map(|turns| run(GpTiming::PAPERS, SCHEDULED, Some(turns)).busy());
-        // A turn is two instructions and the two clocks of a taken btne.
+        // A turn takes two instructions and the two clocks of a taken btne.
         assert_eq!(twenty.0 - ten.0, 10 * 4 * Processor::CLOCK.0);
     }
 
-    /// One nanosecond in the table once decided whether the code ran.
+    /// Regression test: a table time of one nanosecond once decided whether the code ran.
     #[test]
     fn a_changed_time_per_triangle_still_runs_the_code() {
         let table = run(GpTiming::PAPERS, SCHEDULED, Some(10)).busy();

@@ -1,5 +1,5 @@
-//! What programs see of their board, and what the board tells others: each promise of [`Gp`] and [`GpBoard`] alone. Times are sums of spans
-//! that the test sets; numbers of events follow from which waits each of them can end.
+//! Tests of each promise of [`Gp`] and [`GpBoard`]. Times are sums of spans that the test sets. Numbers of events
+//! follow from the waits that each event can end.
 
 use pxpl5_gp::{
     Account, CodeVersion, Fault, Gp, GpBoard, GpEvent, GpOutput, GpTiming, Mark, OutOfMemory, PLACE_BITS, Priority,
@@ -14,7 +14,7 @@ use std::sync::Arc;
 const BOARD: NodeId = NodeId(9);
 const MESSAGE_NS: u64 = 1_000;
 const CYCLE: Span = Span(25_000);
-/// What programs note: when, and a number.
+/// Times and numbers that the programs of a test record.
 type Notes = Rc<RefCell<Vec<(Time, u64)>>>;
 
 fn note(notes: &Notes, gp: &Gp, value: u64) {
@@ -34,12 +34,12 @@ fn message(source: u16) -> GpEvent {
     GpEvent::Delivered(Message { source: NodeId(source), destination: BOARD, words, body })
 }
 
-/// The acceptance of a message by its place in a batch.
+/// Returns the acceptance event of the message at a place in a batch.
 fn accepted(batch: u64, place: u64) -> GpEvent {
     GpEvent::Accepted(batch << PLACE_BITS | place)
 }
 
-/// A board on its bench.
+/// A board on its test bench.
 struct Rig {
     board: GpBoard,
     bench: TestBench<GpEvent, GpOutput>,
@@ -53,7 +53,7 @@ impl Rig {
         Self { board: GpBoard::new(BOARD, timing, CYCLE), bench }
     }
 
-    /// The same with a program.
+    /// Adds a program.
     fn with<F>(mut self, priority: Priority, program: impl FnOnce(Gp) -> F) -> Self
     where
         F: Future<Output = Result<(), Fault>> + 'static,
@@ -63,7 +63,7 @@ impl Rig {
         self
     }
 
-    /// The same with what arrives at an instant.
+    /// Adds an event at an instant.
     fn fed(mut self, at_ns: u64, event: GpEvent) -> Self {
         self.bench.feed(ns(at_ns), Phase::Arrive, event);
         self
@@ -74,7 +74,7 @@ impl Rig {
         self.bench.run_until(ns(until_ns), |event, context| board.handle(event, context));
     }
 
-    /// Runs until nothing is left; how many events that took.
+    /// Runs until no event is left. Returns the number of events.
     fn events(&mut self) -> u64 {
         self.run_to(1_000_000_000);
         self.bench.queue().events_taken()
@@ -98,7 +98,7 @@ fn messages_of_one_instant_are_looked_at_together_and_once() {
         }
     });
     rig = rig.fed(500, message(4)).fed(500, message(2)).fed(500, message(3)).fed(800, message(1));
-    // The first look, four arrivals, and a look for each of two instants.
+    // The first poll, four arrivals, and a poll for each of two instants.
     assert_eq!(rig.events(), 1 + 4 + 2);
     assert_eq!(*notes.borrow(), [(ns(500), 2), (ns(500), 3), (ns(500), 4), (ns(800), 1)]);
 }
@@ -111,7 +111,7 @@ fn what_ends_no_wait_is_no_reason_to_look() {
         Ok(())
     });
     rig = rig.fed(1_000, message(1)).fed(2_000, message(2)).fed(3_000, GpEvent::Retrace(PeriodNumber(7)));
-    // The first look, three arrivals during work, and its end.
+    // The first poll, three arrivals during work, and its end.
     assert_eq!(rig.events(), 1 + 3 + 1);
 }
 
@@ -126,15 +126,15 @@ fn acceptances_wake_the_board_when_the_next_chain_can_go() {
     });
     rig = rig.fed(10_000, accepted(1, 2)).fed(11_000, accepted(1, 0)).fed(12_000, accepted(1, 1));
     rig = rig.fed(20_000, accepted(2, 0));
-    // The first look, two software costs, four acceptances, and a look at the one after which the DMA is free.
+    // The first poll, two software costs, four acceptances, and a poll at the acceptance after which the DMA is free.
     assert_eq!(rig.events(), 1 + 2 + 4 + 1);
     let sent: Vec<_> = rig.bench.outputs.iter().map(|(time, GpOutput::Send { ticket, .. })| (*time, *ticket)).collect();
     let first = (0..3).map(|place| (ns(MESSAGE_NS) + CYCLE, 1 << PLACE_BITS | place));
     assert_eq!(sent, first.chain([(ns(12_000) + CYCLE, 2 << PLACE_BITS)]).collect::<Vec<_>>());
 }
 
-/// A program that sends a chain to receivers, each of whose messages is accepted 10 us after the one before it in an order of places: when
-/// it goes on after `draining`, `accepted` and `clump_buffer_free`.
+/// Sends a chain to receivers whose acceptances follow 10 us apart in a given order. Returns the times at which
+/// `draining`, `accepted` and `clump_buffer_free` end.
 fn waits_of_a_chain(receivers: [u16; 3], order: [u64; 3]) -> Vec<(Time, u64)> {
     let notes = Notes::default();
     let told = Rc::clone(&notes);
@@ -165,7 +165,7 @@ fn a_chain_drains_when_each_receiver_has_taken_one_message_and_is_accepted_when_
     assert_eq!(waits_of_a_chain([1, 2, 3], [2, 0, 1]), all_at_the_end);
 }
 
-/// Of two programs of a board the one that interrupts is asked first; what the other one has done since, it finds at the same instant.
+/// The interrupt program is polled first. It sees progress of the other program at the same instant.
 #[test]
 fn what_one_program_does_for_the_other_is_found_at_once() {
     let notes = Notes::default();
@@ -245,7 +245,7 @@ fn a_program_sees_retraces_and_status_lines() {
         note(&told, &gp, gp.field().0);
         Ok(())
     });
-    // The period that it is in already is none to wait for.
+    // The current period ends no wait for a retrace.
     rig = rig.fed(50, GpEvent::Retrace(PeriodNumber::FIRST)).fed(100, GpEvent::Retrace(PeriodNumber(1)));
     for (at, from, value) in [(200, 5, 1), (300, 6, 7), (400, 5, 2), (500, 5, 3)] {
         rig = rig.fed(at, GpEvent::Status { from: NodeId(from), value });
@@ -292,7 +292,7 @@ fn a_message_can_be_taken_for_nothing() {
         let sources = [gp.take_message(), gp.take_message(), gp.take_message()];
         let sources = sources.map(|received| received.map_or(0, |received| u64::from(received.source.0)));
         sources.iter().for_each(|source| note(&told, &gp, *source));
-        // A chain without messages has been accepted.
+        // A chain without messages counts as accepted.
         gp.accepted(gp.send_batch(Vec::new()).await).await;
         note(&told, &gp, 1);
         Ok(())
@@ -366,7 +366,7 @@ fn who_looks_sees_each_account_of_the_memory() {
         for (bytes, account) in (1..).zip(Account::ALL) {
             gp.reserve(account, bytes, None)?;
         }
-        // The contexts take turns: a third one is the first.
+        // Contexts alternate, so number 2 is context 0.
         gp.reserve(Account::Commands(2), 30, None)?;
         gp.reserve(Account::Bins(3), 60, None)
     });
@@ -376,7 +376,7 @@ fn who_looks_sees_each_account_of_the_memory() {
     assert_eq!(rig.board.memory_peak_bytes(), held.iter().sum::<u64>());
 }
 
-/// Two instructions of code.
+/// Work that runs two instructions of code.
 struct Code(Arc<i860::Program>);
 
 impl Work for Code {
@@ -411,7 +411,7 @@ fn breakpoints_are_met_where_there_is_a_processor() {
     }
 }
 
-/// Work of so many nanoseconds by the table.
+/// Work that takes this many nanoseconds by the table.
 struct Handing(u64);
 
 impl Work for Handing {
@@ -424,11 +424,12 @@ impl Work for Handing {
     }
 }
 
-/// An order for the interrupt's program: when it comes, how long its work takes if it has any, and how many messages answer it besides the last.
+/// A request for the interrupt program: its arrival, the time of its work if any, and the number of answers before the
+/// last one.
 type Order = (u64, Option<u64>, usize);
 
-/// Returns the messages of a board with their times, and its busy time. Its foreground works so long again and again, and sends a message
-/// after each; the n-th message is accepted `delays[n]` after it has left, in hundreds of ns, and again from the first.
+/// Returns the sent messages with their times, and the busy time. The foreground repeats work and a message. Message n
+/// is accepted `delays[n]` after its departure, in hundreds of ns; the delays repeat.
 fn answers(orders: &[Order], foreground: &[u64], delays: &[u64]) -> (Vec<(Time, u16, u64)>, Span) {
     let all = Rc::new(RefCell::new(orders.to_vec()));
     let mut rig = Rig::new().with(Priority::Interrupt, |gp| async move {
@@ -464,7 +465,8 @@ fn answers(orders: &[Order], foreground: &[u64], delays: &[u64]) -> (Vec<(Time, 
     (sent.collect(), rig.board.busy())
 }
 
-/// Receiving and work of 0.3 us, then each message; the second begins when the first is accepted, a cycle and 0.1 us after its software.
+/// Reception and work take 0.3 us, then each message follows. The second message begins at the acceptance of the first:
+/// a cycle and 0.1 us after its software.
 #[test]
 fn an_answer_takes_a_message_for_what_is_received_and_for_each_that_is_sent() {
     for (count, expected_ns) in [(0, vec![3_300]), (1, vec![3_300, 4_300]), (2, vec![3_300, 4_425, 5_425])] {

@@ -1,9 +1,11 @@
 //! The high-resolution frame buffer of Pixel-Planes 5: 1280 x 1024 at 72 Hz, every line in every scan, double-buffered.
 //!
-//! A board takes regions into the buffer that is not shown and swaps at the next retrace after a request. It is also the
-//! example of how a display is added: this file and a line in the registry are all of it. **Not modelled:** blanking (the
-//! scan fills its whole period), pixels that arrive while their line is scanned. Parts of a region are counted, so it may be told of
-//! them late. Sources: F89 (size), TR94 (words); the rate and the scan without blanking are assumed.
+//! A board writes regions into the buffer that is not shown, and swaps at the next retrace after a request. This crate
+//! is also the example of a new display: it consists of this file and one line in the registry.
+//!
+//! **Not modelled:** blanking (the scan fills its whole period), and pixels that arrive while their line is scanned.
+//!
+//! Sources: F89 (size), TR94 (words). The rate and the scan without blanking are assumed.
 
 use image::RgbImage;
 use parameters::ParameterTable;
@@ -21,9 +23,9 @@ parameters::parameter_table! {
         width: 1280, "pixels", Published, 1280..=1280 in 1..=1408, "F89";
         /// Visible lines of a frame.
         height: 1024, "lines", Published, 1024..=1024 in 1..=1408, "F89";
-        /// Scans of the whole frame a second.
+        /// Scans of the whole frame per second.
         refresh_hz: 72, "Hz", Assumed, 60..=76 in 1..=1000, "monitors of that size in those years";
-        /// Ports of a board on the ring; regions take them in turn.
+        /// Ports of a board on the ring. Successive regions use them in turn.
         ports: 1, "ports", Assumed, 1..=8 in 1..=8, "no source says how many. 1 as each NTSC frame buffer (TR94): then the 80 regions of a picture take 66.6 ms, five scans, and no more than 14.4 pictures a second go through. 8 is as many as the ring has channels";
         /// Time of one word at a port.
         word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94: 20 Mwords/s per channel";
@@ -37,7 +39,7 @@ struct HiRes {
     frame: Clock,
     nodes: Vec<NodeId>,
     surfaces: Vec<Surface>,
-    /// One for each surface; port n belongs to board n modulo their number.
+    /// One board for each surface. Port n belongs to the board with number n modulo the number of boards.
     boards: Vec<DoubleBuffer>,
     scans: u64,
 }
@@ -142,7 +144,7 @@ impl DisplayConfig for HiResConfig {
         pictures * self.ports as usize
     }
 
-    /// The first ports of all boards come first, then the second ones.
+    /// Builds the boards. Of the ring ports, the first ones of all boards come first, then the second ones.
     fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError> {
         DisplayConfig::check(self)?;
         let boards = nodes.len() / self.ports as usize;

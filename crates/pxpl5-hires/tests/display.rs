@@ -1,4 +1,5 @@
-//! The high-resolution frame buffer as the machine knows it. Times are fractions of its 72 Hz, pictures those of a model that paints whole regions.
+//! Tests of the high-resolution frame buffer through its interface. Times are fractions of its 72 Hz period; a model
+//! that paints whole regions gives the expected pictures.
 
 use image::{Rgb, RgbImage};
 use pxpl5_display::{Display, DisplayConfig, DisplayEvent, DisplayOutput};
@@ -18,7 +19,7 @@ const WORD: Span = Span::from_ns(50);
 /// Picoseconds of a second.
 const SECOND: u128 = 1_000_000_000_000;
 
-/// The colour of a pixel counts its region and its row.
+/// A pixel source whose colours encode region and row.
 #[derive(Debug)]
 struct Counted(RegionId);
 
@@ -50,7 +51,7 @@ impl Rig {
         at
     }
 
-    /// A region into the buffer of a port, its messages a nanosecond apart.
+    /// Sends a region to the buffer of a port, its messages a nanosecond apart.
     fn region(&mut self, at: Time, port: usize, buffer: u8, region: u16) -> CopyTarget {
         let (frame_buffer, region) = (NODES[port], RegionId(region));
         let picture = PictureNumber(3);
@@ -73,7 +74,7 @@ impl Rig {
     }
 }
 
-/// Black, and some regions of the grid in their colours.
+/// Returns a black picture with some regions of the grid in their colours.
 fn painted(regions: &[u16]) -> RgbImage {
     RgbImage::from_fn(SIZE[0], SIZE[1], |x, y| {
         let region = (y / 128 * 10 + x / 128) as u16;
@@ -144,7 +145,7 @@ fn a_picture_is_shown_from_the_scan_after_it_was_asked_for() {
     assert_eq!(rig.display.shown(1), Some(painted(&[37])));
     assert_eq!(rig.display.shown(0), Some(painted(&[])));
     assert_eq!(rig.display.shown(2), None);
-    // Of three scans that began two are over, of which the last is remembered.
+    // Three scans have begun and two are over. The display remembers the last of these.
     assert_eq!(rig.display.last_seen(), Some(PeriodNumber(1)));
     assert_eq!(rig.display.seen(1, PeriodNumber(1)), Some(painted(&[37])));
     assert_eq!([0, 2].map(|scan| rig.display.seen(1, PeriodNumber(scan))), [None, None]);
@@ -160,7 +161,7 @@ fn what_a_port_cannot_use_is_counted() {
     assert_eq!(rig.display.faults(), (2, Some("expected buffer 0 or 1, found 2".to_owned())));
 }
 
-/// Regions that come to either port of a board are its own, and ports that do not divide among boards are refused.
+/// A board accepts regions at both of its ports. A number of ports that cannot be divided among boards is an error.
 #[test]
 fn a_board_with_two_ports_takes_regions_at_both() {
     let config = HiResConfig { ports: 2, ..HiResConfig::PAPERS };

@@ -1,4 +1,4 @@
-//! Messages a second of host time: the machine of TR94 with every port busy.
+//! Messages per second of host time: the machine of TR94 with every port busy.
 
 #![allow(missing_docs, reason = "the macros of criterion make public functions without any")]
 
@@ -22,7 +22,7 @@ fn request(number: u64, n_nodes: u16, words: &Arc<[u32]>) -> Request {
     Request { message, ticket: Some(number), hold: false, order: 0 }
 }
 
-/// A ring of 21 ports, and a request at each of them.
+/// Makes a ring of 21 ports with a request at each of them.
 fn busy_ring(elastic: bool, words: &Arc<[u32]>) -> (Ring, EventQueue<RingEvent>) {
     let ring = Ring::new(RingTiming::PAPERS, 21, |_| elastic).expect("valid");
     let mut queue = EventQueue::new();
@@ -32,7 +32,7 @@ fn busy_ring(elastic: bool, words: &Arc<[u32]>) -> (Ring, EventQueue<RingEvent>)
     (ring, queue)
 }
 
-/// Every `Sent` makes its port send the next message, so that the queues stay as long as they are.
+/// Sends the next message of a port at every `Sent`, so that the queues keep their lengths.
 fn run(mut ring: Ring, mut queue: EventQueue<RingEvent>, words: &Arc<[u32]>) -> Ring {
     let n_nodes = ring.n_nodes();
     let mut context = Context::default();

@@ -1,4 +1,4 @@
-//! The channels and what is on them.
+//! The channels of the ring and the messages on them.
 
 use crate::{WaitReason, WaitingMessage};
 use pxpl5_sim::{Span, Time};
@@ -6,20 +6,20 @@ use pxpl5_wire::{Message, NodeId};
 
 const UNKNOWN: Time = Time(u64::MAX);
 
-/// What somebody who looks sees on a channel.
+/// A snapshot of a message on a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OnChannel {
-    /// The channel, from 0.
+    /// Number of the channel, from 0.
     pub channel: usize,
-    /// The port of the sender.
+    /// Port of the sender.
     pub source: NodeId,
-    /// The port of the receiver.
+    /// Port of the receiver.
     pub destination: NodeId,
     /// Length of the message in words.
     pub words: u32,
-    /// When the channel was given to it.
+    /// Time at which the arbiter granted the channel.
     pub granted: Time,
-    /// When the channel is free again; `None` until a receiver with a FIFO has said when it has room.
+    /// Time at which the channel becomes free; `None` until a receiver with a FIFO has answered.
     pub ends_at: Option<Time>,
 }
 
@@ -33,25 +33,26 @@ pub(crate) struct MessageInFlight {
     pub(crate) hold: bool,
     pub(crate) granted: Time,
     pub(crate) latency: Span,
-    /// Word slots that have not ended, and the message until the receiver is told of it; only where every word is moved.
+    /// Number of word slots until the message ends, and the message until the receiver is told. Both are used only by
+    /// [`Ring::move_every_word`](crate::Ring::move_every_word).
     pub(crate) slots_left: u64,
     pub(crate) message: Option<Box<Message>>,
 }
 
-/// All channels; free ones are taken from the lowest number.
+/// All channels of the ring. A new message takes the free channel with the lowest number.
 #[derive(Clone, Debug)]
 pub(crate) struct RingChannels {
     flights: Vec<Option<MessageInFlight>>,
-    /// When each channel is free again; unknown on a free one and until the receiver has answered.
+    /// Time at which each channel becomes free; `UNKNOWN` for free channels and before the receiver's answer.
     ends_at: Vec<Time>,
-    /// Those that are known, with their channels, the earliest last.
+    /// Known end times with their channels, the earliest last.
     due: Vec<(Time, usize)>,
-    /// One bit a channel.
+    /// Bit set of the free channels.
     free: u64,
 }
 
 impl RingChannels {
-    /// 1 to 64 free channels.
+    /// Makes 1 to 64 free channels.
     pub(crate) fn new(n: usize) -> Self {
         Self {
             flights: vec![None; n],
@@ -73,19 +74,19 @@ impl RingChannels {
         self.flights.iter().all(Option::is_none)
     }
 
-    /// Puts a message on the lowest free channel, which must exist; its end may be known already.
+    /// Puts a message on the lowest free channel and returns the channel's number. A free channel must exist.
     pub(crate) fn occupy(&mut self, flight: MessageInFlight, ends_at: Option<Time>) -> usize {
         let channel = self.free.trailing_zeros() as usize;
         self.free &= !(1 << channel);
         self.flights[channel] = Some(flight);
-        // A free channel has no end.
+        // A free channel has no end time, so nothing is recorded while the end is unknown.
         if let Some(end) = ends_at {
             self.end_at(channel, end);
         }
         channel
     }
 
-    /// Says when the message on a channel ends, once.
+    /// Sets the end time of the message on a channel, once for each message.
     pub(crate) fn end_at(&mut self, channel: usize, at: Time) {
         let before = std::mem::replace(&mut self.ends_at[channel], at);
         debug_assert_eq!(before, UNKNOWN, "an end that is known stays");
@@ -93,22 +94,22 @@ impl RingChannels {
         self.due.insert(self.due.len() - earlier, (at, channel));
     }
 
-    /// The earliest end that is known.
+    /// Returns the earliest known end time.
     pub(crate) fn first_end(&self) -> Option<Time> {
         self.due.last().map(|end| end.0)
     }
 
-    /// The ends that are known, the earliest first, and what ends.
+    /// Iterates over the known end times, the earliest first, with their messages.
     pub(crate) fn ends(&self) -> impl Iterator<Item = (Time, &MessageInFlight)> {
         self.due.iter().rev().filter_map(|(end, channel)| Some((*end, self.flight(*channel)?)))
     }
 
-    /// The end of the message on a channel, if it is known.
+    /// Returns the end time of the message on a channel, if it is known.
     pub(crate) fn end(&self, channel: usize) -> Option<Time> {
         Some(self.ends_at[channel]).filter(|end| *end != UNKNOWN)
     }
 
-    /// Takes a message whose time is over, with its channel and the end of that time.
+    /// Frees a channel whose message has ended. Returns the channel, the end time and the message.
     pub(crate) fn take_ended(&mut self, now: Time) -> Option<(usize, Time, MessageInFlight)> {
         let (ended, channel) = self.due.pop_if(|end| end.0 <= now)?;
         self.ends_at[channel] = UNKNOWN;
@@ -116,7 +117,8 @@ impl RingChannels {
         Some((channel, ended, self.flights[channel].take()?))
     }
 
-    /// A word slot of a channel has ended: takes the message off for a moment.
+    /// Ends one word slot of a channel and returns its message. [`RingChannels::put_back`] returns the message to the
+    /// channel.
     pub(crate) fn take_slot(&mut self, channel: usize) -> Option<MessageInFlight> {
         let flight = self.flights.get_mut(channel)?.take()?;
         Some(MessageInFlight { slots_left: flight.slots_left.saturating_sub(1), ..flight })
@@ -130,17 +132,17 @@ impl RingChannels {
         self.flights[channel].as_ref()
     }
 
-    /// The messages that occupy channels, by channel.
+    /// Iterates over the messages that occupy channels, by channel.
     pub(crate) fn flights(&self) -> impl Iterator<Item = &MessageInFlight> {
         self.flights.iter().flatten()
     }
 
-    /// The message on a channel if nobody has said when it ends.
+    /// Returns the message on a channel if its end is unknown.
     pub(crate) fn unanswered(&self, channel: usize) -> Option<&MessageInFlight> {
         self.flight(channel).filter(|_| self.ends_at[channel] == UNKNOWN)
     }
 
-    /// What is on each channel after `now`, by channel.
+    /// Iterates over snapshots of the messages on channels after `now`, by channel.
     pub(crate) fn on_channels(&self, now: Time) -> impl Iterator<Item = OnChannel> + '_ {
         (0..self.flights.len()).filter_map(move |channel| {
             let ends_at = self.end(channel);

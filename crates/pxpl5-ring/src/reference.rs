@@ -1,18 +1,17 @@
-//! The rules of the ring word by word: slow, literal, and the measure of the fast ring.
+//! The reference model of the ring, word by word: slow and obvious. The fast ring is tested against it.
 //!
-//! Time advances tick by tick. In every tick, in this order:
+//! Time advances tick by tick. Every tick has three steps, in this order:
 //!
-//! 1. messages whose time has come join the queue of their source port;
-//! 2. every occupied channel that has reached the end of a word slot moves one word on: first the slots of the
-//!    overhead, then the words of the message. A word that its receiver has no room for stays in its slot and is
-//!    offered again in the next tick. When the last word has moved and the receiver has answered, channel and ports
-//!    are free;
-//! 3. the heads of the queues of ports that have a send channel left are granted, always the first one in order of
-//!    (time as head, source) whose destination is free and not reserved for another source, while there are channels;
-//!    those to receivers that may stall take `fifo_channels` at most.
+//! 1. Messages whose time has come join the queue of their source port.
+//! 2. Every channel at the end of a word slot moves one word: first the slots of the overhead, then the words of the
+//!    message. A word that does not fit into its receiver stays in its slot and is offered again in the next tick. When
+//!    the last word has moved and the receiver has answered, channel and ports become free.
+//! 3. Heads of queues are granted while channels are free. The order is (time as head, source). A head needs a source
+//!    port with a free send channel and a free destination that is not reserved for another source. Messages to
+//!    receivers with a FIFO use at most `fifo_channels`.
 //!
-//! Hops only shift what a receiver sees: its word slots lie that much later than those of the sender. There is no
-//! shortcut: no end is computed ahead, no event is skipped.
+//! Hops only delay the word slots that a receiver sees against those of the sender. The model computes no end ahead and
+//! skips no event.
 
 use crate::{RingError, RingTiming};
 use parameters::ParameterTable;
@@ -20,10 +19,10 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::NodeId;
 use std::collections::VecDeque;
 
-/// A message to be sent. Those of one instant and source keep the order in which they are listed.
+/// A message to be sent. Messages of one instant and source are sent in the order of the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlannedMessage {
-    /// When the board hands it to its port.
+    /// Time at which the board passes the message to its port.
     pub at: Time,
     /// Port of the sender.
     pub source: NodeId,
@@ -31,36 +30,36 @@ pub struct PlannedMessage {
     pub destination: NodeId,
     /// Length in words, without the overhead, 1 to 1,024.
     pub words: u32,
-    /// Whether the destination stays reserved afterwards.
+    /// True if the destination stays reserved for the source afterwards.
     pub hold: bool,
 }
 
-/// When a message was carried, and on which channel.
+/// Times and channel of a carried message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CarriedMessage {
-    /// The channel, from 0.
+    /// Number of the channel, from 0.
     pub channel: usize,
-    /// When channel and ports were granted.
+    /// Time at which channel and ports were granted.
     pub granted: Time,
-    /// When the last word had entered the receiver.
+    /// Time at which the last word entered the receiver.
     pub last_word_at: Time,
-    /// When channel and ports were free again.
+    /// Time at which channel and ports became free again.
     pub released: Time,
 }
 
-/// The receivers' side, asked word by word. Times are as the receiver sees them.
+/// Receivers of the reference model, which calls them word by word. Times are those at the receiver.
 pub trait Receivers {
-    /// Whether the receiver takes every word as it comes.
+    /// Returns true if the receiver accepts every word as it comes.
     fn is_elastic(&self, destination: NodeId) -> bool;
 
-    /// A message has been announced; returns how long after that the receiver gives its answer.
+    /// Announces a message. Returns the time from the announcement to the receiver's answer.
     fn announced(&mut self, destination: NodeId, at: Time) -> Span;
 
-    /// A word has reached the end of its slot: whether it enters now.
+    /// Offers a word at the end of its slot. Returns true if the word enters now.
     fn takes_word(&mut self, destination: NodeId, at: Time) -> bool;
 }
 
-/// Receivers that take every word as it comes.
+/// Receivers that accept every word as it comes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Elastic;
 
@@ -78,16 +77,16 @@ impl Receivers for Elastic {
     }
 }
 
-/// A ring whose time advances tick by tick, and the messages that it is to carry.
+/// The reference model: a ring whose time advances tick by tick, with the messages that it carries.
 #[derive(Debug)]
 pub struct SteppedRing<'a, R> {
     timing: RingTiming,
     n_nodes: u16,
     traffic: &'a [PlannedMessage],
     receivers: R,
-    /// Per source: numbers of messages, the first since when.
+    /// For each source: numbers of the queued messages, and the time since which the first one is the head.
     queues: Vec<(VecDeque<usize>, Time)>,
-    /// Messages of each source on channels.
+    /// Number of messages of each source on channels.
     sending: Vec<u64>,
     receiving: Vec<bool>,
     reserved_for: Vec<Option<NodeId>>,
@@ -107,7 +106,7 @@ struct ChannelSlots {
 }
 
 impl<'a, R: Receivers> SteppedRing<'a, R> {
-    /// A ring that will carry `traffic`.
+    /// Makes a ring that will carry `traffic`.
     ///
     /// # Errors
     ///
@@ -141,12 +140,12 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
         })
     }
 
-    /// Steps until everything is delivered; what became of each message, in the order of the traffic.
+    /// Steps until all messages are delivered. Returns the times of each message, in the order of the traffic.
     ///
     /// # Errors
     ///
-    /// [`RingError::OffTick`] when a time of the timing table or of the traffic is no multiple of `tick`,
-    /// [`RingError::Unfinished`] when something has not been delivered at `until`.
+    /// [`RingError::OffTick`] if a time of the timing table or of the traffic is not a multiple of `tick`.
+    /// [`RingError::Unfinished`] if a message is not delivered at `until`.
     pub fn run(mut self, tick: Span, until: Time) -> Result<Vec<CarriedMessage>, RingError> {
         self.check_tick(tick)?;
         let mut now = Time::ZERO;
@@ -217,6 +216,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     }
 
     fn release(&mut self, message: usize, now: Time) {
+        // The next message of a source at its limit becomes the head only now.
         let PlannedMessage { source, destination, hold, .. } = self.traffic[message];
         if self.sending[usize::from(source.0)] == self.timing.source_channels {
             self.queues[usize::from(source.0)].1 = now;
@@ -236,6 +236,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     }
 
     fn first_grantable(&self) -> Option<(usize, usize)> {
+        // Of the heads whose port has a free send channel, take the first that can be granted.
         let channel = self.channels.iter().position(Option::is_none)?;
         let mut heads: Vec<_> = (0..self.queues.len())
             .filter(|source| self.sending[*source] < self.timing.source_channels)

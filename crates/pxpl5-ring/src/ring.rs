@@ -1,4 +1,4 @@
-//! Ports and arbiter.
+//! Ports and arbiter of the ring.
 
 use crate::channels::{MessageInFlight, OnChannel, RingChannels};
 use crate::{Refusals, Request, RingError, RingEvent, RingOutput, RingStats, RingTiming, WaitReason, WaitingMessage};
@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 
 type RingContext = Context<RingEvent, RingOutput>;
 
-/// The ring: state of its ports, channels and arbiter.
+/// The ring: its ports, channels and arbiter.
 #[derive(Clone, Debug)]
 pub struct Ring {
     timing: RingTiming,
@@ -17,21 +17,21 @@ pub struct Ring {
     sources: Vec<SourcePort>,
     destinations: Vec<DestinationPort>,
     channels: RingChannels,
-    /// Messages on channels to receivers with a FIFO, at most `fifo_channels`.
+    /// Number of messages on channels to receivers with a FIFO, at most `fifo_channels`.
     to_fifos: u64,
-    /// The first messages of their sources, in the order of grants.
+    /// Heads: the first messages of the queues whose source can send, in the order of grants.
     heads: Vec<QueueHead>,
-    /// Heads for receivers with a FIFO.
+    /// Number of messages at the head of a queue whose receiver has a FIFO.
     heads_to_fifos: u32,
-    /// Sources that send on as many channels as they can.
+    /// Number of sources that send on as many channels as they can.
     at_limit: usize,
-    /// Whether something was made free, since the last grants, for which a head may have waited.
+    /// True if a channel or destination for which a message may wait has become free since the last grants.
     unblocked: bool,
-    /// Instants for which arbitration is scheduled.
+    /// Instants at which an arbitration is scheduled.
     arbitrations: Vec<Time>,
-    /// Whether every end of a message is an event, though nobody waits for it.
+    /// True if every end of a message is an event, even if no message waits for it.
     watched: bool,
-    /// Whether every word is an event.
+    /// True if the ring moves every word of a message by an event of its own.
     word_by_word: bool,
     stats: RingStats,
     refusals: Refusals,
@@ -40,7 +40,7 @@ pub struct Ring {
 #[derive(Clone, Debug, Default)]
 struct SourcePort {
     queue: VecDeque<QueuedRequest>,
-    /// Messages on channels, at most `source_channels`.
+    /// Number of messages on channels, at most `source_channels`.
     in_flight: u64,
 }
 
@@ -55,11 +55,11 @@ struct DestinationPort {
     elastic: bool,
     channel: Option<usize>,
     reserved_for: Option<NodeId>,
-    /// Heads that wait for it.
+    /// Number of messages at the head of a queue that wait for this destination.
     heads: u32,
 }
 
-/// A message that is first at its source and waits. The order of grants is that of the first two fields.
+/// The head of a source's queue, which waits for its grant. The first two fields give the order of grants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct QueueHead {
     since: Time,
@@ -68,7 +68,7 @@ struct QueueHead {
 }
 
 impl Ring {
-    /// A ring of `n_nodes` ports with nothing in it; `elastic` says which receivers take every word as it comes.
+    /// Makes an empty ring of `n_nodes` ports. `elastic` returns true for receivers that accept every word as it comes.
     ///
     /// # Errors
     ///
@@ -98,18 +98,18 @@ impl Ring {
         })
     }
 
-    /// Has [`Ring::busy_channels`] be right after every event from now on: there is one at every end of a message.
+    /// Makes every end of a message an event, so that [`Ring::busy_channels`] is correct after every event.
     pub const fn watch(&mut self) {
         self.watched = true;
     }
 
-    /// Moves every word of a message by an event of its own from now on, instead of computing the end of a message at its
-    /// grant. No time changes; receivers with a FIFO answer for whole messages as before.
+    /// Moves every word of a message by an event of its own, instead of computing the message's end at its grant.
+    /// No time changes. Receivers with a FIFO still answer for whole messages.
     pub const fn move_every_word(&mut self) {
         self.word_by_word = true;
     }
 
-    /// Handles one event at `context.now()`; what follows from it is scheduled or put out through `context`.
+    /// Handles one event at `context.now()`. Events and outputs that follow go to `context`.
     pub fn handle(&mut self, event: RingEvent, context: &mut RingContext) {
         match event {
             RingEvent::Request(request) => self.request(request, context),
@@ -128,7 +128,7 @@ impl Ring {
         self.arbitrate_at_next_end(context);
     }
 
-    /// Recomputes every count that the ring keeps beside what it counts.
+    /// Recomputes every counter of the ring and compares it.
     fn counts_are_right(&self) -> bool {
         let to_fifo = |node: NodeId| !self.is_elastic(node);
         let heads_for = |node: usize| self.heads.iter().filter(|head| usize::from(head.destination.0) == node).count();
@@ -145,48 +145,50 @@ impl Ring {
             && self.destinations.iter().enumerate().all(|(node, port)| port.heads as usize == heads_for(node))
     }
 
-    /// The numbers that the ring was built with.
+    /// Returns the timing table of the ring.
     #[must_use]
     pub const fn timing(&self) -> &RingTiming {
         &self.timing
     }
 
-    /// Ports of the ring, numbered from 0.
+    /// Returns the number of ports, numbered from 0.
     #[must_use]
     pub fn n_nodes(&self) -> u16 {
         self.sources.len() as u16
     }
 
-    /// Sums over all messages that have ended, up to the last grant or [`Ring::settle`].
+    /// Returns sums over all ended messages, up to the last grant or [`Ring::settle`].
     #[must_use]
     pub const fn stats(&self) -> &RingStats {
         &self.stats
     }
 
-    /// Messages and answers that were refused.
+    /// Returns the messages and answers that were refused.
     #[must_use]
     pub const fn refusals(&self) -> &Refusals {
         &self.refusals
     }
 
-    /// Channels that are occupied; up to date after each event of a ring that is [watched](Ring::watch).
+    /// Returns the number of occupied channels. It is up to date after each event of a ring that is
+    /// [watched](Ring::watch).
     #[must_use]
     pub fn busy_channels(&self) -> u32 {
         self.channels.busy()
     }
 
-    /// The messages that occupy channels at an instant that is not before the last event, by channel. Looking changes nothing.
+    /// Returns snapshots of the messages on channels at an instant that is not before the last event, by channel. The
+    /// ring stays unchanged.
     pub fn on_channels(&self, now: Time) -> impl Iterator<Item = OnChannel> + '_ {
         self.channels.on_channels(now)
     }
 
-    /// Whether nothing is in flight and nothing waits, as of the last grant or [`Ring::settle`].
+    /// Returns true if no message is in flight or waits, as of the last grant or [`Ring::settle`].
     #[must_use]
     pub fn is_idle(&self) -> bool {
         self.heads.is_empty() && self.channels.is_idle()
     }
 
-    /// Whether the ring could carry a message.
+    /// Checks that the ring could carry a message.
     ///
     /// # Errors
     ///
@@ -201,7 +203,7 @@ impl Ring {
         Err(RingError::Length { source: message.source, destination: message.destination, words: message.words })
     }
 
-    /// Messages that wait at the head of their queue or for their receiver's answer, by source.
+    /// Returns the messages that wait at the head of their queue or for their receiver's answer, by source.
     #[must_use]
     pub fn waiting(&self) -> Vec<WaitingMessage> {
         let heads = self.heads.iter().filter_map(|head| self.waiting_head(*head));
@@ -210,7 +212,7 @@ impl Ring {
         all
     }
 
-    /// The same as lines for a deadlock report; boards are named by their port.
+    /// Returns the waiting messages as lines for a deadlock report, with ports as names of the boards.
     #[must_use]
     pub fn blocked(&self) -> Vec<Blocked> {
         self.waiting().iter().map(|message| message.blocked(port_name)).collect()
@@ -232,9 +234,11 @@ impl Ring {
         let most = self.timing.source_channels;
         let source = &mut self.sources[usize::from(id.0)];
         let new_first = source.insert(QueuedRequest { at: now, request }) == 0;
+        // Only a new head needs an arbitration, and only if its source can send.
         if !new_first || source.in_flight >= most {
             return;
         }
+        // The message comes before the old head: both reached the port at this instant, in another order.
         if source.queue.len() > 1
             && let Some(place) = self.heads.iter().position(|head| head.source == id)
         {
@@ -244,7 +248,7 @@ impl Ring {
         self.arbitrate_at(now, context);
     }
 
-    /// Each arbitration asks for the next one, so that an earlier one will do.
+    /// Schedules an arbitration, unless an earlier one is scheduled. Each arbitration schedules the next one.
     fn arbitrate_at(&mut self, at: Time, context: &mut RingContext) {
         if self.arbitrations.iter().all(|earlier| *earlier > at) {
             self.arbitrations.push(at);
@@ -252,7 +256,7 @@ impl Ring {
         }
     }
 
-    /// The end of a message matters only if somebody waits for just that one.
+    /// Schedules an arbitration at the next end of a message that matters to a waiting head or to a watched ring.
     fn arbitrate_at_next_end(&mut self, context: &mut RingContext) {
         let any_end = self.watched || self.at_limit > 0;
         let next = if any_end || self.lacks_channel() {
@@ -273,7 +277,7 @@ impl Ring {
         self.channels.ends().find(|(_, flight)| waited_for(flight)).map(|(end, _)| end)
     }
 
-    /// Whether a head waits for a channel, whoever leaves one.
+    /// Returns true if a head waits for any channel to become free.
     fn lacks_channel(&self) -> bool {
         (!self.heads.is_empty() && !self.channels.has_free())
             || (self.heads_to_fifos > 0 && self.to_fifos >= self.timing.fifo_channels)
@@ -304,8 +308,8 @@ impl Ring {
         self.heads_to_fifos -= u32::from(!destination.elastic);
     }
 
-    /// Frees channels and ports of all messages that have ended by `now`. The ring does it by itself before it grants;
-    /// its sums are up to date afterwards.
+    /// Frees channels and ports of all messages that have ended by `now`, and adds them to the sums. The ring also does
+    /// this before every grant.
     pub fn settle(&mut self, now: Time) {
         let lacked_channel = self.lacks_channel();
         while let Some((channel, ended, flight)) = self.channels.take_ended(now) {
@@ -315,11 +319,12 @@ impl Ring {
             self.to_fifos -= u64::from(!destination.elastic);
             let source = &mut self.sources[usize::from(flight.source.0)];
             source.in_flight -= 1;
-            // Below the limit the next message has been a head all along.
+            // Below its limit the source already has its next message as a head.
             if source.in_flight + 1 == self.timing.source_channels {
                 self.at_limit -= 1;
                 self.add_head(ended, flight.source);
             }
+            // Account for the message.
             let busy = ended.since(flight.granted);
             self.stats.channel_busy[channel] += busy;
             self.stats.stalled += busy - self.timing.occupancy(flight.words);
@@ -328,8 +333,10 @@ impl Ring {
         }
     }
 
-    /// One pass is enough: a grant makes nothing free, and the head that it brings forward comes after it in order. Where nothing was
-    /// made free since the last pass, the heads that it left can go no more than they could then: those of this instant alone are looked at.
+    /// Grants all heads that can go, in one pass. A grant frees nothing, and the head that follows it comes later in
+    /// the order.
+    /// If nothing became free since the last pass, earlier heads still cannot go, and only heads of this instant are
+    /// checked.
     fn grant_all(&mut self, now: Time, context: &mut RingContext) {
         let is_for_all = std::mem::take(&mut self.unblocked);
         let mut place =
@@ -362,7 +369,7 @@ impl Ring {
         self.stats.waiting += waited;
         self.stats.longest_wait = self.stats.longest_wait.max(waited);
         self.carry(self.flight(&request, now), request.message, context);
-        // The source's next message is a head, if the port may drive one more channel.
+        // The source's next message becomes a head if the port may drive one more channel.
         if self.sources[usize::from(source.0)].in_flight < self.timing.source_channels {
             self.add_head(now, source);
         } else {
@@ -385,8 +392,9 @@ impl Ring {
         }
     }
 
-    /// Puts a message on a channel. Its end is known at once where the receiver is elastic, else at the answer to the announcement; a ring
-    /// that moves every word waits for the words.
+    /// Puts a message on a channel and outputs its delivery or announcement.
+    /// For an elastic receiver the end is known at once, for others at the answer. A ring that moves every word finds
+    /// the end by its words.
     fn carry(&mut self, flight: MessageInFlight, message: Message, context: &mut RingContext) {
         if self.word_by_word {
             let begins = flight.granted;
@@ -410,8 +418,8 @@ impl Ring {
         channel
     }
 
-    /// A slot of overhead or of a word is over: after the first one a receiver with a FIFO is told, after the last one
-    /// an elastic receiver has the message.
+    /// Ends a slot of overhead or of a word. A receiver with a FIFO gets the announcement after the first slot, an
+    /// elastic receiver gets the message after the last.
     fn move_word(&mut self, channel: usize, context: &mut RingContext) {
         let Some(mut flight) = self.channels.take_slot(channel) else { return };
         if flight.slots_left > 0 {
@@ -450,6 +458,7 @@ impl Ring {
             let error = RingError::NothingAnnounced { destination };
             return self.refusals.record(now, error);
         };
+        // The channel is occupied for a stall too, but never ends before now.
         let earliest = flight.granted + self.timing.occupancy(flight.words) + flight.latency;
         let accepted = last_word_at.max(earliest);
         let end = now.max(Time(accepted.0 - flight.latency.0));
@@ -462,7 +471,7 @@ impl Ring {
         }
     }
 
-    /// The message announced to a receiver that has not answered, with its channel.
+    /// Returns the message announced to a receiver that has not answered, with its channel.
     fn unanswered(&self, destination: NodeId) -> Option<(usize, &MessageInFlight)> {
         let channel = self.destinations.get(usize::from(destination.0))?.channel?;
         Some((channel, self.channels.unanswered(channel)?))
@@ -491,7 +500,7 @@ fn port_name(node: NodeId) -> String {
     format!("ring port {}", node.0)
 }
 
-/// A message with its last word is with an elastic receiver.
+/// Outputs the delivery of a message to an elastic receiver, and the answer to its sender.
 fn deliver(message: Message, at: Time, sender: (NodeId, Option<u64>), context: &mut RingContext) {
     context.output(at, RingOutput::Delivered(message));
     tell_sender(sender, at, context);
@@ -504,14 +513,14 @@ fn tell_sender((source, ticket): (NodeId, Option<u64>), at: Time, context: &mut 
 }
 
 impl QueuedRequest {
-    /// What a port's queue is sorted by.
+    /// Returns the sort key of a port's queue.
     const fn order(&self) -> (Time, u32) {
         (self.at, self.request.order)
     }
 }
 
 impl SourcePort {
-    /// Queues a message; returns its place.
+    /// Inserts a message into the queue and returns its place.
     fn insert(&mut self, queued: QueuedRequest) -> usize {
         let later = self.queue.iter().rev().take_while(|other| other.order() > queued.order()).count();
         let place = self.queue.len() - later;

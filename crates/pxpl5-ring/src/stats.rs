@@ -1,4 +1,4 @@
-//! What the ring has done and what waits on it, for reports.
+//! Statistics and waiting messages of the ring, for reports.
 
 use crate::RingError;
 use pxpl5_sim::{Blocked, Span, Time};
@@ -7,26 +7,26 @@ use pxpl5_wire::NodeId;
 /// Sums over all messages that have ended.
 #[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct RingStats {
-    /// Time for which each channel was occupied, overhead and stalls included.
+    /// Time for which each channel was occupied, including overhead and stalls.
     pub channel_busy: Vec<Span>,
-    /// Messages whose channel has become free.
+    /// Number of messages whose channel has become free.
     pub messages: u64,
-    /// Words of these messages, without the overhead.
+    /// Words of the ended messages, without the overhead.
     pub words: u64,
-    /// Time from the request to the grant, summed.
+    /// Sum of the times from request to grant.
     pub waiting: Span,
-    /// The longest such time.
+    /// Longest time from a request to its grant.
     pub longest_wait: Span,
-    /// Time for which full receivers held messages up, summed.
+    /// Sum of the stalls by full receivers.
     pub stalled: Span,
 }
 
 /// Messages and answers that were refused.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Refusals {
-    /// Messages and answers that were refused since the ring was made.
+    /// Number of refused messages and answers since the ring was made.
     pub count: u64,
-    /// The first, with its time.
+    /// Time and reason of the first refusal.
     pub first: Option<(Time, RingError)>,
 }
 
@@ -37,7 +37,7 @@ impl Refusals {
     }
 }
 
-/// A message that has not been sent.
+/// A message that waits for its grant or for its receiver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WaitingMessage {
     /// Port of the sender.
@@ -46,29 +46,29 @@ pub struct WaitingMessage {
     pub destination: NodeId,
     /// Length in words, without the overhead.
     pub words: u32,
-    /// Since when it has been at the head of its queue, or in flight.
+    /// Time at which the message became the head of its queue, or was granted.
     pub since: Time,
-    /// What has to happen before the message goes on.
+    /// Condition for the message to continue.
     pub reason: WaitReason,
 }
 
-/// What a message waits for.
+/// The condition that a message waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WaitReason {
-    /// The receiver has not said that it will take the message.
+    /// The receiver has not answered the announcement.
     Acceptance,
-    /// The receiver takes another message, from this port.
+    /// The receiver is busy with a message from this port.
     DestinationBusy(NodeId),
-    /// The receiver is reserved for a transfer of this port that has not ended.
+    /// The receiver is reserved for an unfinished transfer from this port.
     DestinationReserved(NodeId),
-    /// All channels that the message may take are occupied.
+    /// All channels that the message may use are occupied.
     Channel,
-    /// Nothing: it will be granted at this instant.
+    /// The message can go and will be granted at this instant.
     Arbitration,
 }
 
 impl WaitingMessage {
-    /// A line for a deadlock report; `name` gives the boards' names.
+    /// Returns a line for a deadlock report. `name` returns the name of a board.
     #[must_use]
     pub fn blocked(&self, name: impl Fn(NodeId) -> String) -> Blocked {
         let to = name(self.destination);

@@ -8,33 +8,35 @@ parameters::parameter_table! {
     pub struct RingTiming {
         /// Time of one word on a channel.
         word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94, F89: 20 Mwords/s per channel";
-        /// Word times of a message besides its words.
+        /// Overhead of a message in word times.
         overhead_words: 16, "words", Derived, 16..=16 in 0..=1_000_000, "(780 us a region of TR94 - 15,360 words x 50 ns) / 15 messages = 0.8 us";
         /// Latency from one board to the next.
         hop_ns: 50, "ns", Assumed, 0..=200 in 0..=1_000_000, "one word time: every board latches a word once";
-        /// Channels, each carrying one message at a time.
+        /// Number of channels. Each carries one message at a time.
         channels: 8, "channels", Published, 8..=8 in 1..=64, "TR94";
         /// Channels that one board can send on at a time, to different receivers.
         source_channels: 2, "channels", Assumed, 1..=2 in 1..=64, "no source gives it. At most 2: a GP's memory bus has 64 bits every second clock of 40 MHz, 160 MB/s, which are two channels of 80 MB/s. At least 1: the processor itself needs the bus too. Other boards have at most a copy and its acknowledgement under way";
-        /// Channels that messages to receivers with a FIFO may take together; the others stay for receivers that never stall.
+        /// Channels that messages to receivers with a FIFO may use together. The others are left to receivers that
+        /// never stall.
         fifo_channels: 6, "channels", Assumed, 5..=7 in 1..=64, "the machine ran with 20 renderers: if full FIFOs could hold all 8 channels, the renderers' pixels would wait for them for ever; one channel for each of two frame buffers";
     }
 }
 
 impl RingTiming {
-    /// Time of one word.
+    /// Returns the time of one word.
     #[must_use]
     pub const fn word(&self) -> Span {
         Span::from_ns(self.word_ns)
     }
 
-    /// Time for which a message that is never stalled occupies its channel and ports.
+    /// Returns the time for which a message without stalls occupies its channel and ports.
     #[must_use]
     pub const fn occupancy(&self, words: u32) -> Span {
         Span::from_ns((self.overhead_words + words as u64) * self.word_ns)
     }
 
-    /// Latency from one port to another of a ring of `n_nodes`; to itself a message goes once round.
+    /// Returns the latency from one port to another of a ring of `n_nodes`. A message from a port to itself goes once
+    /// round.
     #[must_use]
     pub fn latency(&self, source: NodeId, destination: NodeId, n_nodes: u16) -> Span {
         let from = u64::from(source.0);

@@ -1,11 +1,13 @@
-//! Why messages to FIFOs take six of eight channels at most: all states of small machines, whatever order things happen in.
+//! Tests why messages to FIFOs may use at most six of eight channels: searches all states of small machines, in any
+//! order of events.
 //!
-//! The invariant: messages to full FIFOs hold at most `fifo_channels` < `channels` channels. So there is always a channel that is
-//! free, or that carries a message to an elastic receiver, which ends by itself. Hence a board that must send before it takes more
-//! can send; hence its FIFO drains; hence every message ends. With `fifo_channels` = `channels` the first step fails: full FIFOs hold
-//! all channels, and what their boards must send first waits for one.
+//! The invariant: messages to full FIFOs hold at most `fifo_channels` < `channels` channels. So there is always a
+//! channel that is free or carries a message to an elastic receiver, which always ends. Hence a board that must send
+//! before it accepts more can send. Hence its FIFO drains, and every message ends. With `fifo_channels` = `channels`
+//! the first step fails: full FIFOs hold all channels, and the messages that their boards must send first wait for one.
 //!
-//! The search below knows no time: whatever can happen next does, in every order, so it holds for all times and rules of arbitration.
+//! The search has no time: every possible next event is tried, in every order. It therefore holds for all times and
+//! rules of arbitration.
 //! Its model shares no code with the ring.
 
 use std::collections::HashSet;
@@ -15,28 +17,28 @@ use std::collections::HashSet;
 struct Machine {
     channels: usize,
     fifo_channels: usize,
-    /// Channels that one board sends on at a time.
+    /// Number of channels that one board can send on at a time.
     source_channels: usize,
     processors: usize,
     renderers: usize,
-    /// Messages that each processor sends to each renderer.
+    /// Number of messages from each processor to each renderer.
     messages: u8,
-    /// Messages that fit into a renderer's FIFO.
+    /// Number of messages that fit into a renderer's FIFO.
     fifo: u8,
 }
 
-/// What stands where, without any time.
+/// The positions of all messages, without time.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 struct State {
-    /// Of each processor: messages to each renderer that it has not begun to send. It may send them in any order.
+    /// For each processor: unsent messages to each renderer. The processor may send them in any order.
     unsent: Vec<Vec<u8>>,
     /// Messages on channels: from a processor to a renderer.
     to_fifos: Vec<(usize, usize)>,
-    /// Messages on channels to the frame buffer, by renderer; it takes one at a time.
+    /// The renderer whose message is on a channel to the frame buffer, which takes one at a time.
     to_frame_buffer: Option<usize>,
     /// Commands in each FIFO.
     held: Vec<u8>,
-    /// Renderers that have a message to send, and take nothing out of their FIFO before it is on its way and has ended.
+    /// Renderers with a message to send. They take no command from their FIFO before it has ended.
     must_send: Vec<bool>,
 }
 
@@ -55,10 +57,10 @@ impl Machine {
         state.to_fifos.len() + usize::from(state.to_frame_buffer.is_some()) < self.channels
     }
 
-    /// Every state that can be next.
+    /// Returns every possible next state.
     fn next(&self, state: &State) -> Vec<State> {
         let mut all = self.grants(state);
-        // A message whose receiver has room ends.
+        // A message ends if its receiver has room.
         for (flight, &(_, renderer)) in state.to_fifos.iter().enumerate() {
             if state.held[renderer] < self.fifo {
                 let mut next = state.clone();
@@ -67,14 +69,14 @@ impl Machine {
                 all.push(next);
             }
         }
-        // What is elastic ends by itself; its renderer may go on.
+        // A message to an elastic receiver always ends; its renderer may continue.
         if let Some(renderer) = state.to_frame_buffer {
             let mut next = state.clone();
             next.to_frame_buffer = None;
             next.must_send[renderer] = false;
             all.push(next);
         }
-        // A renderer takes a command, and has pixels to send before the next.
+        // A renderer takes a command, and must send pixels before the next one.
         for renderer in (0..self.renderers).filter(|&r| state.held[r] > 0 && !state.must_send[r]) {
             let mut next = state.clone();
             next.held[renderer] -= 1;
@@ -84,7 +86,7 @@ impl Machine {
         all
     }
 
-    /// States after a channel was granted to somebody.
+    /// Returns the states after a channel was granted.
     fn grants(&self, state: &State) -> Vec<State> {
         let mut all = Vec::new();
         if !self.has_free_channel(state) {
@@ -112,12 +114,12 @@ impl Machine {
         all
     }
 
-    /// Whether everything was sent and drawn.
+    /// Returns true if everything was sent and drawn.
     fn is_done(&self, state: &State) -> bool {
         *state == State { unsent: vec![vec![0; self.renderers]; self.processors], ..self.start() }
     }
 
-    /// All states that can be reached, and those of them in which nothing can happen any more although work is left.
+    /// Returns the number of reachable states, and the reachable deadlocks.
     fn search(&self) -> (usize, Vec<State>) {
         let mut known = HashSet::from([self.start()]);
         let mut open = vec![self.start()];
@@ -134,7 +136,7 @@ impl Machine {
     }
 }
 
-/// All shapes of up to three channels and renderers, and up to two processors where that is few enough to be searched.
+/// Returns all machines of up to three channels and renderers, and up to two processors where the search stays small.
 fn machines() -> impl Iterator<Item = Machine> {
     let boards = [(1, 1), (1, 2), (1, 3), (2, 1), (2, 2)];
     let channels = (1..=3).flat_map(|channels| (1..=channels).map(move |fifo| (channels, fifo)));
@@ -146,7 +148,7 @@ fn machines() -> impl Iterator<Item = Machine> {
             source_channels,
             processors,
             renderers,
-            // One message on the channel, one in the FIFO, one whose pixels wait: less would fill nothing.
+            // One message on the channel, one in the FIFO, one whose pixels wait: fewer would leave something empty.
             messages: if processors == 1 { 3 } else { 2 },
             fifo: 1,
         })
@@ -167,8 +169,8 @@ fn while_fifos_leave_a_channel_no_order_of_events_ends_in_a_deadlock() {
     assert!(searched > 20 && states > 10_000, "{searched} machines, {states} states");
 }
 
-/// Without the limit a machine is stuck as soon as full FIFOs can hold all channels: as many renderers as channels, and enough boards
-/// that send to them.
+/// Without the limit a machine can deadlock once full FIFOs can hold all channels: it needs as many renderers as
+/// channels, and enough senders.
 #[test]
 fn without_a_channel_left_full_fifos_hold_all_of_them() {
     for machine in machines().filter(|machine| machine.fifo_channels == machine.channels) {

@@ -1,4 +1,4 @@
-//! The fast ring and the word-by-word one give the same times, whatever is sent.
+//! The fast ring and the reference model give the same times for all traffic.
 
 mod support;
 
@@ -17,7 +17,7 @@ struct RingCase {
     traffic: Vec<PlannedMessage>,
 }
 
-/// Each transfer is up to four messages to one destination, all but the last with `hold`.
+/// Returns random transfers. Each has up to four messages to one destination, all but the last with `hold`.
 fn transfers(n_nodes: u16, tick: Span) -> impl Strategy<Value = Vec<PlannedMessage>> {
     let words = prop_oneof![8 => 1u32..40, 2 => 40u32..200, 1 => Just(1_024u32)];
     let transfer = (0u64..600, 0..n_nodes, 0..n_nodes, words, 1usize..5);
@@ -42,7 +42,8 @@ fn receiver(tick: Span) -> impl Strategy<Value = Receiver> {
     prop_oneof![Just(Receiver::Elastic), fifo]
 }
 
-/// Hops are short against the overhead, so that the words of two messages never overlap at a receiver.
+/// Returns random cases. Hops are short compared with the overhead, so that the words of two messages never overlap at
+/// a receiver.
 fn cases() -> impl Strategy<Value = RingCase> {
     (2u16..20, (1u64..=8, 1u64..=8, 1u64..=8), 16u64..20, 0u64..3, prop_oneof![Just(1u64), Just(2), Just(5)])
         .prop_flat_map(
@@ -74,7 +75,8 @@ fn step(case: &RingCase) -> Vec<CarriedMessage> {
     ring.run(case.tick, Time(1_000_000_000_000)).expect("everything is delivered")
 }
 
-/// When the sender is told: with the last word, but one word time after the receiver's answer at least.
+/// Returns the time of the answer to the sender: at the last word, but at least one word time after the receiver's
+/// answer.
 fn told_at(case: &RingCase, message: usize, message_carried: &CarriedMessage) -> Time {
     let t = case.traffic[message];
     match case.receivers[usize::from(t.destination.0)] {
@@ -139,13 +141,13 @@ fn planned(at_ns: u64, source: u16, destination: u16, words: u32) -> PlannedMess
     PlannedMessage { at: Time::ZERO + Span::from_ns(at_ns), source, destination, words, hold: false }
 }
 
-/// Steps messages between elastic receivers.
+/// Runs messages between elastic receivers on the reference model.
 fn elastic(traffic: &[PlannedMessage], tick: Span, until_ns: u64) -> Result<Vec<CarriedMessage>, RingError> {
     let ring = SteppedRing::new(RingTiming::PAPERS, 20, traffic, Elastic).expect("valid");
     ring.run(tick, Time::ZERO + Span::from_ns(until_ns))
 }
 
-/// Seven messages to elastic receivers at once, where six channels are for receivers that are not.
+/// Seven messages to elastic receivers at once, on a ring whose other receivers may use six channels.
 #[test]
 fn word_by_word_elastic_receivers_take_each_word_as_it_comes_on_any_channel() {
     let traffic: Vec<_> = (0..7).map(|i| planned(3_000, 2 * i, 2 * i + 1, 100)).collect();
@@ -180,7 +182,7 @@ fn word_by_word_every_time_must_be_a_multiple_of_the_tick() {
     assert!(elastic(&traffic, Span::from_ns(10), 100_000).is_ok());
 }
 
-/// Random traffic seldom fills eight channels for long; this does. 20 boards send to their neighbours at once.
+/// 20 boards send to their neighbours at once and fill eight channels, which random traffic seldom does for long.
 #[test]
 fn both_agree_when_twenty_messages_want_eight_channels_at_once() {
     let tick = Span::from_ns(50);

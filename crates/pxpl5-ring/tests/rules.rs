@@ -1,4 +1,4 @@
-//! Each rule of the ring alone. Expected values are the published figures or sums of the timing table.
+//! Tests of each rule of the ring. Expected values are published figures or sums of the timing table.
 
 mod support;
 
@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use support::{ELASTIC, Receiver, message, request, run_fast};
 
 const TIMING: RingTiming = RingTiming::PAPERS;
-/// A port that sends one message at a time, for rules that are easier to see so.
+/// Ports that send one message at a time, which makes some rules easier to test.
 const ONE_AT_A_TIME: RingTiming = RingTiming { source_channels: 1, ..TIMING };
 /// Occupancy of a message of maximum size: (16 + 1,024) x 50 ns.
 const FULL: Span = Span::from_us(52);
@@ -24,7 +24,7 @@ fn traffic(at: Time, source: u16, destination: u16, words: u32) -> PlannedMessag
     PlannedMessage { at, source: NodeId(source), destination: NodeId(destination), words, hold: false }
 }
 
-/// A region of 15,360 pixels: fifteen messages, held together.
+/// Returns the fifteen held messages of a region of 15,360 pixels.
 fn region(at: Time, source: u16, destination: u16) -> impl Iterator<Item = PlannedMessage> {
     let part = traffic(at, source, destination, MAX_MESSAGE_WORDS);
     (0..15).map(move |i| PlannedMessage { hold: i < 14, ..part })
@@ -39,7 +39,7 @@ fn bench() -> TestBench<RingEvent, RingOutput> {
     TestBench::new()
 }
 
-/// A ring of ten ports of which only port 9 is not elastic.
+/// Makes a ring of ten ports. Only port 9 is not elastic.
 fn ring_with_a_fifo() -> Ring {
     Ring::new(ONE_AT_A_TIME, 10, |node| node != NodeId(9)).expect("valid")
 }
@@ -59,8 +59,8 @@ fn a_region_of_fifteen_messages_takes_the_published_780_us() {
     assert_eq!(gaps, [FULL; 14]);
 }
 
-/// TR94: five renderers copy 20 field regions, each left and right in turn, to two frame buffers; at each end one
-/// board idles for one region.
+/// TR94: five renderers copy 20 field regions, each left and right in turn, to two frame buffers. At both ends one
+/// frame buffer idles for one region time.
 #[test]
 fn twenty_regions_to_two_frame_buffers_take_eleven_region_times() {
     let mut messages = Vec::new();
@@ -88,7 +88,7 @@ fn the_ninth_message_waits_until_a_channel_is_free_and_not_a_picosecond_longer()
 
 #[test]
 fn full_fifos_leave_channels_for_what_their_boards_must_send() {
-    // Ports 0 to 7 never take a word before 400 us; a message from port 10 to port 11 comes a microsecond later.
+    // Ports 0 to 7 accept no word before 400 us. A message from port 10 to port 11 comes a microsecond later.
     let shut = Receiver::Fifo {
         words: 1,
         drain: Span::ZERO,
@@ -129,7 +129,7 @@ fn of_two_that_wait_the_one_that_came_first_goes_first_and_at_one_instant_the_lo
     assert_eq!(together[1..], [us(156) + HOP, us(104) + HOP * 2]);
 }
 
-/// Port 0 asked for port 3 before port 1 did, but then it had another message to send first, which had to wait.
+/// Port 0 requested port 3 before port 1 did, but first had to send another message, which had to wait.
 #[test]
 fn a_message_queues_for_its_destination_from_when_it_is_first_at_its_source() {
     let times = accepted(&[
@@ -178,7 +178,7 @@ fn a_held_destination_waits_for_its_source_and_a_released_one_goes_to_the_first_
     assert_eq!(times, [us(52) + HOP * 2, us(152) + HOP * 2, us(204) + HOP]);
 }
 
-/// When a sender is told, if that is what the output does.
+/// Returns the time of an output that answers a sender.
 fn sent_at(output: &(Time, RingOutput)) -> Option<Time> {
     match output {
         (time, RingOutput::Sent { .. }) => Some(*time),
@@ -212,7 +212,8 @@ fn a_receiver_with_a_fifo_is_told_before_the_first_word_and_its_answer_ends_the_
     assert_eq!(ring.stats().stalled, stall);
 }
 
-/// A message lies on its channel from the grant to the end of its last word's slot, which is known when the receiver has answered.
+/// A snapshot shows a message on its channel from the grant to the end of its last word's slot. The end is known after
+/// the receiver's answer.
 #[test]
 fn whoever_looks_sees_what_is_on_the_channels_until_it_ends() {
     let mut bench = bench();
@@ -230,7 +231,7 @@ fn whoever_looks_sees_what_is_on_the_channels_until_it_ends() {
     let mut seen = Vec::new();
     bench.run(|event, context| {
         ring.handle(event, context);
-        // As of the answer, its first event.
+        // The first event after the answer.
         if seen.is_empty() {
             seen = [us(2), Time(end.0 - 1), end, us(900)].map(|at| ring.on_channels(at).collect::<Vec<_>>()).to_vec();
         }
@@ -239,7 +240,7 @@ fn whoever_looks_sees_what_is_on_the_channels_until_it_ends() {
     assert_eq!(seen, [answered.clone(), answered, Vec::new(), Vec::new()]);
 }
 
-/// Events of a ring that carries a message of a hundred words.
+/// Returns the number of events of a ring that carries a message of a hundred words.
 fn events_of_a_message(prepare: fn(&mut Ring)) -> usize {
     let mut bench = bench();
     let mut ring = ring_with_a_fifo();
@@ -342,7 +343,7 @@ fn a_ring_that_cannot_be_built_says_why() {
     assert_eq!(error.to_string(), "ring timing: channels must be 1 to 64, found 0");
 }
 
-/// A ring of ten ports of which 8 and 9 are not elastic and share one channel.
+/// Makes a ring of ten ports. Ports 8 and 9 are not elastic and share one channel.
 fn ring_with_two_fifos() -> Ring {
     let timing = RingTiming { fifo_channels: 1, ..TIMING };
     Ring::new(timing, 10, |node| node.0 < 8).expect("valid")
@@ -426,7 +427,7 @@ fn a_ring_is_idle_when_nothing_waits_and_nothing_is_on_a_channel() {
         ring.handle(event, context);
         was_idle.push((context.now(), ring.is_idle()));
     });
-    // It waits for its arbitration, and then occupies its channel for (16 + 100) x 50 ns.
+    // The message waits for its arbitration, and then occupies its channel for (16 + 100) x 50 ns.
     assert_eq!(was_idle[..2], [(us(1), false), (us(1), false)]);
     ring.settle(us(1) + Span::from_ns(5_800));
     assert!(ring.is_idle());

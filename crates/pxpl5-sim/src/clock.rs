@@ -3,13 +3,13 @@
 use crate::{Span, Time};
 use serde::{Deserialize, Serialize};
 
-/// A number of cycles of one clock. It never leaves the crate that owns the clock.
+/// A number of cycles of one clock. The type is used only within the crate that owns the clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Cycles(pub u64);
 
 /// A clock whose period is the rational number `numerator_ps / denominator` picoseconds.
 ///
-/// Edge n is at floor(n x period), computed from zero in 128 bits where 64 are too few.
+/// Edge n is at floor(n x period), computed from time zero, in 128 bits if 64 are too few.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Clock {
     numerator_ps: u64,
@@ -17,8 +17,8 @@ pub struct Clock {
 }
 
 impl Clock {
-    /// A clock of period `numerator_ps / denominator`; `None` unless both are positive and the period is a
-    /// picosecond or more.
+    /// Makes a clock of period `numerator_ps / denominator`. Returns `None` unless both are positive and the period is
+    /// at least a picosecond.
     #[must_use]
     pub const fn new(numerator_ps: u64, denominator: u64) -> Option<Self> {
         if denominator == 0 || numerator_ps < denominator {
@@ -27,13 +27,13 @@ impl Clock {
         Some(Self { numerator_ps, denominator })
     }
 
-    /// A clock of a frequency in hertz; `None` for zero or more than a terahertz.
+    /// Makes a clock of a frequency in hertz. Returns `None` for zero or more than a terahertz.
     #[must_use]
     pub const fn from_hz(hz: u64) -> Option<Self> {
         Self::new(1_000_000_000_000, hz)
     }
 
-    /// The instant of edge `n`; the end of time for one behind it.
+    /// Returns the time of edge `n`, or [`Time::END`] if the edge lies after the end of time.
     #[must_use]
     #[inline]
     pub const fn edge(&self, n: u64) -> Time {
@@ -43,13 +43,13 @@ impl Clock {
         }
     }
 
-    /// The same of any edge. A division of 128 bits takes several times as long as one of 64.
+    /// Returns the time of any edge with 128-bit arithmetic, which takes several times as long as 64 bits.
     const fn edge_of_long(&self, n: u64) -> Time {
         let exact = n as u128 * self.numerator_ps as u128 / self.denominator as u128;
         if exact < u64::MAX as u128 { Time(exact as u64) } else { Time::END }
     }
 
-    /// The number of the first edge at or after `time`.
+    /// Returns the number of the first edge at or after `time`.
     #[must_use]
     pub const fn edge_at_or_after(&self, time: Time) -> u64 {
         let mut n = (time.0 as u128 * self.denominator as u128 / self.numerator_ps as u128) as u64;
@@ -59,7 +59,7 @@ impl Clock {
         n
     }
 
-    /// The time of `cycles` counted from edge 0 (rounded down to a picosecond).
+    /// Returns the duration of `cycles`, counted from edge 0 and rounded down to a picosecond.
     #[must_use]
     pub const fn span(&self, cycles: Cycles) -> Span {
         Span(self.edge(cycles.0).0)
@@ -96,14 +96,14 @@ mod tests {
     #[test]
     fn an_edge_behind_the_end_of_time_is_at_its_end() {
         let seconds = Clock::from_hz(1).expect("valid");
-        // 2^64 ps are 18,446,744 s and some.
+        // 2^64 ps are a little more than 18,446,744 s.
         assert_eq!(seconds.edge(18_446_744), Time(18_446_744_000_000_000_000));
         assert_eq!((seconds.edge(18_446_745), seconds.edge(u64::MAX)), (Time::END, Time::END));
         assert_eq!(seconds.edge_at_or_after(Time::END), 18_446_745);
     }
 
     proptest! {
-        /// Of about as many edges that fit 64 bits as do not.
+        /// About half of the tested edges need more than 64 bits.
         #[test]
         fn an_edge_is_the_same_in_64_bits_as_in_128(period_bits in 1u32..64, bits in 0u32..64, seed: [u64; 3]) {
             let [numerator, denominator] = [seed[0] >> (64 - period_bits), seed[1] >> (64 - period_bits)];

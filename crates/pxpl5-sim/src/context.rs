@@ -1,10 +1,10 @@
-//! What a device sees of the simulation while it handles an event, and a bench to test one device alone.
+//! The interface of a device to the simulation during one event, and a test bench for a single device.
 
 use crate::{EventQueue, Phase, Span, Time};
 
-/// Collects what a device schedules for itself and what leaves it.
+/// Collects the events that a device schedules for itself, and its outputs.
 ///
-/// `E` is the device's own event, `O` what it puts out. The wiring drains both after each event.
+/// `E` is the device's own event type, `O` its output type. The wiring drains both lists after each event.
 #[derive(Debug)]
 pub struct Context<E, O> {
     now: Time,
@@ -19,14 +19,14 @@ impl<E, O> Default for Context<E, O> {
 }
 
 impl<E, O> Context<E, O> {
-    /// A context at `now`, keeping its buffers.
+    /// Sets the time of the next event to handle and returns the context. The buffers keep their capacity.
     pub fn at(&mut self, now: Time) -> &mut Self {
         debug_assert!(self.own.is_empty() && self.outputs.is_empty(), "the wiring left something undone");
         self.now = now;
         self
     }
 
-    /// The instant of the event that is being handled.
+    /// Returns the time of the current event.
     #[must_use]
     pub const fn now(&self) -> Time {
         self.now
@@ -42,17 +42,18 @@ impl<E, O> Context<E, O> {
         self.schedule(self.now + span, Phase::Work, event);
     }
 
-    /// Puts something out of the device at `time`.
+    /// Adds an output of the device at `time`.
     pub fn output(&mut self, time: Time, output: O) {
         self.outputs.push((time, output));
     }
 
-    /// Takes the events that were scheduled since the last call.
+    /// Removes and returns the events scheduled since the last call.
     pub fn drain_events(&mut self) -> std::vec::Drain<'_, (Time, Phase, E)> {
         self.own.drain(..)
     }
 
-    /// Takes the events that were scheduled since the last call, one after the other. Mostly there is none or one.
+    /// Removes the events scheduled since the last call and passes them to `take`, in order. Usually there is at most
+    /// one.
     #[inline]
     pub fn each_event(&mut self, mut take: impl FnMut(Time, Phase, E)) {
         if self.own.len() > 1 {
@@ -63,33 +64,33 @@ impl<E, O> Context<E, O> {
         }
     }
 
-    /// Whether nothing was put out since the outputs were taken.
+    /// Returns true if there is no output since the last [`Context::drain_outputs`].
     #[must_use]
     pub const fn is_silent(&self) -> bool {
         self.outputs.is_empty()
     }
 
-    /// Takes everything put out.
+    /// Removes and returns all outputs.
     pub fn drain_outputs(&mut self) -> std::vec::Drain<'_, (Time, O)> {
         self.outputs.drain(..)
     }
 }
 
-/// A board that cannot go on, for the report of a deadlock.
+/// A board that cannot continue, for the report of a deadlock.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Blocked {
-    /// The board's name in reports, such as "GP 3".
+    /// Name of the board in reports, such as "GP 3".
     pub board: String,
-    /// What it waits for, and from whom.
+    /// Condition that the board waits for, and the board that must cause it.
     pub waits_for: String,
 }
 
-/// Runs one device alone: feed it events, read its outputs with their times.
+/// A test bench for one device: the test feeds events and reads outputs with their times.
 #[derive(Debug)]
 pub struct TestBench<E, O> {
     queue: EventQueue<E>,
     context: Context<E, O>,
-    /// Everything the device has put out, in order.
+    /// All outputs of the device, in order.
     pub outputs: Vec<(Time, O)>,
 }
 
@@ -100,18 +101,18 @@ impl<E, O> Default for TestBench<E, O> {
 }
 
 impl<E, O> TestBench<E, O> {
-    /// An empty bench at time zero.
+    /// Makes an empty bench at time zero.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// The queue, to shuffle ties or to look at the time.
+    /// Returns the event queue, for example to shuffle ties or to read the time.
     pub fn queue(&mut self) -> &mut EventQueue<E> {
         &mut self.queue
     }
 
-    /// Gives the device an event from outside.
+    /// Schedules an event for the device.
     pub fn feed(&mut self, time: Time, phase: Phase, event: E) {
         self.queue.schedule(time, phase, event);
     }
@@ -130,7 +131,7 @@ impl<E, O> TestBench<E, O> {
         }
     }
 
-    /// Handles all events until none is left.
+    /// Handles all events until the queue is empty.
     pub fn run(&mut self, handle: impl FnMut(E, &mut Context<E, O>)) {
         self.run_until(Time(u64::MAX), handle);
     }
@@ -140,7 +141,7 @@ impl<E, O> TestBench<E, O> {
 mod tests {
     use super::*;
 
-    /// A device that puts out every number it is given 10 ps later, and counts down once.
+    /// A device that outputs every number 10 ps after its event. Number 3 also schedules number 2.
     fn echo(event: u32, context: &mut Context<u32, u32>) {
         context.output(context.now() + Span(10), event);
         if event == 3 {

@@ -1,12 +1,13 @@
-//! A heap of four children a node: half as deep as one of two, and a node's children are beside each other in memory.
+//! A heap with four children per node. It is half as deep as a binary heap, and the children of a node are adjacent in
+//! memory.
 
-/// What a heap is ordered by, the least first.
+/// The sort key of a heap, the least first.
 pub(crate) trait Keyed: Copy {
-    /// The whole order in one number, so that a comparison is one subtraction.
+    /// Returns the complete order in one number, so that a comparison is one subtraction.
     fn key(&self) -> u128;
 }
 
-/// Items of which the one with the least key is at hand.
+/// A priority queue with the least key first.
 #[derive(Debug)]
 pub(crate) struct QuadHeap<T> {
     items: Vec<T>,
@@ -55,7 +56,7 @@ impl<T: Keyed> QuadHeap<T> {
         Some(first)
     }
 
-    /// The least of a node's children, with its place.
+    /// Returns the least of a node's children, with its index.
     fn least_child(&self, place: usize) -> Option<(usize, T)> {
         let begin = place * CHILDREN + 1;
         let end = self.items.len().min(begin + CHILDREN);

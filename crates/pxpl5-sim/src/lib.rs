@@ -1,6 +1,7 @@
 //! Discrete-event kernel: exact time, clocks, and an ordered event queue.
 //!
-//! It knows nothing of Pixel-Planes. A *device* is plain state with a method that handles one event at a time:
+//! The kernel contains nothing specific to Pixel-Planes. A *device* is plain state with a method that handles one event
+//! at a time:
 //!
 //! ```text
 //!            event                     own events (later)
@@ -12,21 +13,21 @@
 //!
 //! # Ordering contract
 //!
-//! 1. Events happen in order of ([`Time`], [`Phase`]): at one instant all inputs *arrive*, then boards *work* on
-//!    what has arrived, then probes *observe*.
-//! 2. Events of one instant and phase commute: no result may depend on their order. A device that must choose
-//!    between simultaneous requests latches them in `Arrive` and chooses in `Work` by a rule of its own
-//!    (first come, then lowest port).
-//! 3. Without shuffling, ties are taken in the order of scheduling. [`EventQueue::shuffle_ties`] takes them in a
-//!    hashed order instead; tests use it to prove point 2.
-//! 4. Nothing is scheduled in the past; that is a fault of this program and panics.
+//! 1. Events happen in the order of ([`Time`], [`Phase`]). At one instant all inputs *arrive*, then boards *work* on
+//!    them, then probes *observe*.
+//! 2. Events of one instant and phase commute: no result may depend on their order. A device that must choose between
+//!    simultaneous requests stores them in `Arrive` and chooses in `Work` by a rule of its own (first come, then lowest
+//!    port).
+//! 3. Without shuffling, ties are resolved in the order of scheduling. [`EventQueue::shuffle_ties`] resolves them in a
+//!    hashed order instead. Tests use it to prove point 2.
+//! 4. No event may be scheduled in the past. This is an error of the program and panics.
 //!
 //! # Time
 //!
-//! [`Time`] and [`Span`] are picoseconds in `u64` (213 days). [`Clock`] computes its n-th edge from zero in 128
-//! bits, so no clock drifts. No floating point touches time.
+//! [`Time`] and [`Span`] are picoseconds in `u64` (213 days). [`Clock`] computes its n-th edge from zero in 128 bits,
+//! so no clock drifts. No computation of time uses floating point.
 //!
-//! **Not here:** threads (a simulation is one thread; pixels are computed elsewhere), host time.
+//! **Not here:** threads (a simulation runs in one thread; pixels are computed elsewhere), host time.
 
 mod clock;
 mod context;

@@ -1,4 +1,4 @@
-//! The event queue; its ordering contract stands in the crate's documentation.
+//! The event queue. The crate's documentation has its ordering contract.
 
 use crate::heap::{Keyed, QuadHeap};
 use crate::{Time, mix};
@@ -7,19 +7,19 @@ use std::collections::VecDeque;
 /// The three steps of one instant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Phase {
-    /// Inputs latch what has arrived.
+    /// Devices store the inputs that have arrived.
     Arrive,
-    /// Boards act on what was latched.
+    /// Boards act on the stored inputs.
     Work,
-    /// Probes look; they change nothing.
+    /// Probes read the state and change nothing.
     Observe,
 }
 
-/// When an event is due and where it is kept: 24 bytes, so that the heap moves little.
+/// The time, order and slot of a waiting event: 24 bytes, so that the heap moves little data.
 #[derive(Clone, Copy, Debug)]
 struct Due {
     time: Time,
-    /// Phase in the upper bits, then the order of scheduling, or a hash of it.
+    /// Phase in the upper two bits, then the order of scheduling or a hash of it.
     order: u64,
     slot: u32,
 }
@@ -32,21 +32,22 @@ impl Keyed for Due {
 
 const PHASE_SHIFT: u32 = 62;
 
-/// Events in the list before the heap: more take longer to go past than the heap is deep.
+/// Capacity of the sorted list before the heap. A longer list costs more than the heap.
 const NEAR: usize = 16;
 
-/// Above the keys of all work of an instant; the first of those of what observes it.
+/// Returns a key above the keys of all work at an instant: the first key of the instant's observations.
 const fn work_key(now: Time) -> u128 {
     (now.0 as u128) << 64 | ((Phase::Observe as u64) << PHASE_SHIFT) as u128
 }
 
-/// Events in order of (time, phase), ties in order of scheduling or shuffled.
+/// Events in the order of (time, phase). Ties are in the order of scheduling or shuffled.
 #[derive(Debug)]
 pub struct EventQueue<E> {
     heap: QuadHeap<Due>,
-    /// Events that come before all of the heap, [`NEAR`] at most, the next one last: where few wait, none goes through the heap.
+    /// Earliest events, at most [`NEAR`], the next one last. If few events wait, none goes through the heap.
     near: Vec<Due>,
-    /// Work of the present instant that was scheduled during it, in order: it needs no place among others. Empty where ties are shuffled.
+    /// Work of the current instant that was scheduled during it, in order. Such events need no sorting. Unused if ties
+    /// are shuffled.
     soon: VecDeque<E>,
     events: Vec<Option<E>>,
     free: Vec<u32>,
@@ -73,13 +74,13 @@ impl<E> Default for EventQueue<E> {
 }
 
 impl<E> EventQueue<E> {
-    /// An empty queue at time zero.
+    /// Makes an empty queue at time zero.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// From now on, events that are scheduled for the same instant and phase come in an order hashed from `seed`.
+    /// Orders later events of the same instant and phase by a hash with `seed`.
     pub fn shuffle_ties(&mut self, seed: u64) {
         self.shuffle = Some(seed);
     }
@@ -88,12 +89,14 @@ impl<E> EventQueue<E> {
     ///
     /// # Panics
     ///
-    /// When `time` is in the past: a device has broken the contract. When 2^32 events wait.
+    /// If `time` is in the past, because a device has violated the ordering contract. If 2^32 events wait.
     pub fn schedule(&mut self, time: Time, phase: Phase, event: E) {
         assert!(time >= self.now, "an event at {time} was scheduled at {}", self.now);
+        // Work for the current instant comes after all other work of the instant, so it needs no sorting.
         if time == self.now && phase == Phase::Work && self.shuffle.is_none() {
             return self.soon.push_back(event);
         }
+        // The key resolves ties by the sequence number or by a hash of it.
         let tie = self.shuffle.map_or(self.sequence, |seed| mix(seed ^ mix(self.sequence)));
         let order = (phase as u64) << PHASE_SHIFT | tie & ((1 << PHASE_SHIFT) - 1);
         self.sequence += 1;
@@ -121,8 +124,8 @@ impl<E> EventQueue<E> {
         self.near.pop().or_else(|| self.heap.pop())
     }
 
-    /// Whether the next event is of those scheduled for work at once: arrivals of the instant, and work that was scheduled before it
-    /// began, come before them.
+    /// Returns true if the next event is in `soon`. Arrivals of the instant, and work scheduled before the instant,
+    /// come first.
     fn is_soon(&self, first: Option<Due>) -> bool {
         !self.soon.is_empty() && first.is_none_or(|first| first.key() >= work_key(self.now))
     }
@@ -136,7 +139,7 @@ impl<E> EventQueue<E> {
         u32::try_from(self.events.len() - 1).expect("fewer than 2^32 events wait")
     }
 
-    /// Takes the next event and moves the present to it.
+    /// Removes and returns the next event, and advances the current time to it.
     pub fn next_event(&mut self) -> Option<(Time, Phase, E)> {
         if self.is_soon(self.first()) {
             return self.take_soon().map(|event| (self.now, Phase::Work, event));
@@ -151,7 +154,7 @@ impl<E> EventQueue<E> {
         Some((due.time, phase, event))
     }
 
-    /// Takes the next event if it is before an instant, and moves the present to it.
+    /// Removes and returns the next event if it is before `end`, and advances the current time to it.
     pub fn next_event_before(&mut self, end: Time) -> Option<(Time, E)> {
         let first = self.first();
         if self.is_soon(first) {
@@ -170,7 +173,7 @@ impl<E> EventQueue<E> {
         self.soon.pop_front()
     }
 
-    /// Takes an event out of its slot and moves the present to it.
+    /// Removes an event from its slot and advances the current time to it.
     fn take(&mut self, due: Due) -> Option<E> {
         self.now = due.time;
         self.popped += 1;
@@ -178,12 +181,12 @@ impl<E> EventQueue<E> {
         self.events[due.slot as usize].take()
     }
 
-    /// All events that wait, in no order.
+    /// Iterates over all waiting events, in no particular order.
     pub fn pending(&self) -> impl Iterator<Item = &E> {
         self.events.iter().flatten().chain(&self.soon)
     }
 
-    /// The time of the next event.
+    /// Returns the time of the next event; `None` if no event waits.
     #[must_use]
     pub fn next_time(&self) -> Option<Time> {
         if !self.soon.is_empty() {
@@ -192,7 +195,7 @@ impl<E> EventQueue<E> {
         self.first().map(|due| due.time)
     }
 
-    /// The next event and its time, without taking it.
+    /// Returns the next event and its time, without removing it.
     #[must_use]
     pub fn peek(&self) -> Option<(Time, &E)> {
         let first = self.first();
@@ -203,25 +206,25 @@ impl<E> EventQueue<E> {
         Some((due.time, self.events[due.slot as usize].as_ref()?))
     }
 
-    /// The present: the time of the event taken last.
+    /// Returns the current time, which is the time of the last removed event.
     #[must_use]
     pub const fn now(&self) -> Time {
         self.now
     }
 
-    /// Events taken so far.
+    /// Returns the number of removed events.
     #[must_use]
     pub const fn events_taken(&self) -> u64 {
         self.popped
     }
 
-    /// Number of events that wait.
+    /// Returns the number of waiting events.
     #[must_use]
     pub fn len(&self) -> usize {
         self.heap.len() + self.near.len() + self.soon.len()
     }
 
-    /// Whether no event waits.
+    /// Returns true if no event waits.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -259,8 +262,8 @@ mod tests {
         assert_ne!(order_of_ties(1), (0..100).collect::<Vec<_>>());
     }
 
-    /// Of 100 events, n fair draws are expected to bring 100 (1 - 0.99^n) different ones to the front: 47 of 64 seeds, with a standard
-    /// deviation of 3. Seeds in which hardly a bit is set, or hardly one is not, are no worse.
+    /// n fair draws from 100 events are expected to put 100 (1 - 0.99^n) different events first: 47 for 64 seeds, with
+    /// a standard deviation of 3. Seeds with very few or very many set bits are no worse.
     #[test]
     fn seeds_that_are_nearly_the_same_shuffle_as_fairly_as_any() {
         for bits in [0, u64::MAX] {
@@ -278,10 +281,10 @@ mod tests {
         queue.schedule(Time(4), Phase::Work, ());
     }
 
-    /// What an event schedules when it is taken: how much later, in which phase, each twice at most.
+    /// Delay and phase of an event that another event schedules, at most twice.
     type Follow = (u64, u8);
 
-    /// A queue that keeps everything in one sorted list.
+    /// Reference model: a queue that keeps all events in one sorted list.
     #[derive(Default)]
     struct Plain {
         waiting: Vec<(u64, u8, usize)>,
@@ -304,7 +307,7 @@ mod tests {
     }
 
     proptest! {
-        /// Work that is scheduled for the instant at which it is scheduled has a way of its own.
+        /// Work scheduled for the current instant takes the separate path through `soon`.
         #[test]
         fn what_events_schedule_comes_as_from_a_sorted_list(
             begun in proptest::collection::vec((0u64..4, 0u8..3), 1..60),

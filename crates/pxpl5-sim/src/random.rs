@@ -2,37 +2,37 @@
 
 use crate::trace::{INCREMENT, mix};
 
-/// The sequence SplitMix64 (Steele, Lea and Flood: Fast splittable pseudorandom number generators, 2014): 2^64 numbers of 64
-/// bits, each once. For tests and for lists made by chance; it keeps no secrets.
+/// The generator SplitMix64 (Steele, Lea and Flood: Fast splittable pseudorandom number generators, 2014).
+/// It returns 2^64 numbers of 64 bits, each once. It is for tests and random lists, and not for cryptography.
 #[derive(Clone, Copy, Debug)]
 pub struct SplitMix64 {
     state: u64,
 }
 
 impl SplitMix64 {
-    /// The sequence that starts at a seed; those of other seeds are the same one, begun elsewhere.
+    /// Makes the generator with a seed. All seeds give the same cyclic sequence, starting at different places.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self { state: seed }
     }
 
-    /// The next 64 bits of the sequence.
+    /// Returns the next 64 bits of the sequence.
     pub const fn bits(&mut self) -> u64 {
         let bits = mix(self.state);
         self.state = self.state.wrapping_add(INCREMENT);
         bits
     }
 
-    /// A number from 0 to `n` - 1, biased by less than `n` / 2^64.
+    /// Returns a number from 0 to `n` - 1, with a bias below `n` / 2^64.
     ///
     /// # Panics
     ///
-    /// When `n` is 0.
+    /// If `n` is 0.
     pub const fn below(&mut self, n: u64) -> u64 {
         self.bits() % n
     }
 
-    /// A number of [0, 1), in steps of 2^-24: every one of them is an `f32`.
+    /// Returns a number of [0, 1) in steps of 2^-24, each of which is exact in `f32`.
     pub const fn unit(&mut self) -> f32 {
         (self.bits() >> 40) as f32 / (1u32 << 24) as f32
     }

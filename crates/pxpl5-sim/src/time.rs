@@ -1,7 +1,7 @@
 //! Instants and differences of simulated time.
 //!
-//! Time ends after 2^64 ps, 213 days: what would be later is at [`Time::END`], which no run reaches, and so never happens. Nothing
-//! wraps round to an earlier instant.
+//! Time ends after 2^64 ps (213 days). Later instants become [`Time::END`], which no run reaches, so events there never
+//! happen. No arithmetic wraps round to an earlier instant.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -22,7 +22,7 @@ impl Time {
     /// The end of simulated time, which no run reaches.
     pub const END: Self = Self(u64::MAX);
 
-    /// The time passed since `earlier`, zero when that is later.
+    /// Returns the time since `earlier`, or zero if `earlier` is later.
     #[must_use]
     pub const fn since(self, earlier: Self) -> Span {
         Span(self.0.saturating_sub(earlier.0))
@@ -30,22 +30,21 @@ impl Time {
 }
 
 impl Span {
-    /// No time at all.
     pub const ZERO: Self = Self(0);
 
-    /// A span of whole nanoseconds.
+    /// Makes a span of whole nanoseconds.
     #[must_use]
     pub const fn from_ns(ns: u64) -> Self {
         Self(ns.saturating_mul(1_000))
     }
 
-    /// A span of whole microseconds.
+    /// Makes a span of whole microseconds.
     #[must_use]
     pub const fn from_us(us: u64) -> Self {
         Self(us.saturating_mul(1_000_000))
     }
 
-    /// The span in milliseconds, for reports only.
+    /// Returns the span in milliseconds, for reports only.
     #[must_use]
     pub fn as_ms(self) -> f64 {
         self.0 as f64 * 1e-9
@@ -145,7 +144,7 @@ mod tests {
         assert_eq!(span, Span(22));
     }
 
-    /// A field of NTSC video, which is 1,001 / 60,000 s.
+    /// A field of NTSC video takes 1,001 / 60,000 s.
     #[test]
     fn a_field_is_told_in_milliseconds_and_printed_in_microseconds() {
         let field = Span(1_001_000_000_000_000 / 60_000);

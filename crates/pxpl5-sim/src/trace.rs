@@ -1,4 +1,4 @@
-//! A hash of everything that happened, independent of the order within an instant.
+//! A hash of all events of a run, independent of the order within an instant.
 
 use crate::Time;
 use serde::{Deserialize, Serialize};
@@ -18,13 +18,13 @@ pub const fn mix(value: u64) -> u64 {
 
 /// Sum of the hashes of all records (time, facts).
 ///
-/// Addition makes it independent of the order of simultaneous events, which carries no meaning, and dependent on
-/// every time and fact.
+/// The sum does not depend on the order of simultaneous events, which has no meaning. It depends on every time and
+/// every fact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct TraceHash(pub u64);
 
 impl TraceHash {
-    /// Adds one record: what happened when.
+    /// Adds one record: the time and the facts of an event.
     pub fn record(&mut self, time: Time, facts: &[u64]) {
         let hash = facts.iter().fold(mix(time.0), |hash, fact| mix(hash ^ mix(*fact)));
         self.0 = self.0.wrapping_add(hash);
@@ -56,8 +56,8 @@ mod tests {
         assert_ne!(base, hash(&[(1, &[2, 3]), (1, &[4]), (1, &[4])]));
     }
 
-    /// Both are mixed alike and taken exclusively, so that nothing is left of them but the mixed zero: the first output of
-    /// SplitMix64 seeded with 0 (Vigna's reference program).
+    /// The mixed time and the mixed fact cancel by exclusive or and leave the mixed zero. This is the first output of
+    /// SplitMix64 with seed 0 (Vigna's reference program).
     #[test]
     fn a_fact_that_is_its_own_time_leaves_the_hash_of_zero() {
         for both in [0, 1, 1_234_567, u64::MAX] {

@@ -1,29 +1,29 @@
-//! Messages and what their words mean.
+//! Messages and their contents.
 
 use crate::{NodeId, PeriodNumber, PictureNumber, RegionGrid, RegionId, TriangleBatch, Word};
 use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// One message on one channel of the ring.
+/// A message on one channel of the ring.
 #[derive(Clone, Debug)]
 pub struct Message {
-    /// The port of the board that sends it.
+    /// Port of the board that sends the message.
     pub source: NodeId,
-    /// The port of the board that it is for.
+    /// Port of the board that receives the message.
     pub destination: NodeId,
     /// Length in words, 1 to [`crate::MAX_MESSAGE_WORDS`].
     pub words: u32,
-    /// What the words mean.
+    /// Content of the message.
     pub body: Body,
 }
 
-/// What a message carries.
+/// The content of a message.
 #[derive(Clone, Debug)]
 pub enum Body {
-    /// Commands for a renderer, in the order in which it executes them.
+    /// Commands for a renderer, in the order of their execution.
     Commands(CommandList),
-    /// Part of a region's pixels on the way to a frame buffer.
+    /// Part of a region's pixels, sent to a frame buffer.
     Pixels(RegionPixels),
     /// Words between two programs, defined by the firmware.
     Words(Arc<[Word]>),
@@ -32,17 +32,17 @@ pub enum Body {
 /// Commands for a renderer, in order.
 #[derive(Clone, Debug)]
 pub struct CommandList {
-    /// The kinds of the commands in order, run by run; this alone decides the time.
+    /// Kinds of the commands in order, as runs. The time of the list depends only on these.
     pub runs: Vec<CommandRun>,
-    /// The region context of pixel memory on which all commands of this list work.
+    /// Region context of pixel memory on which all commands of this list work.
     pub context: u8,
-    /// One order for every command that copies a region, in their order.
+    /// One order for every command that copies a region, in the order of the commands.
     pub copies: Vec<CopyOrder>,
-    /// The command words, produced on demand; `None` where nobody will look at pixels.
+    /// Command words, computed on demand; `None` if no pixel of the picture will be read.
     pub content: Option<CommandContent>,
 }
 
-/// The words of a message's commands, produced on demand. Messages that belong together, those of a region, share who makes them.
+/// The command words of a message, computed on demand. All messages of a region share one source of words.
 #[derive(Clone, Debug)]
 pub struct CommandContent {
     words: Arc<dyn CommandWords>,
@@ -50,52 +50,52 @@ pub struct CommandContent {
 }
 
 impl CommandContent {
-    /// One part, numbered from 0, of what somebody makes.
+    /// Makes the content of part `part` (from 0) of a source of command words.
     #[must_use]
     pub const fn new(words: Arc<dyn CommandWords>, part: u32) -> Self {
         Self { words, part }
     }
 
-    /// Appends the words, always the same ones.
+    /// Appends the words of the commands. Every call appends the same words.
     pub fn append_words(&self, out: &mut Vec<Word>) {
         self.words.append_words(self.part, out);
     }
 
-    /// Hands over the commands that can touch their region ([`CommandWords::append_touching`]).
+    /// Passes the commands that can touch their region to `out` ([`CommandWords::append_touching`]).
     pub fn append_touching(&self, out: &mut dyn CommandSink) -> bool {
         self.words.append_touching(self.part, out)
     }
 }
 
-/// What a copy command asks for.
+/// The parameters of a copy command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct CopyOrder {
-    /// Where the region goes.
+    /// Place of the region in a frame buffer.
     pub target: CopyTarget,
-    /// The region context that holds it.
+    /// Region context of the pixel memory that holds the region.
     pub context: u8,
-    /// The way of its colours.
+    /// Path of the colours to the frame buffer.
     pub way: CopyWay,
-    /// What of its pixels is sent.
+    /// Data that are sent for each pixel.
     pub content: CopyContent,
-    /// Who is told, by a message of [`COPY_ACKNOWLEDGEMENT_WORDS`], when the last pixel has arrived.
+    /// Port that gets a message of [`COPY_ACKNOWLEDGEMENT_WORDS`] when the last pixel has arrived.
     pub acknowledge: Option<NodeId>,
 }
 
-/// What of a region's pixels a copy sends.
+/// The data that a copy sends for each pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum CopyContent {
-    /// A word a pixel: its colour.
+    /// One word per pixel: its colour.
     #[default]
     Colour,
-    /// Two words a pixel: the colours of all pixels, then their depths of 24 bits.
+    /// Two words per pixel: the colours of all pixels, then their 24-bit depths.
     ColourAndDepth,
-    /// A word a pixel: the upper half of its depth above its colour in 5, 6 and 5 bits.
+    /// One word per pixel: the upper 16 bits of its depth above its colour in 5, 6 and 5 bits.
     Packed,
 }
 
 impl CopyContent {
-    /// Words that a pixel takes: on the ring, and of 32 bits in the backing store.
+    /// Returns the words per pixel on the ring, which is also the number of 32-bit words in the backing store.
     #[must_use]
     pub const fn words(self) -> u32 {
         match self {
@@ -104,7 +104,8 @@ impl CopyContent {
         }
     }
 
-    /// The words of a region, made of its pixels' colours (0x00RRGGBB) and, where they are sent, their depths of 24 bits.
+    /// Returns the words of a region, from the colours (0x00RRGGBB) and, if they are sent, the 24-bit depths of its
+    /// pixels.
     #[must_use]
     pub fn of(self, colours: Arc<[Word]>, depths: impl FnOnce() -> Vec<Word>) -> Arc<[Word]> {
         match self {
@@ -115,22 +116,22 @@ impl CopyContent {
     }
 }
 
-/// A colour in 5, 6 and 5 bits below the upper 16 of 24 bits of depth.
+/// Returns a colour in 5, 6 and 5 bits below the upper 16 bits of a 24-bit depth.
 fn packed((colour, depth): (&Word, Word)) -> Word {
     (depth >> 8) << 16 | (colour >> 8 & 0xF800) | (colour >> 5 & 0x07E0) | (colour >> 3 & 0x001F)
 }
 
-/// The way of a region's colours from pixel memory to the frame buffer.
+/// The path of a region's colours from pixel memory to the frame buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum CopyWay {
-    /// Straight from pixel memory: the commands that follow wait until the last pixel has arrived.
+    /// Directly from pixel memory. The commands that follow wait until the last pixel has arrived.
     FromPixelMemory,
-    /// Into the backing store, and from there to the frame buffer as soon as no other region of this renderer is on its way,
-    /// beside the commands that follow.
+    /// Into the backing store, and from there to the frame buffer while the following commands execute. The second step
+    /// waits while another region of this renderer is being sent.
     ThroughBacking,
-    /// Into the backing store, where they stay until a command [`CopyWay::FromBacking`] of the same target.
+    /// Into the backing store, where the colours stay until a [`CopyWay::FromBacking`] command of the same target.
     IntoBacking,
-    /// From the backing store, where an earlier command [`CopyWay::IntoBacking`] has put them.
+    /// From the backing store, after an earlier [`CopyWay::IntoBacking`] command of the same target.
     FromBacking,
 }
 
@@ -138,43 +139,44 @@ pub enum CopyWay {
 pub const COPY_ACKNOWLEDGEMENT_WORDS: u32 = 4;
 
 impl CommandList {
-    /// Length in words of all commands.
+    /// Returns the length of all commands in words.
     #[must_use]
     pub fn words(&self) -> u32 {
         self.runs.iter().map(|run| run.count * run.words_each).sum()
     }
 }
 
-/// `count` commands of one kind in a row.
+/// A run of `count` successive commands of one kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CommandRun {
-    /// The commands' operation code.
+    /// Operation code of the commands.
     pub opcode: u8,
     /// Length of one command in words.
     pub words_each: u32,
-    /// How many commands of this kind follow each other.
+    /// Number of commands in the run.
     pub count: u32,
 }
 
-/// Produces the words of commands when somebody needs them.
+/// A source of command words, which computes them on demand.
 pub trait CommandWords: Debug + Send + Sync {
-    /// Appends the words of a part, one of so many messages, to `out`: always the same ones.
+    /// Appends the words of a part (one message) to `out`. Every call appends the same words.
     fn append_words(&self, part: u32, out: &mut Vec<Word>);
 
-    /// Hands the same commands to somebody, or without primitives that touch no pixel of the region that they are sent to; says
-    /// whether a primitive is among them. Whole commands, of which each that draws sets Enable first.
+    /// Passes the same commands to `out`; it may leave out primitives that touch no pixel of their region.
+    /// Returns true if a primitive is among the commands. `out` receives whole commands; each command that draws sets
+    /// Enable first.
     fn append_touching(&self, part: u32, out: &mut dyn CommandSink) -> bool {
         self.append_words(part, out.words());
         true
     }
 }
 
-/// Takes commands in order: words, and triangles without them where it can.
+/// A receiver of commands in order: words, and triangles without words where possible.
 pub trait CommandSink {
-    /// The words of commands are appended here.
+    /// Returns the list to which words of commands are appended.
     fn words(&mut self) -> &mut Vec<Word>;
 
-    /// Takes triangles that come behind the words so far. False where their words are to be appended instead.
+    /// Accepts triangles that come after the words so far. Returns false if their words must be appended instead.
     fn triangles(&mut self, batch: &TriangleBatch<'_>) -> bool;
 }
 
@@ -188,20 +190,20 @@ impl CommandSink for Vec<Word> {
     }
 }
 
-/// Words that are given; they have one part.
+/// Words computed in advance, as a single part.
 impl CommandWords for Vec<Word> {
     fn append_words(&self, _: u32, out: &mut Vec<Word>) {
         out.extend_from_slice(self);
     }
 }
 
-/// Which lines of a frame a picture fills.
+/// The lines of a frame that a picture fills.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Lines {
-    /// All lines of the screen, one under the other.
+    /// All lines of the frame.
     Frame,
-    /// The lines of one field.
+    /// Every second line: the lines of one field.
     Field(FieldParity),
 }
 
@@ -216,54 +218,54 @@ pub enum FieldParity {
 }
 
 impl FieldParity {
-    /// The parity of a field of NTSC video: even numbers scan even lines.
+    /// Returns the parity of a field of NTSC video. Fields with even numbers scan even lines.
     #[must_use]
     pub const fn of_field(field: PeriodNumber) -> Self {
         if field.0.is_multiple_of(2) { Self::Even } else { Self::Odd }
     }
 
-    /// First line of the field: 0 or 1.
+    /// Returns the first line of the field: 0 or 1.
     #[must_use]
     pub const fn first_line(self) -> u32 {
         self as u32
     }
 }
 
-/// Where in a frame buffer a region goes.
+/// The place of a region in a frame buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct CopyTarget {
     /// Port of the frame buffer.
     pub frame_buffer: NodeId,
-    /// Which of the two buffers, 0 or 1.
+    /// Number of the buffer, 0 or 1.
     pub buffer: u8,
-    /// The lines that the grid's rows stand for.
+    /// Lines of the frame that the rows of the grid fill.
     pub lines: Lines,
-    /// How the picture is cut.
+    /// Division of the picture into regions.
     pub grid: RegionGrid,
-    /// Which piece of the grid the region is.
+    /// Number of the region in the grid.
     pub region: RegionId,
-    /// The picture that the region is part of, in the count of the pipeline that draws it; see [`PictureNumber`]. Boards
-    /// only tell one copy of a region from the next by it; observers join the regions of a picture.
+    /// Picture that the region belongs to, as counted by its pipeline; see [`PictureNumber`]. Boards use it only to
+    /// separate successive copies of a region. Observers use it to collect the regions of a picture.
     pub picture: PictureNumber,
 }
 
 /// Part of one region's pixels: message `part` of `parts`.
 #[derive(Clone, Debug)]
 pub struct RegionPixels {
-    /// The place in a display that the pixels go to.
+    /// Place of the region in a display.
     pub target: CopyTarget,
-    /// The whole region's pixels.
+    /// Pixels of the whole region.
     pub image: Arc<dyn PixelSource>,
     /// Number of this message within the region, from 0.
     pub part: u32,
-    /// Messages of the whole region.
+    /// Number of messages of the whole region.
     pub parts: u32,
 }
 
-/// Pixels of a region, computed when somebody looks.
+/// The pixels of a region, computed on demand.
 pub trait PixelSource: Debug + Send + Sync {
-    /// One word a pixel, 0x00RRGGBB, row by row, `width * height` of the region's rectangle; of a copy with depth
-    /// ([`CopyContent`]) the words that it says.
+    /// Returns one word 0x00RRGGBB per pixel, row by row, for `width * height` pixels of the region's rectangle.
+    /// For a copy with depth the words are as [`CopyContent`] defines them.
     fn pixels(&self) -> Arc<[Word]>;
 }
 
@@ -271,7 +273,8 @@ pub trait PixelSource: Debug + Send + Sync {
 pub const COPY_ACKNOWLEDGEMENT: Word = 0xC0_11_ED;
 
 impl CopyTarget {
-    /// The words that tell a program that this region has been copied: tag, region, low word of the picture, frame buffer.
+    /// Returns the words that tell a program that this region has been copied: tag, region, low word of the picture
+    /// number, frame buffer.
     #[must_use]
     pub fn acknowledgement(&self) -> Arc<[Word]> {
         let words = [
@@ -284,16 +287,16 @@ impl CopyTarget {
     }
 }
 
-/// First word of the message that asks a frame buffer to swap at the next retrace; the buffer's number follows.
+/// First word of the message that requests a swap at the next retrace. The buffer's number follows.
 pub const SWAP_REQUEST: Word = 0x0005_3A9F;
 
-/// The words of a request to show `buffer` from the next retrace on.
+/// Returns the words of a request to show `buffer` from the next retrace on.
 #[must_use]
 pub fn swap_request(buffer: u8) -> Arc<[Word]> {
     [SWAP_REQUEST, Word::from(buffer)].into()
 }
 
-/// The buffer that a message asks to show, if it is a request to swap.
+/// Returns the requested buffer if the words are a swap request.
 #[must_use]
 pub fn read_swap_request(words: &[Word]) -> Option<u8> {
     match words {

@@ -1,10 +1,10 @@
-//! The expressions that a renderer's evaluator delivers to all pixels at once.
+//! Expressions that a renderer evaluates at all pixels at once.
 
 use serde::{Deserialize, Serialize};
 
-/// `a x + b y + c` at the integer pixel (x, y) of the screen, in 32-bit two's complement (sums wrap).
+/// The expression `a x + b y + c` at the integer pixel (x, y) of the screen, in 32-bit two's complement (sums wrap).
 ///
-/// The offset of the pixel's centre is folded into `c` by whoever sets the expression up.
+/// The code that sets the expression up includes the offset of the pixel's centre in `c`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Linear {
     /// Increment per pixel to the right.
@@ -16,13 +16,13 @@ pub struct Linear {
 }
 
 impl Linear {
-    /// The same value everywhere.
+    /// Makes an expression with the same value at every pixel.
     #[must_use]
     pub const fn constant(c: i32) -> Self {
         Self { a: 0, b: 0, c }
     }
 
-    /// The value at pixel (x, y).
+    /// Returns the value at pixel (x, y).
     #[must_use]
     pub const fn at(&self, x: i32, y: i32) -> i32 {
         let ax = self.a.wrapping_mul(x);
@@ -30,22 +30,23 @@ impl Linear {
     }
 }
 
-/// Triangles whose expressions stand side by side: a vector of the widest unit holds a double of each.
+/// Number of triangles whose expressions are stored side by side: one double of each fits into a vector of the widest
+/// unit.
 pub const LANES: usize = 8;
 
 /// Linear expressions of [`LANES`] triangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LinearLanes {
-    /// [`Linear::a`] of each.
+    /// [`Linear::a`] of each triangle.
     pub a: [i32; LANES],
-    /// [`Linear::b`] of each.
+    /// [`Linear::b`] of each triangle.
     pub b: [i32; LANES],
-    /// [`Linear::c`] of each.
+    /// [`Linear::c`] of each triangle.
     pub c: [i32; LANES],
 }
 
 impl LinearLanes {
-    /// The expression of triangle `i`.
+    /// Returns the expression of triangle `i`.
     ///
     /// # Panics
     /// If `i` is not below [`LANES`].
@@ -56,41 +57,42 @@ impl LinearLanes {
     }
 }
 
-/// Some triangles as their commands for a renderer have them.
+/// Up to [`LANES`] triangles with the expressions of their renderer commands.
 #[derive(Clone, Copy, Debug)]
 pub struct TriangleBatch<'a> {
-    /// How many there are, at most [`LANES`].
+    /// Number of triangles, at most [`LANES`].
     pub len: usize,
-    /// A pixel is covered where all three are at least 0.
+    /// Edge expressions. A pixel is covered if all three are at least 0.
     pub edges: &'a [LinearLanes; 3],
-    /// Depth; then red, green and blue, or x, y and z of the normal.
+    /// Plane expressions: depth, then red, green and blue, or x, y and z of the normal.
     pub planes: &'a [LinearLanes; 4],
-    /// The colours of triangles with normals, 0x00RRGGBB.
+    /// Colours of triangles with normals, 0x00RRGGBB.
     pub colours: Option<[u32; LANES]>,
 }
 
-/// `xx x^2 + xy x y + yy y^2 + x x + y y + one` at the integer pixel (x, y), in 64-bit two's complement (sums wrap).
+/// The expression `xx x^2 + xy x y + yy y^2 + x x + y y + one` at the integer pixel (x, y), in 64-bit two's complement
+/// (sums wrap).
 ///
-/// The machine's evaluator forms `A x^2 + B x y + C y^2 + D x + E y + F` (F89). Two words a coefficient are
+/// The machine's evaluator computes `A x^2 + B x y + C y^2 + D x + E y + F` (F89). Two words per coefficient are
 /// assumed: 32 bits cannot hold both a screen's range and a small sphere's silhouette.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Quadratic {
-    /// Coefficient of x squared.
+    /// Coefficient of x squared, A in F89.
     pub xx: i64,
-    /// Coefficient of x y.
+    /// Coefficient of x y, B in F89.
     pub xy: i64,
-    /// Coefficient of y squared.
+    /// Coefficient of y squared, C in F89.
     pub yy: i64,
-    /// Coefficient of the pixel's column, A in Ax + By + C.
+    /// Coefficient of x, D in F89.
     pub x: i64,
-    /// Coefficient of the pixel's row, B in Ax + By + C.
+    /// Coefficient of y, E in F89.
     pub y: i64,
-    /// The constant term, C in Ax + By + C.
+    /// Constant term, F in F89.
     pub one: i64,
 }
 
 impl Quadratic {
-    /// The value at pixel (x, y).
+    /// Returns the value at pixel (x, y).
     #[must_use]
     pub const fn at(&self, x: i32, y: i32) -> i64 {
         let px = x as i64;

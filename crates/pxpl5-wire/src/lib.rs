@@ -1,20 +1,19 @@
-//! What travels on the ring: words, messages, addresses, and the number formats of expressions.
+//! Data on the ring: words, messages, addresses, and the number formats of expressions.
 //!
-//! This crate holds types only. Every board depends on it and no board depends on another, so whatever two
-//! boards must agree on stands here:
+//! This crate contains only types. Every board depends on it and no board depends on another board, so it defines
+//! everything that two boards share:
 //!
 //! - [`Message`]: at most [`MAX_MESSAGE_WORDS`] words from one [`NodeId`] to another;
-//! - [`Body`]: what the words mean: renderer commands, pixels of a region, or words that firmware defines;
+//! - [`Body`]: the content of a message: renderer commands, pixels of a region, or words that firmware defines;
 //! - [`Linear`] and [`Quadratic`]: the expressions that a renderer evaluates at every pixel;
-//! - [`mod@format`]: the fixed-point formats of those expressions;
-//! - [`PeriodNumber`], [`PictureNumber`], [`ViewNumber`]: what boards and programs count;
-//! - [`RegionGrid`]: how a screen is cut into the regions of 128 x 128 renderer pixels.
+//! - [`mod@format`]: the fixed-point formats of these expressions;
+//! - [`PeriodNumber`], [`PictureNumber`], [`ViewNumber`]: counts of boards and programs;
+//! - [`RegionGrid`]: the division of a screen into regions of at most 128 x 128 pixels.
 //!
-//! Bodies are *lazy*: a message knows its length and the sequence of its command kinds (which is all that time
-//! depends on, since a SIMD array takes the same cycles whatever its data are), and can produce its words when
-//! somebody wants the picture.
+//! Bodies are *lazy*. A message has its length and the sequence of its command kinds. Time depends only on these,
+//! because a SIMD array takes the same cycles for all data. The words are computed only when a picture is read.
 //!
-//! **Not modelled:** routing headers and check words; their cost is the ring's overhead per message.
+//! **Not modelled:** routing headers and check words. The ring's overhead for each message stands for their cost.
 //!
 //! Sources: TR94 (message length, regions), F89 (expressions, region size).
 

@@ -1,20 +1,20 @@
-//! Numbers of periods, pictures and views: three counts that run side by side and are easily taken for each other.
+//! Numbers of periods, pictures and views: three independent counts.
 //!
-//! | number | counts | told by |
+//! | number | counts | counted by |
 //! |---|---|---|
 //! | [`PeriodNumber`] | periods of a display: fields of NTSC video, refreshes of the high-resolution monitor | the display's clock |
-//! | [`PictureNumber`] | what a pipeline draws: frames, fields, batches of blocks | the pipeline's firmware |
-//! | [`ViewNumber`] | poses and edits taken from the host | who asks the host |
+//! | [`PictureNumber`] | pictures of a pipeline: frames, fields, batches of blocks | the pipeline's firmware |
+//! | [`ViewNumber`] | poses and edits taken from the host | the program that requests them |
 //!
-//! A picture is shown in a period and shows a view; which, only the pipeline can say, by
-//! [`PictureNumber::drawn_for`], [`PictureNumber::period_drawn_for`], [`ViewNumber::taken_for`] and
-//! [`ViewNumber::picture_taken_for`].
+//! A picture is shown in a period and shows a view. Only the pipeline knows the relation: [`PictureNumber::drawn_for`],
+//! [`PictureNumber::period_drawn_for`], [`ViewNumber::taken_for`] and [`ViewNumber::picture_taken_for`].
 
 use crate::Word;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// A number that counts from 0 and knows no arithmetic but that of its own kind. As text and as data it is the bare number.
+/// Declares a number type that counts from 0, with arithmetic within its own type only. Text and data contain the bare
+/// number.
 macro_rules! count_from_zero {
     ($(#[$doc:meta])* $name:ident) => {
         $(#[$doc])*
@@ -23,16 +23,16 @@ macro_rules! count_from_zero {
         pub struct $name(pub u64);
 
         impl $name {
-            /// The first one: number 0.
+            /// Number 0.
             pub const FIRST: Self = Self(0);
 
-            /// The one that follows; the last that can be counted follows itself.
+            /// Returns the next number. The greatest number returns itself.
             #[must_use]
             pub const fn next(self) -> Self {
                 self.after(1)
             }
 
-            /// The one that came `count` earlier; `None` before the first.
+            /// Returns the number `count` earlier; `None` below 0.
             #[must_use]
             pub const fn before(self, count: u64) -> Option<Self> {
                 match self.0.checked_sub(count) {
@@ -41,35 +41,35 @@ macro_rules! count_from_zero {
                 }
             }
 
-            /// The one that comes `count` later, at most the last that can be counted.
+            /// Returns the number `count` later, at most the greatest number.
             #[must_use]
             pub const fn after(self, count: u64) -> Self {
                 Self(self.0.saturating_add(count))
             }
 
-            /// How many have come since an earlier one; 0 when that is later.
+            /// Returns the difference to an earlier number, or 0 if `earlier` is later.
             #[must_use]
             pub const fn since(self, earlier: Self) -> u64 {
                 self.0.saturating_sub(earlier.0)
             }
 
-            /// This one and all that follow, without end.
+            /// Iterates over this number and all later ones.
             pub fn onwards(self) -> impl Iterator<Item = Self> {
                 (self.0..).map(Self)
             }
 
-            /// This one and those that follow, without `end`.
+            /// Iterates over this number and later ones, up to but without `end`.
             pub fn until(self, end: Self) -> impl DoubleEndedIterator<Item = Self> + Clone {
                 (self.0..end.0).map(Self)
             }
 
-            /// Two words of the ring, the low one first.
+            /// Returns the number as two words of the ring, the low word first.
             #[must_use]
             pub const fn to_words(self) -> [Word; 2] {
                 [self.0 as Word, (self.0 >> 32) as Word]
             }
 
-            /// The number whose low and high words these are.
+            /// Makes a number from its low and high word.
             #[must_use]
             pub const fn from_words(low: Word, high: Word) -> Self {
                 Self(low as u64 | (high as u64) << 32)
@@ -85,35 +85,37 @@ macro_rules! count_from_zero {
 }
 
 count_from_zero! {
-    /// A period of a display, from one tick of its clock to the next; number n begins at tick n, and tick 0 is the start of
-    /// simulated time. Of NTSC video it is a field (a retrace bears the number of the field that it begins), of the
-    /// high-resolution frame buffer a refresh.
+    /// A period of a display, from one tick of its clock to the next.
+    /// Number n begins at tick n, and tick 0 is the start of simulated time. A period of NTSC video is a field; a
+    /// retrace has the number of the field that it begins. A period of the high-resolution frame buffer is a refresh.
     PeriodNumber
 }
 
 count_from_zero! {
-    /// A picture as its pipeline counts them from 0: all that is drawn for one moment and shown together, for every surface.
-    /// A frame, both eyes, of Rendering Control, from its first; a field of Slats and of just-in-time pixels, which bears
-    /// the number of the period that it is drawn for; a batch of blocks of frameless rendering, from its first.
+    /// A picture: everything that a pipeline draws for one moment and shows together, for all surfaces.
+    /// Each pipeline counts its pictures from 0. A picture of Rendering Control is a frame with both eyes. A picture of
+    /// Slats or just-in-time pixels is a field and has the number of its period. A picture of frameless rendering is a
+    /// batch of blocks.
     PictureNumber
 }
 
 count_from_zero! {
-    /// A view: one pose of the head, and the edits with it, as the host gave them. Whoever asks the host numbers its
-    /// questions: Rendering Control and frameless rendering one for each picture, Slats one for each transmission from 0,
-    /// just-in-time pixels so many for each field.
+    /// A view: one pose of the head and the edits with it, as received from the host.
+    /// The program that requests views numbers them. Rendering Control and frameless rendering request one for each
+    /// picture, Slats one for each transmission, just-in-time pixels a fixed number for each field.
     ViewNumber
 }
 
 impl PictureNumber {
-    /// The picture that is drawn for a period, of a pipeline that draws one for every period (Slats, just-in-time pixels):
-    /// it bears the period's number.
+    /// Returns the picture for a period, in pipelines that draw one picture for every period (Slats, just-in-time
+    /// pixels). Both have the same number.
     #[must_use]
     pub const fn drawn_for(period: PeriodNumber) -> Self {
         Self(period.0)
     }
 
-    /// The period that a picture of such a pipeline is drawn for; of others this says nothing.
+    /// Returns the period of a picture, in pipelines that draw one picture for every period. In other pipelines the
+    /// result has no meaning.
     #[must_use]
     pub const fn period_drawn_for(self) -> PeriodNumber {
         PeriodNumber(self.0)
@@ -121,14 +123,15 @@ impl PictureNumber {
 }
 
 impl ViewNumber {
-    /// The view that is taken for a picture, of a pipeline that takes one for every picture (Rendering Control, frameless
-    /// rendering): it bears the picture's number.
+    /// Returns the view for a picture, in pipelines that take one view for every picture (Rendering Control, frameless
+    /// rendering). Both have the same number.
     #[must_use]
     pub const fn taken_for(picture: PictureNumber) -> Self {
         Self(picture.0)
     }
 
-    /// The picture that a view of such a pipeline is taken for; of others this says nothing.
+    /// Returns the picture of a view, in pipelines that take one view for every picture. In other pipelines the result
+    /// has no meaning.
     #[must_use]
     pub const fn picture_taken_for(self) -> PictureNumber {
         PictureNumber(self.0)

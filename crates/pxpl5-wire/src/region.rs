@@ -1,29 +1,29 @@
-//! How the screen is cut into regions.
+//! Eyes, surfaces, and the division of the screen into regions.
 
 use crate::REGION_SIZE;
 use serde::{Deserialize, Serialize};
 
-/// For which eye a picture is drawn.
+/// The eye that a picture is drawn for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Eye {
-    /// The left eye, and the only one of a mono picture.
+    /// The left eye, or the only view of a mono picture.
     Left,
     /// The right eye, shown by the second frame buffer.
     Right,
 }
 
 impl Eye {
-    /// Both, in the order in which the pipelines take them.
+    /// Both eyes, in the order in which the pipelines draw them.
     pub const BOTH: [Self; 2] = [Self::Left, Self::Right];
 
-    /// 0 for left, 1 for right.
+    /// Returns 0 for left, 1 for right.
     #[must_use]
     pub const fn index(self) -> usize {
         self as usize
     }
 
-    /// Its name in files and tables: `left` or `right`.
+    /// Returns the name in files and tables: `left` or `right`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -33,13 +33,12 @@ impl Eye {
     }
 }
 
-/// A surface of a machine's displays: something that somebody looks at, counted over all displays in their order. With
-/// one NTSC display it is the eye's number.
+/// The number of a visible surface of a machine's displays, counted over all displays in their order. With one NTSC
+/// display it is the number of the eye.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct SurfaceId(pub u16);
 
 impl SurfaceId {
-    /// The number as an index.
     #[must_use]
     pub const fn index(self) -> usize {
         self.0 as usize
@@ -52,16 +51,16 @@ impl From<Eye> for SurfaceId {
     }
 }
 
-/// A region's number: row by row from the top left.
+/// The number of a region, counted row by row from the top left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct RegionId(pub u16);
 
-/// A picture cut into a grid of regions. Lengths are in pixels; the last column and row may be smaller.
+/// The division of a picture into a grid of regions. Lengths are in pixels; the last column and row may be smaller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct RegionGrid {
     /// Width of the picture.
     pub width: u32,
-    /// Height of the picture in the lines that are drawn (240 for a field).
+    /// Height of the picture in drawn lines (240 for a field).
     pub height: u32,
     /// Width of a region, at most 128.
     pub region_width: u32,
@@ -70,31 +69,31 @@ pub struct RegionGrid {
 }
 
 impl RegionGrid {
-    /// A whole NTSC frame of 640 x 480 in 5 x 4 regions of 128 x 128; the last row has 96 lines (TR94).
+    /// A whole NTSC frame of 640 x 480 in 5 x 4 regions of 128 x 128. The last row has 96 lines (TR94).
     pub const FRAME: Self = Self { width: 640, height: 480, region_width: 128, region_height: 128 };
 
     /// One NTSC field of 640 x 240 in 5 x 2 regions of 128 x 120 (TR94).
     pub const FIELD: Self = Self { width: 640, height: 240, region_width: 128, region_height: 120 };
 
-    /// Regions in a row.
+    /// Returns the number of regions in a row.
     #[must_use]
     pub const fn columns(&self) -> u32 {
         self.width.div_ceil(self.region_width)
     }
 
-    /// Regions from top to bottom, the last one cut off where the height is no multiple.
+    /// Returns the number of rows of regions. The last row may be cut off.
     #[must_use]
     pub const fn rows(&self) -> u32 {
         self.height.div_ceil(self.region_height)
     }
 
-    /// Regions of the whole grid: columns times rows.
+    /// Returns the number of regions of the grid.
     #[must_use]
     pub const fn regions(&self) -> u32 {
         self.columns() * self.rows()
     }
 
-    /// Left, top, width and height of a region in pixels.
+    /// Returns left, top, width and height of a region in pixels.
     #[must_use]
     pub const fn rectangle(&self, region: RegionId) -> [u32; 4] {
         let column = region.0 as u32 % self.columns();
@@ -104,8 +103,9 @@ impl RegionGrid {
         [left, top, min(self.region_width, self.width - left), min(self.region_height, self.height - top)]
     }
 
-    /// The same of numbers that came in a message, for a picture of `width` x `height`: `None` where the grid is empty or larger than
-    /// that, a region has no pixel or more than a renderer's array in a direction, or the grid has no such region.
+    /// Returns left, top, width and height of a region from a message, or `None` if the grid or the region is invalid.
+    /// The grid must not be empty or larger than `width` x `height` and must contain the region. The region must have
+    /// pixels, and at most a renderer's array of them.
     #[must_use]
     pub const fn rectangle_within(&self, region: RegionId, width: u32, height: u32) -> Option<[u32; 4]> {
         let fits = 0 < self.width && self.width <= width && 0 < self.height && self.height <= height;

@@ -1,20 +1,21 @@
-//! Rules that an instruction must keep by itself and with its neighbours. What breaks them is undefined on the part.
+//! Assembler rules for single instructions and their neighbours. Code that breaks a rule has undefined results on the
+//! real chip.
 //!
 //! * a pair is a floating-point instruction, then a core instruction
-//! * the halves of a pair do not write the same register, do not both set CC, and `bc.t`/`bnc.t` does not stand
-//!   beside a compare
-//! * no branch in the slot of a delayed branch; a `call` slot does not write r1
+//! * the halves of a pair do not write the same register and do not both set CC, and `bc.t` or `bnc.t` is not paired
+//!   with a compare
+//! * a delayed branch has no branch in its slot, and the slot of a `call` does not write r1
 //! * `bla` has two different registers
 //!
-//! Three more rules are broken by programs that run ([`Rule`]); those are warned of:
+//! Some working programs break three more rules ([`Rule`]). The assembler reports these as warnings:
 //!
-//! * a `d.` instruction lies at a multiple of 8: others assemble one in the second word of a pair too
+//! * a `d.` instruction has an address that is a multiple of 8 (other assemblers accept it in the second word of a pair
+//!   too)
 //! * a pipelined multiply does not have its first source as destination
-//! * no result is taken out of a pipe that a scalar operation has gone through since it was put in: code that empties a pipe takes
-//!   such a result and does not use it
+//! * no result is read from a pipe after a scalar operation has destroyed it (code that empties a pipe reads such
+//!   results and ignores them)
 //!
-//! Pairing is followed in address order, as a reader would; a program that jumps into the middle of a dual stretch
-//! is on its own.
+//! Pairs are followed in address order. The check does not follow jumps into the middle of dual-instruction code.
 
 use crate::decoded::float_mask;
 use crate::dual_operation::{MULTIPLIER_ROUTES, ROUTES, Source};
@@ -24,30 +25,30 @@ use std::collections::BTreeSet;
 
 type Located = (u32, usize, Instruction);
 
-/// A rule that programs break and run all the same.
+/// A rule that some working programs break, so that the assembler only warns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rule {
-    /// A `d.` instruction lies at a multiple of 8.
+    /// A `d.` instruction has an address that is a multiple of 8.
     Alignment,
     /// A pipelined multiply does not have its first source as destination.
     MultiplySource,
-    /// No result is taken out of a pipe behind a scalar operation.
+    /// No result is read from a pipe after a scalar operation has destroyed it.
     LostResult,
 }
 
 impl Rule {
-    /// All of them, by the names under which their warnings are turned off.
+    /// All rules with the names that turn their warnings off.
     pub const NAMES: [(&'static str, Self); 3] =
         [("alignment", Self::Alignment), ("multiply-source", Self::MultiplySource), ("lost-result", Self::LostResult)];
 
-    /// The name under which its warnings are turned off.
+    /// Returns the name that turns the warnings of this rule off.
     #[must_use]
     pub fn name(self) -> &'static str {
         Self::NAMES.iter().find(|(_, rule)| *rule == self).map_or("", |(name, _)| name)
     }
 }
 
-/// All broken rules that make a program wrong, as source line and reason.
+/// Returns all broken rules that make a program wrong, as source line and reason.
 pub(super) fn faults(program: &[Located]) -> Vec<(usize, String)> {
     let same = |i: &Instruction| i.op == Op::Bla && i.src1 == i.src2;
     let bla = program.iter().filter(|(.., i)| same(i));
@@ -58,7 +59,8 @@ pub(super) fn faults(program: &[Located]) -> Vec<(usize, String)> {
     faults
 }
 
-/// All broken rules that are warned of, as source line, rule and reason; `labels` are the addresses that code elsewhere may jump to.
+/// Returns all broken rules that cause warnings, as source line, rule and reason. `labels` are the possible targets of
+/// jumps.
 pub(super) fn warnings(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usize, Rule, String)> {
     let each = program.iter().flat_map(|(address, line, i)| {
         alone(*address, i).into_iter().map(|(rule, reason)| (*line, rule, reason.to_owned()))
@@ -67,12 +69,13 @@ pub(super) fn warnings(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usiz
     each.chain(lost).collect()
 }
 
-/// Operations put into a pipe since a scalar one went through it; `None` where what it holds is not known.
+/// Number of operations pushed into a pipe since the last scalar operation; `None` if the contents of the pipe are
+/// unknown.
 #[derive(Clone, Copy, Default)]
 struct Refilled(Option<usize>);
 
 impl Refilled {
-    /// Whether the result that an operation of a pipe with so many stages takes out was lost.
+    /// Returns true if the result that now leaves a pipe of this many stages was destroyed by the scalar operation.
     fn has_lost(self, stages: usize) -> bool {
         self.0.is_some_and(|operations| operations < stages)
     }
@@ -82,7 +85,7 @@ impl Refilled {
     }
 }
 
-/// What an instruction does with the pipes of adder and multiplier, in this order.
+/// Effects of an instruction on the pipes of adder and multiplier, in this order.
 #[derive(Clone, Copy, Default)]
 struct PipeUse {
     scalar: [bool; 2],
@@ -117,16 +120,19 @@ impl PipeUse {
     }
 }
 
-/// Results taken out of a pipe behind a scalar operation, as far as the code is straight.
+/// Finds results read from a pipe after a scalar operation has destroyed them. Labels and branches end the analysis of
+/// a straight run.
 fn lost_results(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usize, String)> {
     let mut faults = Vec::new();
     let mut pipes = [Refilled::default(); 2];
     for (address, line, i) in program {
+        // The contents of the pipes are unknown after a jump.
         if labels.contains(address) || i.is_branch() {
             pipes = [Refilled::default(); 2];
         }
         let used = PipeUse::of(i);
         let double = i.has(Flags::SOURCE_DOUBLE);
+        // A multiply of doubles uses two stages only, except `pfmul3`.
         for (unit, stages) in [(0, 3), (1, if double && i.op != Op::Fmul3 { 2 } else { 3 })] {
             if used.takes[unit] && pipes[unit].has_lost(stages) {
                 let name = ["adder", "multiplier"][unit];
@@ -176,7 +182,7 @@ fn slot(two: &[Located]) -> Option<(usize, String)> {
     }
 }
 
-/// Registers written: r in the low word, f in the high.
+/// Returns the registers that an instruction writes: r in the low word, f in the high word.
 fn writes(i: &Instruction) -> u64 {
     let base = if i.has(Flags::AUTOINCREMENT) { integer_mask(i.src2) } else { 0 };
     match i.op {
@@ -193,17 +199,17 @@ fn writes(i: &Instruction) -> u64 {
     }
 }
 
-/// f0 and f1 are not written.
+/// Returns the mask of floating-point registers without f0 and f1, which cannot be written.
 fn writable_float_mask(dest: u8, bytes: u8) -> u64 {
     float_mask(dest, bytes) & !(3 << 32)
 }
 
-/// r0 is not written.
+/// Returns the mask of an integer register, empty for r0, which cannot be written.
 fn integer_mask(n: u8) -> u64 {
     1 << n & !1
 }
 
-/// Follows the mode through the program and checks every pair.
+/// Follows dual-instruction mode through the program and checks every pair.
 fn pairs(program: &[Located]) -> Vec<(usize, String)> {
     let mut faults = Vec::new();
     let mut mode = Mode::Single;
@@ -211,12 +217,14 @@ fn pairs(program: &[Located]) -> Vec<(usize, String)> {
     while let Some((address, line, low)) = program.get(at) {
         let high = program.get(at + 1).filter(|(next, ..)| *next == address.wrapping_add(4));
         let d = low.is_floating() && low.has(Flags::DUAL);
+        // In single mode only a D bit at an aligned address matters: the pairs begin after the next instruction.
         if !mode.is_dual() {
             let enters = d && address % 8 == 0;
             mode = if enters { Mode::DualOnce } else { Mode::Single };
             at += if enters && high.is_some() { 2 } else { 1 };
             continue;
         }
+        // A pair at an odd word cannot be executed.
         if address % 8 != 0 {
             faults.push((*line, "dual-instruction mode reaches this instruction at an odd word".to_owned()));
             mode = Mode::Single;
@@ -238,7 +246,7 @@ fn fault(second: bool, reason: &str) -> Option<(bool, String)> {
     Some((second, reason.to_owned()))
 }
 
-/// The broken rule of a pair, and whether to blame the second half.
+/// Returns the broken rule of a pair, and true if the error belongs to the second half.
 fn pair(low: &Instruction, high: &Instruction) -> Option<(bool, String)> {
     let compares = matches!(low.op, Op::Pfgt | Op::Pfle | Op::Pfeq);
     match () {

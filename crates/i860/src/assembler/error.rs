@@ -1,30 +1,30 @@
-//! What is wrong with a source.
+//! Errors and warnings of the assembler.
 
 use super::check::Rule;
 use std::fmt;
 
-/// A fault in the source.
+/// An error in an assembler source.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}:{line}: {reason}")]
 pub struct AssemblyError {
-    /// File name as given.
+    /// File name as given to [`assemble`](crate::assemble).
     pub file: String,
-    /// Line from 1; of the call, for text from a macro.
+    /// Line number from 1. For text from a macro, the line of the macro call.
     pub line: usize,
-    /// The fault, with the expected and the found text.
+    /// Description of the error, with the expected and the found text.
     pub reason: String,
 }
 
-/// A rule that a source breaks, which may be what its writer wants.
+/// A broken rule that may be intended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AssemblyWarning {
-    /// File name as given.
+    /// File name as given to [`assemble`](crate::assemble).
     pub file: String,
-    /// Line from 1; of the call, for text from a macro.
+    /// Line number from 1. For text from a macro, the line of the macro call.
     pub line: usize,
-    /// The rule.
+    /// The broken rule.
     pub rule: Rule,
-    /// The fault, with the expected and the found text.
+    /// Description of the warning, with the expected and the found text.
     pub reason: String,
 }
 
@@ -34,11 +34,11 @@ impl fmt::Display for AssemblyWarning {
     }
 }
 
-/// All faults of a source, in the order of its lines.
+/// All errors of a source.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", lines(.0))]
 pub struct AssemblyErrors(
-    /// In the order of their lines; there is at least one.
+    /// Errors in the order of their lines; there is at least one.
     pub Vec<AssemblyError>,
 );
 

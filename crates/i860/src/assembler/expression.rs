@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 /// Values of labels and `.equ` symbols.
 pub(super) type Symbols = BTreeMap<String, i64>;
 
-/// Nesting that a user's expression may have.
+/// Greatest nesting depth of an expression.
 const DEPTH: u32 = 64;
 
 struct Parser<'a> {
@@ -14,7 +14,7 @@ struct Parser<'a> {
     depth: u32,
 }
 
-/// The value of an expression of numbers, symbols and operators, 64 bits.
+/// Returns the value of an expression of numbers, symbols and operators, in 64 bits.
 pub(super) fn evaluate(text: &str, symbols: &Symbols) -> Result<i64, String> {
     let mut parser = Parser { text: text.trim(), symbols, depth: 0 };
     if parser.text.is_empty() {
@@ -27,7 +27,7 @@ pub(super) fn evaluate(text: &str, symbols: &Symbols) -> Result<i64, String> {
     }
 }
 
-/// Operators by precedence, weakest first.
+/// Binary operators by precedence, weakest first, without [`PRODUCTS`].
 const LEVELS: [&[&str]; 5] = [&["|"], &["^"], &["&"], &["<<", ">>"], &["+", "-"]];
 const PRODUCTS: &[&str] = &["*", "/", "%"];
 

@@ -1,14 +1,14 @@
-//! A program as a table of addresses, words and what they are.
+//! Listings: a program as a table of addresses, words and instructions.
 
 use super::{Data, DataKind, Program};
 use crate::disassembler::disassemble;
 use std::fmt::Write as _;
 
-/// Columns of an instruction's text, behind which the source begins. Assumed: wider than all but a few.
+/// Width of the column of disassembled text; the source begins after it. Assumed: wider than nearly all instructions.
 const TEXT_COLUMNS: usize = 30;
 
 impl Program {
-    /// Returns what lies at an address, if that is no instruction.
+    /// Returns the data at an address, or `None` for an instruction.
     #[must_use]
     pub fn data_at(&self, address: u32) -> Option<&Data> {
         let after = self.data.partition_point(|data| data.address <= address);
@@ -16,8 +16,8 @@ impl Program {
         (address.wrapping_sub(data.address) < data.bytes).then_some(data)
     }
 
-    /// Lists address, word, instruction or data, and the lines of `source` that they come from. Without a source the lines are left
-    /// out.
+    /// Lists address, word, instruction or data of every word, with its line of `source`. Without a source the lines
+    /// are left out.
     ///
     /// ```
     /// let source = "start: mov 3, r5\nend: nop\ntable: .long 7";
@@ -30,6 +30,7 @@ impl Program {
         let source: Vec<&str> = source.unwrap_or_default().lines().collect();
         let mut rows = Rows { text: String::new(), labels: &self.labels, source, line: 0 };
         let mut data = self.data.as_slice();
+        // Data that lie before an instruction are listed before it.
         for &(address, line) in &self.lines {
             while let Some((first, rest)) = data.split_first().filter(|(first, _)| first.address < address) {
                 rows.data(self, first);
@@ -43,7 +44,7 @@ impl Program {
         rows.text
     }
 
-    /// The number of up to eight bytes at an address.
+    /// Returns the little-endian number of up to eight bytes at an address.
     fn number(&self, address: u32, bytes: u32) -> u64 {
         let from = address.wrapping_sub(self.base) as usize;
         let bytes = self.bytes.iter().skip(from).take(bytes as usize);
@@ -51,13 +52,13 @@ impl Program {
     }
 }
 
-/// The rows of a listing.
+/// The rows of a listing, with the state of its construction.
 struct Rows<'a> {
     text: String,
-    /// Those that are not listed yet, by address.
+    /// Labels that are not listed yet, by address.
     labels: &'a [(String, u32)],
     source: Vec<&'a str>,
-    /// The line of the row before.
+    /// Source line of the previous row.
     line: usize,
 }
 
@@ -72,7 +73,7 @@ impl Rows<'_> {
     fn row(&mut self, address: u32, bytes: &str, what: &str, line: usize) {
         self.labels_before(address.saturating_add(1));
         let _ = write!(self.text, "{address:08x}  {bytes:<8}  {what}");
-        // A line that makes several rows stands at the first one.
+        // A source line that makes several rows is printed only beside the first.
         if let Some(source) = self.source.get(line.wrapping_sub(1)).filter(|_| line != self.line) {
             let pad = TEXT_COLUMNS.saturating_sub(what.chars().count());
             let _ = write!(self.text, "{:pad$}  {line:>5}  {}", "", source.trim());
@@ -97,7 +98,7 @@ impl Rows<'_> {
     }
 }
 
-/// Data as a directive that gives them again.
+/// Returns the text of an assembler directive that produces the data.
 fn text(kind: DataKind, number: u64, bytes: u32) -> String {
     match kind {
         DataKind::Doubles => format!(".double {:?}", f64::from_bits(number)),

@@ -4,17 +4,16 @@
 //! |---|---|
 //! | `label:` | the current address |
 //! | `name = expression`, `.equ name, expression` | a constant |
-//! | `.org`, `.align`, `.space` | places; gaps between instructions are filled with `nop` |
+//! | `.org`, `.align`, `.space` | addresses; gaps between instructions are filled with `nop` |
 //! | `.long .short .byte .float .double` | data |
 //! | `.macro name a, b` … `.endm` | `\a` is an argument, `\@` a number unique to the call |
 //! | `.rept n` … `.endr` | repetition |
 //! | `h%x l%x ha%x` | halves of a constant; `ha%` goes with a signed `l%` |
 //! | `mov`, `nop`, `fmov.ss .dd .sd .ds` | the usual pseudo-operations; `mov constant, r` takes one or two words |
-//!
-//! | `;` | parts instructions on one line |
+//! | `;` | separates instructions on one line |
 //! | `// text` | a comment |
 //!
-//! After layout every instruction is checked: see the list in the module `check`.
+//! After layout the assembler checks every instruction; the module `check` lists the rules.
 
 mod check;
 mod error;
@@ -34,53 +33,52 @@ use operand::Filler;
 use source::{Line, is_name, split_label};
 use std::collections::BTreeMap;
 
-/// An assembled program with its labels, ready to be put into memory.
+/// An assembled program with its labels, ready to be loaded into memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Program {
     /// Address of the first byte.
     pub base: u32,
-    /// Its contents from `base` on, gaps included.
+    /// Contents from `base` on, including gaps.
     pub bytes: Vec<u8>,
-    /// Labels (their addresses) and constants by name.
+    /// Addresses of labels and values of constants, by name.
     pub symbols: BTreeMap<String, u32>,
-    /// Labels only, by address.
+    /// Labels with their addresses, by address.
     pub labels: Vec<(String, u32)>,
-    /// Source line of every instruction in its own source, by address.
+    /// Address and source line of every instruction, by address. After [`link`], lines count within each source.
     pub lines: Vec<(u32, usize)>,
     /// The data of the program, by address.
     pub data: Vec<Data>,
-    /// Rules that are broken and may be meant to be, by line.
+    /// Warnings in the order of their lines.
     pub warnings: Vec<AssemblyWarning>,
 }
 
 /// Bytes that a directive puts into memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Data {
-    /// Address of its first byte.
+    /// Address of the first byte.
     pub address: u32,
-    /// Number of its bytes.
+    /// Number of bytes.
     pub bytes: u32,
-    /// Line in its own source.
+    /// Line number in the source of the directive.
     pub line: usize,
-    /// The kind of the bytes.
     pub kind: DataKind,
 }
 
-/// The kind of the bytes of a directive.
+/// Type of the data of a directive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DataKind {
-    /// Integers of so many bytes each: `.byte`, `.short`, `.long`.
+    /// Integers of this many bytes each: `.byte`, `.short`, `.long`.
     Integers(u32),
-    /// `.float`.
+    /// Single-precision numbers of `.float`.
     Singles,
-    /// `.double`.
+    /// Double-precision numbers of `.double`.
     Doubles,
-    /// Bytes that `.align`, `.org` and `.space` leave free.
+    /// Bytes skipped by `.align`, `.org` and `.space`.
     Gap,
 }
 
 impl Program {
-    /// A program of which only the bytes are known.
+    /// Makes a program from its bytes, without labels and lines.
     #[must_use]
     pub fn of_bytes(base: u32, bytes: Vec<u8>) -> Program {
         Program {
@@ -94,24 +92,24 @@ impl Program {
         }
     }
 
-    /// The contents as words (the last one filled up with zeros).
+    /// Returns the contents as little-endian words. The last word is padded with zeros.
     #[must_use]
     pub fn words(&self) -> Vec<u32> {
         self.bytes.chunks(4).map(word_of).collect()
     }
 
-    /// Value of a label or constant.
+    /// Returns the value of a label or constant.
     #[must_use]
     pub fn symbol(&self, name: &str) -> Option<u32> {
         self.symbols.get(name).copied()
     }
 }
 
-/// Assembles sources that know nothing of each other's names, each behind the last one at a multiple of 32 bytes, and gives them as one
-/// program. A label that several have is that of the first.
+/// Assembles independent sources one after the other, each at a multiple of 32 bytes, into one program. If several
+/// sources define a label, the first definition counts.
 ///
 /// # Errors
-/// As [`assemble`], of the first source with faults.
+/// The errors of [`assemble`], for the first source that has any.
 ///
 /// ```
 /// let program = i860::link(0x1000, &[("one.s", "start: bri r1\n nop"), ("two.s", "start: nop\nother: bri r1\n nop")]).unwrap();
@@ -135,19 +133,19 @@ pub fn link(base: u32, sources: &[(&str, &str)]) -> Result<Program, AssemblyErro
     })
 }
 
-/// A little-endian word of up to four bytes, the missing ones zero.
+/// Returns a little-endian word of up to four bytes; missing bytes are zero.
 fn word_of(bytes: &[u8]) -> u32 {
     bytes.iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte))
 }
 
-/// What a line puts into memory.
+/// The instruction or data that a source line puts into memory.
 #[derive(Clone, Debug)]
 enum Item {
     Instruction {
         template: Instruction,
         operands: String,
     },
-    /// Values are kept as their line has them: a list of texts would take many times as much.
+    /// Values as the text of their line. A list of texts would take several times as much memory.
     Integers {
         size: u32,
         values: String,
@@ -162,7 +160,7 @@ enum Item {
 }
 
 impl Item {
-    /// The kind of its bytes; `None` for an instruction.
+    /// Returns the type of the data; `None` for an instruction.
     fn data_kind(&self) -> Option<DataKind> {
         match self {
             Self::Instruction { .. } => None,
@@ -181,7 +179,7 @@ struct Placed {
     item: Item,
 }
 
-/// Bytes that a program may occupy.
+/// Greatest size of a program in bytes.
 const MOST_BYTES: u32 = 16 << 20;
 
 struct Assembler<'a> {
@@ -194,10 +192,10 @@ struct Assembler<'a> {
     errors: Vec<AssemblyError>,
 }
 
-/// Assembles a source; `file` names it in errors, `base` is the address of its first byte.
+/// Assembles a source. `file` names the source in errors, `base` is the address of its first byte.
 ///
 /// # Errors
-/// All faults, each with file, line and reason.
+/// All errors, each with file, line and reason.
 ///
 /// ```
 /// let program = i860::assemble("sum.s", 0x1000, "
@@ -230,7 +228,7 @@ pub fn assemble(file: &str, base: u32, source: &str) -> Result<Program, Assembly
 /// Assembles one instruction at an address, without the checks that need its neighbours.
 ///
 /// # Errors
-/// What is wrong with the text.
+/// A description of the error in the text.
 pub fn instruction_word(text: &str, pc: u32) -> Result<u32, String> {
     let (word, rest) = split_word(text.trim());
     let instructions = pseudo(word, rest).unwrap_or_else(|| one(word, rest))?;
@@ -256,7 +254,7 @@ fn one(word: &str, operands: &str) -> Instructions {
     Ok(vec![plain(word, operands)?])
 }
 
-/// Operations that stand for others.
+/// Replaces a pseudo-operation by real instructions; `None` for other operations.
 fn pseudo(word: &str, operands: &str) -> Option<Instructions> {
     let (prefix, name) = word.strip_prefix("d.").map_or(("", word), |rest| ("d.", rest));
     let (pipe, name) = name.strip_prefix('p').filter(|n| n.starts_with("fmov")).map_or(("", name), |n| ("p", n));
@@ -277,7 +275,7 @@ fn pseudo(word: &str, operands: &str) -> Option<Instructions> {
     }
 }
 
-/// A register move, or a constant in one word where a plain number allows it, else two.
+/// Makes the instructions of `mov`: a register move, or a constant in one word if it fits, else in two.
 fn mov(from: &str, to: &str) -> Instructions {
     if operand::integer_register(from).is_some() {
         return one("shl", &format!("r0, {from}, {to}"));
@@ -310,6 +308,7 @@ impl Assembler<'_> {
         }
     }
 
+    // Defines the symbols of a line and appends its instruction or data to the program.
     fn place(&mut self, line: &Line) -> Result<(), String> {
         let (label, statement) = split_label(&line.text);
         if let Some(label) = label {
@@ -382,6 +381,7 @@ impl Assembler<'_> {
         self.push(line, Item::Gap { end }, end - self.here)
     }
 
+    // Second pass: all symbols are known now, so instructions can be encoded and checked.
     fn finish(mut self) -> Result<Program, AssemblyErrors> {
         let mut bytes = Vec::new();
         let mut instructions = Vec::new();
@@ -399,6 +399,7 @@ impl Assembler<'_> {
                 Err(reason) => self.fault(placed.line, reason),
             }
         }
+        // Check pairs and delay slots of the whole program.
         for (line, reason) in check::faults(&instructions) {
             self.fault(line, reason);
         }
@@ -406,6 +407,7 @@ impl Assembler<'_> {
         if !self.errors.is_empty() {
             return Err(AssemblyErrors(self.errors));
         }
+        // Collect warnings and tables for listings and debuggers.
         let labels = self.labels.iter().map(|(_, address)| *address).collect();
         let mut warnings: Vec<AssemblyWarning> = check::warnings(&instructions, &labels)
             .into_iter()
@@ -451,7 +453,7 @@ impl Assembler<'_> {
     }
 }
 
-/// Whole words are `nop`, so that code can run across an alignment.
+/// Fills a gap. Aligned words become `nop`, so that code can run across an alignment.
 fn fill_gap(bytes: &mut Vec<u8>, from: u32, to: u32) {
     let nop = Instruction { op: Op::Shl, flags: Flags(0), ..Instruction::new(Op::Shl) };
     let nop = encode(&nop).to_le_bytes();

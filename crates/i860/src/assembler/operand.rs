@@ -1,10 +1,10 @@
-//! Operands of one instruction: text to fields.
+//! Conversion of operand texts to instruction fields.
 
 use super::expression::{Symbols, evaluate};
 use crate::instruction::{Flags, Instruction, Op};
 use crate::syntax::{CONTROL_REGISTERS, Syntax};
 
-/// Splits at commas outside parentheses.
+/// Splits a text at commas outside parentheses.
 pub(super) fn split(text: &str) -> Vec<&str> {
     let mut parts = Vec::new();
     let mut depth = 0i32;
@@ -45,7 +45,7 @@ fn need_integer(text: &str) -> Result<u8, String> {
     integer_register(text).ok_or_else(|| format!("expected an integer register, found `{text}`"))
 }
 
-/// A floating-point register for an operand of `bytes` bytes.
+/// Parses a floating-point register for an operand of `bytes` bytes.
 fn need_floating(text: &str, bytes: u8) -> Result<u8, String> {
     let n = register_number(text, 'f').ok_or_else(|| format!("expected a floating-point register, found `{text}`"))?;
     let registers = (bytes / 4).max(1);
@@ -64,7 +64,7 @@ fn in_range(value: i64, least: i64, most: i64) -> Result<i32, String> {
     if (least..=most).contains(&value) { Ok(value as i32) } else { Err(format!("{value} is not in {least}..={most}")) }
 }
 
-/// A signed 16-bit value; a low half (`l%`) stands for its sign-extended self.
+/// Parses a signed 16-bit value. A low half (`l%`) is sign-extended.
 fn signed16(text: &str, symbols: &Symbols) -> Result<i32, String> {
     let value = evaluate(text, symbols)?;
     if text.trim_start().starts_with("l%") {
@@ -73,7 +73,7 @@ fn signed16(text: &str, symbols: &Symbols) -> Result<i32, String> {
     in_range(value, -0x8000, 0x7FFF)
 }
 
-/// One instruction being filled in.
+/// An instruction whose fields are being filled from operand texts.
 pub(super) struct Filler<'a> {
     pub(super) i: Instruction,
     pub(super) pc: u32,
@@ -83,6 +83,7 @@ pub(super) struct Filler<'a> {
 impl Filler<'_> {
     /// Fills the fields from the operands.
     pub(super) fn fill(mut self, operands: &[&str]) -> Result<Instruction, String> {
+        // The operation decides the operands and their order.
         match (Syntax::from_op(self.i.op), operands) {
             (Syntax::Bare | Syntax::Trap, []) => {}
             (Syntax::Integer, [a, b, d]) => self.integer(a, b, d)?,
@@ -147,7 +148,7 @@ impl Filler<'_> {
     }
 
     fn result(&self) -> u8 {
-        // What a pipelined operation writes was started by an earlier one, perhaps in another precision.
+        // A pipelined operation writes the result of an earlier one, which may have another precision.
         if self.i.op == Op::DualOp || self.i.has(Flags::PIPELINED) {
             return 4;
         }
@@ -195,7 +196,7 @@ impl Filler<'_> {
         Ok(())
     }
 
-    /// A branch target as a word offset of `bits` bits.
+    /// Converts a branch target to a word offset of `bits` bits.
     fn offset(&self, target: &str, bits: u32) -> Result<i32, String> {
         let address = evaluate(target, self.symbols)? as u32;
         let distance = address.wrapping_sub(self.pc).wrapping_sub(4) as i32;
@@ -218,7 +219,7 @@ impl Filler<'_> {
         Err(format!("expected displacement(register), found `{text}`"))
     }
 
-    /// `register(base)`, `displacement(base)`, either with `++` where the operation has it.
+    /// Parses `register(base)` or `displacement(base)`, with `++` if the operation allows it.
     fn address(&mut self, text: &str) -> Result<(), String> {
         let (plain, increment) = match text.strip_suffix("++") {
             Some(rest) => (rest.trim_end(), true),
@@ -250,7 +251,7 @@ impl Filler<'_> {
         self.check_displacement()
     }
 
-    /// Low bits of a displacement hold the size, so they must be zero.
+    /// Checks that the low bits of a displacement are zero, because they encode the size.
     fn check_displacement(&self) -> Result<(), String> {
         let unit = match (self.i.op, self.i.size) {
             (Op::LdB | Op::StB, _) => 1,

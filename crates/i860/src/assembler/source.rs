@@ -1,31 +1,31 @@
-//! Source text to plain lines: comments go, statements are parted at `;`, macros and repetitions are written out.
+//! Expansion of a source to plain lines: removes comments, splits statements at `;`, expands macros and repetitions.
 
 use super::error::AssemblyError;
 use super::operand::split;
 use std::collections::BTreeMap;
 
-/// A line of source with the number that errors name.
+/// A line of source with the number that errors report.
 #[derive(Clone, Debug)]
 pub(super) struct Line {
     pub(super) number: usize,
     pub(super) text: String,
 }
 
-/// Lines that macros and repetitions may be written out to, those of bodies that are passed over included. Assumed: a million
-/// repetitions of one line.
+/// Most lines of expanded macros and repetitions, including lines of skipped bodies. Assumed: a million repetitions of
+/// one line.
 const MOST_STEPS: usize = 1 << 21;
-/// Bytes of text that they may be written out to. Assumed: four for each byte of the longest program.
+/// Most bytes of expanded text. Assumed: four for each byte of the longest program.
 const MOST_TEXT: usize = 64 << 20;
-/// How deeply macros and repetitions may lie in each other.
+/// Greatest nesting depth of macros and repetitions.
 const MOST_DEPTH: u32 = 32;
 
-/// What macros and repetitions may still be written out to, and which line of the source took most of it.
+/// The remaining budget of macro expansion, and the source line that has used most of it.
 struct Budget {
     steps: usize,
     text: usize,
-    /// The line of the source that is being written out, and what was left when it began.
+    /// Source line that is being expanded, and the budget before it.
     current: (usize, usize),
-    /// The line that took most before it, and how much.
+    /// Earlier source line that has used most of the budget, and its use.
     greediest: (usize, usize),
 }
 
@@ -34,12 +34,12 @@ impl Budget {
         Self { steps: MOST_STEPS, text: MOST_TEXT, current: (0, 0), greediest: (0, 0) }
     }
 
-    /// Steps and bytes together, each in parts of what there was.
+    /// Returns the remaining budget as one number, with steps scaled to bytes.
     const fn left(&self) -> usize {
         self.steps * (MOST_TEXT / MOST_STEPS) + self.text
     }
 
-    /// A line of the source itself begins.
+    /// Starts to count the budget that a new source line uses.
     fn begin(&mut self, line: usize) {
         self.greediest = self.greediest();
         self.current = (line, self.left());
@@ -59,7 +59,7 @@ impl Budget {
     }
 }
 
-/// A line and what is wrong there.
+/// A source line and the description of its error.
 type AssemblyFault = (usize, String);
 
 fn spent() -> String {
@@ -82,13 +82,13 @@ struct Expander<'a> {
     budget: Budget,
 }
 
-/// The statements of a line, which `;` parts; everything from `//` on is comment.
+/// Returns the statements of a line, separated by `;`. Text after `//` is a comment.
 fn statements(line: &str) -> impl Iterator<Item = &str> {
     let code = line.split("//").next().unwrap_or_default();
     code.split(';').map(str::trim).filter(|statement| !statement.is_empty())
 }
 
-/// Expands macros and repetitions.
+/// Expands the macros and repetitions of a source.
 pub(super) fn expand(file: &str, source: &str) -> Result<Vec<Line>, AssemblyError> {
     let lines = (1..).zip(source.lines());
     let lines: Vec<Line> = lines
@@ -116,7 +116,7 @@ impl Expander<'_> {
         let mut at = 0;
         while let Some(line) = lines.get(at) {
             match depth {
-                // The source itself costs nothing: it is as long as it is.
+                // Lines of the source itself are free; only expansion uses the budget.
                 0 => self.budget.begin(line.number),
                 _ => self.take(1, line.text.len())?,
             }
@@ -131,7 +131,7 @@ impl Expander<'_> {
         Ok(())
     }
 
-    /// Number of lines up to the one that closes a block; nested blocks are passed over.
+    /// Returns the number of lines up to the one that closes a block. Nested blocks belong to the block.
     fn body_len(&mut self, lines: &[Line], open: &str, close: &str) -> Result<usize, AssemblyError> {
         let mut depth = 0;
         for (n, line) in lines.iter().enumerate() {
@@ -195,12 +195,13 @@ impl Expander<'_> {
             let found = arguments.len();
             return Err(self.error(line, format!("macro {name}: expected {expected} arguments, found {found}")));
         }
+        // Replace the parameters in each line of the body, then expand the result.
         self.calls += 1;
         let unique = self.calls.to_string();
         let mut body = Vec::with_capacity(called.body.len());
         for own in &called.body {
             let text = substitute(&own.text, &called.parameters, &arguments, &unique, self.budget.text);
-            // What was cut off has taken all that was left, and one byte more.
+            // A line that was cut off costs the whole remaining budget and one byte more, so that it fails.
             let taken = text.as_ref().map_or(self.budget.text + 1, String::len);
             self.take(1, taken)?;
             body.extend(text.map(|text| Line { number: line, text }));
@@ -209,7 +210,8 @@ impl Expander<'_> {
     }
 }
 
-/// `\name` becomes the argument, `\@` a number that differs with every call; `None` where the line would be longer than `most`.
+/// Replaces `\name` by the argument and `\@` by a number unique to the call. Returns `None` if the line would exceed
+/// `most` bytes.
 fn substitute(text: &str, parameters: &[String], arguments: &[&str], unique: &str, most: usize) -> Option<String> {
     let mut result = String::new();
     let mut rest = text;
@@ -237,7 +239,7 @@ fn substitute(text: &str, parameters: &[String], arguments: &[&str], unique: &st
     Some(result + rest).filter(|text| text.len() <= most)
 }
 
-/// `label: rest`, or no label.
+/// Splits `label: rest`; the label is `None` if there is none.
 pub(super) fn split_label(text: &str) -> (Option<&str>, &str) {
     match text.split_once(':') {
         Some((label, rest)) if is_name(label.trim()) => (Some(label.trim()), rest.trim()),
@@ -245,7 +247,7 @@ pub(super) fn split_label(text: &str) -> (Option<&str>, &str) {
     }
 }
 
-/// Whether it may be the name of a label.
+/// Returns true if a text is a valid name of a label.
 pub(super) fn is_name(text: &str) -> bool {
     let starts = text.starts_with(|c: char| c.is_ascii_alphabetic() || "_.$".contains(c));
     starts && text.chars().all(|c| c.is_ascii_alphanumeric() || "_.$@".contains(c))

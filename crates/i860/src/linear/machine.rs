@@ -1,10 +1,10 @@
-//! What the scheduler knows of operations: units, widths, and how soon a result can be used.
+//! Properties of operations that the scheduler needs: units, widths and latencies.
 
-/// Where an operation is executed.
+/// The execution unit of an operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Unit {
     Adder,
-    /// Single or double sources, which make a pipe of three or two stages.
+    /// The multiplier. With double sources its pipe has two stages, else three.
     Multiplier {
         double: bool,
     },
@@ -17,13 +17,13 @@ pub(super) enum Unit {
 }
 
 impl Unit {
-    /// Whether it goes into the floating-point half of a pair.
+    /// Returns true if the operation goes into the floating-point half of a pair.
     pub(super) fn is_floating(self) -> bool {
         matches!(self, Unit::Adder | Unit::Multiplier { .. } | Unit::Graphics | Unit::Seed)
     }
 }
 
-/// How many registers a value takes, and of which file.
+/// Number and file of the registers of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Width {
     Integer,
@@ -42,17 +42,17 @@ impl Width {
     }
 }
 
-/// An operation's name in a linear stretch.
+/// An operation as it is named in a linear stretch.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Name {
     pub(super) unit: Unit,
     pub(super) mnemonic: &'static str,
     pub(super) result: Option<Width>,
-    /// Number of sources, not counting an address.
+    /// Number of sources, without the address.
     pub(super) sources: usize,
-    /// Whether it has an address.
+    /// True if the operation has an address.
     pub(super) addresses: bool,
-    /// Clocks from issue to the first use, nothing in the way.
+    /// Clocks from issue to the first use of the result, without freezes.
     pub(super) latency: u32,
 }
 
@@ -72,7 +72,7 @@ const ADDER: u32 = 4;
 const MULTIPLIER: u32 = 4;
 const MULTIPLIER_DOUBLE: u32 = 5;
 
-/// The operation of a name.
+/// Returns the operation with a name of linear code, such as `mul.sd`.
 pub(super) fn named(text: &str) -> Option<Name> {
     use Unit::{Adder, Graphics, Integer, Multiplier, Prefetch, Seed};
     use Width::{Double, Quad, Single};

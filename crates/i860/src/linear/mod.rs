@@ -1,9 +1,9 @@
-//! Straight-line code without registers or order, placed for dual-instruction mode.
+//! A scheduler for straight-line code without registers or order, which it places in dual-instruction mode.
 //!
-//! A stretch between `.linear` and `.endlinear` of an assembler source says what is computed: each line makes a value out of
-//! others, by the name of an operation without its pipe. [`schedule`] replaces the stretch by pairs of a floating-point and a
-//! core instruction: it chooses the order, fills and drains the pipes of adder and multiplier, and gives values their registers. What is
-//! computed stays what is written, operation by operation, so that results do not depend on the order.
+//! A *linear stretch* of an assembler source lies between `.linear` and `.endlinear`. Each of its lines computes a
+//! value from other values, by the name of an operation without its pipe. [`schedule`] replaces the stretch by pairs of
+//! a floating-point and a core instruction. It chooses the order, fills and drains the pipes of adder and multiplier,
+//! and assigns registers. The operations and their operands stay as written, so results do not depend on the order.
 //!
 //! ```text
 //!         .linear                       or with numbers: window, eagerness, reserve, slope, shake
@@ -26,21 +26,27 @@
 //! | `isub.ss` `iadd.ss` `zmin.dd` | graphics unit (fisub, fiadd, fzchkl) |
 //! | `fld.l .d .q`, `ld.l`, `fst.l .d`, `st.l`, `ixfr` | core |
 //! | `adds subs and andnot or xor shl shr shra orh` | core; the first source may be a constant |
-//! | `prefetch` | core: a load that is not waited for; nothing else goes to memory while it is under way |
+//! | `prefetch` | core: a load whose data is not used; no other memory access is placed while it is under way |
 //!
-//! Values are named once. `r0` to `r31` and `f0` are registers that the stretch does not change; [`schedule`] is told by `.pool`
-//! lines of the source which integer registers it may use: `.pool r4 r5 r6`. Loads and stores are independent of each other unless
-//! a store is marked, `@mark st.l ..`, and a load says `!mark` at its end. A stretch begins and ends in dual-instruction mode.
+//! Each value has one name. `r0` to `r31` and `f0` are registers that the stretch does not change. A `.pool` line of
+//! the source lists the integer registers that [`schedule`] may use: `.pool r4 r5 r6`. Loads and stores are independent
+//! of each other unless a store is marked, `@mark st.l ..`, and a load says `!mark` at its end. A stretch begins and
+//! ends in dual-instruction mode.
 //!
 //! # Method
 //!
-//! List scheduling, clock by clock: of the operations that could issue, the one with the longest way to the end, out of a
-//! *window* of lines from the first one that has not issued. That one may take the last registers; the others leave a *reserve*,
-//! and more the farther ahead they are (*slope*, for each 64 lines), so that no schedule runs into a corner. A pipe is pushed by a
-//! drain when there is nothing else to do, or when what waits in it is more urgent by the *eagerness*. An operation that
-//! can be a dual operation pushes the other pipe on its way, where that loses nothing. The rules of issue are those of the freeze
-//! table, so that code in the caches runs without freezes. A *shake* other than 0 changes priorities a little: schedules of
-//! the same text differ by some per cent, and who wants the shortest tries many.
+//! The method is list scheduling, clock by clock. The scheduler looks at a *window* of lines from the first one that
+//! has not issued. Of the operations that can issue, it takes the one with the longest path to the end.
+//!
+//! The first line may take the last free registers. Later lines leave a *reserve* of registers, and more for each 64
+//! lines that they are ahead (*slope*), so that no schedule runs out of registers.
+//!
+//! An empty operation pushes a pipe (a *drain*) if no operation can issue, or if a value in the pipe is more urgent by
+//! the *eagerness*. An operation that can be a dual operation also pushes the other pipe, if no result is lost.
+//!
+//! The rules of issue are the rows of the freeze table, so code in the caches runs without freezes. A *shake* other
+//! than 0 changes the priorities a little. Schedules of the same text then differ by some per cent, and a search can
+//! try many and keep the shortest.
 
 mod machine;
 mod parse;
@@ -50,31 +56,31 @@ mod settings;
 use std::cell::RefCell;
 use std::fmt::Write as _;
 
-/// What is wrong with a linear stretch.
+/// An error in a linear stretch.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {reason}")]
 pub struct LinearError {
-    /// Line of the source, from 1.
     pub line: usize,
-    /// What was expected, and what was found.
+    /// Expected and found text.
     pub reason: String,
 }
 
-/// What a stretch needs of the two halves of pairs, and how long its schedule is, in clocks without freezes.
+/// The number of operations of a stretch by half of a pair, and the length of its schedule in clocks without freezes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slots {
-    /// Floating-point operations, those of the multiplier with double sources twice: it takes one every second clock.
+    /// Floating-point operations. A multiply with double sources counts twice, because the multiplier accepts one every
+    /// second clock.
     pub floating: usize,
-    /// Core operations. No schedule is shorter than the greater of both.
+    /// Core operations. No schedule is shorter than the greater of `floating` and `core`.
     pub core: usize,
     /// Pairs of the schedule.
     pub pairs: usize,
 }
 
-/// The slots of each linear stretch of a source, in order.
+/// Returns the slots of each linear stretch of a source, in order.
 ///
 /// # Errors
-/// As [`schedule`].
+/// The errors of [`schedule`].
 pub fn slots(source: &str) -> Result<Vec<Slots>, LinearError> {
     let mut found = Vec::new();
     stretches(
@@ -93,10 +99,10 @@ pub fn slots(source: &str) -> Result<Vec<Slots>, LinearError> {
     Ok(found)
 }
 
-/// Replaces all linear stretches of a source by pairs; the rest stays as it is.
+/// Replaces all linear stretches of a source by pairs. Other lines stay unchanged.
 ///
 /// # Errors
-/// [`LinearError`] for the first line that is not understood, or a stretch whose values do not fit the registers.
+/// [`LinearError`] for the first line with an error, or for a stretch whose values do not fit the registers.
 pub fn schedule(source: &str) -> Result<String, LinearError> {
     let out = RefCell::new(String::with_capacity(source.len()));
     stretches(
@@ -113,7 +119,7 @@ pub fn schedule(source: &str) -> Result<String, LinearError> {
     Ok(out.into_inner())
 }
 
-/// Hands the operations of each stretch with their pairs to `linear`, and every other line to `other`, in order.
+/// Passes the operations of each stretch with their pairs to `linear`, and every other line to `other`, in order.
 fn stretches(
     source: &str,
     mut linear: impl FnMut(&[parse::Operation], &[(String, String)]),

@@ -1,34 +1,34 @@
-//! From the text of a linear stretch to operations.
+//! Parser of the text of a linear stretch.
 
 use super::LinearError;
 use super::machine::{self, Name, Width};
 use super::settings::Settings;
 use std::collections::HashMap;
 
-/// What an operation reads.
+/// An operand of an operation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Source {
-    /// A value, by the number of its operation, and which of its registers; all of it without.
+    /// A value, by the number of its operation and one of its registers; `None` means all of its registers.
     Value(usize, Option<u8>),
     /// A register or a constant, as written.
     Text(String),
 }
 
-/// A line of a stretch.
+/// One line of a linear stretch: an operation with its operands.
 #[derive(Clone, Debug)]
 pub(super) struct Operation {
     pub(super) name: Name,
     pub(super) sources: Vec<Source>,
-    /// Offset and base of the address.
+    /// Offset and base register of the address.
     pub(super) address: Option<(String, Source)>,
-    /// Stores that must come before it.
+    /// Numbers of the stores that must come before this operation.
     pub(super) after: Vec<usize>,
-    /// The register that its result must be in, for code behind the stretch; nothing in the stretch reads it.
+    /// Register in which code after the stretch expects the result. No line of the stretch reads it.
     pub(super) register: Option<u8>,
 }
 
 impl Operation {
-    /// Numbers of the operations whose values it reads.
+    /// Returns the numbers of the operations whose values this operation reads.
     pub(super) fn reads(&self) -> impl Iterator<Item = usize> {
         let base = self.address.iter().map(|(_, base)| base);
         self.sources.iter().chain(base).filter_map(|source| match source {
@@ -42,14 +42,14 @@ fn error<T>(line: usize, reason: impl Into<String>) -> Result<T, LinearError> {
     Err(LinearError { line, reason: reason.into() })
 }
 
-/// The registers of a `.pool` line.
+/// Parses the registers of a `.pool` line.
 pub(super) fn pool(line: usize, registers: &[&str]) -> Result<Vec<u8>, LinearError> {
     let number = |text: &&str| text.strip_prefix('r').and_then(|n| n.parse().ok()).filter(|n| (1..32).contains(n));
     let found: Option<Vec<u8>> = registers.iter().map(number).collect();
     found.map_or_else(|| error(line, format!("expected r1 to r31, found {registers:?}")), Ok)
 }
 
-/// The parameters of a `.linear` line.
+/// Parses the parameters of a `.linear` line.
 pub(super) fn settings(line: usize, words: &[&str]) -> Result<Settings, LinearError> {
     let numbers: Option<Vec<u32>> = words.iter().map(|word| word.parse().ok()).collect();
     match numbers.as_deref() {
@@ -65,7 +65,7 @@ pub(super) fn settings(line: usize, words: &[&str]) -> Result<Settings, LinearEr
     }
 }
 
-/// The operations of a stretch.
+/// Parses the operations of a stretch.
 pub(super) fn operations(block: &[(usize, &str)]) -> Result<Vec<Operation>, LinearError> {
     let mut parser = Parser::default();
     for (line, text) in repeated(block)? {
@@ -78,7 +78,7 @@ fn without_comment(text: &str) -> &str {
     text.split("//").next().unwrap_or_default().trim()
 }
 
-/// Writes `for` loops out.
+/// Expands the `for` loops of a linear stretch.
 fn repeated(block: &[(usize, &str)]) -> Result<Vec<(usize, String)>, LinearError> {
     let lines: Vec<(usize, String)> = block.iter().map(|(n, text)| (*n, without_comment(text).to_owned())).collect();
     repeat(&lines)
@@ -132,6 +132,7 @@ struct Parser {
 
 impl Parser {
     fn line(&mut self, line: usize, text: &str) -> Result<(), LinearError> {
+        // Split off the mark of a store, the result, and the stores to wait for.
         let (text, mark) = split_mark(text);
         let (dest, text) = match text.split_once('=') {
             Some((dest, rest)) => (Some(dest.trim()), rest.trim()),
@@ -148,6 +149,7 @@ impl Parser {
         }
         let mut operation = self.operation(line, name, operands, &awaited)?;
         operation.register = dest.and_then(integer_register);
+        // Add the operation and its names, which only later lines may use.
         let number = self.operations.len();
         self.operations.push(operation);
         if let Some(dest) = dest
@@ -210,7 +212,7 @@ fn integer_register(text: &str) -> Option<u8> {
     text.strip_prefix('r').and_then(|n| n.parse().ok()).filter(|n| *n < 32)
 }
 
-/// The mark before a store.
+/// Splits off the mark before a store.
 fn split_mark(text: &str) -> (&str, Option<&str>) {
     match text.strip_prefix('@').and_then(|text| text.split_once(char::is_whitespace)) {
         Some((mark, rest)) => (rest.trim(), Some(mark)),

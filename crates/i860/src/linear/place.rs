@@ -1,38 +1,38 @@
-//! The scheduler: operations into pairs, clock by clock.
+//! The scheduler: places operations in pairs, clock by clock.
 
 use super::machine::{Unit, Width};
 use super::parse::{Operation, Source};
 use super::settings::Settings;
 
-/// Stages of the adder's pipe, and of the multiplier's with single sources.
+/// Stages of the adder's pipe, and of the multiplier's pipe with single sources.
 const STAGES: usize = 3;
 /// Stages of the multiplier's pipe with double sources.
 const DOUBLE_STAGES: usize = 2;
-/// Clocks in which nothing goes to memory behind a prefetch: what a line takes.
+/// Clocks after a prefetch in which no memory access is placed: the time of a line fill.
 const PREFETCH: u32 = 18;
-/// Stores that wait for the bus at most, and clocks that one takes it.
+/// Most stores that wait for the bus, and the clocks of one store on the bus.
 const STORES: u32 = 2;
 const STORE: u32 = 3;
-/// Clocks without progress after which a schedule is given up.
+/// Clocks without progress after which the scheduler fails.
 const PATIENCE: u32 = 80;
 
-/// The pairs of a stretch, floating-point and core half.
+/// The instruction pairs of a schedule: text of the floating-point half and text of the core half.
 pub(super) type Pairs = Vec<(String, String)>;
 
-/// Gives every operation its clock and every value its registers.
+/// Chooses the clock of every operation and the registers of every value.
 ///
 /// # Errors
-/// Where the values do not fit the registers.
+/// A message if the values do not fit the registers.
 pub(super) fn pairs_of(operations: &[Operation], pool: &[u8], settings: Settings) -> Result<Pairs, String> {
     Placer::new(operations, pool, settings).run()
 }
 
-/// Where a value is.
+/// The location of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Place {
     Nowhere,
     InPipe,
-    /// In registers from this one on, to be read from a clock on.
+    /// In registers from `register` on, readable from clock `at` on.
     Ready {
         at: u32,
         register: u8,
@@ -40,7 +40,7 @@ enum Place {
     Gone,
 }
 
-/// One file of registers: the clock from which each may be written, `None` while it holds a value.
+/// One register file. Each register has the clock from which it may be written, or `None` while it holds a value.
 #[derive(Clone, Debug)]
 struct File {
     free_from: Vec<Option<u32>>,
@@ -60,7 +60,7 @@ impl File {
         (0..32).filter(|n| self.is_free(*n, now)).count()
     }
 
-    /// Registers for a value: for one alone, rather beside a register in use.
+    /// Returns the first of `count` free registers. Values of one or two registers prefer gaps beside registers in use.
     fn find(&self, count: usize, now: u32, but: Option<u8>) -> Option<u8> {
         let fits = |first: &usize| (*first..first + count).all(|n| self.is_free(n, now) && Some(n as u8) != but);
         let mut starts = (0..32).step_by(count).filter(fits);
@@ -95,19 +95,21 @@ struct Placer<'a> {
     heights: Vec<u32>,
     uses_left: Vec<usize>,
     places: Vec<Place>,
-    /// Clock of issue.
+    /// Clock at which each operation has issued; `None` before its issue.
     issued: Vec<Option<u32>>,
     now: u32,
     /// First line that has not issued.
     first: usize,
-    /// Operations that a dual operation may not follow, since it would read what a seed has destroyed.
+    /// Number of coming multiplications that may not become dual operations, because a seed has destroyed the values in
+    /// the pipe.
     after_seed: usize,
-    /// Values in the pipes, the oldest first; `None` for what nobody waits for.
+    /// Values in the pipes, the oldest first; `None` for a result that is not used.
     adder: Vec<Option<usize>>,
     multiplier: Vec<Option<usize>>,
     multiplies_double: bool,
     multiplier_free: u32,
-    /// First register and number of what the floating-point operation of the clock before wrote, for row 9.
+    /// First register and register count of the result written by the floating-point operation of the previous clock,
+    /// for row 9.
     last_result: Option<(u8, usize)>,
     last_result_at: u32,
     last_store: Option<u32>,
@@ -148,6 +150,7 @@ impl<'a> Placer<'a> {
     fn run(mut self) -> Result<Pairs, String> {
         let mut pairs = Vec::new();
         let mut progress = 0;
+        // Each turn places one pair and advances the clock by one.
         while self.first < self.operations.len() || self.is_something_in_pipes() {
             let before = self.issued.iter().flatten().count();
             let floating = self.floating_half();
@@ -170,14 +173,14 @@ impl<'a> Placer<'a> {
         self.adder.iter().chain(&self.multiplier).any(Option::is_some)
     }
 
-    /// Past what has issued.
+    /// Advances [`Placer::first`] past the lines that have issued.
     fn move_on(&mut self) {
         while self.first < self.operations.len() && self.issued[self.first].is_some() {
             self.first += 1;
         }
     }
 
-    // ---- which operation
+    // ---- choice of the next operation
 
     fn candidates(&self, floating: bool) -> Vec<usize> {
         let window = self.first..self.operations.len().min(self.first + self.settings.window);
@@ -229,7 +232,7 @@ impl<'a> Placer<'a> {
         }
     }
 
-    /// Whether what leaves a pipe finds registers, other than one that must not be written.
+    /// Returns true if the value that a push moves out of a pipe finds free registers other than `but`.
     fn can_push(&self, pipe: &[Option<usize>], stages: usize, but: Option<u8>) -> bool {
         match pipe[STAGES - stages] {
             Some(value) => self.floats.find(self.width(value).registers(), self.now, but).is_some(),
@@ -241,7 +244,8 @@ impl<'a> Placer<'a> {
         self.operations[value].name.result.unwrap_or(Width::Integer)
     }
 
-    /// Row 9: the first source of a multiplication must not be the result of the operation before.
+    /// Returns true if both sources are the result of the previous operation, so that row 9 would freeze the
+    /// multiplication. With one such source the operands are swapped.
     fn waits_for_first_source(&self, n: usize) -> bool {
         let sources = &self.operations[n].sources;
         self.is_last_result(&sources[0]) && self.is_last_result(&sources[1])
@@ -261,13 +265,14 @@ impl<'a> Placer<'a> {
         }
     }
 
-    /// The register that a multiplication will have as its first source.
+    /// Returns the register that a multiplication will have as its first source.
     fn first_source_register(&self, n: usize) -> Option<u8> {
         let sources = &self.operations[n].sources;
         self.register(&sources[usize::from(self.is_last_result(&sources[0]))])
     }
 
-    /// Whether there are registers for its result, beside those for what is in the pipes; the oldest line may take the last ones.
+    /// Returns true if registers are free for the result, beside those for the values in the pipes. The oldest line may
+    /// take the last ones.
     fn has_room(&self, n: usize, is_oldest: bool) -> bool {
         let Some(width) = self.operations[n].name.result else { return true };
         let count = width.registers();
@@ -286,7 +291,7 @@ impl<'a> Placer<'a> {
         fits && (free >= coming + count + spare || piped && is_oldest)
     }
 
-    /// Registers that must be left to lines before one.
+    /// Returns the number of registers that an operation must leave to earlier lines.
     fn spare(&self, n: usize) -> usize {
         let behind = n - self.first;
         if behind == 0 { 0 } else { self.settings.reserve + behind * self.settings.slope / 64 }
@@ -305,7 +310,7 @@ impl<'a> Placer<'a> {
         }
     }
 
-    /// The pipe whose values are most urgent, if pushing it is possible.
+    /// Returns the pipe with the most urgent value, among those that can be pushed.
     fn most_urgent_drain(&self) -> Option<(u32, Unit)> {
         let double = self.multiplies_double;
         let stages = if double { DOUBLE_STAGES } else { STAGES };
@@ -323,7 +328,7 @@ impl<'a> Placer<'a> {
             .max_by_key(|(height, _)| *height)
     }
 
-    /// The longest way to the end from a value in a pipe.
+    /// Returns the longest path to the end from a value in a pipe.
     fn urgency(&self, pipe: &[Option<usize>]) -> Option<u32> {
         pipe.iter().flatten().map(|n| self.heights[*n].saturating_sub(self.operations[*n].name.latency)).max()
     }
@@ -346,6 +351,7 @@ impl<'a> Placer<'a> {
     fn issue_floating(&mut self, n: usize) -> String {
         let operation = &self.operations[n];
         let mnemonic = operation.name.mnemonic;
+        // Row 9 forbids the latest result as first source; multiplication is commutative.
         let swapped =
             matches!(operation.name.unit, Unit::Multiplier { .. }) && self.is_last_result(&operation.sources[0]);
         let mut texts: Vec<String> = operation.sources.iter().map(|source| self.floating_text(source)).collect();
@@ -375,7 +381,7 @@ impl<'a> Placer<'a> {
         format!("{mnemonic} {}, {dest}", texts.join(", "))
     }
 
-    /// An addition of singles as a dual operation, which pushes the multiplier's pipe too, if that loses nothing.
+    /// Turns an addition of singles into a dual operation that also pushes the multiplier's pipe, if no result is lost.
     fn with_multiplier(&mut self, mnemonic: &'static str) -> &'static str {
         let dual = match mnemonic {
             "pfadd.ss" => "ra1p2.ss",
@@ -390,7 +396,7 @@ impl<'a> Placer<'a> {
         dual
     }
 
-    /// A multiplication as a dual operation, which pushes the adder's pipe too, if that loses nothing.
+    /// Turns a multiplication into a dual operation that also pushes the adder's pipe, if no result is lost.
     fn with_adder(&mut self, mnemonic: &'static str) -> &'static str {
         let dual = match mnemonic {
             "pfmul.ss" => "mm12mpm.ss",
@@ -422,7 +428,7 @@ impl<'a> Placer<'a> {
         self.leave(leaving, None)
     }
 
-    /// With double sources the first of three stages is not used.
+    /// Pushes an operation into the multiplier's pipe. Double sources skip the first of the three stages.
     fn push_multiplier(&mut self, n: Option<usize>, double: bool, first_source: Option<u8>) -> String {
         let at = if double { STAGES - DOUBLE_STAGES } else { 0 };
         self.multiplies_double = double;
@@ -434,7 +440,7 @@ impl<'a> Placer<'a> {
         self.leave(leaving, first_source)
     }
 
-    /// A value leaves a pipe for registers; the text of the destination.
+    /// Moves a value from a pipe to registers. Returns the text of the destination.
     fn leave(&mut self, value: Option<usize>, but: Option<u8>) -> String {
         self.last_result = None;
         let Some(value) = value else { return "f0".to_owned() };
@@ -468,14 +474,14 @@ impl<'a> Placer<'a> {
         format!("{mnemonic} {}", texts.join(", "))
     }
 
-    /// Whether an integer operation is the last to read one of its sources.
+    /// Returns true if an integer operation is the last to read one of its sources.
     fn frees_integer(&self, n: usize) -> bool {
         let mut read = self.operations[n].reads();
         self.operations[n].name.unit == Unit::Integer
             && read.any(|value| self.width(value) == Width::Integer && self.uses_left[value] == 1)
     }
 
-    /// An integer operation may write over what it is the last to read.
+    /// Frees integer registers that this operation is the last to read, so that its result may overwrite them.
     fn release_integers(&mut self, n: usize) {
         let read: Vec<usize> = self.operations[n].reads().collect();
         for value in read {
@@ -509,7 +515,7 @@ impl<'a> Placer<'a> {
         }
     }
 
-    /// Gives a result its registers.
+    /// Assigns the registers of a result. Returns the text of the destination.
     fn place(&mut self, n: usize, at: u32) -> String {
         let width = self.width(n);
         let (file, letter) = match width {
@@ -525,7 +531,8 @@ impl<'a> Placer<'a> {
         format!("{letter}{register}")
     }
 
-    /// Registers that nobody will read again are free from the next clock on, those that were stored one clock later (row 24).
+    /// Records the issue of an operation and frees the registers that it is the last to read.
+    /// They are free from the next clock on, or one clock later after a store (row 24).
     fn finish_issue(&mut self, n: usize) {
         self.issued[n] = Some(self.now);
         if matches!(self.operations[n].name.unit, Unit::Adder | Unit::Multiplier { .. }) {
@@ -552,7 +559,7 @@ impl<'a> Placer<'a> {
     }
 }
 
-/// The longest way from each operation to the end, in clocks; shaken a little.
+/// Returns the longest path from each operation to the end, in clocks, with noise for a shake other than 0.
 fn heights(operations: &[Operation], shake: u32) -> Vec<u32> {
     let mut heights = vec![0; operations.len()];
     let mut state = u64::from(shake);

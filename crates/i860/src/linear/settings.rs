@@ -1,17 +1,19 @@
-//! What a stretch may say of its schedule.
+//! Parameters of a linear stretch.
 
-/// How a stretch is scheduled.
+/// Parameters of the scheduler.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Settings {
-    /// Lines from the first one that has not issued that may issue.
+    /// Number of lines, from the first one that has not issued, that may issue.
     pub(super) window: usize,
-    /// How much more urgent an operation must be than what a drain would bring out.
+    /// Threshold in clocks. The scheduler drains a pipe if a value in it is more urgent than the best operation by more
+    /// than this.
     pub(super) eagerness: u32,
-    /// Registers of either file that only the first line which has not issued may take.
+    /// Registers of each file that only the first unissued line may take.
     pub(super) reserve: usize,
-    /// Registers more for each 64 lines behind that one, so that what is far ahead waits when they run short.
+    /// Additional reserved registers for each 64 lines of distance from the first unissued line, so that distant lines
+    /// wait when registers are scarce.
     pub(super) slope: usize,
-    /// Start of a sequence that shakes the priorities; 0 leaves them.
+    /// Seed of random changes of the priorities; 0 for none.
     pub(super) shake: u32,
 }
 

@@ -1,4 +1,4 @@
-//! A frame buffer on a bench, and pixel sources that tell who asked.
+//! A frame buffer on a test bench, and pixel sources that count their evaluations.
 
 #![allow(dead_code, reason = "each test binary uses a part")]
 
@@ -13,10 +13,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 pub(crate) const NODE: NodeId = NodeId(7);
 pub(crate) const WORD: Span = Span::from_ns(50);
-/// A message of 1,024 words on the ring, overhead included.
+/// Time of a message of 1,024 words on the ring, including the overhead.
 pub(crate) const MESSAGE: Span = Span::from_us(52);
 
-/// Pixel `i` is `first + step * i`.
+/// A pixel source whose pixel `i` is `first + step * i`.
 #[derive(Debug)]
 pub(crate) struct Counted {
     pub(crate) first: Word,
@@ -53,11 +53,11 @@ pub(crate) fn n_parts(target: &CopyTarget) -> u32 {
     (width * height).div_ceil(MAX_MESSAGE_WORDS)
 }
 
-/// A board, its events and what it put out.
+/// A board with its events and outputs.
 pub(crate) struct Board {
     pub(crate) device: FrameBuffer,
     pub(crate) bench: TestBench<FrameBufferEvent, FrameBufferOutput>,
-    /// Of 50 ns, the time of a word.
+    /// Word time in units of 50 ns.
     pub(crate) slowness: u64,
 }
 
@@ -71,7 +71,8 @@ impl Board {
         Self { device, bench: TestBench::new(), slowness: config.port.word_ns / 50 }
     }
 
-    /// Behind a ring whose words take so many times 50 ns: from twice on they come more slowly than the beam goes over pixels.
+    /// Makes a board behind a slower ring, with word times of `slowness` x 50 ns. From 2 on, words come more slowly
+    /// than the beam passes pixels.
     pub(crate) fn slow(slowness: u64) -> Self {
         let port = PortTiming { word_ns: 50 * slowness };
         Self::with(FrameBufferConfig { port, ..FrameBufferConfig::NTSC })
@@ -92,14 +93,14 @@ impl Board {
         self.feed(at, FrameBufferEvent::SwapRequested { buffer });
     }
 
-    /// One message of a region.
+    /// Sends one message of a region.
     pub(crate) fn part(&mut self, at: Time, target: CopyTarget, image: &Arc<Counted>, part: u32) {
         let image: Arc<dyn PixelSource> = Arc::clone(image) as _;
         let pixels = RegionPixels { target, image, part, parts: n_parts(&target) };
         self.feed(at, FrameBufferEvent::Pixels(pixels));
     }
 
-    /// All messages of a region, the last arriving at `last`.
+    /// Sends all messages of a region; the last one arrives at `last`.
     pub(crate) fn region(&mut self, last: Time, target: CopyTarget, image: &Arc<Counted>) {
         let parts = n_parts(&target);
         for part in 0..parts {

@@ -1,4 +1,4 @@
-//! Calls, memory and what a watcher sees.
+//! Tests of calls, memory and breakpoints.
 
 use super::*;
 
@@ -60,14 +60,15 @@ fn a_program_that_changed_itself_is_as_new_when_it_is_loaded_again() {
     }
 }
 
-/// What the ring's interface writes is never in a cache, so that each look at it goes to memory; anything else is held after the first.
+/// The window of the ring interface is in no cache, so every read of it goes to memory. Other addresses hit the cache
+/// after the first read.
 #[test]
 fn the_window_of_the_ring_is_in_no_cache() {
     let mut processor = Processor::new(NodeId(3), 1 << 20, CodeVersion::Compiled, i860::Config::cycle());
     let look = program("start: ld.l 0(r16), r17\n adds r17, r0, r18\n bri r1\n nop");
     let mut looks = |address| {
         let mut look = || processor.call(&look, "start", &[(16, address)], 10).expect("it returns");
-        // Until the lines of the code and of the data have come.
+        // Fill the cache lines of code and data.
         let _cold = [look(), look()];
         [look(), look()]
     };
@@ -113,7 +114,7 @@ fn who_writes_over_a_program_changes_it() {
     let [adds, doubles] = ["adds 1, r17, r17", "adds r17, r17, r17"]
         .map(|instruction| program(&format!("start: {instruction}\n bri r1\n nop")));
     processor.call(&adds, "start", &[(17, 20)], 10).expect("it returns");
-    // Beside it nothing changes.
+    // Writes beside the program change nothing.
     for address in [0x0FF8, 0x100C] {
         processor.write(address, &[0, 0]).expect("there is memory");
         assert!(processor.is_as_loaded, "{address:#x}");
@@ -131,7 +132,7 @@ fn who_writes_over_a_program_changes_it() {
     assert_eq!(processor.register(17), 40);
 }
 
-/// Who watches sees each pass of a breakpoint, and nothing else changes, whatever the budget.
+/// A watched call records each pass of a breakpoint. Time and budget are the same as without breakpoints.
 #[test]
 fn a_watched_call_takes_the_same_time_and_the_same_budget() {
     let turns = program("start: nop\nagain: adds -1, r16, r16\n btne r0, r16, again\n bri r1\n nop");

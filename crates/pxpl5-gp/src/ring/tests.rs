@@ -1,4 +1,4 @@
-//! The code against a model of what it must leave in memory.
+//! Compares the results of ring.s in memory with a reference model.
 
 use super::*;
 use crate::processor::CodeVersion;
@@ -7,7 +7,7 @@ use pxpl5_wire::{CommandList, CommandRun};
 use std::collections::VecDeque;
 
 const NODE_ID: NodeId = NodeId(37);
-// Words of ring.s that only the tests look at.
+// Variables of ring.s that only the tests read.
 const WRONG_OF_RECEIVER: u32 = DATA + 24;
 const COMPLETE: u32 = DATA + 44;
 const START: u32 = WINDOW + 8;
@@ -43,7 +43,7 @@ fn free_entries(processor: &Processor) -> Vec<u32> {
     all
 }
 
-/// Puts a message into the next buffer if it is the interface's.
+/// Puts a message into the next buffer, if the interface owns that buffer. Returns true if it does.
 fn arrive(processor: &mut Processor, slot: u32, source: u32, header: Word, words: &[Word]) -> bool {
     let descriptor = RX + slot % RX_COUNT * DESCRIPTOR_BYTES;
     if at(processor, descriptor) != 0 {
@@ -62,7 +62,7 @@ fn call(processor: &mut Processor, entry: &str, registers: &[(usize, Word)]) {
     processor.call(&PROGRAM, entry, &registers, BUDGET).expect("it returns");
 }
 
-/// Any number of messages, interrupts and looks of a program, in any order: what the program gets is what arrived, in order.
+/// Random sequences of messages, interrupts and reads: the program receives the messages that arrived, in order.
 #[test]
 fn a_program_gets_what_arrived_in_order_and_everything_is_given_back() {
     let mut numbers = SplitMix64::new(5);
@@ -87,7 +87,7 @@ fn a_program_gets_what_arrived_in_order_and_everything_is_given_back() {
             2 => {
                 call(&mut processor, "interrupt", &[]);
                 assert_eq!(at(&processor, CAUSE), 0, "acknowledged");
-                // What finds no entry is lost, and noted.
+                // Messages without a free queue entry are lost and counted.
                 let room = ENTRY_COUNT as usize - queue.len();
                 let lost = pending.len() > room;
                 queue.extend(pending.drain(..).take(room).map(|(source, _, words)| (source, words)));
@@ -164,7 +164,7 @@ fn a_wrong_length_or_kind_is_refused_and_the_next_message_is_received() {
     }
 }
 
-/// Chains of every length, by a model of the ring of descriptors.
+/// Compares chains of every length with a model of the ring of descriptors.
 #[test]
 fn a_chain_is_the_descriptors_of_its_messages_and_frees_those_of_the_chain_before() {
     let mut numbers = SplitMix64::new(23);
@@ -220,7 +220,7 @@ fn a_chain_without_room_or_with_a_wrong_length_is_not_started() {
         assert_eq!(at(&processor, TX_ROOM), TX_COUNT);
     }
     chain(&mut processor, &[message; 200], 2).expect("it returns");
-    // The interface has not sent those yet.
+    // The interface has not sent these messages yet.
     processor.write(DONE, &[0]).expect("in memory");
     processor.write(REQUESTS, &[message; 57].concat()).expect("in memory");
     call(&mut processor, "send", &[(16, REQUESTS), (17, 57), (18, 3)]);
@@ -229,7 +229,7 @@ fn a_chain_without_room_or_with_a_wrong_length_is_not_started() {
     assert_eq!((processor.register(16), at(&processor, ISSUED)), (0, 2));
 }
 
-/// The interface writes a header, and no more behind it than its buffer holds, however long a message claims to be.
+/// The interface writes a header and at most a full buffer after it, even for a message that claims to be longer.
 #[test]
 fn a_buffer_has_the_header_and_ends_where_the_next_one_begins() {
     let mut processor = board();
@@ -240,7 +240,7 @@ fn a_buffer_has_the_header_and_ends_where_the_next_one_begins() {
     assert_eq!([second - 4, second].map(|address| at(&processor, address)), [9, 0]);
 }
 
-/// So many words of commands.
+/// Returns a list of one command with this many words.
 fn commands(words_each: u32) -> CommandList {
     let runs = vec![CommandRun { opcode: 1, words_each, count: 1 }];
     CommandList { runs, context: 0, copies: Vec::new(), content: None }
@@ -256,7 +256,7 @@ fn a_chain_says_what_each_message_is_and_whether_it_keeps_its_receiver() {
         (to(6, 3, Body::Commands(commands(3))), false),
     ];
     processor.send_chain(chain.iter().map(|(message, hold)| (message, *hold))).expect("it returns");
-    // Kinds: 0 words, 1 commands. The last of a chain says so.
+    // Message kinds are 0 for words and 1 for commands. The last message of a chain has flag 4.
     for (number, (flags, node, kind, words)) in (0..).zip([(HOLD, 4, 0, 1), (HOLD, 5, 1, 20), (4, 6, 1, 3)]) {
         let header = [node << 16 | Word::from(NODE_ID.0), kind << 16 | words];
         let found = processor.read(TX + number * DESCRIPTOR_BYTES, 3).expect("in memory");
@@ -284,7 +284,7 @@ fn a_memory_without_room_for_it_is_a_fault_that_says_where() {
     assert_eq!(error.to_string(), "graphics processor at node 2: no memory for 1 words at 0x000f2004");
 }
 
-/// Whoever takes interrupts takes them again behind each call, and takes none where he took none.
+/// Calls preserve the interrupt enable bit of psr.
 #[test]
 fn interrupts_are_masked_inside_only() {
     let setting = i860::assemble("psr", 0x1000, "set: st.c r16, psr\n bri r1\n nop").expect("it assembles");
@@ -304,6 +304,6 @@ fn interrupts_are_masked_inside_only() {
 #[test]
 fn code_and_data_lie_beside_each_other() {
     assert!(PROGRAM.base == CODE && CODE + PROGRAM.bytes.len() as u32 <= DATA, "{} bytes", PROGRAM.bytes.len());
-    // What was interrupted leaves at most all registers of both files at FRAME.
+    // An interrupt saves at most all registers of both files at FRAME.
     const { assert!(DATA + 384 + 2 * 32 * 4 <= ENTRIES) };
 }

@@ -1,4 +1,4 @@
-//! A machine of nothing but a ring and receivers.
+//! A test machine that consists of a ring and receivers.
 
 #![allow(dead_code, reason = "each test binary uses a part")]
 
@@ -8,15 +8,15 @@ use pxpl5_sim::{Context, EventQueue, Phase, Span, Time};
 use pxpl5_wire::{Body, Message, NodeId};
 use std::collections::{BTreeMap, VecDeque};
 
-/// A receiver: elastic, or a FIFO that is emptied at a steady pace.
+/// A receiver: elastic, or a FIFO that is emptied at a constant rate.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Receiver {
     Elastic,
     Fifo {
         words: usize,
-        /// Time for which each word occupies the way out.
+        /// Time that each word takes to leave the FIFO.
         drain: Span,
-        /// Nothing enters before this time after the announcement.
+        /// No word enters before this time after the announcement.
         opens_after: Span,
         /// Time from the announcement to the answer, one tick at least.
         answers_after: Span,
@@ -31,14 +31,14 @@ impl Receiver {
 
 pub(crate) const ELASTIC: [Receiver; 64] = [Receiver::Elastic; 64];
 
-/// When each message's last word had entered, and when its sender was told, by number in the traffic.
+/// Times of each message by its number in the traffic: entry of the last word, and answer to the sender.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Times {
     pub(crate) accepted: BTreeMap<u64, Time>,
     pub(crate) sent: BTreeMap<u64, Time>,
 }
 
-/// A message whose only word that matters is its number.
+/// Makes a message that is identified by its number.
 pub(crate) fn message(number: u64, source: u16, destination: u16, words: u32) -> Message {
     let body = Body::Words(vec![number as u32].into());
     Message { source: NodeId(source), destination: NodeId(destination), words, body }
@@ -66,7 +66,7 @@ pub(crate) fn run_fast(
     run_prepared(timing, receivers, traffic, shuffle, |_| {})
 }
 
-/// The same after `prepare` has told the ring what it may not skip.
+/// Sends the traffic over the fast ring after `prepare` has disabled optimizations.
 pub(crate) fn run_prepared(
     timing: RingTiming,
     receivers: &[Receiver],
@@ -127,8 +127,8 @@ struct WordSlots {
     n: u32,
 }
 
-/// Entry of the last word by recurrence: a word enters one slot after the one before it, when there is room, when
-/// the receiver is open; `departures` holds when each of the last words leaves the FIFO.
+/// Returns the entry of the last word by recurrence. A word enters one slot after the previous word, when there is room
+/// and the receiver is open. `departures` has the times at which the last words leave the FIFO.
 fn last_word(receiver: Receiver, departures: &mut VecDeque<Time>, slots: WordSlots) -> Time {
     let Receiver::Fifo { words, drain, .. } = receiver else { unreachable!() };
     let mut entered = slots.begins;
@@ -141,7 +141,7 @@ fn last_word(receiver: Receiver, departures: &mut VecDeque<Time>, slots: WordSlo
     entered
 }
 
-/// The same receivers as the stepped ring asks them: counters, no recurrence.
+/// The same receivers for the reference model, with counters instead of a recurrence.
 #[derive(Debug)]
 pub(crate) struct Stepped {
     fifos: Vec<(Receiver, Counters)>,
