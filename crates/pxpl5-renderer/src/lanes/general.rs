@@ -1,4 +1,4 @@
-//! Any instruction on all pixels, one field after the other.
+//! The general path: any instruction, on all pixels, one field after the other.
 
 use super::{Lanes, values};
 use crate::array::{Executed, FaultKind, OutputRegion, PIXELS};
@@ -94,7 +94,7 @@ impl Lanes {
         Ok(())
     }
 
-    /// Stores the first operand buffer under Enable.
+    /// Stores the first operand buffer in the enabled pixels.
     fn store(&mut self, destination: Operand) -> Result<(), FaultKind> {
         let field = self.controller.bits(destination)?;
         self.columns.scatter(field, &self.operands[0], self.enable.pixels());
@@ -117,7 +117,8 @@ impl Lanes {
         self.store(destination)
     }
 
-    /// destination := the first result, source := the second, of the source and the second buffer.
+    /// Computes two results from `source` and the second operand buffer. The first goes to `destination`, the second to
+    /// `source`.
     fn two_results(
         &mut self,
         destination: Operand,
@@ -189,7 +190,7 @@ impl Lanes {
         }
     }
 
-    /// First buffer := f(expression, shift, second buffer).
+    /// Computes first buffer := f(expression, shift, second buffer) in all pixels.
     fn expression(&mut self, local: &LocalExpression, shift: u8, f: impl Fn(u64, u8, u64) -> u64) {
         let [first, second] = &mut self.operands;
         for (pixel, (out, old)) in first.iter_mut().zip(second.iter()).enumerate() {

@@ -1,4 +1,4 @@
-//! Spheres and shading as whole commands: long enough to decode their words with care.
+//! Spheres and shading as whole commands, which are long enough to decode their words completely.
 
 use super::Lanes;
 use super::columns::ContextColumns;
@@ -20,7 +20,7 @@ struct SpherePlace {
 }
 
 impl Lanes {
-    /// Executes a sphere or shading at the start of `words`, if it is one of this layout; returns its words.
+    /// Executes a sphere or shading command of this layout at the start of `words`, and returns its length in words.
     pub(super) fn large_command(
         &mut self,
         kind: CommandKind,
@@ -29,6 +29,7 @@ impl Lanes {
         executed: &mut Executed,
     ) -> Option<usize> {
         let (command, used) = Command::decode(words, 0, &self.layout).ok()?;
+        // Enable must be computed only if a later command can read it.
         let keep = !starts_anew(words.get(used));
         match command {
             Command::Sphere(sphere) => self.sphere(&sphere, columns, keep)?,
@@ -42,7 +43,9 @@ impl Lanes {
         Some(used)
     }
 
-    /// `None` where depth and radicand do not have the same bits, so that they leave a mixture.
+    /// Returns the columns of a sphere, or `None` if depth and radicand have different widths.
+    ///
+    /// With different widths the program would leave a mixture of both in the scratch.
     fn sphere_place(&self) -> Option<SpherePlace> {
         let scratch = SphereScratch::in_layout(&self.layout).ok()?;
         let root_bits = scratch.root.width;
@@ -101,7 +104,7 @@ impl Lanes {
         Some(())
     }
 
-    /// Holds the coefficients and moves the sphere to the region, with the shifts of this layout.
+    /// Latches the coefficients, moves the sphere to the region, and applies the shifts of this layout.
     fn sphere_body(&mut self, body: SphereBody, place: &SpherePlace) -> SphereBody {
         self.controller.hold_quadratic(body.silhouette);
         SphereBody {

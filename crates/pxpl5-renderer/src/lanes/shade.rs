@@ -1,5 +1,7 @@
-//! Shading by values, row by row: the program of [`crate::Shade`], instruction for instruction, since what it leaves in
-//! its temporaries counts as well.
+//! Shading by values, row by row.
+//!
+//! The code follows the program of [`crate::Shade`] instruction by instruction, so that its scratch fields also end
+//! with the same values.
 
 use super::columns::Values;
 use super::roots::{divide_10, square_root_24};
@@ -9,7 +11,7 @@ use crate::simd::{SimdVector, VectorKernel};
 
 const WIDTH: usize = 128;
 
-/// Columns in the order colour, a, b, c, root, diffuse, specular.
+/// Number of result columns: colour, a, b, c, root, diffuse, specular.
 const RESULTS: usize = 7;
 
 /// Shading of all pixels whose depth is not that of the far plane.
@@ -19,7 +21,7 @@ pub(super) struct ShadeAll<'a> {
     pub(super) z: &'a Values,
     pub(super) normal: [&'a Values; 3],
     pub(super) results: [&'a mut Values; RESULTS],
-    /// Where somebody looks at Enable afterwards.
+    /// Enable register to write, if a later instruction reads it.
     pub(super) enable: Option<&'a mut [u8; PIXELS]>,
 }
 
@@ -70,7 +72,7 @@ impl ShadeAll<'_> {
         }
     }
 
-    /// A component of the normals of a row.
+    /// Returns one component of the normals of a row.
     #[inline(always)]
     fn row_of(&self, component: usize, at: usize) -> [i32; WIDTH] {
         let mut out = [0; WIDTH];
@@ -86,7 +88,7 @@ const fn twelve(v: i16) -> i32 {
     (v as i32) << 20 >> 20
 }
 
-/// Replaces the low bits.
+/// Replaces the low `width` bits of `old` by those of `low`.
 #[inline(always)]
 const fn insert(old: u32, low: u32, width: u32) -> u32 {
     let mask = (1 << width) - 1;
@@ -129,7 +131,7 @@ fn shade_pixel(shade: &Shade, n: [i32; 3], colour: u32) -> [u32; RESULTS] {
     [rgb, a, b, c, root, insert(diffuse, light, 8), specular]
 }
 
-/// The limited cosine, and what the division leaves: the remainder below the sign of the product.
+/// Returns the limited cosine and the remaining content of field `c`: the remainder below the sign of the product.
 #[inline(always)]
 fn cosine(vector: [i16; 3], n: [i32; 3], root: u32) -> (u32, u32) {
     let dot = n[0] * twelve(vector[0]) + n[1] * twelve(vector[1]) + n[2] * twelve(vector[2]);
