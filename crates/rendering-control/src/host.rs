@@ -1,4 +1,4 @@
-//! The host: SEND.
+//! The host: performs SEND.
 
 use crate::config::RenderingControlConfig;
 use crate::protocol::StageOrder;
@@ -7,15 +7,16 @@ use pxpl5_gp::{Fault, Gp, HostTiming, Stage};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PictureNumber, ViewNumber};
 
-/// Sends frame after frame: reads the tracker, sends view and edits over the link to all GPs, and waits until the
-/// edits have been applied: SEND of a frame may not begin before EDIT of the one before has finished (TR94).
+/// Sends frame after frame: reads the tracker, sends view and edits over the link to all GPs, and waits for the edits.
 ///
-/// `start_of` says when the host begins a frame that it is ready for: at once, or on demand; `None` for never. `view_of`
-/// gives a view whose pose is sampled at a time.
+/// SEND of a frame may not begin before EDIT of the previous frame has finished (TR94).
+///
+/// `start_of` returns the time at which the host begins a frame that it is ready for: immediately, on demand, or `None`
+/// for never. `view_of` returns a view whose pose is sampled at a time.
 ///
 /// # Errors
 ///
-/// [`Fault::Protocol`] when something else than the master's answer arrives.
+/// [`Fault::Protocol`] if another message than the master's answer arrives.
 pub async fn host(
     gp: Gp,
     config: RenderingControlConfig,
