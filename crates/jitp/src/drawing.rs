@@ -14,7 +14,8 @@ use std::sync::{Arc, OnceLock};
 /// Number of subpixels along a pixel, the unit of outlines.
 const SUBPIXELS: i32 = 1 << pxpl5_wire::format::SUBPIXEL_BITS;
 
-/// Largest distance, in subpixels, of a corner that is interpolated in eye space from the straight line on the screen.
+/// Largest deviation, in subpixels, of a corner's path on the screen from a straight line, if the corner is
+/// interpolated in eye space.
 ///
 /// A turn by 10 degrees in a field, far above the peak speed of a head, gives 5 pixels.
 const CURVED: i32 = 8 * SUBPIXELS;

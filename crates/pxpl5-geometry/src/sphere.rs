@@ -132,7 +132,7 @@ impl Lens {
         if self.parallel { -sphere.centre[2] } else { sphere.farthest_tangent() }
     }
 
-    /// Returns the sphere's image, scaled to bulges, and the plane of depth around its centre.
+    /// Returns the sphere's image as a conic `Q = bulge^2`, and the plane of depth around its centre.
     fn picture(&self, sphere: &EyeSphere) -> (Conic, [f64; 3]) {
         let [cx, cy, cz] = sphere.centre;
         let r = sphere.radius;

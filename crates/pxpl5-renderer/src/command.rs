@@ -7,8 +7,8 @@
 //! # Formats
 //!
 //! - Edge: a pixel is inside where the expression is `>= 0`. The sender folds the tie rule into `c`.
-//! - Depth: `(z >> Z_FRACTION_BITS) & (2^24 - 1)`, where nearer is smaller. A pixel passes if the new depth is **strictly
-//!   less** than the stored one. A layout with a narrower Z stores and compares the upper bits of the depth.
+//! - Depth: `(z >> Z_FRACTION_BITS) & (2^24 - 1)`, where nearer is smaller. A pixel passes if the new depth is
+//!   **strictly less** than the stored one. A layout with a narrower Z stores and compares the upper bits of the depth.
 //! - Colour component: `(e >> COLOUR_FRACTION_BITS) & 255`. Values outside 0 to 255 wrap, so senders keep triangles
 //!   inside this range. Spheres are limited to 0 .. 255.
 //! - Normal component: `(e >> NORMAL_FRACTION_BITS)` in 12 bits, two's complement, with wrap-around.

@@ -22,7 +22,7 @@ pub(crate) struct EqualCommands {
     pub(crate) span_each: Option<Span>,
 }
 
-/// Future times that became known by an arrival or by the end of a copy.
+/// Future times that follow from an arrival or from the end of a copy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Progress {
     /// Time at which the last word of the message in transit enters the FIFO.

@@ -10,7 +10,7 @@ use crate::isa::{Expression, ExpressionUse, Operand};
 use crate::simd::{SimdVector, VectorKernel};
 use std::ops::Range;
 
-/// Delivery of an expression's bits to all tiles of the array.
+/// A kernel that delivers an expression's bits to all tiles of the array.
 struct DeliverToTiles<'a, E: WholeTrees> {
     coefficients: &'a E::Coefficients,
     delivery: &'a Delivery,

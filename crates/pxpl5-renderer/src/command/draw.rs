@@ -87,7 +87,7 @@ fn coverage(edges: &[Linear; 3], depth: Linear, layout: &Layout, out: &mut Vec<A
 pub(crate) const TRIANGLE_WORDS: usize = CommandKind::Triangle.words() as usize;
 pub(crate) const PHONG_WORDS: usize = CommandKind::PhongTriangle.words() as usize;
 
-/// Word offsets of the coefficients of the three edges; the enable word and the heads precede them.
+/// Word offsets of the coefficients of the three edges in an encoded triangle command.
 pub(crate) const EDGES_AT: [usize; 3] = [2, 6, 10];
 pub(crate) const DEPTH_AT: usize = 14;
 pub(crate) const COMPONENTS_AT: [usize; 3] = [19, 23, 27];

@@ -18,7 +18,8 @@ pub const SPECULAR_SQUARINGS: u32 = 5;
 /// C := limit((C i >> 8) + (s specular >> 10))
 /// ```
 ///
-/// |N| is a bit-serial square root of 12 bits. The quotients are bit-serial divisions. The power is five squarings that keep 10 bits. The limits are 0 and all ones. A zero normal is shaded as if it faced the light.
+/// |N| is a bit-serial square root of 12 bits. The quotients are bit-serial divisions. The power is five squarings that
+/// keep 10 bits. The limits are 0 and all ones. A zero normal is shaded as if it faced the light.
 ///
 /// The command takes 3,790 clocks: the root takes 206, each quotient 374 and the power 570. The time assumed for the
 /// machine is 100 to 200 us. The model leaves out a second light (a cosine takes 938 clocks) and a material per pixel,
