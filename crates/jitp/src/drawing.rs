@@ -169,6 +169,8 @@ impl DrawnList {
             let Some(transform) = &place.transform else { continue };
             for (k, number) in place.structure.triangles.clone().enumerate() {
                 let triangle = self.list.triangle(number);
+                // A triangle with positions in both views is interpolated on the screen; any other is drawn in the
+                // list's own view.
                 match self.ends_of(i, k) {
                     Some((ends, ..)) if is_apart(ends, near) => {}
                     Some((ends, s, Interpolation::Screen)) => {

@@ -74,12 +74,14 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         let strips = self.config.grid().rows();
         for field in first.onwards() {
             for strip in 0..strips {
+                // Order the fields whose preparation must begin before this strip.
                 let order_at = before(self.config.deadline(field, strip), ahead);
                 while viewpoint != Viewpoint::Strip && self.preparation_at(prepared, viewpoint, ahead) <= order_at {
                     self.wait_until(self.preparation_at(prepared, viewpoint, ahead)).await;
                     self.order_field(prepared, viewpoint).await?;
                     prepared = prepared.next();
                 }
+                // A strip whose deadline has passed is left out.
                 self.wait_until(order_at).await;
                 if self.gp.now() < self.config.deadline(field, strip) {
                     self.order_strip(field, strip, viewpoint).await?;
@@ -168,6 +170,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
     }
 
     /// Returns the instant for which a batch of blocks ordered now is drawn.
+    // Find the first retrace after the blocks have been drawn.
     fn aimed_at_blocks(&self, expected: Expected) -> Time {
         let first = self.gp.now() + expected.drawing;
         let beam = &self.config.beam;

@@ -45,6 +45,7 @@ fn parts(counts: PrimitiveCounts) -> Vec<Part> {
     let mut sphere = 0;
     loop {
         let first = parts.is_empty();
+        // Every message keeps room for the copy, since it may become the last one.
         let mut room_words = MAX_MESSAGE_WORDS - CLOSING - if first { OPENING } else { 0 };
         let triangles = take_run(triangle..counts.triangles, CommandKind::Triangle.words(), &mut room_words);
         let spheres = take_run(sphere..counts.spheres, CommandKind::Sphere.words(), &mut room_words);
@@ -102,6 +103,7 @@ pub(crate) fn messages(
         parts: parts.clone(),
         primitives: OnceLock::new(),
     };
+    // Without pixels, no words are made.
     let words = config.pixels.then(|| Arc::new(words()) as Arc<dyn CommandWords>);
     let lists = (0..).zip(&parts).map(|(number, part)| {
         let runs = part.runs();

@@ -39,6 +39,7 @@ impl DrawingOrder {
     /// Encodes the order.
     pub(crate) fn words(&self) -> Vec<Word> {
         let mut words = Vec::new();
+        // The first word names the order; 64-bit numbers take two words, low word first.
         match self {
             Self::Field { field, views } => {
                 let [field_low, field_high] = field.to_words();
@@ -90,6 +91,7 @@ impl DrawingOrder {
     }
 
     fn from_words(words: &[Word]) -> Option<Self> {
+        // A view is preceded by its length in words.
         Some(match words {
             [FIELD, a, b, count, rest @ ..] if *count > 0 => {
                 let mut rest = rest;

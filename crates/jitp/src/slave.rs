@@ -83,6 +83,7 @@ pub fn slave(
     transforms: &Transforms,
     index: usize,
 ) -> Vec<(Priority, Firmware)> {
+    // Every slave holds the whole display list, so its share is complete.
     let share = Share::new(Arc::clone(list), 0, 1);
     let state = SharedFields::default();
     let [drawing, preparing] = [Priority::Interrupt, Priority::Foreground].map(|level| Slave {
@@ -176,12 +177,14 @@ impl Slave {
         deadline: Time,
         view: Option<FrameView>,
     ) -> Result<(), Fault> {
+        // It is too late to start the strip.
         if self.gp.now() >= deadline {
             return Ok(());
         }
         let picture = PictureNumber::drawn_for(field);
         let viewport = self.config.extent(picture).0;
         let stands_for_field = self.config.is_middle(strip);
+        // A strip with its own view needs a TRANSFORM first; otherwise wait for the transforms of the field.
         let drawing = match &view {
             Some(view) => {
                 self.transform_all(std::slice::from_ref(view), picture, MemoryPart::WHOLE).await?;
@@ -192,6 +195,7 @@ impl Slave {
             }
             None => self.drawing_of_field(field, strip, viewport).await,
         };
+        // TRANSFORM may have taken until after the deadline.
         let Some((drawing, part)) = drawing.filter(|_| self.gp.now() < deadline) else { return Ok(()) };
         if stands_for_field {
             self.gp.begin(Stage::Render, picture, None);
@@ -219,6 +223,7 @@ impl Slave {
         self.gp.until("the transforms of the field", || self.has_transformed(field).then_some(())).await;
         let state = self.state.borrow();
         let (_, ready, part) = state.transformed.iter().find(|ready| ready.0 == field)?;
+        // A field with one view is drawn from it, even if the variant interpolates.
         let drawing = match self.dual() {
             Some(interpolation) if ready.ends.views.len() == 2 => {
                 let s = self.config.part(field, strip);

@@ -144,6 +144,7 @@ impl PlacedStructure {
     /// # Errors
     ///
     /// [`ProcessorFault`] if the code does not end, or the board has no room for its data.
+    // Matrices and light go to the message buffer, from which the code reads them.
     pub fn run_code(&self, list: &DisplayList, processor: &mut Processor) -> Result<Span, ProcessorFault> {
         let matrices = self.matrices.iter().flat_map(Mat4::to_cols_array);
         let [x, y, z] = list.towards_light.to_array();

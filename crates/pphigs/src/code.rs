@@ -98,11 +98,13 @@ impl Work for Transforming<'_> {
             }
             _ => Span::ZERO,
         };
+        // One pass for both eyes, if a kernel supports that.
         if let [left, right] = self.passes
             && let Some(outputs) = left.run_code_for_both(right, processor, self.context)?
         {
             return Ok(outputs.iter().fold(span, |all, output| all + output.span));
         }
+        // Otherwise one pass for each eye, in alternating contexts.
         for (context, pass) in (self.context..).zip(self.passes) {
             span += match pass.run_code(processor, context % 2)? {
                 Some(output) => output.span,
@@ -293,12 +295,14 @@ impl Pass {
             if held.is_empty() {
                 continue;
             }
+            // Both eyes together, if both can draw the structure.
             let transforms = places.map(|place| place.transform.as_ref());
             let both_eyes = transforms.iter().all(Option::is_some);
             let kernel = Kernel { culls: places[0].structure.culling != Culling::None, both_eyes, ..kernel };
             let program = program(kernel, false);
             let clipper = program.symbol("clipper").unwrap_or_default();
             let blocks = [PARAMETERS, RIGHT_PARAMETERS];
+            // A parameter block for each eye.
             for ((place, transform), block) in places.iter().zip(transforms).zip(blocks) {
                 let Some(transform) = transform else { continue };
                 processor.write(block, &kernel.parameters(transform, &place.light, &heads, clipper))?;
@@ -313,6 +317,7 @@ impl Pass {
                 (next[0].command, next[1].command) = (processor.register(18), processor.register(19));
                 continue;
             }
+            // Otherwise each eye that can draw the structure has a call of its own.
             for eye in (0..2).filter(|eye| transforms[*eye].is_some()) {
                 let call = Call { first, count, next: next[eye], parameters: blocks[eye] };
                 span += call.run(processor, &program, "start", None)?;
@@ -368,6 +373,7 @@ impl Pass {
     ) -> Result<(Span, Next), ProcessorFault> {
         let heads = self.heads();
         let mut span = Span::ZERO;
+        // One call for each structure, with its own parameter block.
         for (place, transform, held) in self.calls_of_triangles() {
             let kernel = Kernel { culls: place.structure.culling != Culling::None, ..kernel };
             let program = program(kernel, marks.is_some());
@@ -380,6 +386,7 @@ impl Pass {
             let marked =
                 marks.map(|Marks { triangles, bit, .. }| [triangles + 4 * held.start as u32, bit, TRIANGLE_BYTES]);
             span += call.run(processor, &program, "start", marked)?;
+            // The next call continues after this call's output.
             next = next.left(processor, kernel.keeps_boxes);
         }
         Ok((span, next))
@@ -399,6 +406,7 @@ impl Pass {
         };
         let blank = self.encoded(&blank);
         let mut span = Span::ZERO;
+        // One call for each structure, with its own parameter block.
         for (place, transform, held) in self.calls_of_spheres() {
             let Some(parameters) = kernel.parameters(transform, &place.light, &blank) else { continue };
             processor.write(SPHERE_PARAMETERS, &parameters)?;

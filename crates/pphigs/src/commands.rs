@@ -251,6 +251,7 @@ impl RegionWords {
     /// Appends all commands of a message, with the given triangles.
     fn append_with(&self, part: &RegionPart, triangles: &[BinEntry], out: &mut dyn CommandSink) {
         let picture = self.pass.picture();
+        // Begin of the region: context and clear.
         if part.select {
             let [left, top, _, _] = picture.viewport.grid().rectangle(self.region);
             let select = SelectRegion { context: self.context, left: left as u16, top: top as u16 };
@@ -259,8 +260,10 @@ impl RegionWords {
         if part.clear {
             append(&Command::Clear(Clear { colour: rgb(self.pass.background()) }), &picture.layout, out.words());
         }
+        // Primitives of the region.
         self.triangles(triangles, out);
         self.spheres(&part.spheres, out.words());
+        // End of the region: shading and copy.
         if part.ends && self.pass.shades(self.envelope) {
             append(
                 &Command::Shade(shade(self.pass.light(), self.pass.share().list().is_matte)),
@@ -311,11 +314,13 @@ impl RegionWords {
             match some {
                 SetupBatch::Unclipped(entries, lanes) => {
                     let expressions = transform.gouraud_lanes(lanes, &mut stats);
+                    // A sink that takes batches needs no words.
                     if !out.triangles(&expressions.batch(entries.len())) {
                         let words = out.words();
                         (0..entries.len()).for_each(|i| encoder.encode(&gouraud_triangle(expressions.get(i)), words));
                     }
                 }
+                // A clipped triangle is clipped again to find its piece.
                 SetupBatch::Clipped(entry) => {
                     let triangle = list.triangle(entry.triangle as usize);
                     let piece = pick(entry, |sink| transform.gouraud(&triangle, light, &mut stats, sink));
@@ -352,6 +357,7 @@ impl RegionWords {
                     let colour = |entry: &BinEntry| list.colours[list.triangles[entry.triangle as usize][0] as usize];
                     let mut colours = [0; LANES];
                     colours.iter_mut().zip(entries).for_each(|(out, entry)| *out = rgb(colour(entry)));
+                    // A sink that takes batches needs no words.
                     if !out.triangles(&expressions.batch(entries.len(), colours)) {
                         let words = out.words();
                         for (i, entry) in entries.iter().enumerate() {
@@ -359,6 +365,7 @@ impl RegionWords {
                         }
                     }
                 }
+                // A clipped triangle is clipped again to find its piece.
                 SetupBatch::Clipped(entry) => {
                     let triangle = list.triangle(entry.triangle as usize);
                     let piece = pick(entry, |sink| transform.phong(&triangle, &mut stats, sink));
@@ -379,6 +386,7 @@ impl RegionWords {
         let list = self.pass.share().list();
         let mut stats = SetupStats::default();
         for (place, transform) in self.pass.drawn() {
+            // Spheres are sorted by number, so a structure's spheres are consecutive.
             let end = place.structure.spheres.end;
             let (here, rest) = numbers.split_at(numbers.partition_point(|number| (*number as usize) < end));
             numbers = rest;

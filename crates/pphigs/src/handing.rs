@@ -50,6 +50,7 @@ impl Work for Handing<'_> {
     }
 
     fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
+        // Only bins that code has filled can be handed over by code.
         let Some([triangle, sphere]) = self.pass.binned_words(processor.version()) else {
             return Ok(self.by_table(timing));
         };
@@ -62,6 +63,7 @@ impl Work for Handing<'_> {
                 available_bytes: MOST_ENTRIES * PIECE_BYTES,
             });
         }
+        // Lengths of commands and the envelope tell the code how to divide the bin into messages.
         let parameters = [&[triangle, sphere], self.enclosing().as_slice()].concat();
         processor.write(TOKEN_PARAMETERS, &parameters)?;
         let bins = bins(self.context, self.view);

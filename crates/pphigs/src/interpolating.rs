@@ -144,6 +144,7 @@ impl Interpolating<'_> {
         let [top, bottom] = self.near.map(|y| y as Word);
         let heads = pass.heads();
         let mut span = Span::ZERO;
+        // One call for each structure, with its own parameter block.
         for (place, transform, held) in pass.calls_of_triangles() {
             let kernel = Kernel { culls: place.structure.culling != Culling::None, ..kernel };
             let program = program(kernel);

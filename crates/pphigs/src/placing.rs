@@ -67,6 +67,7 @@ fn place(
     eye: &EyeView,
     viewport: Viewport,
 ) -> PlacedStructure {
+    // World structures move with the world, head structures with the viewer's head.
     let to_eye = match structure.frame {
         ModelFrame::World => eye.world_to_eye,
         ModelFrame::Head => eye.head_to_eye,

@@ -59,14 +59,17 @@ impl Surrounding<'_> {
         let [.., ahead] = self.passes;
         let Some(kernel) = ahead.kernel(processor.version()) else { return Ok(None) };
         let eyes = self.passes.iter().map(|pass| pass.placed()).collect();
+        // The pass begins once for all six views, with the picture and structures of the last one.
         let beginning = Beginning::new(ahead.share().list(), eyes, *ahead.picture()).of_chosen(ahead.chosen());
         let of_beginning = beginning.by_code(timing, processor)?;
         let (of_sorting, given) = self.sort(processor, kernel)?;
+        // Each view needs room only for the primitives that were sorted into it.
         let needs = || self.passes.iter().zip(&given).map(|(pass, given)| pass.needs(kernel, *given));
         let bytes = needs().map(|needs| needs.bytes()).sum();
         let [.., end] = marks(ahead);
         let mut begin = processor.place_output(self.context, end, bytes)?;
         let mut views = Vec::with_capacity(given.len());
+        // The views' outputs follow each other in memory.
         for ((view, pass), needs) in (0..).zip(self.passes).zip(needs()) {
             views.push(self.run_view(processor, kernel, (view, pass), &needs, begin)?);
             begin += needs.bytes();
@@ -98,6 +101,7 @@ impl Surrounding<'_> {
         let mut given = vec![PrimitiveCounts::default(); self.passes.len()];
         let mut span = Span::ZERO;
         let heads = ahead.heads();
+        // Triangles first, then spheres, as in the display list.
         for (place, transform, held) in ahead.calls_of_triangles() {
             processor.write(PARAMETERS, &kernel.parameters(transform, &place.light, &heads, 0))?;
             let sorted = Sorted { held, first: DISPLAY_LIST, bytes: TRIANGLE_BYTES, marks: triangles };

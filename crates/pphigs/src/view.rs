@@ -78,6 +78,7 @@ impl FrameView {
         let n_edits = header_word(words, 3);
         let expected =
             HEADER_WORDS + n_eyes.saturating_mul(EYE_WORDS).saturating_add(n_edits.saturating_mul(EDIT_WORDS));
+        // Check the length once, so that the slices below cannot fail.
         if words.len() != expected {
             return Err(ViewWordsError { expected, found: words.len() });
         }

@@ -160,6 +160,7 @@ impl Pass {
         let first = self.room(processor, kernel, part)?;
         let (of_triangles, next) = triangles(processor, first)?;
         let (of_spheres, end) = self.run_spheres(processor, sphere_kernel(kernel), next, None)?;
+        // The distance between two continuations gives the number of boxes, so of commands.
         let commands = |from: Next, to: Next| KeptCommands {
             first: from.command,
             count: (to.table - from.table) / BOX_BYTES,
@@ -297,6 +298,7 @@ impl Searching<'_> {
         Kept([triangles, spheres]): &Kept,
         counts: &[PrimitiveCounts],
     ) -> Result<Span, ProcessorFault> {
+        // Reserve a list for each window, as long as its known count.
         let mut place = entries(processor);
         let mut lists = vec![spheres.first];
         for counts in counts {
@@ -311,6 +313,7 @@ impl Searching<'_> {
         };
         let of_lines = line_registers(&self.viewport, 24);
         let mut span = Span::ZERO;
+        // One call for all triangles, one for all spheres.
         for (entry, KeptCommands { first, count, boxes }) in [("triangles", *triangles), ("spheres", *spheres)] {
             if count == 0 {
                 continue;
@@ -342,6 +345,7 @@ fn make_windows(
         let [left, top, _, _] = grid.rectangle(*window);
         pair(left, top)
     });
+    // The code computes the limits of each window from its upper left pixel and the common size.
     processor.write(WINDOW_PLACES, &places.collect::<Vec<_>>())?;
     let picture = viewport.grid();
     let data = [(16, WINDOW_PLACES), (17, windows.len() as u32), (18, to)];

@@ -190,6 +190,7 @@ impl Kernel {
     /// schedules.
     #[must_use]
     pub fn clipper_source(&self) -> String {
+        // Finish and interpolation depend on the surface; the rest of the clipper is common.
         let (finish, extras) = match self.surface {
             KernelSurface::Gouraud => (include_str!("../kernels/finish_gouraud.s"), clip_with_normals!("gouraud")),
             KernelSurface::Precomputed => {
@@ -254,6 +255,7 @@ impl Kernel {
     }
 
     fn compiled(&self, main: [&'static str; 3]) -> Vec<&'static str> {
+        // Functions first, then the main loop, then scalar helpers.
         let (finish, surface) = match self.surface {
             KernelSurface::Gouraud => {
                 (include_str!("../kernels/finish_gouraud.s"), include_str!("../kernels/compiled_gouraud.s"))
@@ -390,6 +392,7 @@ impl Kernel {
     /// The parts are: size of a command; code before, for and after the corners' surface; the side of a triangle; the
     /// words of the command.
     fn dual_surface(&self, strips: bool) -> [&'static str; 6] {
+        // Phong commands have the colour as a further word, so they are longer.
         match (self.surface, strips) {
             (KernelSurface::Gouraud, false) => [
                 "COMMAND_BYTES = 120",
@@ -439,6 +442,7 @@ impl Kernel {
     const fn schedules(&self) -> (&'static str, &'static str) {
         use KernelList::{Strips, Triangles};
         use KernelSurface::{Gouraud, Phong, Precomputed};
+        // Settings of the first loop, over vertices.
         let vertices = match (self.list, self.surface) {
             (_, Precomputed) => ".linear 100 30 1 5 0",
             (Triangles, Gouraud) => ".linear 300 20 2 3 0",
@@ -446,6 +450,7 @@ impl Kernel {
             (Triangles, Phong) => ".linear 100 30 1 5 0",
             (Strips, Phong) => ".linear 100 30 1 8 0",
         };
+        // Settings of the second loop, over triangles.
         let setup = match (self.list, self.surface, matches!(self.picture, KernelPicture::Field)) {
             (_, Phong, true) if !self.binned && !self.culls => ".linear 300 20 2 8 0",
             _ if !self.binned || self.culls => ".linear 64 15 2 8 0",
@@ -531,6 +536,7 @@ impl Kernel {
             KernelSurface::Gouraud | KernelSurface::Precomputed => two_52,
             KernelSurface::Phong => two_52 + two_31,
         };
+        // The order is that of kernels/parameters.s.
         [
             2.0,
             f64::from(DEPTH_FAR - DEPTH_NEAR),

@@ -101,6 +101,7 @@ impl CornerValues {
         let integers = [[0; LANES]; 3];
         let reals = [[0.0; LANES]; 3];
         let mut all = Self { x: integers, y: integers, z: [[0.0; LANES]; 3], facing: reals, surface: [reals; 3] };
+        // Gather the corners from the vertices into lanes.
         for corner in 0..3 {
             for i in 0..LANES {
                 let vertex = triangles.corners[corner][i];
@@ -408,6 +409,7 @@ impl LanePlanes {
         let mut out = LinearLanes::default();
         let mut flat = [false; LANES];
         for i in 0..LANES {
+            // Slopes from cross products, then the value at the reference pixel.
             let d1 = q[i] - p[i];
             let d2 = r[i] - p[i];
             let slope_x = (d1 * self.y[1][i] - d2 * self.y[0][i]) * self.per_pixel[i];
@@ -416,11 +418,13 @@ impl LanePlanes {
             let there = (p[i] + slope_x * self.to_reference[0][i]) + slope_y * self.to_reference[1][i];
             let a = plane::rounded(slope_x);
             let b = plane::rounded(slope_y);
+            // Restate the plane for pixel (0, 0), modulo 2^32.
             let back = a.wrapping_mul(self.reference[0][i]).wrapping_add(b.wrapping_mul(self.reference[1][i]));
             out.a[i] = a;
             out.b[i] = b;
             out.c[i] = plane::rounded(there).wrapping_sub(back);
         }
+        // Steep planes are rare, so they are replaced afterwards.
         if flat.iter().fold(false, |any, flat| any | flat) {
             flatten([p, q, r], &flat, &mut out, flattened);
         }

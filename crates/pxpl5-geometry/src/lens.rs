@@ -49,6 +49,7 @@ impl Lens {
     /// Creates a lens from a perspective or parallel projection along -Z, possibly off centre. Returns `None` for other
     /// matrices.
     pub(crate) fn from_projection(projection: &Columns, width: u32, lines: u32) -> Option<Self> {
+        // Only matrices without rotation and shear are supported.
         if !projection.is_zero_at(&[(0, 1), (1, 0), (2, 0), (2, 1), (3, 0), (3, 1)]) {
             return None;
         }
@@ -57,6 +58,7 @@ impl Lens {
             (0.0, 1.0) if projection.is_zero_at(&[(0, 2), (1, 2)]) => true,
             _ => return None,
         };
+        // Both kinds of projection give the same four numbers.
         let [shift_x, shift_y, slope, constant] = if parallel {
             [-projection.cell(0, 3), -projection.cell(1, 3), projection.cell(2, 2), projection.cell(2, 3)]
         } else {
@@ -77,6 +79,7 @@ impl Lens {
             base: f64::from(DEPTH_NEAR) + DEPTH_RANGE * constant,
             reach: DEPTH_RANGE * slope,
         };
+        // A mirrored or reversed projection is not supported.
         (scale.iter().all(|scale| *scale > 0.0) && slope < 0.0).then_some(lens)
     }
 

@@ -183,6 +183,7 @@ impl Transform {
     /// projections count as [`SetupStats::spheres_unprojectable`].
     pub fn sphere(&self, sphere: &WorldSphere, stats: &mut SetupStats) -> Option<ScreenSphere> {
         stats.spheres += 1;
+        // Count the reason for every sphere that is not drawn.
         let Some(lens) = &self.lens else {
             stats.spheres_unprojectable += 1;
             return None;
@@ -203,6 +204,7 @@ impl Transform {
     fn visible(&self, lens: &Lens, eye: &EyeSphere, colour: [u8; 3], stats: &mut SetupStats) -> Option<ScreenSphere> {
         let (conic, depth) = lens.picture(eye);
         let ellipse = conic.ellipse();
+        // Bin by the bounding box of the ellipse.
         let regions = ellipse.bounds().map_or(RegionMask::EMPTY, |bounds| {
             let [x, y] = bounds.map(pixels);
             self.binner.rectangle(x, y)

@@ -61,6 +61,7 @@ impl SphereKernel {
             false => include_str!("../kernels/sphere_binned.s"),
             true => include_str!("../kernels/sphere_kept.s"),
         };
+        // Shared functions come first, then the macros, the loop and its functions.
         [
             include_str!("../kernels/sphere_parameters.s"),
             self.picture.source(),
@@ -99,15 +100,18 @@ impl SphereKernel {
         let mut words = [0; SPHERE_PARAMETER_WORDS];
         let [x, y, z, _] = transform.to_eye.rows();
         let origin = transform.to_eye.origin().to_array();
+        // Words 0 to 14: matrix and eye, in single precision.
         let singles = [x, y, z].concat().into_iter().chain(origin).map(f32::to_bits);
         words.iter_mut().zip(singles).for_each(|(word, single)| *word = single);
         let [light_x, light_y, light_z] = light.direction.map(f64::from);
         let pairs = [lens.step, lens.rate, lens.corner, lens.near, lens.far].concat();
         let of_light = [light_x, light_y, light_z, light.ambient.into(), light.diffuse.into()];
         let depths = [lens.least, lens.base, lens.reach];
+        // Words 16 to 53: projection and light, in double precision.
         doubles(&mut words[16..], &[&[transform.to_eye.scale()], pairs.as_slice(), &depths, &of_light].concat());
         words[54] = Word::from(lens.parallel);
         words[55] = transform.viewport.first_line();
+        // Words 56 to 109: constants that depend only on the picture.
         doubles(&mut words[56..], &self.constants(&transform.viewport));
         words[TEMPLATE..SIZE].iter_mut().zip(command).for_each(|(word, of_command)| *word = *of_command);
         words[SIZE..].copy_from_slice(&kernel::size_words(&transform.viewport));
@@ -124,6 +128,7 @@ impl SphereKernel {
             KernelSurface::Phong => 1_u32 << format::NORMAL_FRACTION_BITS,
         });
         let near = f64::from(DEPTH_NEAR);
+        // The order is that of kernels/sphere_parameters.s.
         [
             half[0],
             half[1],

@@ -195,6 +195,7 @@ impl Transform {
     pub fn new(view: &ViewTransform, viewport: Viewport, culling: Culling) -> Result<Self, ViewError> {
         let model_view = Columns::from_matrix(&view.model_view);
         let projection = Columns::from_matrix(&view.projection);
+        // Reject NaN and infinities here, so that later steps need not test them.
         for (matrix, columns) in [("model-view", &model_view), ("projection", &projection)] {
             if !columns.is_finite() {
                 return Err(ViewError::NotFinite { matrix });
@@ -211,6 +212,7 @@ impl Transform {
             guard: to_screen.guard(),
             to_screen,
             binner: Binner::new(&viewport),
+            // A mirroring view reverses the winding of back faces on the screen.
             dropped: match culling {
                 Culling::None => None,
                 Culling::Back if is_mirrored(view) => Some(Turn::Counterclockwise),
@@ -301,6 +303,7 @@ impl Transform {
     ) {
         stats.triangles += 1;
         let clip = positions.map(|p| self.to_clip.point(p));
+        // Fast path: a triangle inside the guard band needs no clipping.
         if clip.iter().all(|c| self.guard.contains(*c)) {
             let corners = clip.map(|c| self.to_screen.snap(c));
             if let Some(whole) = self.assemble(corners, stats) {
@@ -383,6 +386,7 @@ impl Transform {
         stats: &mut SetupStats,
         mut sink: impl FnMut(Assembled, [[f32; N]; 3]),
     ) {
+        // Drop what clipping cannot handle or would remove completely.
         let clip = corners.map(|v| v.clip);
         if !clip::representable(&clip) {
             stats.not_finite += 1;
@@ -397,6 +401,7 @@ impl Transform {
         let [first, rest @ ..] = polygon.corners() else {
             return;
         };
+        // The polygon is convex, so a fan around its first corner covers it.
         for pair in rest.windows(2) {
             let piece = [*first, pair[0], pair[1]];
             if let Some(assembled) = self.piece(&piece, stats) {

@@ -134,6 +134,7 @@ fn append_lanes(
     out: &mut Vec<ScreenVertex>,
 ) {
     for some in positions {
+        // Transform all vertices of the chunk.
         let mut clip = [[0.0; LANES]; 4];
         for i in 0..LANES {
             let [x, y, z, w] = to_clip.point(some[i]);
@@ -145,6 +146,7 @@ fn append_lanes(
         let mut x = [0; LANES];
         let mut y = [0; LANES];
         let mut z = [0; LANES];
+        // Divide and snap all of them, also those outside: a loop without branches is vectorized.
         for i in 0..LANES {
             let point = [clip[0][i], clip[1][i], clip[2][i], clip[3][i]];
             let inside = guard.contains(point);
@@ -167,6 +169,7 @@ fn set_normals(rows: &NormalRows, positions: &[Vec3], normals: &[Vec3], out: &mu
     let (chunks, rest) = out.as_chunks_mut::<LANES>();
     let whole = chunks.len() * LANES;
     let given = positions.as_chunks::<LANES>().0.iter().zip(normals.as_chunks::<LANES>().0);
+    // Whole chunks are computed lane by lane.
     for (out, (position, normal)) in chunks.iter_mut().zip(given) {
         let mut found = [[0.0; LANES]; 4];
         for i in 0..LANES {
@@ -181,6 +184,7 @@ fn set_normals(rows: &NormalRows, positions: &[Vec3], normals: &[Vec3], out: &mu
             out[i].facing = found[3][i];
         }
     }
+    // The remaining vertices are computed one by one.
     for ((out, position), normal) in rest.iter_mut().zip(&positions[whole..]).zip(&normals[whole..]) {
         let (normal, facing) = light::normal_and_facing(rows, *position, *normal);
         out.values = normal.map(snapped_component);
@@ -200,6 +204,7 @@ fn set_colours(
     let (chunks, rest) = out.as_chunks_mut::<LANES>();
     let whole = chunks.len() * LANES;
     let given = positions.as_chunks::<LANES>().0.iter().zip(normals.as_chunks::<LANES>().0);
+    // Whole chunks are computed lane by lane.
     for ((out, (position, normal)), colour) in chunks.iter_mut().zip(given).zip(colours.as_chunks::<LANES>().0) {
         let mut lit = [[0.0; LANES]; 3];
         for i in 0..LANES {
@@ -212,6 +217,7 @@ fn set_colours(
             out[i].values = [lit[0][i], lit[1][i], lit[2][i]];
         }
     }
+    // The remaining vertices are computed one by one.
     for (i, out) in rest.iter_mut().enumerate() {
         let i = whole + i;
         out.values = light.colour(positions[i], normals[i], colours[i]).map(snapped_colour);

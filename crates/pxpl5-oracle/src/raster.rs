@@ -40,12 +40,14 @@ pub fn ideal_picture_of(
     let raster = Raster { list, picture, widths };
     let grid = picture.viewport.grid();
     let mut buffer = DepthBuffer::new(grid.width, grid.height, widths.stored_depth(u32::MAX));
+    // Primitives in the order of the display list; the buffer keeps the nearest one.
     for (_, place) in placed.iter().enumerate().filter(|(number, _)| chosen(*number)) {
         let Some(transform) = &place.transform else { continue };
         let placed = Placed { place, transform };
         place.structure.triangles.clone().for_each(|number| raster.triangle(&placed, number, &mut buffer));
         place.structure.spheres.clone().for_each(|number| raster.sphere(&placed, number, &mut buffer));
     }
+    // Phong surfaces are shaded at the end, like on the machine.
     let shade = shade(placed.first().map(|first| &first.light), list.is_matte);
     buffer.finish(list.background, |paint| paint.colour(&shade), |stored| widths.sent_depth(stored))
 }
@@ -90,6 +92,7 @@ impl Raster<'_> {
 
     fn sphere(&self, Placed { place, transform }: &Placed<'_>, sphere: usize, buffer: &mut DepthBuffer) {
         let viewport = &self.picture.viewport;
+        // Spheres are numbered after all triangles.
         let number = self.list.triangles.len() + sphere;
         let mut stats = SetupStats::default();
         let Some(seen) = transform.sphere(&self.list.spheres[sphere], &mut stats) else { return };

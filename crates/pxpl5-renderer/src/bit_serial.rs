@@ -94,6 +94,7 @@ impl BitSerial {
     }
 
     fn instruction(&mut self, instruction: &ArrayInstruction, executed: &mut Executed) -> Result<(), FaultKind> {
+        // Instructions that move no bits are handled here; the others by the functions for Enable and for fields.
         match *instruction {
             ArrayInstruction::Select { context_base, left, top } => {
                 self.controller.select(context_base, left, top);
@@ -112,11 +113,13 @@ impl BitSerial {
             }
             _ => return self.enable_instruction(instruction),
         }
+        // These instructions take constant time; the transfer of a block continues in the background.
         self.clock += u64::from(CONTROL_CLOCKS);
         Ok(())
     }
 
     fn enable_instruction(&mut self, instruction: &ArrayInstruction) -> Result<(), FaultKind> {
+        // A one-bit operand names one plane of pixel memory.
         match *instruction {
             ArrayInstruction::EnableAll { .. } => self.each_tile(|tile| tile.enable = FULL),
             ArrayInstruction::EnableNone => self.each_tile(|tile| tile.enable = EMPTY),

@@ -190,6 +190,7 @@ impl Renderer {
         if let Some(start) = progress.blocks {
             context.schedule(start, Phase::Work, RendererEvent::CopyBegins);
         }
+        // A clear hides everything that was sent before.
     }
 
     fn take(&mut self, list: CommandList) {
@@ -237,6 +238,7 @@ impl Renderer {
             cleared,
             saves: self.saves_regions,
             target: order.target,
+            // Copy commands execute in the order in which their lists arrived.
             content: order.content,
             done: OnceLock::new(),
         })
@@ -277,6 +279,7 @@ impl Renderer {
     /// The controller continues when the move is complete.
     fn store_next(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
         let Some(blocks) = self.unstored.front().map(|copy| u64::from(copy.order.content.words())) else { return };
+        // Only one move at a time, and only into free blocks.
         // A region whose transfer is in progress still occupies its blocks.
         let held: u64 = self
             .stored
@@ -326,6 +329,7 @@ impl Renderer {
             let words = MAX_MESSAGE_WORDS.min(all - part * MAX_MESSAGE_WORDS);
             let body = Body::Pixels(RegionPixels { target: order.target, image: Arc::clone(image), part, parts });
             let message = Message { source: self.node, destination: order.target.frame_buffer, words, body };
+            // Acknowledge the copy before the next transfer, if the order asks for it.
             let last = part + 1 == parts;
             let output = RendererOutput::Send { message, ticket: last, hold: !last };
             context.output(context.now() + self.cycle, output);

@@ -33,6 +33,7 @@ pub fn agree(
     words: &[Word],
     after: &dyn fmt::Debug,
 ) -> Result<(), Mismatch> {
+    // Compare the cheap results first, then all bits of all pixels.
     let expected = definition.execute(words);
     let found = subject.execute(words);
     let difference = if expected != found {
@@ -154,6 +155,7 @@ fn corner_instructions() -> Vec<ArrayInstruction> {
         ArrayInstruction::Select { context_base: 52, left: u16::MAX, top: 384 },
         ArrayInstruction::Wait,
     ];
+    // Expressions, fields and constants have generators of their own.
     out.extend(corner_expressions());
     out.extend(corner_fields());
     out.extend(corner_constants());

@@ -122,6 +122,7 @@ impl Controller {
 
     /// Checks all operands of an instruction in the selected context.
     pub(crate) fn check(&self, instruction: &ArrayInstruction) -> Result<(), FaultKind> {
+        // Shifts may work in place; products and roots must not overlap their operands.
         match *instruction {
             ArrayInstruction::EnableLoad(bit)
             | ArrayInstruction::EnableStore(bit)

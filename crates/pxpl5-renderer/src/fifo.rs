@@ -296,6 +296,7 @@ impl InputFifo {
             self.waiting.is_empty() && self.words_left == self.words_in,
             "only behind a block does anything wait"
         );
+        // The first command may wait for its words; each further one starts when the previous one ends.
         let words = u64::from(work.words_each);
         let count = u64::from(work.count);
         let first = self.words_in;
@@ -305,6 +306,7 @@ impl InputFifo {
         let start = free_at.max(complete);
         let made_room_for = first + self.depth;
         self.left.0.push_back(Departure { made_room_for, left_at: start, count, words_each: words, step: span });
+        // The last word enters when the commands before it have made room.
         self.last_word_at = if count == 1 {
             complete
         } else {

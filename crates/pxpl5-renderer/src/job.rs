@@ -136,10 +136,12 @@ impl PixelJob {
 
     /// Executes `words` and then the remaining lists, and returns the region's pixels.
     fn draw(&self, array: &mut Lanes, words: &mut Vec<Word>, lists: Iter<'_, CommandContent>) -> Arc<[Word]> {
+        // Without a clear, the region shows black where nothing is drawn.
         if !self.cleared {
             array.reset();
         }
         let mut copied = self.execute(array, words);
+        // Only a copy in the last list counts.
         for list in lists {
             copied = if self.saves {
                 self.copied(array.draw(list, words))
@@ -149,6 +151,7 @@ impl PixelJob {
                 self.execute(array, words)
             };
         }
+        // Without a copy in the last list, read the colour directly.
         let [width, height] = self.size();
         let colours = copied.map_or_else(|| array.read_colour(width, height), |output| output.pixels);
         self.content.of(colours, || self.depths(array))

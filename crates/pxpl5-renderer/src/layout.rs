@@ -217,6 +217,7 @@ fn check_width(
 fn ranges(plan: &ContextPlan) -> Vec<FieldRange> {
     let mut out = Vec::new();
     let fields = [("colour", Some(plan.colour)), ("z", Some(plan.z)), ("normal", plan.normal)];
+    // Fields of each context, at its base.
     for context in 0..u32::from(plan.contexts) {
         for (name, field) in fields {
             out.extend(field.map(|field| FieldRange {

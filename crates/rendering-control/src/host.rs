@@ -26,16 +26,19 @@ pub async fn host(
 ) -> Result<(), Fault> {
     for frame in PictureNumber::FIRST.onwards() {
         let Some(start) = start_of(gp.now()) else { break };
+        // The sample and SEND begin together.
         gp.spend(start.since(gp.now())).await;
         gp.begin(Stage::Sample, frame, None);
         gp.begin(Stage::Send, frame, None);
         let (words, body) = StageOrder::Send(view_of(ViewNumber::taken_for(frame), gp.now())).message();
+        // The slow link to the machine comes before the ring.
         gp.spend(timing.link_span(words)).await;
         let receivers = config.slaves.iter().chain([&config.master]);
         let batch = receivers.map(|node| (*node, words, body.clone())).collect();
         let sent = gp.send_batch(batch).await;
         gp.accepted(sent).await;
         gp.end(Stage::Send, frame, None);
+        // The next SEND may not begin before these edits are applied.
         let received = gp.receive().await;
         if StageOrder::read(&received, gp.node())? != StageOrder::EditsDone(frame) {
             return Err(Fault::Protocol { node: gp.node(), found: format!("while frame {frame} is being edited") });

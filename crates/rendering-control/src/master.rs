@@ -127,6 +127,7 @@ impl RegionMaster {
     async fn begin_one(&mut self) -> bool {
         self.completed.swapped = self.swaps_shown();
         self.begin_render();
+        // In order of urgency: copies, tokens, the swap, EDIT, TRANSFORM of a later eye.
         if let Some(copying) = self.copy_that_may_begin() {
             self.copy(copying).await;
         } else if let Some((renderer, region)) = self.region_that_may_begin() {
@@ -188,11 +189,13 @@ impl RegionMaster {
 
     /// Gives the token of a region to the next slave in turn.
     async fn send_token(&mut self, renderer: usize, region: RegionId) {
+        // The renderer receives commands from all slaves in turn.
         let Some(rendering) = &mut self.rendering else { return };
         rendering.unassigned.pop_front();
         rendering.tokens_out += 1;
         let drawing = rendering.drawing;
         self.renderers[renderer] = RendererUse::Receiving;
+        // Another slave begins with each token, so that the slaves share the work.
         let slave = self.config.slaves[self.next_slave];
         self.next_slave = (self.next_slave + 1) % self.config.slaves.len();
         let token = Token {
@@ -287,6 +290,7 @@ impl RegionMaster {
 
     fn note_accepted(&mut self, token: Token) {
         let renderer = usize::from(token.renderer);
+        // A held region blocks its renderer; the renderer of a stored or copied one is free.
         self.renderers[renderer] = match token.end {
             RegionEnd::Held => RendererUse::Holding(token.drawing, token.region),
             RegionEnd::Stored | RegionEnd::Copied => RendererUse::Idle,
@@ -294,6 +298,7 @@ impl RegionMaster {
         if token.end == RegionEnd::Stored {
             self.stored[renderer].push_back((token.drawing, token.region));
         }
+        // RENDER ends when every region is assigned and every token has returned.
         let Some(rendering) = &mut self.rendering else { return };
         rendering.tokens_out -= 1;
         if rendering.tokens_out == 0 && rendering.unassigned.is_empty() {

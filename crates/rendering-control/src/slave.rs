@@ -79,11 +79,13 @@ async fn transform_program(
     share: Share,
     state: SharedSlaveState,
 ) -> Result<(), Fault> {
+    // Account for memory and load the display list before the first frame.
     gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
     gp.reserve(Account::DisplayList, share.bytes(), None)?;
     gp.install(|processor| share.install(processor))?;
     for frame in PictureNumber::FIRST.onwards() {
         let view = edit(&gp, &config, &state, frame).await?;
+        // Each eye waits for the master's permission.
         for eye in 0..config.eyes() {
             let drawing = config.first_of(frame).after(eye);
             gp.until("leave to TRANSFORM", || (state.borrow().next_transform > drawing).then_some(())).await;
@@ -126,11 +128,13 @@ async fn transform(
     let eye = config.eye_of(drawing);
     let pass = share.transform(view, eye.index(), config.picture);
     let context = (drawing.0 % 2) as u8;
+    // Bins alternate between two contexts, one of which may still be in use by RENDER.
     wait_for_bins(gp, state, &pass, context).await;
     gp.begin(Stage::Transform, frame, Some(eye));
     reserve_bins(gp, &pass, context)?;
     let passes = std::slice::from_ref(&pass);
     gp.work(&Transforming { passes, context, begins: true }).await?;
+    // The master sorts regions by these numbers of entries.
     let regions = config.grid().regions() as u16;
     let entries = (0..regions).map(|region| pass.counts(RegionId(region)).total()).collect();
     state.borrow_mut().fill(usize::from(context), pass, config.grid().regions());
@@ -169,6 +173,7 @@ async fn token_program(
     loop {
         let received = gp.next_message().await;
         let order = StageOrder::read(&received, gp.node());
+        // The software cost of a token is paid in `walk`, that of other messages here.
         if let Ok(StageOrder::Token(token)) = order {
             walk(&gp, &config, index, &state, &received, token).await?;
             continue;
@@ -198,11 +203,13 @@ async fn walk(
 ) -> Result<(), Fault> {
     let renderer = config.renderers[usize::from(token.renderer)];
     let context = (token.drawing.0 % 2) as u8;
+    // The bins of this drawing's context.
     let pass = state.borrow().bins[usize::from(context)].clone();
     let envelope = envelope(config, token);
     let handing = pass.as_ref().map(|pass| Handing { pass, context, view: 0, region: token.region, envelope });
     let lists = pass.as_ref().map_or_else(Vec::new, |pass| region_messages(pass, token.region, 0, envelope));
     let messages = lists.into_iter().map(|list| (renderer, list.words(), Body::Commands(list)));
+    // Pay for the token, hand over the bin, and pass the token on in the background.
     gp.answer(received, handing.as_ref(), messages, passed_on(config, index, token)).await?;
     free_bins(gp, state, token.drawing)
 }

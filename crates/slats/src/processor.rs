@@ -71,6 +71,7 @@ pub fn processor(
     let state = SharedState::default();
     let is_shown = index == 0 && config.copy == CopySchedule::Backup;
     let backup = is_shown.then_some(Backup { frame_buffers: config.frame_buffers });
+    // Both programs share the state of the board.
     [Priority::Interrupt, Priority::Foreground].map(|level| {
         let gp = gp.at_priority(level);
         let config = config.clone();
@@ -108,6 +109,7 @@ enum Event {
 async fn listen(gp: Gp, state: SharedState, backup: Option<Backup>) -> Result<(), Fault> {
     let mut present = gp.field();
     loop {
+        // With a backup the program also wakes at every retrace.
         let event = gp
             .until("a message", || {
                 let retrace = || Some(gp.field()).filter(|field| backup.is_some() && *field > present);
@@ -126,6 +128,7 @@ async fn listen(gp: Gp, state: SharedState, backup: Option<Backup>) -> Result<()
                 copy_bottom_when_due(&gp, &state, backup).await;
             }
             Event::Retrace(field) => {
+                // Request the field for the next period early; a later request replaces this one.
                 present = field;
                 if let Some(backup) = backup {
                     backup.ask(&gp, &state, field.next()).await;
@@ -168,6 +171,7 @@ impl Backup {
 ///
 /// With a backup the field is requested first, since the copies will occupy the ports of the frame buffers.
 async fn copy_bottom_when_due(gp: &Gp, state: &SharedState, backup: Option<Backup>) {
+    // Decide within one borrow, and mark the chain as taken, since the steps below may suspend.
     let due = {
         let state = &mut *state.borrow_mut();
         let copied = state.copied;
@@ -244,6 +248,7 @@ impl SlatsProcessor {
             last = Some(field);
             let view = self.gp.until("a view", || self.state.borrow().newest.clone()).await;
             // Clear the regions before the other GPs may send clumps.
+            // COPY begins when the clumps of all GPs have been accepted.
             if !self.is_alone() {
                 self.bottom_started().await;
                 self.clear(field, &view).await;
@@ -333,6 +338,7 @@ impl SlatsProcessor {
 
     /// Draws this GP's share of the field that is shown from the retrace of `field` on.
     async fn field(&self, field: PeriodNumber, view: &FrameView) -> Result<(), Fault> {
+        // For each clump: TRANSFORM, then send it to its regions.
         let number = PictureNumber::drawn_for(field);
         self.gp.begin_view(Stage::Sample, number, view.number);
         self.gp.begin(Stage::Transform, number, None);

@@ -36,6 +36,7 @@ impl Tile {
         controller: &Controller,
         instruction: &ArrayInstruction,
     ) -> Result<(), FaultKind> {
+        // The controller resolves each operand to absolute bits before the adders run.
         match *instruction {
             ArrayInstruction::ShiftRight { destination, source, by } => {
                 self.shift_right(controller.bits(destination)?, controller.bits(source)?, by.into());
@@ -147,6 +148,7 @@ impl Tile {
             ArithmeticOp::Multiply => self.multiply(destination, a, &Factor::Field(&y), b.width, b.signed),
             ArithmeticOp::Divide => self.divide(destination, a, b),
             ArithmeticOp::Minimum | ArithmeticOp::Maximum => {
+                // The comparison comes first; then each bit is selected by its result.
                 let mut less = self.less(a, a.width.max(b.width), |memory, i| y.bit(memory, i));
                 if op == ArithmeticOp::Maximum {
                     planes::invert(&mut less);
@@ -184,6 +186,7 @@ impl Tile {
     }
 
     fn compare(&mut self, test: Test, a: FieldBits, clocks: usize, b: impl Fn(&[TilePlane], usize) -> TilePlane) {
+        // Find the pixels with a < b, or the pixels in which a and b differ.
         let holds = match test {
             Test::Less | Test::NotLess => self.less(a, clocks, b),
             Test::Equal | Test::NotEqual => {
@@ -197,6 +200,7 @@ impl Tile {
                 differ
             }
         };
+        // Enable stays only where the test is true.
         match test {
             Test::Less | Test::NotEqual => planes::and(&mut self.enable, &holds),
             Test::NotLess | Test::Equal => planes::and_not(&mut self.enable, &holds),
@@ -209,6 +213,7 @@ impl Tile {
     /// repeat its sign.
     fn multiply(&mut self, destination: FieldBits, a: FieldBits, b: &Factor<'_>, b_width: usize, b_signed: bool) {
         let x = self.source(a);
+        // Add one shifted copy of `a` for each bit of `b`.
         for j in 0..b_width.min(destination.width) {
             let gate = match b {
                 Factor::Field(field) => field.bit(&self.memory, j),
@@ -217,6 +222,7 @@ impl Tile {
             };
             self.add_product(destination, &x, j, &gate, b_signed && j + 1 == b_width);
         }
+        // Fill the bits above the product.
         let sign_at = a.width + b_width - 1;
         for i in sign_at + 1..destination.width {
             let signed = a.signed || b_signed;

@@ -44,6 +44,7 @@ impl BitSerial {
         match *instruction {
             ArrayInstruction::Evaluate { expression, usage } => {
                 let delivery = self.delivery(&usage, LINEAR_BITS).ok()?;
+                // A repeated expression reuses the trees of the last one, unless the run has none yet.
                 if expression != Expression::LinearAgain || run.expressions.is_empty() {
                     if run.expressions.len() == EXPRESSIONS {
                         return None;

@@ -68,6 +68,7 @@ impl Delivery {
         let at = place.at;
         let mut carries = E::start::<V>();
         let mut carry = V::splat(0);
+        // The first bits are left out, but their carries matter.
         for t in 0..self.taken.start {
             evaluator.bit(t, place, &mut carries);
         }

@@ -46,6 +46,7 @@ impl BitSerial {
         let vectors = self.vectors;
         let skipping = self.skipping;
         let tiles = &mut self.tiles[..];
+        // A linear expression may end early; a quadratic one keeps the trees busy to the end.
         match &local {
             LocalExpression::Linear(coefficients) => {
                 self.clock += delivery.taken.end as u64;
@@ -61,6 +62,7 @@ impl BitSerial {
 
     /// Returns the use of an expression of `bits` bits in the selected context.
     pub(super) fn delivery(&self, usage: &ExpressionUse, bits: u32) -> Result<Delivery, FaultKind> {
+        // A test of the sign takes only the last bit; a difference needs all bits for its borrow.
         let (taken, effect) = match *usage {
             ExpressionUse::DisableNegative => (bits as usize - 1..bits as usize, ExpressionEffect::DisableNegative),
             ExpressionUse::Load { field, shift } => {

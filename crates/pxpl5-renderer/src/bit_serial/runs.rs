@@ -129,6 +129,7 @@ impl InstructionRun {
             match step.input {
                 BitOrigin::Constant(constant) => step.delivery.in_tile::<V, _>(&constant, 0, tile),
                 BitOrigin::Expression(i) => {
+                    // A known sign decides the whole tile without adders.
                     if matches!(step.delivery.effect, ExpressionEffect::DisableNegative) {
                         if signs[i].negative >> number & 1 == 1 {
                             tile.enable = EMPTY;
@@ -138,6 +139,7 @@ impl InstructionRun {
                             continue;
                         }
                     }
+                    // Run the trees only when a tile first needs them.
                     while streams.ready <= i {
                         streams.run_trees::<V>(self, number);
                     }
@@ -180,11 +182,13 @@ impl Signs {
         if wraps(e) {
             return Self::default();
         }
+        // Values at the left top pixel of each tile.
         let mut corners = [0; TILES];
         for (number, corner) in corners.iter_mut().enumerate() {
             let [left, top] = tile::origin(number);
             *corner = e.at(left as i32, top as i32) as u32;
         }
+        // The value changes by at most these amounts within a tile.
         let across = e.a * (WIDTH as i32 - 1);
         let down = e.b * (HEIGHT as i32 - 1);
         let largest = V::splat(across.max(0) + down.max(0));

@@ -120,6 +120,7 @@ impl SphereScratch {
 /// Appends the instructions for silhouette, root and depth: test, keep only nearer pixels, store Z.
 fn coverage(body: &SphereBody, layout: &Layout, scratch: &SphereScratch, out: &mut Vec<ArrayInstruction>) {
     let z = layout.plan().z;
+    // Sign of the silhouette, then the same quadratic again as radicand.
     out.extend([
         evaluate(Expression::Quadratic(body.silhouette), ExpressionUse::DisableNegative),
         evaluate(

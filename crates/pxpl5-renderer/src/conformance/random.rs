@@ -184,6 +184,7 @@ impl Random {
             let [xx, xy, yy, x, y, one] = std::array::from_fn(|_| (self.next() as i64) >> 20);
             return Quadratic { xx, xy, yy, x, y, one };
         }
+        // An ellipse with its middle at (x, y), where its value is scale * r^2.
         let radius = [2, 10, 60, 500][self.below(4) as usize];
         let x = self.between(-20, 660);
         let y = self.between(-20, 500);

@@ -154,6 +154,7 @@ fn decode(words: &[Word]) -> Result<(ArrayInstruction, usize), DecodeErrorKind> 
     let Some((&first, tail)) = words.split_first() else {
         return Err(DecodeErrorKind::Truncated { expected: 1, found: 0 });
     };
+    // Split the first word; each group of opcodes then checks its own fields.
     let encoded = EncodedInstruction {
         opcode: (first >> 24) as u8,
         modifier: (first >> 16) as u8,
@@ -174,6 +175,7 @@ fn decode(words: &[Word]) -> Result<(ArrayInstruction, usize), DecodeErrorKind> 
 }
 
 fn control(encoded: &EncodedInstruction<'_>) -> Result<(ArrayInstruction, usize), DecodeErrorKind> {
+    // Only labels and context bases use the modifier; only fields use the operand.
     if matches!(encoded.opcode, opcode::ENABLE_ALL | opcode::SELECT) {
         must_be_zero(encoded.operand)?;
     } else {

@@ -42,6 +42,7 @@ const fn pair(a: Operand, b: Operand) -> Word {
 impl ArrayInstruction {
     /// Appends the instruction's words to `out`.
     pub fn encode(&self, out: &mut Vec<Word>) {
+        // Operations and tests have consecutive opcodes, in the order of their enums.
         match *self {
             Self::EnableAll { label } => out.push(head(opcode::ENABLE_ALL, label, 0)),
             Self::EnableNone => out.push(head(opcode::ENABLE_NONE, 0, 0)),

@@ -54,6 +54,7 @@ impl Bounds {
         let Some(limits) = &self.limits else { return spans };
         let mut first = [self.area.left as f64; LANES];
         let mut last = [self.area.right as f64 - 1.0; LANES];
+        // Each edge limits every row from one side.
         for limit in limits {
             let mut at = [0.0; LANES];
             for (i, at) in at.iter_mut().enumerate() {
@@ -69,6 +70,7 @@ impl Bounds {
                 }
             }
         }
+        // Round inwards to whole pixels; the margin is already included.
         for i in 0..LANES {
             spans.left[i] = small(first[i].ceil().min(f64::from(WIDTH)));
             spans.right[i] = small((last[i] + 1.0).floor().max(0.0));

@@ -149,15 +149,18 @@ fn column(first: usize, end: usize) -> FieldColumn {
 /// exceeds 32 bits.
 fn cuts(layout: &Layout) -> Vec<usize> {
     let mut cuts = vec![0, MEMORY_BITS as usize];
+    // Borders of the layout's fields.
     for range in layout.ranges() {
         cuts.extend([range.first as usize, (range.first + range.width) as usize]);
     }
+    // x, y and z of a normal are read separately.
     for context in 0..layout.plan().contexts {
         let base = usize::from(layout.context_base(context));
         for normal in (0..3).filter_map(|i| layout.normal(i)) {
             cuts.push(base + usize::from(normal.address));
         }
     }
+    // Borders of the scratch fields.
     cuts.extend(temporaries(layout).iter().flat_map(|field| {
         let first = usize::from(field.address);
         [first, first + usize::from(field.width)]

@@ -13,6 +13,7 @@ impl Lanes {
         instruction: &ArrayInstruction,
         executed: &mut Executed,
     ) -> Result<(), FaultKind> {
+        // Instructions that change no field are handled here; the others by the functions for Enable and for fields.
         match *instruction {
             ArrayInstruction::Select { context_base, left, top } => {
                 self.controller.select(context_base, left, top);
@@ -40,6 +41,7 @@ impl Lanes {
             ArrayInstruction::EnableNone => self.enable.fill(false),
             ArrayInstruction::EnableInvert => self.enable.pixels_mut().iter_mut().for_each(|e| *e = !*e),
             ArrayInstruction::EnableLoad(bit) => {
+                // Enable all pixels, then keep those whose bit is set.
                 self.enable.fill(true);
                 self.disable_unless(bit, |v| v & 1 == 1)?;
             }
@@ -59,6 +61,7 @@ impl Lanes {
     }
 
     fn field_instruction(&mut self, instruction: &ArrayInstruction) -> Result<(), FaultKind> {
+        // Every operation reads its operands into buffers, computes 64-bit values, and stores their low bits.
         match *instruction {
             ArrayInstruction::ShiftRight { destination, source, by } => {
                 self.map(destination, source, |v| values::shift_right(v, by, source.signed))
@@ -157,6 +160,7 @@ impl Lanes {
     fn evaluate(&mut self, local: &LocalExpression, usage: &ExpressionUse) -> Result<(), FaultKind> {
         match *usage {
             ExpressionUse::DisableNegative => {
+                // The sign-extended value is negative exactly if the expression's last bit is set.
                 self.expression(local, 0, |e, _, _| e);
                 for (enable, v) in self.enable.pixels_mut().iter_mut().zip(&self.operands[0]) {
                     *enable &= if (*v as i64) < 0 { 0 } else { 255 };

@@ -63,7 +63,9 @@ impl Lanes {
         let place = self.sphere_place()?;
         let body = self.sphere_body(sphere.body, &place);
         let components = [0, 1, 2].map(|i| self.controller.localise(&sphere.colour[i]));
+        // A later instruction may reuse the last linear coefficients.
         self.controller.hold(sphere.colour[2]);
+        // The kernel needs all columns at once.
         let indices = [columns.z, columns.colour, place.root, place.temporary];
         let [z, colour, root, temporary] = self.columns.many_mut(indices)?;
         let factors = sphere.root_factor;
@@ -85,6 +87,7 @@ impl Lanes {
         let normals = columns.normal?;
         let body = self.sphere_body(sphere.body, &place);
         let components = [0, 1].map(|i| self.controller.localise(&sphere.normal[i]));
+        // A later instruction may reuse the last linear coefficients.
         self.controller.hold(sphere.normal[1]);
         let [nx, ny, nz] = normals;
         let indices = [columns.z, columns.colour, place.root, place.temporary, nx, ny, nz];
@@ -118,6 +121,7 @@ impl Lanes {
     fn shade(&mut self, shade: &Shade, columns: ContextColumns, keep: bool) -> Option<()> {
         let f = ShadeFields::in_layout(&self.layout).ok()?;
         let [nx, ny, nz] = columns.normal?;
+        // Columns of the inputs, then of the results in the order of `ShadeAll::results`.
         let mut indices = [columns.z, nx, ny, nz, columns.colour, 0, 0, 0, 0, 0, 0];
         let temporaries = [f.a, f.b, f.c, f.root, f.diffuse, f.specular];
         for (index, field) in indices[5..].iter_mut().zip(temporaries) {

@@ -54,6 +54,7 @@ impl ShadeAll<'_> {
         let [x, y, z] = [self.row_of(0, at), self.row_of(1, at), self.row_of(2, at)];
         let mut colour = [0; WIDTH];
         colour.copy_from_slice(&self.results[0].0[at..at + WIDTH]);
+        // Shade all pixels, covered or not: a loop without branches is vectorized.
         for i in 0..WIDTH {
             let pixel = shade_pixel(&self.shade, [x[i], y[i], z[i]], colour[i]);
             out[0][i] = pixel[0];
@@ -64,6 +65,7 @@ impl ShadeAll<'_> {
             out[5][i] = pixel[5];
             out[6][i] = pixel[6];
         }
+        // Store only the covered pixels.
         for (column, new) in self.results.iter_mut().zip(&out) {
             let old = &mut column.0[at..at + WIDTH];
             for i in 0..WIDTH {
@@ -101,9 +103,11 @@ fn shade_pixel(shade: &Shade, n: [i32; 3], colour: u32) -> [u32; RESULTS] {
     let root = square_root_24(square);
     let (diffuse, _) = cosine(shade.light, n, root);
     let (specular, c) = cosine(shade.half, n, root);
+    // The root leaves its remainder in `a`; the cosines leave a product in `b`.
     let mut a = square - root * root;
     let mut b = (n[2] * twelve(shade.half[2])) as u32 & 0xff_ffff;
     let mut highlight = specular;
+    // Squares alternate between `a` and `b`, of which they replace only the low bits.
     for i in 0..SPECULAR_SQUARINGS {
         let square = highlight * highlight;
         highlight = square >> 10;
@@ -113,13 +117,16 @@ fn shade_pixel(shade: &Shade, n: [i32; 3], colour: u32) -> [u32; RESULTS] {
             b = insert(b, square, 20);
         }
     }
+    // Light on the object's colour.
     let light = diffuse * u32::from(shade.diffuse) + (u32::from(shade.ambient) << 10);
     b = insert(b, light, 19);
     let light = (light >> 10).min(255);
+    // White of the highlight.
     let shine = highlight * u32::from(shade.specular);
     let c = insert(c, shine, 18);
     let mut rgb = 0;
     let mut shift = 16;
+    // Red, green and blue in turn.
     for _ in 0..3 {
         let product = (colour >> shift & 255) * light;
         let sum = (product >> 8) + (shine >> 10);

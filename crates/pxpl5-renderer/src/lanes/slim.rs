@@ -57,11 +57,13 @@ impl SlimTriangles {
             let columns = boxes.x[1][i] - boxes.x[0][i] + 1;
             let rows = (boxes.y[1][i] - boxes.y[0][i] + 1).max(0);
             let vectors = (rows + tall - 1) / tall;
+            // Move the vectors left and up where they would end outside the array.
             all.x[i] = boxes.x[0][i].min(WIDTH - FOUR as i32);
             all.y[i] = boxes.y[0][i].min(WIDTH - tall * vectors);
             let held = if columns > 0 { vectors } else { 0 };
             all.vectors[i] = if columns <= FOUR as i32 { held } else { -1 };
         }
+        // A separate loop, so that both are vectorized.
         for i in 0..LANES {
             all.vectors[i] = if boxes.closed[i] { all.vectors[i] } else { -1 };
         }
@@ -89,6 +91,7 @@ impl SlimTriangles {
         let [p, q, r] = &edges.0;
         let [depth, ..] = batch.planes;
         let tall = V::LANES / FOUR;
+        // Each vector covers `tall` rows of four columns.
         for down in (0..self.vectors[i] as usize).map(|vector| vector * tall) {
             let at = (self.y[i] as usize + down) * WIDTH as usize + self.x[i] as usize;
             let first = walk::<V>(p, self.edges[0][i], i, down);

@@ -121,6 +121,7 @@ impl PaintSphere for PaintGouraudSphere<'_> {
         for (linear, factor) in self.components.iter().zip(self.factors) {
             let first = linear.at(left as i32, y as i32);
             for i in 0..n {
+                // The product of the upper root bits and the factor, as the program's multiplication leaves it.
                 let upper = (roots[i] >> (self.root_bits - 8)) as i32;
                 let low = upper * i32::from(factor);
                 let plane = first.wrapping_add(linear.a.wrapping_mul(i as i32)) >> COLOUR_FRACTION_BITS;
@@ -130,6 +131,7 @@ impl PaintSphere for PaintGouraudSphere<'_> {
             }
         }
         let at = y * WIDTH + left;
+        // Store colours, then the product that replaces the low bits of the new depth in the scratch.
         blend(&mut self.colour.0[at..at + n], &rgb[..n], pass);
         for i in 0..n {
             let after = temporary[i] & !0x3_ffff | product[i];
@@ -152,6 +154,7 @@ impl PaintSphere for PaintPhongSphere<'_> {
     fn store(&mut self, left: usize, y: usize, roots: &[u32], pass: &[u32], _: &mut [u32]) {
         let at = y * WIDTH + left;
         let n = pass.len();
+        // x and y are linear on the screen.
         for (linear, column) in self.components.iter().zip(self.normal.iter_mut()) {
             let first = linear.at(left as i32, y as i32);
             let old = &mut column.0[at..at + n];
@@ -163,6 +166,7 @@ impl PaintSphere for PaintPhongSphere<'_> {
         }
         let z = &mut self.normal[2].0[at..at + n];
         let colour = &mut self.colour.0[at..at + n];
+        // z is the upper part of the root.
         for i in 0..n {
             z[i] = select(pass[i], roots[i] >> (self.root_bits - 10), z[i]);
         }

@@ -173,17 +173,20 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
     #[inline(always)]
     fn triangle<V: SimdVector, S: Surface>(&mut self, triangle: &CurrentTriangle<S>, boxes: &Boxes, i: usize) {
         let bounds = boxes.bounds(i, &triangle.edges);
+        // Clear Enable, so that only the triangle's own pixels are set below.
         if triangle.keep {
             self.enable.emptied(bounds.map_or(0..0, |bounds| bounds.area.top..bounds.area.bottom));
         }
         let Some(bounds) = bounds else { return };
         self.paint.begin(triangle.surface.colour());
         let Area { left, right, top, bottom } = bounds.area;
+        // Most triangles fit in one vector per row.
         if let Some(x) = one_vector(left, right, V::LANES) {
             self.narrow::<V, S>(triangle, x, top..bottom);
             return;
         }
         let wide = self.wide::<V, S>(triangle);
+        // Wide triangles begin each row at a multiple of the vector's lanes.
         for first in (top..bottom).step_by(LANES) {
             let Spans { left, right } = bounds.spans(first);
             for (y, (left, right)) in (first..bottom).zip(left.iter().zip(right)) {
@@ -233,11 +236,13 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         let plane = triangle.surface.depth();
         let mut depth = self.walk::<V>(&plane, x, top);
         let deeper = plane.b;
+        // Depth and edges advance by two rows at a time.
         for y in (0..pairs).map(|pair| top + 2 * pair) {
             let at = [y * WIDTH + x, (y + 1) * WIDTH + x];
             let lower = [first.below(p), second.below(q), third.below(r), depth.below(deeper)];
             let upper = self.test::<V, InRow>(at[0], [first, second, third], depth);
             let lower = self.test::<V, InRow>(at[1], [lower[0], lower[1], lower[2]], lower[3]);
+            // Compute colours only if some pixel of either row passes.
             if V::any_of(upper.mask, lower.mask) {
                 let walks = self.components::<V>(&triangle.surface, x, y);
                 self.nearer(&upper, at[0], triangle.keep);
@@ -260,6 +265,7 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         let mut depth = triangle.depth.walk(left, y);
         let [p, q, r] = &triangle.components;
         let mut walks = [p.walk(left, y), q.walk(left, y), r.walk(left, y)];
+        // Colours are stored only if some pixel of the vector passes.
         for x in (left..right).step_by(V::LANES) {
             let at = y * WIDTH + x;
             let tested = self.test::<V, InRow>(at, [first, second, third], depth);

@@ -111,6 +111,7 @@ impl Lanes {
                 enable: &mut self.enable,
             },
         });
+        // A later instruction may reuse the last linear coefficients.
         self.controller.hold(linear(words, last(drawn, PHONG_WORDS)?));
         Some((template.cost, drawn))
     }
@@ -122,6 +123,7 @@ impl Lanes {
         let origin = self.controller.origin();
         let z_shift = self.layout.z_shift();
         let enable = &mut self.enable;
+        // Without colours the planes are those of a Gouraud triangle.
         if batch.colours.is_none() {
             self.templates.triangle.as_ref()?;
             let [z, colour] = self.columns.many_mut([columns.z, columns.colour])?;
