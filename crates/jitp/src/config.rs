@@ -12,7 +12,7 @@ use std::fmt;
 use std::sync::Arc;
 use thiserror::Error;
 
-/// Interpolation mode of a dual display list: how vertices move from the begin to the end of a field.
+/// Interpolation mode of a dual display list: how vertices move from the start to the end of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Interpolation {
     /// Interpolates the vertex's screen positions, after the divide by depth.
@@ -192,7 +192,7 @@ impl JitpConfig {
 
     /// Returns the number of the view of a strip.
     ///
-    /// A view of the whole field has strip 0. The views of the begin and the end of a field have strips 0 and 1.
+    /// A view of the whole field has strip 0. The views of the start and the end of a field have strips 0 and 1.
     #[must_use]
     pub const fn view_number(field: PeriodNumber, strip: u64) -> ViewNumber {
         ViewNumber(field.0 * VIEWS_PER_FIELD + strip)

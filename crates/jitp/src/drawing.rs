@@ -48,7 +48,7 @@ struct Between {
     view: FrameView,
 }
 
-/// The transformed display list for the begin and the end of a field, or for one moment.
+/// The transformed display list for the start and the end of a field, or for one moment.
 #[derive(Clone)]
 pub(crate) struct Ends {
     pub(crate) views: Arc<[FrameView]>,
@@ -62,7 +62,7 @@ impl fmt::Debug for DrawnList {
 }
 
 impl Ends {
-    /// Transforms the list for `views`: one view, or the views of begin and end.
+    /// Transforms the list for `views`: one view, or the views of start and end.
     pub(crate) fn new(list: &DisplayList, views: Vec<FrameView>, viewport: Viewport) -> Self {
         let triangles = match &views[..] {
             [from, to] => triangle_ends(list, from, to, viewport),

@@ -17,7 +17,7 @@
 //!   other one is scanned, or each line is written just before the beam.
 //! - The [`Viewpoint`] is the moment for which a strip is drawn. It is one moment for the whole field (a conventional
 //!   picture), or one for each strip, or it follows the *dual display list*. A dual list has every vertex transformed
-//!   for the begin T0 and the end T1 of the field. It is interpolated on the screen, or in eye space before the divide
+//!   for the start T0 and the end T1 of the field. It is interpolated on the screen, or in eye space before the divide
 //!   ([`Interpolation`]).
 //! - *Racing the beam* is a separate choice: a strip is ordered either just in time for the beam, or one field earlier,
 //!   so that the whole field is complete before its retrace.
@@ -34,7 +34,8 @@
 //!
 //! At the cycle level all steps are i860 code ([`pphigs`]):
 //!
-//! - TRANSFORM of the whole list keeps commands and their boxes, or the positions of triangles at begin and end.
+//! - TRANSFORM of the whole list keeps commands and their boxes, or the positions of triangles at the start and the
+//!   end.
 //! - The triangles of a strip are interpolated between both positions. Such a strip begins a pass of its own, with the
 //!   interpolated matrices.
 //! - The primitives in a strip or block are found by their boxes, and handed over like a bin.

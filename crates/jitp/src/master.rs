@@ -170,10 +170,10 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
     }
 
     /// Returns the instant for which a batch of blocks ordered now is drawn.
-    // Find the first retrace after the blocks have been drawn.
     fn aimed_at_blocks(&self, expected: Expected) -> Time {
         let first = self.gp.now() + expected.drawing;
         let beam = &self.config.beam;
+        // Find the first retrace after the blocks have been drawn.
         let tick =
             self.gp.field().onwards().map(|field| beam.retrace(field)).find(|tick| *tick >= first).unwrap_or(first);
         self.config.aim.instant(&LightSpan { tick, first, last: first + expected.standing })

@@ -14,7 +14,7 @@ pub(crate) struct WholeList<'a> {
     pub(crate) share: &'a Share,
     /// Cost of a pass by the timing table.
     pub(crate) pass: TransformCost,
-    /// One view, or the views of begin and end.
+    /// One view, or the views of start and end.
     pub(crate) views: &'a [FrameView],
     /// Field or frame that the views show.
     pub(crate) viewport: Viewport,

@@ -132,7 +132,8 @@ impl Work for Beginning {
     }
 }
 
-/// Returns the table cost of the beginning of a pass for some eyes. Structures that cannot be drawn are not placed.
+/// Returns the cost, by the timing table, of the beginning of a pass for some eyes. Structures that cannot be drawn are
+/// not placed.
 pub(crate) fn beginning<'a>(eyes: impl IntoIterator<Item = &'a [PlacedStructure]>) -> TransformCost {
     let drawn = |place: &&PlacedStructure| place.transform.is_some();
     TransformCost::beginning(eyes.into_iter().flatten().filter(drawn).map(|place| &place.structure))
@@ -144,11 +145,11 @@ impl PlacedStructure {
     /// # Errors
     ///
     /// [`ProcessorFault`] if the code does not end, or the board has no room for its data.
-    // Matrices and light go to the message buffer, from which the code reads them.
     pub fn run_code(&self, list: &DisplayList, processor: &mut Processor) -> Result<Span, ProcessorFault> {
         let matrices = self.matrices.iter().flat_map(Mat4::to_cols_array);
         let [x, y, z] = list.towards_light.to_array();
         let words: Vec<Word> = matrices.chain([x, y, z, list.ambient, list.diffuse]).map(f32::to_bits).collect();
+        // Matrices and light go to the message buffer, from which the code reads them.
         processor.write(MESSAGE, &words)?;
         let [to_eye, model, projection, light] = [0, 1, 2, 3].map(|n| MESSAGE + n * MATRIX_BYTES);
         let culls = Word::from(self.structure.culling != Culling::None);

@@ -221,7 +221,7 @@ pub(crate) struct Marks {
 }
 
 impl Pass {
-    /// Returns the table cost of the TRANSFORM, without the beginning of the pass.
+    /// Returns the cost of the TRANSFORM by the timing table, without the beginning of the pass.
     #[must_use]
     pub fn cost(&self) -> TransformCost {
         let counted = TransformCost::primitives(self.transformed());

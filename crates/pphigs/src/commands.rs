@@ -251,7 +251,7 @@ impl RegionWords {
     /// Appends all commands of a message, with the given triangles.
     fn append_with(&self, part: &RegionPart, triangles: &[BinEntry], out: &mut dyn CommandSink) {
         let picture = self.pass.picture();
-        // Begin of the region: context and clear.
+        // Start of the region: context and clear.
         if part.select {
             let [left, top, _, _] = picture.viewport.grid().rectangle(self.region);
             let select = SelectRegion { context: self.context, left: left as u16, top: top as u16 };

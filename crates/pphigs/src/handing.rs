@@ -75,7 +75,7 @@ impl Work for Handing<'_> {
 impl Handing<'_> {
     /// Returns the parameters of the envelope.
     ///
-    /// They are: address and words of the region's begin, of every other message's begin, and of the region's end; and
+    /// They are: address and words of the region's start, of every other message's start, and of the region's end; and
     /// the words of an empty message.
     fn enclosing(&self) -> [Word; 7] {
         let words = |kind: CommandKind, is_there: bool| kind.words() * u32::from(is_there);

@@ -1,6 +1,6 @@
 //! A dual display list as work of a board.
 //!
-//! The code records each triangle's positions in the views of a field's begin and end. Then it makes the commands of a
+//! The code records each triangle's positions in the views of a field's start and end. Then it makes the commands of a
 //! strip for a view in between. The code is `ends.s`, `blend.s` and `between.s` of `pxpl5-geometry`; its rules are the
 //! project's own (kernels/between_rules.md).
 

@@ -50,8 +50,8 @@ impl DisplayList {
     pub fn with_vertices_in_order(mut self) -> Self {
         let mut order: Vec<usize> = Vec::with_capacity(self.positions.len());
         // By old index: the new index in the last structure that used the vertex.
-        // Give every vertex a new number at its first use in each structure.
         let mut renumbered = vec![0; self.positions.len()];
+        // Give every vertex a new number at its first use in each structure.
         for structure in &self.structures {
             let first = order.len();
             for corner in self.triangles[structure.triangles.clone()].as_flattened_mut() {

@@ -174,8 +174,8 @@ impl Conic {
     }
 }
 
-/// Restates a quadratic over the frame's pixels for every `step`-th line from `first`. The values stay exactly the
-/// same.
+/// Converts a quadratic from frame lines to rows, which are every `step`-th line from `first`. The values at the pixels
+/// stay exactly the same.
 pub(crate) fn for_rows(frame: Quadratic, step: i64, first: i64) -> Quadratic {
     Quadratic {
         xx: frame.xx,

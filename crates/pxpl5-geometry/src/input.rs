@@ -25,7 +25,7 @@ pub struct WorldSphere {
     pub colour: [u8; 3],
 }
 
-/// A directional light with the reflection of surfaces: `ambient + diffuse * max(0, n . l)`, at most 1.
+/// A directional light. It shows the share `ambient + diffuse * max(0, n . l)`, at most 1, of a surface's colour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Light {
     /// Unit vector towards the light, in eye coordinates.

@@ -586,8 +586,8 @@ pub(crate) const fn size_words(viewport: &Viewport) -> [Word; 3] {
 /// Returns the distance from pixel (0, 0), in subpixels along either axis, within which every point is inside the guard
 /// band.
 ///
-/// The distance ends a pixel before [`screen::GUARD_PIXELS`] beyond the far side. It ends as far from the middle before
-/// the near side. One pixel is left for rounding.
+/// The guard band ends one pixel before [`screen::GUARD_PIXELS`] on the far side. It is symmetric around the picture's
+/// middle, so the near side is closer by the picture's size. One pixel is left for rounding.
 fn safe_distance(viewport: &Viewport) -> Word {
     let size = viewport.grid().width.max(viewport.frame_lines());
     16 * (screen::GUARD_PIXELS as u32 - 2 - size)

@@ -244,7 +244,7 @@ impl PictureRows {
         }
     }
 
-    /// Restates expressions for the rows of the picture, like [`screen::for_rows`].
+    /// Converts expressions from frame lines to the rows of the picture, like [`screen::for_rows`].
     #[inline(always)]
     fn restate(&self, frame: LinearLanes) -> LinearLanes {
         let mut all = frame;
@@ -297,7 +297,7 @@ fn away([p, q, r]: &[EachLane<f32>; 3]) -> EachLane<bool> {
     away
 }
 
-/// Returns a component at the corners, negated if the triangle faces away, plus `half` a unit.
+/// Returns a component at the corners, negated if the triangle faces away, plus `half` for rounding.
 #[inline(always)]
 fn component([p, q, r]: &[EachLane<f32>; 3], away: &EachLane<bool>, half: f32) -> [EachLane<f64>; 3] {
     [values(p, away, half), values(q, away, half), values(r, away, half)]

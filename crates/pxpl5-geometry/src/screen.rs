@@ -187,7 +187,7 @@ fn middle_pixel(corners: &[i32; 3], size: u32) -> i32 {
     (low.clamp(0, last) + high.clamp(0, last)) / (2 * SUBPIXELS)
 }
 
-/// Restates an expression over the frame's pixels for the rows of the picture. The values stay exactly the same.
+/// Converts an expression from frame lines to the rows of the picture. The values at the pixels stay exactly the same.
 #[inline(always)]
 pub(crate) fn for_rows(frame: Linear, viewport: &Viewport) -> Linear {
     Linear {

@@ -177,8 +177,8 @@ impl Assembled {
 
 /// Returns true if a view reverses the winding of corners.
 ///
-/// The sign of a determinant decides: of the map from model coordinates to x, y and w of the screen, or to x, y and
-/// depth if w is constant. A view along -Z has a negative determinant.
+/// The sign of a determinant decides. It is the determinant of the map from model coordinates to x, y and w of the
+/// screen, or to x, y and depth if w is constant. A view along -Z has a negative determinant.
 fn is_mirrored(view: &ViewTransform) -> bool {
     let matrix = view.projection * view.model_view;
     let [x, y, z, w] = [0, 1, 2, 3].map(|row| matrix.row(row).truncate().as_dvec3());

@@ -6,7 +6,7 @@ use pxpl5_wire::CommandRun;
 /// Largest number of region contexts in pixel memory.
 pub const MAX_CONTEXTS: usize = 8;
 
-/// Returns true if a list changes pixels, so does more than select regions and copy.
+/// Returns true if a list changes pixels: it contains more than region selections and copies.
 pub(crate) fn changes_pixels(runs: &[CommandRun]) -> bool {
     let kinds = [CommandKind::SelectRegion, CommandKind::CopyRegion];
     runs.iter().any(|run| CommandKind::from_opcode(run.opcode).is_none_or(|kind| !kinds.contains(&kind)))

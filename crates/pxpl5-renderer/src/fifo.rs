@@ -81,9 +81,9 @@ struct Departures(VecDeque<Departure>);
 impl Departures {
     /// Returns the time at which the words from `first` to `last` have all entered, no earlier than `soonest`.
     ///
-    /// Each word waits for room, and words after it also for their own time on the channel. `first` must not decrease
-    /// from call to call. Of commands that made room in equal steps only the last one counts, since a step is not
-    /// shorter than the words' time.
+    /// Each word waits for room. The words after it also wait for their own time on the channel. `first` must not
+    /// decrease from call to call. Of commands that made room in equal steps only the last one counts, since a step is
+    /// not shorter than the words' time.
     #[inline]
     fn entered(&mut self, first: u64, last: u64, soonest: Time, word: Span) -> Time {
         self.forget_before(first);
@@ -343,7 +343,7 @@ impl InputFifo {
         None
     }
 
-    /// Starts the last arrived command, or queues it behind a blocking command.
+    /// Starts the last arrived command, or queues it while a blocking command runs.
     fn start_or_wait(&mut self, command: HeldCommand) -> Option<Time> {
         match self.free_at {
             Some(free_at) => self.start(command, free_at),

@@ -74,9 +74,9 @@ impl Completed {
 
     /// Returns true if TRANSFORM of an eye may begin.
     ///
-    /// TR94 requires that EDIT of its frame has begun; this function requires EDIT by all slaves. It also requires RENDER
-    /// of the 2nd previous eye and COPY of the 3rd previous eye. The function is not used for the first eye of a frame,
-    /// for which each slave starts as soon as its own edits are done.
+    /// TR94 requires that EDIT of its frame has begun; this function requires EDIT by all slaves. It also requires
+    /// RENDER of the 2nd previous eye and COPY of the 3rd previous eye. The function is not used for the first eye of a
+    /// frame, for which each slave starts as soon as its own edits are done.
     #[must_use]
     pub const fn may_transform(&self, drawing: EyeDrawing) -> bool {
         self.edited > drawing.frame(self.eyes).0 && self.buffers_free(drawing)

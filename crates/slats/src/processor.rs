@@ -248,13 +248,13 @@ impl SlatsProcessor {
             last = Some(field);
             let view = self.gp.until("a view", || self.state.borrow().newest.clone()).await;
             // Clear the regions before the other GPs may send clumps.
-            // COPY begins when the clumps of all GPs have been accepted.
             if !self.is_alone() {
                 self.bottom_started().await;
                 self.clear(field, &view).await;
                 self.tell_others(field, &view).await;
             }
             self.field(field, &view).await?;
+            // COPY begins when the clumps of all GPs have been accepted.
             let others = self.config.processors.len() - 1;
             self.gp
                 .until("the clumps of the other processors", || {
@@ -338,7 +338,6 @@ impl SlatsProcessor {
 
     /// Draws this GP's share of the field that is shown from the retrace of `field` on.
     async fn field(&self, field: PeriodNumber, view: &FrameView) -> Result<(), Fault> {
-        // For each clump: TRANSFORM, then send it to its regions.
         let number = PictureNumber::drawn_for(field);
         self.gp.begin_view(Stage::Sample, number, view.number);
         self.gp.begin(Stage::Transform, number, None);
@@ -349,6 +348,7 @@ impl SlatsProcessor {
             clumps.push(self.share.clone());
         }
         let last = clumps.len() - 1;
+        // For each clump: TRANSFORM, then send it to its regions.
         for (i, clump) in clumps.iter().enumerate() {
             let passes = Eye::BOTH.map(|eye| clump.transform(view, eye.index(), picture));
             self.gp.work(&Transforming { passes: &passes, context: 0, begins: i == 0 }).await?;

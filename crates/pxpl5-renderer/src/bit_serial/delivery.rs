@@ -21,7 +21,7 @@ trait BitSink {
 /// The use of an expression by the pixels: which bits they take, and what they do with them.
 #[derive(Clone, Debug)]
 pub(super) struct Delivery {
-    /// Clocks whose bits the pixels take.
+    /// Range of clocks in which the pixels take the delivered bits.
     pub(super) taken: Range<usize>,
     pub(super) effect: ExpressionEffect,
 }

@@ -60,7 +60,7 @@ impl BitSerial {
         Ok(())
     }
 
-    /// Returns the use of an expression of `bits` bits in the selected context.
+    /// Returns the bits to take from an expression of `bits` bits, and the operation on them, in the selected context.
     pub(super) fn delivery(&self, usage: &ExpressionUse, bits: u32) -> Result<Delivery, FaultKind> {
         // A test of the sign takes only the last bit; a difference needs all bits for its borrow.
         let (taken, effect) = match *usage {
@@ -87,7 +87,8 @@ impl BitSerial {
         Ok(Delivery { taken, effect })
     }
 
-    /// Returns the clocks whose bits a field takes if the first `shift` bits are left out, and the field's first bit.
+    /// Returns the range of clocks in which a field takes bits, after the first `shift` bits, and the field's first
+    /// bit.
     fn taken_by(&self, field: Operand, shift: u8) -> Result<(Range<usize>, usize), FaultKind> {
         let field = self.controller.bits(field)?;
         let shift = usize::from(shift);

@@ -24,9 +24,9 @@ const SQUARE_BITS: usize = 14;
 /// One bit for each of 128 columns or rows.
 type Leaves = [u64; 2];
 
-/// Leaves whose number has bit `l`, for each `l`.
+/// For each bit `l`, the columns (or rows) whose number has this bit.
 const NUMBERS: [Leaves; NUMBER_BITS] = leaves(1);
-/// Leaves whose squared number has bit `l`, for each `l`.
+/// For each bit `l`, the columns (or rows) whose squared number has this bit.
 const SQUARES: [Leaves; SQUARE_BITS] = leaves(2);
 
 const fn leaves<const N: usize>(power: u32) -> [Leaves; N] {

@@ -23,7 +23,7 @@ pub(super) const EXPRESSIONS: usize = 8;
 
 /// Bits of a column's number within its tile (0 to 31).
 const LEVELS: usize = 5;
-/// Columns (and rows) of a tile whose number has bit `l`, for each `l`.
+/// For each bit `l`, the columns (and rows) of a tile whose number has this bit.
 const NUMBERS: [u32; LEVELS] = [0xaaaa_aaaa, 0xcccc_cccc, 0xf0f0_f0f0, 0xff00_ff00, 0xffff_0000];
 
 /// Consecutive instructions that each tile executes together.
