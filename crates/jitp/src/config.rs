@@ -1,4 +1,4 @@
-//! Who takes part, and which variant runs.
+//! Configuration: the boards, and the variant of the pipeline.
 
 use crate::timing::JitpTiming;
 use pxpl5_display::{Aim, LightSpan};
@@ -12,64 +12,65 @@ use std::fmt;
 use std::sync::Arc;
 use thiserror::Error;
 
-/// Between what the vertices of a dual display list are interpolated, from the begin to the end of a field.
+/// Interpolation mode of a dual display list: how vertices move from the start to the end of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Interpolation {
-    /// Between the vertex's two places on the screen, after the divide by depth.
+    /// Interpolates the vertex's screen positions, after the divide by depth.
     Screen,
-    /// Between the vertex's two positions in the view, before the divide by depth.
+    /// Interpolates the vertex's eye-space positions, before the divide by depth.
     View,
 }
 
-/// The moments that a field's picture is computed for.
+/// The moments for which a field's picture is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Viewpoint {
-    /// One for the whole field.
+    /// One moment for the whole field.
     Field,
-    /// One for each strip.
+    /// One moment for each strip.
     Strip,
-    /// Between the first and the last pixel of the field.
+    /// Moments between the first and the last pixel of the field, from a dual display list.
     Dual(Interpolation),
 }
 
 /// The order in which regions are drawn.
 #[derive(Clone, Debug)]
 pub enum DrawingSchedule {
-    /// Strips of a field from top to bottom.
+    /// Draws strips of a field from top to bottom.
     Beam {
-        /// The moments that the picture is computed for.
+        /// Moments for which the picture is computed.
         viewpoint: Viewpoint,
-        /// Whether strips reach the frame buffer just before the beam, or one field earlier.
+        /// True if strips reach the frame buffer just before the beam, false if one field earlier.
         racing: bool,
-        /// Rows of a strip: 1 to 128.
+        /// Number of rows of a strip: 1 to 128.
         strip_rows: u32,
     },
-    /// Square blocks of the whole frame in a random order, without end.
+    /// Draws square blocks of the whole frame in an endless random order.
     Roam {
         /// Width and height of a block, 4 to 128 pixels.
         block: u32,
         /// Number of blocks that the master gives a slave in one order.
         batch: u32,
-        /// Which block comes at a step.
+        /// Function from a step to the block to draw.
         order: BlockOrder,
     },
 }
 
-/// When the beam is where.
+/// Timing of the beam: the time at which it reaches each pixel.
 #[derive(Clone)]
 pub struct Beam {
-    /// A function of (field, row of the field, pixel).
+    /// Function from (field, row of the field, pixel) to the time of the beam.
     at: Arc<dyn Fn(PeriodNumber, u32, u32) -> Time + Send + Sync>,
-    /// A function of the field.
+    /// Function from a field to the time of its retrace.
     retrace: Arc<dyn Fn(PeriodNumber) -> Time + Send + Sync>,
 }
 
-/// A function of the step: which block comes.
+/// The random order of blocks: a function from a step to the block to draw.
 #[derive(Clone)]
 pub struct BlockOrder(Arc<dyn Fn(u64) -> RegionId + Send + Sync>);
 
 impl Beam {
-    /// A beam that is at (field, row of the field, pixel) when `when` says, and begins a field when `retrace` says.
+    /// Creates a beam. `when` returns the time of (field, row of the field, pixel), and `retrace` the time at which a
+    /// field begins.
     pub fn new(
         when: impl Fn(PeriodNumber, u32, u32) -> Time + Send + Sync + 'static,
         retrace: impl Fn(PeriodNumber) -> Time + Send + Sync + 'static,
@@ -77,13 +78,13 @@ impl Beam {
         Self { at: Arc::new(when), retrace: Arc::new(retrace) }
     }
 
-    /// When the beam is at a pixel of a row of a field.
+    /// Returns the time at which the beam is at a pixel of a row of a field.
     #[must_use]
     pub fn at(&self, field: PeriodNumber, row: u32, x: u32) -> Time {
         (self.at)(field, row, x)
     }
 
-    /// The retrace that begins a field.
+    /// Returns the time of the retrace that begins a field.
     #[must_use]
     pub fn retrace(&self, field: PeriodNumber) -> Time {
         (self.retrace)(field)
@@ -91,7 +92,7 @@ impl Beam {
 }
 
 impl BlockOrder {
-    /// An order in which `block` says what comes at a step, from 0.
+    /// Creates an order from a function that returns the block of each step, counted from 0.
     pub fn new(block: impl Fn(u64) -> RegionId + Send + Sync + 'static) -> Self {
         Self(Arc::new(block))
     }
@@ -113,21 +114,21 @@ impl fmt::Debug for BlockOrder {
     }
 }
 
-/// What the master asks of the tracking data.
+/// The master's request for a view from the tracking data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wanted {
-    /// Number that the view gets: see [`JitpConfig::view_number`].
+    /// Number for the view: see [`JitpConfig::view_number`].
     pub number: ViewNumber,
-    /// Reports that the host had by then have reached the master.
+    /// Time up to which the host's tracker reports have reached the master.
     pub known: Time,
-    /// The moment that the view is drawn for.
+    /// Moment for which the view is drawn.
     pub shown_at: Time,
 }
 
-/// The boards that take part, and the variant that they run.
+/// The boards of the pipeline, and its variant.
 #[derive(Clone, Debug)]
 pub struct JitpConfig {
-    /// Node of the host interface, which passes the tracker's reports on.
+    /// Node of the host interface, which forwards the tracker's reports.
     pub host: NodeId,
     /// Node of the GP that follows the beam and orders strips or blocks.
     pub master: NodeId,
@@ -135,48 +136,48 @@ pub struct JitpConfig {
     pub slaves: Vec<NodeId>,
     /// Nodes of the renderers, at least one.
     pub renderers: Vec<NodeId>,
-    /// Node of the frame buffer: the one of a mono display.
+    /// Node of the frame buffer; the display is mono.
     pub frame_buffer: NodeId,
-    /// The order in which regions are drawn, and for which moments.
+    /// Order and moments in which regions are drawn.
     pub schedule: DrawingSchedule,
-    /// When the beam is where.
+    /// Timing of the beam.
     pub beam: Beam,
-    /// For which instant of what is shown from it a view is drawn.
+    /// Instant within a view's display time for which the view is drawn.
     pub aim: Aim,
-    /// How the bits of pixel memory are divided among contexts.
+    /// Division of pixel memory among contexts.
     pub layout: Layout,
-    /// Whether somebody may want pixels: without it no command words are made, and all times stay the same.
+    /// True if pixels may be read. Without pixels no command words are made, and all times stay the same.
     pub pixels: bool,
-    /// Times of this firmware beside those of the processor.
+    /// Times of this firmware that are not in the processor's timing table.
     pub timing: JitpTiming,
 }
 
-/// A machine or variant that cannot run.
+/// The error for a configuration that cannot run.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum JitpConfigError {
-    /// There is no slave.
+    /// There is no slave GP.
     #[error("just-in-time pixels need a master and at least one slave GP, found no slave")]
     NoSlave,
-    /// A strip or block has no possible size.
+    /// A strip or block has an invalid size.
     #[error("strips or blocks must have {} to {} lines, found {found}", expected.0, expected.1)]
     Size {
         /// Smallest and largest number of lines.
         expected: (u32, u32),
-        /// The number of lines asked for.
+        /// Requested number of lines.
         found: u32,
     },
 }
 
-/// View numbers of a field: one for each strip, at most 240.
+/// Number of view numbers reserved for each field, which has at most 240 strips.
 const VIEWS_PER_FIELD: u64 = 256;
 
 impl JitpConfig {
-    /// Checks the numbers.
+    /// Checks the number of slaves and the size of strips or blocks.
     ///
     /// # Errors
     ///
-    /// [`JitpConfigError`] says what was expected and what was found.
+    /// [`JitpConfigError`] with the expected and the found value.
     pub fn check(&self) -> Result<(), JitpConfigError> {
         if self.slaves.is_empty() {
             return Err(JitpConfigError::NoSlave);
@@ -189,13 +190,15 @@ impl JitpConfig {
         if fits { Ok(()) } else { Err(JitpConfigError::Size { expected, found }) }
     }
 
-    /// The number of the view of a strip, of the whole field (strip 0), or of the begin (0) and the end (1) of a field.
+    /// Returns the number of the view of a strip.
+    ///
+    /// A view of the whole field has strip 0. The views of the start and the end of a field have strips 0 and 1.
     #[must_use]
     pub const fn view_number(field: PeriodNumber, strip: u64) -> ViewNumber {
         ViewNumber(field.0 * VIEWS_PER_FIELD + strip)
     }
 
-    /// How a field (strips) or a frame (blocks) is cut into regions.
+    /// Returns the division of a field (strips) or a frame (blocks) into regions.
     #[must_use]
     pub fn grid(&self) -> RegionGrid {
         match self.schedule {
@@ -206,13 +209,13 @@ impl JitpConfig {
         }
     }
 
-    /// The regions of a strip.
+    /// Returns the regions of a strip.
     pub(crate) fn strip_regions(&self, strip: u32) -> Vec<RegionId> {
         let columns = self.grid().columns();
         (strip * columns..(strip + 1) * columns).map(|region| RegionId(region as u16)).collect()
     }
 
-    /// The part of the frame that a picture fills, and its lines: of a field, or the whole.
+    /// Returns the viewport and the lines of a picture: a field for strips, the whole frame for blocks.
     pub(crate) fn extent(&self, picture: PictureNumber) -> (Viewport, Lines) {
         match self.schedule {
             DrawingSchedule::Beam { .. } => {
@@ -232,37 +235,37 @@ impl JitpConfig {
         self.renderers[usize::from(region.0) % self.renderers.len()]
     }
 
-    /// First and last row of a strip.
+    /// Returns the first and last row of a strip.
     pub(crate) fn rows(&self, strip: u32) -> (u32, u32) {
         let RegionGrid { height, region_height, .. } = self.grid();
         let first = strip * region_height;
         (first, (first + region_height - 1).min(height - 1))
     }
 
-    /// When the first pixel of a strip is scanned, by which it must have arrived.
+    /// Returns the time at which the first pixel of a strip is scanned, the strip's deadline.
     pub(crate) fn deadline(&self, field: PeriodNumber, strip: u32) -> Time {
         self.beam.at(field, self.rows(strip).0, 0)
     }
 
-    /// Whether a strip is the middle one, whose way through the machine stands for that of its field.
+    /// Returns true for the middle strip, whose marks in the trace represent its whole field.
     pub fn is_middle(&self, strip: u32) -> bool {
         strip == self.grid().rows() / 2
     }
 
-    /// The instant that a strip is drawn for.
+    /// Returns the instant for which a strip is drawn.
     #[must_use]
     pub fn aimed_at_strip(&self, field: PeriodNumber, strip: u32) -> Time {
         let (first, last) = self.rows(strip);
         self.aimed_at(field, first, last)
     }
 
-    /// The instant that a field of one view is drawn for.
+    /// Returns the instant for which a field with a single view is drawn.
     #[must_use]
     pub fn aimed_at_field(&self, field: PeriodNumber) -> Time {
         self.aimed_at(field, 0, self.grid().height - 1)
     }
 
-    /// The instant that some rows of a field are drawn for.
+    /// Returns the instant for which some rows of a field are drawn.
     fn aimed_at(&self, field: PeriodNumber, first: u32, last: u32) -> Time {
         let shown = LightSpan {
             tick: self.beam.retrace(field),
@@ -272,14 +275,15 @@ impl JitpConfig {
         self.aim.instant(&shown)
     }
 
-    /// The first and the last pixel of a field: T0 and T1.
+    /// Returns the times of the first and the last pixel of a field: T0 and T1.
     #[must_use]
     pub fn ends(&self, field: PeriodNumber) -> (Time, Time) {
         let RegionGrid { width, height, .. } = self.grid();
         (self.beam.at(field, 0, 0), self.beam.at(field, height - 1, width - 1))
     }
 
-    /// How much of the way from T0 to T1 the instant is that a strip is drawn for; below 0 for the retrace, which is before T0.
+    /// Returns the position between T0 (0) and T1 (1) of the instant for which a strip is drawn. It is negative for the
+    /// retrace, which is before T0.
     #[must_use]
     pub fn part(&self, field: PeriodNumber, strip: u32) -> f64 {
         let (begin, end) = self.ends(field);
@@ -287,11 +291,13 @@ impl JitpConfig {
         from_begin / end.since(begin).0 as f64
     }
 
-    /// From the order of a strip to its beam: every slave has as many strip times as there are slaves, and a strip that does
-    /// not race the beam is there a field earlier.
+    /// Returns the time from the order of a strip to its deadline.
     ///
-    /// A field has one place in the frame buffer, which holds the field two before it until the beam has passed. No strip is
-    /// ordered before its lines of that field have been scanned, so that it cannot overwrite them.
+    /// Every slave has as many strip times as there are slaves. A strip that does not race the beam is ready a field
+    /// earlier.
+    ///
+    /// A field has one place in the frame buffer, which holds the field two before it until the beam has passed. A
+    /// strip is not ordered before its lines of the earlier field have been scanned, so that it cannot overwrite them.
     pub(crate) fn lead(&self, racing: bool) -> Span {
         let first = PeriodNumber::FIRST;
         let begin = self.deadline(first, 0);
@@ -302,13 +308,13 @@ impl JitpConfig {
         wanted.min(next_of_its_lines.since(self.scanned(first, 0)))
     }
 
-    /// From a field to the next one.
+    /// Returns the time from a field to the next one.
     pub(crate) fn field_time(&self) -> Span {
         let first = PeriodNumber::FIRST;
         self.deadline(first.after(2), 0).since(self.deadline(first, 0)) / 2
     }
 
-    /// When the last pixel of a strip has been scanned.
+    /// Returns the time at which the last pixel of a strip has been scanned.
     fn scanned(&self, field: PeriodNumber, strip: u32) -> Time {
         let RegionGrid { width, height, region_height, .. } = self.grid();
         let last = ((strip + 1) * region_height).min(height) - 1;

@@ -1,4 +1,4 @@
-//! A display list as it is seen at one moment, or between two.
+//! A display list seen at one moment, or at a moment between two views.
 
 use crate::config::Interpolation;
 use glam::Mat4;
@@ -11,42 +11,44 @@ use pxpl5_renderer::{Command, TriangleCommand};
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
-/// Subpixels of a pixel, the unit of outlines.
+/// Number of subpixels along a pixel, the unit of outlines.
 const SUBPIXELS: i32 = 1 << pxpl5_wire::format::SUBPIXEL_BITS;
 
-/// How far a corner that is interpolated in the view may leave the straight way on the screen, in subpixels: a turn by
-/// 10 degrees in a field, far above the peak of a head, makes 5 pixels.
+/// Largest deviation, in subpixels, of a corner's path on the screen from a straight line, if the corner is
+/// interpolated in eye space.
+///
+/// A turn by 10 degrees in a field, far above the peak speed of a head, gives 5 pixels.
 const CURVED: i32 = 8 * SUBPIXELS;
 
-/// A rectangle of pixels: first and last pixel across, first and last line of the frame down.
+/// A rectangle of pixels: first and last pixel across, first and last line of the frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Window {
     pub(crate) across: [i32; 2],
     pub(crate) lines: [i32; 2],
 }
 
-/// Everything that a strip or a batch of blocks is drawn from.
+/// The display list as drawn for a strip or a batch of blocks.
 pub(crate) struct DrawnList {
     list: Arc<DisplayList>,
     viewport: Viewport,
     placed: Vec<PlacedStructure>,
-    /// What it is between; `None` of one view.
+    /// Position between two views; `None` if there is one view.
     between: Option<Between>,
-    /// Made when first asked for; the strips of a conventional picture share them.
+    /// Screen triangles, computed at the first use. The strips of a conventional picture share them.
     outlines: OnceLock<Vec<Outline>>,
 }
 
-/// A moment between two for which a display list is transformed.
+/// A moment between two views of a display list.
 struct Between {
     ends: Ends,
-    /// The part of the way.
+    /// Position between the first view (0) and the second view (1).
     part: f64,
     interpolation: Interpolation,
-    /// As it is seen then.
+    /// View at this moment, with interpolated matrices.
     view: FrameView,
 }
 
-/// What a slave has transformed for the begin and the end of a field, or for one moment.
+/// The transformed display list for the start and the end of a field, or for one moment.
 #[derive(Clone)]
 pub(crate) struct Ends {
     pub(crate) views: Arc<[FrameView]>,
@@ -60,7 +62,7 @@ impl fmt::Debug for DrawnList {
 }
 
 impl Ends {
-    /// `views` holds one view, or those of the begin and of the end.
+    /// Transforms the list for `views`: one view, or the views of start and end.
     pub(crate) fn new(list: &DisplayList, views: Vec<FrameView>, viewport: Viewport) -> Self {
         let triangles = match &views[..] {
             [from, to] => triangle_ends(list, from, to, viewport),
@@ -70,7 +72,7 @@ impl Ends {
     }
 }
 
-/// The triangles of each structure in both views.
+/// Returns the triangles of each structure in both views.
 fn triangle_ends(
     list: &DisplayList,
     from: &FrameView,
@@ -81,20 +83,20 @@ fn triangle_ends(
     placed.map(|(from, to)| structure_ends(list, &from, &to)).collect()
 }
 
-/// The triangles of one structure in both views; `None` where one has no place on the screen in either.
+/// Returns the triangles of one structure in both views. A triangle without a position in both is `None`.
 fn structure_ends(list: &DisplayList, from: &PlacedStructure, to: &PlacedStructure) -> Vec<Option<TriangleEnds>> {
     let numbers = from.structure.triangles.clone();
     numbers.map(|number| from.transform.as_ref()?.ends(to.transform.as_ref()?, &list.corners(number))).collect()
 }
 
 impl DrawnList {
-    /// As one view shows it.
+    /// Creates the drawing of a display list for one view.
     pub(crate) fn from_view(list: &Arc<DisplayList>, view: &FrameView, viewport: Viewport) -> Self {
         let placed = place_all(list, view, 0, viewport);
         Self { list: Arc::clone(list), viewport, placed, between: None, outlines: OnceLock::new() }
     }
 
-    /// At the part `s` of the way between two views.
+    /// Creates the drawing of a display list at position `s` between two views.
     pub(crate) fn between(
         list: &Arc<DisplayList>,
         ends: &Ends,
@@ -107,7 +109,7 @@ impl DrawnList {
         Self { between: Some(Between { ends: ends.clone(), part: s, interpolation, view }), ..drawn }
     }
 
-    /// How many primitives meet each window, and how many meet any.
+    /// Returns the number of primitives that meet each window, and the number that meet any window.
     pub(crate) fn count(&self, windows: &[Window]) -> (Vec<PrimitiveCounts>, PrimitiveCounts) {
         let mut tallies = Tallies::new(windows);
         if self.between.is_some() {
@@ -126,7 +128,7 @@ impl DrawnList {
         all
     }
 
-    /// Calls `sink` for each screen triangle, but for those that are apart from what is [`near`] the windows.
+    /// Calls `sink` for each screen triangle, except for triangles outside the lines `near` (see [`near`]).
     fn each_outline(&self, near: [i32; 2], mut sink: impl FnMut(&Outline)) {
         let mut stats = SetupStats::default();
         for (i, place) in self.placed.iter().enumerate() {
@@ -141,7 +143,8 @@ impl DrawnList {
         }
     }
 
-    /// The ends of a structure's k-th triangle, where it has a place on the screen at both.
+    /// Returns the positions of a structure's k-th triangle in both views, if it has any, with the moment and mode of
+    /// interpolation.
     fn ends_of(&self, structure: usize, k: usize) -> Option<(&TriangleEnds, f64, Interpolation)> {
         let Between { ends, part, interpolation, .. } = self.between.as_ref()?;
         Some((ends.triangles.get(structure)?.get(k)?.as_ref()?, *part, *interpolation))
@@ -157,7 +160,8 @@ impl DrawnList {
         }
     }
 
-    /// Calls `sink` with the command of each triangle that meets a window, in order. It was counted with windows of the same lines.
+    /// Calls `sink` with the command of each triangle that meets a window, in order. The lines must be those of
+    /// [`Self::count`].
     pub(crate) fn triangle_commands(&self, window: &Window, mut sink: impl FnMut(Command)) {
         let near = near(std::slice::from_ref(window));
         let mut stats = SetupStats::default();
@@ -165,6 +169,8 @@ impl DrawnList {
             let Some(transform) = &place.transform else { continue };
             for (k, number) in place.structure.triangles.clone().enumerate() {
                 let triangle = self.list.triangle(number);
+                // A triangle with positions in both views is interpolated on the screen; any other is drawn in the
+                // list's own view.
                 match self.ends_of(i, k) {
                     Some((ends, ..)) if is_apart(ends, near) => {}
                     Some((ends, s, Interpolation::Screen)) => {
@@ -189,8 +195,9 @@ impl DrawnList {
         });
     }
 
-    /// The interpolation of what may meet some windows as work of a board, whose memory holds both ends in one part and gets what is
-    /// drawn in another; `None` of one view.
+    /// Returns the work of interpolating the primitives that may meet some windows; `None` if there is one view.
+    ///
+    /// The board's memory holds the triangles of both views in one part, and receives the commands in another.
     pub(crate) fn interpolating<'a>(
         &'a self,
         share: &'a Share,
@@ -218,26 +225,27 @@ impl DrawnList {
     }
 }
 
-/// The least and the greatest distance from the frame's top of what may meet windows at any part of the way, subpixels.
+/// Returns the least and greatest distance from the frame's top, in subpixels, of triangles that may meet the windows
+/// at any moment.
 fn near(windows: &[Window]) -> [i32; 2] {
     let [top, bottom] = span(windows);
     [top - CURVED, bottom + CURVED]
 }
 
-/// From the top of the highest window to the bottom of the lowest, subpixels of the frame.
+/// Returns the range from the top of the highest window to the bottom of the lowest one, in subpixels of the frame.
 fn span(windows: &[Window]) -> [i32; 2] {
     let top = windows.iter().map(|w| w.lines[0] * SUBPIXELS).min().unwrap_or_default();
     let bottom = windows.iter().map(|w| w.lines[1] * SUBPIXELS).max().unwrap_or_default() + SUBPIXELS;
     [top, bottom]
 }
 
-/// Whether a triangle is nowhere between two such distances, whatever the part of the way.
+/// Returns true if a triangle is outside a range of distances from the frame's top at every moment.
 fn is_apart(ends: &TriangleEnds, [top, bottom]: [i32; 2]) -> bool {
     let [least, greatest] = ends.y_range();
     least > bottom || greatest < top
 }
 
-/// Calls `sink` with the command of a triangle, if that meets the window.
+/// Calls `sink` with the command of a triangle, if the triangle meets the window.
 fn sink_if_met(
     triangle: ScreenTriangle<LitColours>,
     window: &Window,
@@ -253,7 +261,7 @@ fn sink_if_met(
 /// Counts the primitives that meet windows.
 struct Tallies<'a> {
     windows: &'a [Window],
-    /// From the top of the highest window to the bottom of the lowest, subpixels of the frame.
+    /// Range from the top of the highest window to the bottom of the lowest one, in subpixels of the frame.
     span: [i32; 2],
     each: Vec<PrimitiveCounts>,
     any: PrimitiveCounts,
@@ -296,8 +304,9 @@ impl<'a> Tallies<'a> {
     }
 }
 
-/// Positions in the view lie on straight lines between two views where the matrices do:
-/// (M0 p) (1 - s) + (M1 p) s = (M0 (1 - s) + M1 s) p.
+/// Returns the view at position `s` between two views.
+///
+/// Eye-space positions move on straight lines if matrices do: (M0 p) (1 - s) + (M1 p) s = (M0 (1 - s) + M1 s) p.
 pub(crate) fn interpolated(from: &FrameView, to: &FrameView, s: f64) -> FrameView {
     let eyes = from.eyes.iter().zip(&to.eyes).map(|(a, b)| EyeView {
         world_to_eye: matrix_between(&a.world_to_eye, &b.world_to_eye, s),
@@ -312,7 +321,7 @@ pub(crate) fn interpolated(from: &FrameView, to: &FrameView, s: f64) -> FrameVie
     FrameView { number: from.number, eyes: eyes.collect(), edits: edits.collect() }
 }
 
-/// The matrix at the part `s` of the way, each element on its straight line.
+/// Interpolates the elements of two matrices: `s` is 0 at `from` and 1 at `to`.
 fn matrix_between(from: &Mat4, to: &Mat4, s: f64) -> Mat4 {
     ((from.as_dmat4() * (1.0 - s)) + (to.as_dmat4() * s)).as_mat4()
 }

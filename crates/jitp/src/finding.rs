@@ -1,18 +1,19 @@
-//! What meets the regions of a strip or of a batch of blocks, as work of a board: found, interpolated, handed over.
+//! Search of the primitives in the regions of a strip or a batch of blocks, as work of a board.
+//!
+//! The work interpolates the primitives, finds them in each region, and hands them over.
 
 use pphigs::{Interpolating, PrimitiveCounts, Searching};
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_sim::Span;
 
-/// The search for what is drawn, and the interpolation of what meets any of the regions.
+/// Work of interpolating the primitives near some regions and searching them.
 pub(crate) struct Finding<'a> {
-    /// The regions.
     pub(crate) searching: Searching<'a>,
-    /// What comes before; `None` where the display list was transformed for one view.
+    /// Interpolation before the search; `None` if the display list was transformed for one view.
     pub(crate) interpolating: Option<Interpolating<'a>>,
-    /// Primitives that meet any of the regions.
+    /// Numbers of primitives that meet any of the regions.
     pub(crate) met: PrimitiveCounts,
-    /// Time to interpolate one of them by the table, ns.
+    /// Time to interpolate one primitive by the timing table, in ns.
     pub(crate) interpolate_ns: u64,
 }
 

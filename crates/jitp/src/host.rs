@@ -1,4 +1,4 @@
-//! The host: passes on what the tracker delivers.
+//! The host: forwards the tracker's reports.
 
 use crate::config::JitpConfig;
 use crate::protocol::DrawingOrder;
@@ -6,14 +6,14 @@ use pphigs::send_as_tracked;
 use pxpl5_gp::{Fault, Gp, HostTiming};
 use pxpl5_sim::Time;
 
-/// Sends every report of the tracker to the master as it arrives; of several that wait, the newest ([`send_as_tracked`]).
+/// Sends every report of the tracker to the master as it arrives. If several reports wait, the newest is sent
+/// ([`send_as_tracked`]).
 ///
-/// `next_report` gives the arrival of the first report after an instant; `None` when the tracker has fallen silent for
-/// good.
+/// `next_report` returns the arrival of the first report after an instant, or `None` if there are no more reports.
 ///
 /// # Errors
 ///
-/// None of its own; the type is that of a program.
+/// The function itself returns no error; the type is that of a program.
 pub async fn host(
     gp: Gp,
     config: JitpConfig,

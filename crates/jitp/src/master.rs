@@ -18,10 +18,10 @@ struct MasterState {
     done: RefCell<VecDeque<u32>>,
 }
 
-/// The programs of the master for both levels of its board. `pass` is a slave's over the whole display list;
-/// `view_of` predicts.
+/// Returns the programs of the master for both priorities of its board.
 ///
-/// They fail with [`Fault::Protocol`] for a message that no board sends.
+/// `pass` is the cost of a slave's pass over the whole display list. `view_of` predicts a view. The programs fail with
+/// [`Fault::Protocol`] for an unknown message.
 pub fn master(
     gp: &Gp,
     config: &JitpConfig,
@@ -74,12 +74,14 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         let strips = self.config.grid().rows();
         for field in first.onwards() {
             for strip in 0..strips {
+                // Order the fields whose preparation must begin before this strip.
                 let order_at = before(self.config.deadline(field, strip), ahead);
                 while viewpoint != Viewpoint::Strip && self.preparation_at(prepared, viewpoint, ahead) <= order_at {
                     self.wait_until(self.preparation_at(prepared, viewpoint, ahead)).await;
                     self.order_field(prepared, viewpoint).await?;
                     prepared = prepared.next();
                 }
+                // A strip whose deadline has passed is left out.
                 self.wait_until(order_at).await;
                 if self.gp.now() < self.config.deadline(field, strip) {
                     self.order_strip(field, strip, viewpoint).await?;
@@ -89,8 +91,10 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         Ok(())
     }
 
-    /// When slaves must begin to transform for a field: half again as early as that takes by the table, since they draw meanwhile. How
-    /// long code will take is not known beforehand: a field earlier (pphigs's kernels/order_rules.md).
+    /// Returns the time at which slaves must begin to transform for a field.
+    ///
+    /// Slaves draw meanwhile, so the lead is 1.5 times the time by the timing table. The time of code is unknown in
+    /// advance, so its lead is a field (pphigs's kernels/order_rules.md).
     fn preparation_at(&self, field: PeriodNumber, viewpoint: Viewpoint, ahead: Span) -> Time {
         let first_strip = self.config.deadline(field, 0);
         if self.gp.runs_code() {
@@ -138,7 +142,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         self.order(slave, &DrawingOrder::Strip { field, strip, deadline, view }).await
     }
 
-    /// Puts an order together and sends it.
+    /// Assembles an order and sends it.
     async fn order(&self, slave: NodeId, order: &DrawingOrder) -> Result<(), Fault> {
         self.gp.work(&Ordering(order)).await?;
         let (words, body) = order.message();
@@ -146,7 +150,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         Ok(())
     }
 
-    /// Gives every slave that is done the next blocks, with the newest view.
+    /// Gives every slave that has finished the next blocks, with the newest view.
     async fn roam(&mut self, batch: u64) -> Result<(), Fault> {
         let slaves = self.config.slaves.len();
         self.state.done.borrow_mut().extend(0..slaves as u32);
@@ -165,26 +169,27 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         Ok(())
     }
 
-    /// The instant that a batch of blocks ordered now is drawn for.
+    /// Returns the instant for which a batch of blocks ordered now is drawn.
     fn aimed_at_blocks(&self, expected: Expected) -> Time {
         let first = self.gp.now() + expected.drawing;
         let beam = &self.config.beam;
+        // Find the first retrace after the blocks have been drawn.
         let tick =
             self.gp.field().onwards().map(|field| beam.retrace(field)).find(|tick| *tick >= first).unwrap_or(first);
         self.config.aim.instant(&LightSpan { tick, first, last: first + expected.standing })
     }
 }
 
-/// From an order until its blocks stand on the screen, and how long they do.
+/// Expected times of an order: until its blocks are on the screen, and for how long they stay there.
 struct Expected {
     drawing: Span,
     standing: Span,
 }
 
-/// How long orders have been on their way lately.
+/// Recent times from order to order, which predict the time of the next order.
 struct Flight {
     last_order_of: Vec<Option<Time>>,
-    /// Orders of the last pass, oldest first.
+    /// Times of the orders of the last pass over all blocks, oldest first.
     pass: VecDeque<Time>,
     orders_of_pass: usize,
 }
@@ -194,7 +199,10 @@ impl Flight {
         Self { last_order_of: vec![None; slaves], pass: VecDeque::new(), orders_of_pass: orders_of_pass as usize }
     }
 
-    /// What an order may expect: as long as this slave's last order took, then a pass until all blocks are drawn anew.
+    /// Records an order and returns its expected times.
+    ///
+    /// Drawing takes as long as the slave's last order. The blocks then stay for a pass, until all blocks have been
+    /// drawn again.
     fn ordered(&mut self, slave: usize, now: Time) -> Expected {
         self.pass.push_back(now);
         let oldest = if self.pass.len() > self.orders_of_pass { self.pass.pop_front() } else { None };

@@ -1,11 +1,14 @@
-//! An order of the master, as work of its board.
+//! Assembly of the master's orders, as work of its board.
 
 use crate::protocol::DrawingOrder;
 use pphigs::{TransformCost, put_together};
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_sim::Span;
 
-/// An order put together. By the table that of a field takes the time of a pass over nothing, any other none besides its message.
+/// Work of assembling an order.
+///
+/// By the timing table the order of a field takes the time of an empty pass. Other orders take no time besides their
+/// message.
 pub(crate) struct Ordering<'a>(pub(crate) &'a DrawingOrder);
 
 impl Work for Ordering<'_> {
@@ -29,7 +32,8 @@ mod tests {
     use pxpl5_sim::Time;
     use pxpl5_wire::PeriodNumber;
 
-    /// Six instructions move a word (pphigs's kernels/order.s), each at least a clock of 25 ns; misses of caches are a few clocks a word.
+    /// Uses the fact that six instructions move a word (pphigs's kernels/order.s), each at least a clock of 25 ns.
+    /// Cache misses add a few clocks per word.
     #[test]
     fn by_code_an_order_takes_at_least_six_clocks_a_word() {
         let views = |n: u64| (0..n).map(view).collect();

@@ -12,7 +12,7 @@ use pxpl5_wire::{
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-/// The pixels of a region.
+/// Returns the window of a region.
 pub(crate) fn window(config: &JitpConfig, viewport: &Viewport, region: RegionId) -> Window {
     let [left, top, width, height] = config.grid().rectangle(region).map(|v| v as i32);
     Window {
@@ -21,12 +21,12 @@ pub(crate) fn window(config: &JitpConfig, viewport: &Viewport, region: RegionId)
     }
 }
 
-/// Line of the frame on which a row of the picture lies.
+/// Returns the frame line of a row of the picture.
 fn line_of_row(viewport: &Viewport, row: i32) -> i32 {
     viewport.first_line() as i32 + row * viewport.line_step() as i32
 }
 
-/// What one message holds of a region.
+/// Content of one message of a region.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Part {
     first: bool,
@@ -38,13 +38,14 @@ struct Part {
 const OPENING: u32 = CommandKind::SelectRegion.words() + CommandKind::Clear.words();
 const CLOSING: u32 = CommandKind::CopyRegion.words();
 
-/// Triangles, then spheres, in as few messages as their length allows.
+/// Divides a region's triangles and spheres, in this order, into as few messages as their maximum length permits.
 fn parts(counts: PrimitiveCounts) -> Vec<Part> {
     let mut parts = Vec::new();
     let mut triangle = 0;
     let mut sphere = 0;
     loop {
         let first = parts.is_empty();
+        // Every message keeps room for the copy, since it may become the last one.
         let mut room_words = MAX_MESSAGE_WORDS - CLOSING - if first { OPENING } else { 0 };
         let triangles = take_run(triangle..counts.triangles, CommandKind::Triangle.words(), &mut room_words);
         let spheres = take_run(sphere..counts.spheres, CommandKind::Sphere.words(), &mut room_words);
@@ -58,7 +59,7 @@ fn parts(counts: PrimitiveCounts) -> Vec<Part> {
     }
 }
 
-/// As many of the remaining primitives, of `words_each` words, as have room.
+/// Returns as many of the remaining primitives, of `words_each` words each, as there is room for.
 fn take_run(remaining: Range<u32>, words_each: u32, room_words: &mut u32) -> Range<u32> {
     let n = (remaining.end - remaining.start).min(*room_words / words_each);
     *room_words -= n * words_each;
@@ -83,7 +84,7 @@ impl Part {
     }
 }
 
-/// The messages that draw a region and copy it to the frame buffer.
+/// Returns the messages that draw a region and copy it to the frame buffer.
 pub(crate) fn messages(
     config: &JitpConfig,
     drawing: &Arc<DrawnList>,
@@ -102,6 +103,7 @@ pub(crate) fn messages(
         parts: parts.clone(),
         primitives: OnceLock::new(),
     };
+    // Without pixels, no words are made.
     let words = config.pixels.then(|| Arc::new(words()) as Arc<dyn CommandWords>);
     let lists = (0..).zip(&parts).map(|(number, part)| {
         let runs = part.runs();
@@ -122,7 +124,7 @@ pub(crate) fn messages(
     lists.collect()
 }
 
-/// Makes the words of a region's messages; those of its primitives once for all of them.
+/// Source of the words of a region's messages. The words of all primitives are computed once.
 #[derive(Debug)]
 struct RegionWords {
     drawing: Arc<DrawnList>,
@@ -130,9 +132,9 @@ struct RegionWords {
     window: Window,
     origin: SelectRegion,
     target: CopyTarget,
-    /// What each message holds.
+    /// Content of each message.
     parts: Vec<Part>,
-    /// Triangles, and spheres.
+    /// Words of all triangles, and words of all spheres.
     primitives: OnceLock<[Vec<Word>; 2]>,
 }
 
@@ -146,7 +148,7 @@ impl RegionWords {
         })
     }
 
-    /// A layout that lacks what a command needs is refused when the machine is configured.
+    /// Appends the words of a command. The machine's configuration rejects layouts that lack a field of a command.
     fn append(&self, command: Command, out: &mut Vec<Word>) {
         let encoded = command.encode(&self.layout, out);
         debug_assert!(encoded.is_ok(), "{encoded:?}");
@@ -177,7 +179,7 @@ impl CommandWords for RegionWords {
     }
 }
 
-/// The words of some commands among those of all of their kind.
+/// Returns the words of the commands with the given numbers, from the words of all commands of a kind.
 fn words_of<'a>(all: &'a [Word], numbers: &Range<u32>, kind: CommandKind) -> &'a [Word] {
     let [begin, end] = [numbers.start, numbers.end].map(|number| (number * kind.words()) as usize);
     debug_assert!(end <= all.len(), "as many commands as were counted");

@@ -1,4 +1,4 @@
-//! Orders as words of the ring.
+//! Messages between the boards, encoded as words of the ring.
 
 use pphigs::FrameView;
 use pxpl5_gp::{Fault, Received};
@@ -14,31 +14,32 @@ const DONE: Word = 0x1F1E_1D04;
 /// Words of a report from the host: two time stamps, position and quaternion in 64 bits each, and a header.
 pub(crate) const REPORT_WORDS: u32 = 20;
 
-/// What boards tell each other.
+/// A message between the boards.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum DrawingOrder {
-    /// Transform everything for the views of a field.
+    /// Order to transform everything for the views of a field.
     Field { field: PeriodNumber, views: Vec<FrameView> },
-    /// Draw a strip, with a view of its own or for the field's.
+    /// Order to draw a strip, with its own view or with the views of its field.
     Strip { field: PeriodNumber, strip: u32, deadline: Time, view: Option<FrameView> },
-    /// Draw blocks from a step of the random order on.
+    /// Order to draw blocks, beginning at a step of the random order.
     Blocks { update: PictureNumber, step: u64, view: FrameView },
-    /// All reports that the host had by then are here.
+    /// Notice that all reports which the host had at a time have arrived.
     Report { known: Time },
-    /// A slave can take another order.
+    /// Notice that a slave can take another order.
     Done { slave: u32 },
 }
 
 impl DrawingOrder {
-    /// The number of words, and the words as a message carries them.
+    /// Returns the number of words, and the body of a message.
     pub(crate) fn message(&self) -> (u32, Body) {
         let words = self.words();
         (words.len() as u32, Body::Words(words.into()))
     }
 
-    /// The words themselves.
+    /// Encodes the order.
     pub(crate) fn words(&self) -> Vec<Word> {
         let mut words = Vec::new();
+        // The first word names the order; 64-bit numbers take two words, low word first.
         match self {
             Self::Field { field, views } => {
                 let [field_low, field_high] = field.to_words();
@@ -66,7 +67,7 @@ impl DrawingOrder {
         words
     }
 
-    /// How many of its words come before those of views.
+    /// Returns the number of words before the words of views.
     pub(crate) fn head_words(&self) -> usize {
         match self {
             Self::Field { .. } => 4,
@@ -76,11 +77,11 @@ impl DrawingOrder {
         }
     }
 
-    /// Reads a received order.
+    /// Decodes a received order.
     ///
     /// # Errors
     ///
-    /// [`Fault::Protocol`] for words that are none.
+    /// [`Fault::Protocol`] for words that are no order.
     pub(crate) fn read(received: &Received, node: NodeId) -> Result<Self, Fault> {
         let order = match &received.body {
             Body::Words(words) => Self::from_words(words),
@@ -90,6 +91,7 @@ impl DrawingOrder {
     }
 
     fn from_words(words: &[Word]) -> Option<Self> {
+        // A view is preceded by its length in words.
         Some(match words {
             [FIELD, a, b, count, rest @ ..] if *count > 0 => {
                 let mut rest = rest;

@@ -1,4 +1,4 @@
-//! A board with programs of this firmware on a bench, for tests.
+//! A test bench: one board with programs of this firmware.
 
 use crate::config::{Beam, DrawingSchedule, JitpConfig};
 use crate::protocol::DrawingOrder;
@@ -18,14 +18,14 @@ pub(crate) const SLAVE: NodeId = NodeId(2);
 pub(crate) const RENDERER: NodeId = NodeId(3);
 pub(crate) const FIELD_US: u64 = 20_000;
 pub(crate) const ROW_US: u64 = 50;
-/// The time that anything needs to leave a board.
+/// Time that a signal takes to leave a board.
 pub(crate) const CYCLE: Span = Span(25_000);
 
 pub(crate) const fn us(us: u64) -> Time {
     Time(us * 1_000_000)
 }
 
-/// A master, a slave and a renderer, before a beam that takes 20 ms for a field and 50 us for a row.
+/// Returns a configuration of a master, a slave and a renderer. The beam takes 20 ms for a field and 50 us for a row.
 pub(crate) fn config(schedule: DrawingSchedule) -> JitpConfig {
     let retrace = |field: PeriodNumber| us(field.0 * FIELD_US);
     JitpConfig {
@@ -43,7 +43,7 @@ pub(crate) fn config(schedule: DrawingSchedule) -> JitpConfig {
     }
 }
 
-/// Triangles in the middle of the picture.
+/// Returns a display list of triangles in the middle of the picture.
 pub(crate) fn list(triangles: usize) -> Arc<DisplayList> {
     let structure =
         DisplayStructure { triangles: 0..triangles, spheres: 0..0, frame: ModelFrame::World, culling: Culling::None };
@@ -102,7 +102,7 @@ impl Rig {
         assert_eq!(self.bench.board.fault(), None);
     }
 
-    /// Messages to a board, and when they were sent.
+    /// Returns the messages to a board, with the times at which they were sent.
     pub(crate) fn sent_to(&self, node: NodeId) -> Vec<(Time, Received)> {
         let to_node = self.bench.sent().filter(|(_, message)| message.destination == node);
         to_node.map(|(time, m)| (time, Received { arrived: time, source: m.source, body: m.body.clone() })).collect()

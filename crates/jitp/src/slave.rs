@@ -16,24 +16,25 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Fields that stay transformed: the one being drawn and the next.
+/// Number of fields that stay transformed, including the current and the next one.
 const FIELDS_KEPT: usize = 3;
 
-/// Parts of a slave's memory: for these fields and for the one that is being transformed; one more for a strip between two views.
+/// Number of parts of a slave's memory for fields: the kept ones and the one in progress. Another part is for a strip
+/// between two views.
 const PARTS_OF_FIELDS: u8 = FIELDS_KEPT as u8 + 1;
 const OF_STRIP: MemoryPart = MemoryPart::of(PARTS_OF_FIELDS as usize, PARTS_OF_FIELDS + 1);
 
 #[derive(Default)]
 struct SlaveFields {
-    /// Numbers and views of the fields that the master wants transformed, oldest first.
+    /// Numbers and views of the fields to transform, oldest first.
     ordered: VecDeque<(PeriodNumber, Vec<FrameView>)>,
-    /// Fields transformed, in order, and where they lie.
+    /// Transformed fields, in order, with their parts of memory.
     transformed: VecDeque<(PeriodNumber, Field, MemoryPart)>,
-    /// How many have been transformed.
+    /// Number of fields transformed since the start.
     n_transformed: usize,
 }
 
-/// A field's transforms, and what a conventional picture's strips share.
+/// A field's transforms, and the drawing that the strips of a conventional picture share.
 #[derive(Clone)]
 struct Field {
     ends: Ends,
@@ -42,8 +43,10 @@ struct Field {
 
 type SharedFields = Rc<RefCell<SlaveFields>>;
 
-/// What the slaves have transformed. All hold the same display list and get the same views, so the simulator computes
-/// each field once; every slave still spends its own time on it.
+/// Cache of transformed fields for all slaves.
+///
+/// All slaves hold the same display list and get the same views, so the simulator computes each field once. Every slave
+/// still spends its own simulated time.
 #[derive(Clone, Default)]
 pub struct Transforms(Rc<RefCell<VecDeque<(PeriodNumber, Field)>>>);
 
@@ -54,7 +57,7 @@ impl std::fmt::Debug for Transforms {
 }
 
 impl Transforms {
-    /// The field as another slave has made it, or else as `make` does.
+    /// Returns the field from the cache, or makes it by `make`.
     fn known_or_made(&self, field: PeriodNumber, make: impl FnOnce() -> Field) -> Field {
         let known = &mut *self.0.borrow_mut();
         if let Some((_, ready)) = known.iter().find(|ready| ready.0 == field) {
@@ -69,11 +72,10 @@ impl Transforms {
     }
 }
 
-/// The programs of slave number `index` for both levels of its board: strips interrupt the transforms of the next
-/// field. Every slave holds the whole display list.
+/// Returns the programs of slave number `index` for both priorities of its board.
 ///
-/// They fail with [`Fault::Memory`] when it does not fit, and with [`Fault::Protocol`] for a message that no board
-/// sends.
+/// Drawing strips interrupts the transforms of the next field. Every slave holds the whole display list. The programs
+/// fail with [`Fault::Memory`] if the list does not fit, and with [`Fault::Protocol`] for an unknown message.
 pub fn slave(
     gp: &Gp,
     config: &JitpConfig,
@@ -81,6 +83,7 @@ pub fn slave(
     transforms: &Transforms,
     index: usize,
 ) -> Vec<(Priority, Firmware)> {
+    // Every slave holds the whole display list, so its share is complete.
     let share = Share::new(Arc::clone(list), 0, 1);
     let state = SharedFields::default();
     let [drawing, preparing] = [Priority::Interrupt, Priority::Foreground].map(|level| Slave {
@@ -98,7 +101,7 @@ pub fn slave(
 struct Slave {
     gp: Gp,
     config: JitpConfig,
-    /// All of the display list.
+    /// The whole display list.
     share: Share,
     pass: TransformCost,
     state: SharedFields,
@@ -107,7 +110,7 @@ struct Slave {
 }
 
 impl Slave {
-    /// Takes orders and draws.
+    /// Receives orders and draws.
     async fn draw(self) -> Result<(), Fault> {
         self.gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
         self.gp.reserve(Account::DisplayList, self.share.bytes(), None)?;
@@ -125,7 +128,7 @@ impl Slave {
         }
     }
 
-    /// Transforms everything for the newest field ordered.
+    /// Transforms the whole display list for the newest ordered field.
     async fn prepare(self) -> Result<(), Fault> {
         loop {
             let (field, views) = self.gp.until("the order of a field", || self.take_newest_order()).await;
@@ -142,20 +145,20 @@ impl Slave {
         }
     }
 
-    /// Where the next field goes.
+    /// Returns the part of memory for the next field.
     fn next_part(&self) -> MemoryPart {
         let number = self.state.borrow().n_transformed % usize::from(PARTS_OF_FIELDS);
         MemoryPart::of(number, PARTS_OF_FIELDS + u8::from(self.dual().is_some()))
     }
 
-    /// TRANSFORM of the whole display list for each of some views of a picture.
+    /// Spends the time of TRANSFORM of the whole display list, once for each view of a picture.
     async fn transform_all(&self, views: &[FrameView], picture: PictureNumber, part: MemoryPart) -> Result<(), Fault> {
         let Self { share, pass, config, .. } = self;
         let viewport = config.extent(picture).0;
         self.gp.work(&WholeList { share, pass: *pass, views, viewport, layout: config.layout, part }).await
     }
 
-    /// The newest field ordered; older ones are left out.
+    /// Returns the newest ordered field, and drops older orders.
     fn take_newest_order(&self) -> Option<(PeriodNumber, Vec<FrameView>)> {
         self.state.borrow_mut().ordered.drain(..).next_back()
     }
@@ -166,7 +169,7 @@ impl Slave {
         Field { ends: Ends::new(self.share.list(), views, viewport), whole }
     }
 
-    /// Draws a strip, unless its beam has passed.
+    /// Draws a strip, unless its deadline has passed.
     async fn strip(
         &self,
         field: PeriodNumber,
@@ -174,12 +177,14 @@ impl Slave {
         deadline: Time,
         view: Option<FrameView>,
     ) -> Result<(), Fault> {
+        // It is too late to start the strip.
         if self.gp.now() >= deadline {
             return Ok(());
         }
         let picture = PictureNumber::drawn_for(field);
         let viewport = self.config.extent(picture).0;
         let stands_for_field = self.config.is_middle(strip);
+        // A strip with its own view needs a TRANSFORM first; otherwise wait for the transforms of the field.
         let drawing = match &view {
             Some(view) => {
                 self.transform_all(std::slice::from_ref(view), picture, MemoryPart::WHOLE).await?;
@@ -190,6 +195,7 @@ impl Slave {
             }
             None => self.drawing_of_field(field, strip, viewport).await,
         };
+        // TRANSFORM may have taken until after the deadline.
         let Some((drawing, part)) = drawing.filter(|_| self.gp.now() < deadline) else { return Ok(()) };
         if stands_for_field {
             self.gp.begin(Stage::Render, picture, None);
@@ -201,12 +207,13 @@ impl Slave {
         Ok(())
     }
 
-    /// Whether a field or a later one is transformed.
+    /// Returns true if this field or a later one is transformed.
     fn has_transformed(&self, field: PeriodNumber) -> bool {
         self.state.borrow().transformed.back().is_some_and(|newest| newest.0 >= field)
     }
 
-    /// The strip as the transforms of its field give it, and where they lie; `None` if they were left out.
+    /// Returns the drawing of a strip from the transforms of its field, with their part of memory. Returns `None` if
+    /// the field was left out.
     async fn drawing_of_field(
         &self,
         field: PeriodNumber,
@@ -216,6 +223,7 @@ impl Slave {
         self.gp.until("the transforms of the field", || self.has_transformed(field).then_some(())).await;
         let state = self.state.borrow();
         let (_, ready, part) = state.transformed.iter().find(|ready| ready.0 == field)?;
+        // A field with one view is drawn from it, even if the variant interpolates.
         let drawing = match self.dual() {
             Some(interpolation) if ready.ends.views.len() == 2 => {
                 let s = self.config.part(field, strip);
@@ -233,7 +241,7 @@ impl Slave {
         }
     }
 
-    /// Draws the next blocks of the random order and asks for more.
+    /// Draws the next blocks of the random order and asks the master for more.
     async fn blocks(&self, update: PictureNumber, step: u64, view: &FrameView) -> Result<(), Fault> {
         let DrawingSchedule::Roam { batch, order, .. } = &self.config.schedule else { return Ok(()) };
         let viewport = self.config.extent(update).0;
@@ -249,9 +257,10 @@ impl Slave {
         Ok(())
     }
 
-    /// Bins, and sends all regions as one chain of messages. All slaves draw in the same region context of a renderer, so
-    /// the messages of a region keep the renderer's port until its last one, which copies it: those of another slave would
-    /// be drawn into this region, or clear it.
+    /// Bins the primitives of some regions, and sends all regions as one chain of messages.
+    ///
+    /// All slaves draw in the same region context of a renderer. So a region's messages reserve the renderer's port
+    /// until the last one, which copies the region. Otherwise another slave could draw into the region or clear it.
     async fn send(
         &self,
         picture: PictureNumber,
@@ -263,6 +272,7 @@ impl Slave {
         let windows: Vec<_> = regions.iter().map(|region| window(&self.config, viewport, *region)).collect();
         let (counts, any) = drawing.count(&windows);
         let of_kernels = whole::picture(*viewport, self.config.layout);
+        // Interpolated commands go to their own part of memory, which is searched instead of the field's part.
         let interpolating = drawing.interpolating(&self.share, &windows, of_kernels, [part, OF_STRIP]);
         let searching = Searching {
             part: if interpolating.is_some() { OF_STRIP } else { part },

@@ -6,20 +6,21 @@ use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Span;
 
-/// A pass over all primitives for each of some views: commands of all of them, since which strip or block they touch is found for that
-/// strip or block alone.
+/// Work of a pass over all primitives for each of one or two views.
+///
+/// The pass makes the commands of all primitives without bins. The primitives of a strip or block are searched later.
 pub(crate) struct WholeList<'a> {
-    /// All primitives.
+    /// The whole display list.
     pub(crate) share: &'a Share,
-    /// A pass by the table.
+    /// Cost of a pass by the timing table.
     pub(crate) pass: TransformCost,
-    /// The views, one or two.
+    /// One view, or the views of start and end.
     pub(crate) views: &'a [FrameView],
-    /// The field or the frame that they are of.
+    /// Field or frame that the views show.
     pub(crate) viewport: Viewport,
-    /// Division of pixel memory that the commands are encoded for.
+    /// Layout of pixel memory for which commands are encoded.
     pub(crate) layout: Layout,
-    /// Where the commands of one view are kept, or the places of triangles in two.
+    /// Part of memory that receives the commands of one view, or the triangles' positions in two views.
     pub(crate) part: MemoryPart,
 }
 
@@ -28,7 +29,8 @@ impl Work for WholeList<'_> {
         self.pass.span(timing) * self.views.len() as u64
     }
 
-    /// The commands of one view are kept with their boxes; of two, the places of triangles in both.
+    /// Runs the code. For one view it keeps commands with their boxes, for two views the positions of triangles in
+    /// both.
     fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
         let Self { share, part, .. } = *self;
         let picture = picture(self.viewport, self.layout);
@@ -46,7 +48,7 @@ impl Work for WholeList<'_> {
     }
 }
 
-/// The picture whose kernels these are: that of a pipeline that sends everything everywhere, since what is sent where is found later.
+/// Returns the picture that selects the kernels: one without bins, since regions are searched later.
 pub(crate) const fn picture(viewport: Viewport, layout: Layout) -> Picture {
     Picture { viewport, shading: Shading::Gouraud, binning: RegionBinning::All, layout, pixels: false }
 }

@@ -1,5 +1,7 @@
-//! Host time per simulated instruction of the triangle kernels: with memoised clocks, with all clocks counted, and without
-//! timing. The loops of crates/i860/benches stay in the caches; these do not.
+//! Host time per simulated instruction of the triangle kernels: with memoized clocks, with all clocks counted, and
+//! without timing.
+//!
+//! Unlike the loops of crates/i860/benches, these kernels do not stay in the caches.
 
 #![allow(missing_docs, reason = "criterion_group makes an undocumented function")]
 
@@ -17,7 +19,7 @@ fn modes() -> [(&'static str, Config); 3] {
     [("memoised", Config::cycle()), ("counted", counted), ("functional", Config::functional())]
 }
 
-/// Triangles of about the size of those in the figures.
+/// Benchmarks the kernels on triangles of about the size in the figures.
 fn kernels(c: &mut Criterion) {
     let mut group = c.benchmark_group("kernels");
     let input = triangles(500, 0.12, 1);

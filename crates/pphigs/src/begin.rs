@@ -1,8 +1,8 @@
-//! What comes before the triangles of a pass as work of a board: edits of the display list, and its structures put in their places.
+//! Work of a board before the triangles of a pass: edits of the display list, and placement of its structures.
 //!
-//! Both are code in the manner of a compiler (`pxpl5_geometry::kernel::place_source`), the same for every version of the kernels. What
-//! a view decides of a structure's parameter block it computes in front of the pass; the block that a kernel then finds is written
-//! from outside, equal in every word (tests/begin.rs).
+//! Both are code in the style of a compiler (`pxpl5_geometry::kernel::place_source`), the same for every version of the
+//! kernels. The code computes the view-dependent part of each structure's parameter block before the pass. The host
+//! side then writes the block that a kernel reads, which is equal in every word (tests/begin.rs).
 
 use crate::cost::TransformCost;
 use crate::layout::{BEGIN_CODE, BIN_TABLE, MESSAGE, MODELS, MODELS_END, PARAMETERS, SPHERE_PARAMETERS, STACK};
@@ -21,19 +21,19 @@ use pxpl5_sim::Span;
 use pxpl5_wire::Word;
 use std::sync::{Arc, LazyLock};
 
-/// Structures whose matrices there is room for.
+/// Number of structures whose matrices fit in memory.
 const MOST_STRUCTURES: u32 = (MODELS_END - MODELS) / MATRIX_BYTES;
 const MATRIX_BYTES: u32 = 64;
-/// Words of an edit: the structure's number and its matrix.
+/// Number of words of an edit: the structure's number and its matrix.
 const EDIT_WORDS: u32 = 17;
 
 const _: () =
     assert!(MESSAGE + MAX_EDITS as u32 * 4 * EDIT_WORDS <= MODELS, "what a message holds lies before the matrices");
 
-/// Instructions after which the code is taken to be endless: many times what it needs.
+/// Instruction limit, many times what the code needs. Code that exceeds the limit counts as endless.
 const BUDGET: u64 = 20_000;
 
-/// EDIT of a view.
+/// Work of EDIT: stores the edited matrices of a view.
 #[derive(Clone, Copy, Debug)]
 pub struct Editing<'a>(pub &'a FrameView);
 
@@ -43,10 +43,10 @@ impl Work for Editing<'_> {
     }
 
     fn by_code(&self, _: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
-        // Those of structures that are not there change nothing.
+        // Edits of unknown structures change nothing.
         let known: Vec<_> = self.0.edits.iter().filter(|edit| edit.structure < MOST_STRUCTURES).collect();
         let mut span = Span::ZERO;
-        // As many as a message holds, however many there are; a view without edits is looked at too.
+        // Call the code for each message of edits. A view without edits still takes one call.
         for edits in known.chunks(MAX_EDITS).chain(known.is_empty().then_some([].as_slice())) {
             let words = edits.iter().flat_map(|edit| {
                 let matrix = edit.model.to_cols_array().map(f32::to_bits);
@@ -61,19 +61,19 @@ impl Work for Editing<'_> {
     }
 }
 
-/// The beginning of a pass over the display list, for one eye or for both.
+/// Work at the beginning of a pass over the display list, for one eye or both.
 #[derive(Clone, Debug)]
 pub struct Beginning {
     list: Arc<DisplayList>,
     eyes: Vec<Arc<[PlacedStructure]>>,
-    /// Bins that are reset for each eye; none where there are no bins.
+    /// Number of bins to reset for each eye; 0 if there are no bins.
     bins: u32,
-    /// The structures that are put in place, by their places in the display list; `None` for all.
+    /// True for each structure to place, by its index in the display list; `None` places all.
     chosen: Option<Arc<[bool]>>,
 }
 
 impl Share {
-    /// The beginning of a pass for some eyes of a view.
+    /// Returns the work at the beginning of a pass for some eyes of a view.
     #[must_use]
     pub fn beginning(&self, view: &FrameView, eyes: &[usize], picture: Picture) -> Beginning {
         let eyes = eyes.iter().map(|eye| place_once(&self.list, view, *eye, picture.viewport)).collect();
@@ -84,24 +84,24 @@ impl Share {
 impl Beginning {
     pub(crate) fn new(list: &Arc<DisplayList>, eyes: Vec<Arc<[PlacedStructure]>>, picture: Picture) -> Self {
         let bins = match picture.binning {
-            // Spheres have bins always.
+            // Spheres always have bins.
             RegionBinning::All if list.spheres.is_empty() => 0,
             RegionBinning::All | RegionBinning::Touched => picture.viewport.grid().regions(),
         };
         Self { list: Arc::clone(list), eyes, bins, chosen: None }
     }
 
-    /// The same where nothing goes into bins.
+    /// Returns the same work for a pass that fills no bins.
     pub(crate) fn without_bins(self) -> Self {
         Self { bins: 0, ..self }
     }
 
-    /// The same of some structures.
+    /// Returns the same work for the chosen structures only.
     pub(crate) fn of_chosen(self, chosen: Option<&[bool]>) -> Self {
         Self { chosen: chosen.map(Arc::from), ..self }
     }
 
-    /// The structures of an eye that are put in place; what cannot be drawn is not.
+    /// Returns the structures of an eye to place. Structures that cannot be drawn are left out.
     fn begun<'a>(&'a self, placed: &'a [PlacedStructure]) -> impl Iterator<Item = &'a PlacedStructure> {
         let is_chosen = |number: usize| self.chosen.as_ref().is_none_or(|chosen| chosen.get(number) == Some(&true));
         let chosen = placed.iter().enumerate().filter(move |(number, _)| is_chosen(*number)).map(|(_, place)| place);
@@ -119,7 +119,8 @@ impl Work for Beginning {
         let mut span = Span::ZERO;
         for placed in &self.eyes {
             if self.bins > 0 {
-                // Where bins begin: what a kernel finds depends on how full they become, and is written before it is called.
+                // Reset the beginnings of the bins. The actual table depends on how full the bins become, and is
+                // written before the kernel runs.
                 let registers = [(16, MESSAGE), (17, self.bins), (19, BIN_TABLE)];
                 span += processor.call(&PROGRAM, "reset", &registers, BUDGET)?;
             }
@@ -131,22 +132,24 @@ impl Work for Beginning {
     }
 }
 
-/// The beginning of a pass for some eyes by the table; what cannot be drawn is not put in place.
+/// Returns the cost, by the timing table, of the beginning of a pass for some eyes. Structures that cannot be drawn are
+/// not placed.
 pub(crate) fn beginning<'a>(eyes: impl IntoIterator<Item = &'a [PlacedStructure]>) -> TransformCost {
     let drawn = |place: &&PlacedStructure| place.transform.is_some();
     TransformCost::beginning(eyes.into_iter().flatten().filter(drawn).map(|place| &place.structure))
 }
 
 impl PlacedStructure {
-    /// Computes the view's part of the parameter block on a board, and gives the time that it takes.
+    /// Computes the view-dependent part of the parameter block on a board, and returns the time.
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault`] when the code does not come to its end, or the board has no room for it.
+    /// [`ProcessorFault`] if the code does not end, or the board has no room for its data.
     pub fn run_code(&self, list: &DisplayList, processor: &mut Processor) -> Result<Span, ProcessorFault> {
         let matrices = self.matrices.iter().flat_map(Mat4::to_cols_array);
         let [x, y, z] = list.towards_light.to_array();
         let words: Vec<Word> = matrices.chain([x, y, z, list.ambient, list.diffuse]).map(f32::to_bits).collect();
+        // Matrices and light go to the message buffer, from which the code reads them.
         processor.write(MESSAGE, &words)?;
         let [to_eye, model, projection, light] = [0, 1, 2, 3].map(|n| MESSAGE + n * MATRIX_BYTES);
         let culls = Word::from(self.structure.culling != Culling::None);
@@ -158,12 +161,13 @@ impl PlacedStructure {
 }
 
 impl PlacedStructure {
-    /// Puts what is the same in all views into the parameter block of spheres, and gives its address; 0 where no sphere is drawn.
+    /// Writes the view-independent part of the parameter block of spheres, and returns its address, or 0 if no sphere
+    /// is drawn.
     fn prepare_spheres(&self, processor: &mut Processor) -> Result<Word, ProcessorFault> {
         let Some(transform) = self.transform.as_ref().filter(|_| !self.structure.spheres.is_empty()) else {
             return Ok(0);
         };
-        // No view depends on the surface.
+        // The view-dependent part does not depend on the surface, so any kernel will do.
         let kernel = SphereKernel::for_picture(KernelSurface::Phong, transform.viewport());
         let Some(mut block) = kernel.and_then(|kernel| kernel.parameters(transform, &self.light, &[])) else {
             return Ok(0);
@@ -174,7 +178,6 @@ impl PlacedStructure {
     }
 }
 
-/// The program of all this.
 #[cfg(test)]
 pub(crate) fn program() -> Arc<Program> {
     Arc::clone(&PROGRAM)

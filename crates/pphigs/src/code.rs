@@ -1,7 +1,8 @@
-//! TRANSFORM as work of a board: by the timing table, or as i860 code over the board's memory.
+//! TRANSFORM as work of a board: timed by the timing table, or run as i860 code over the board's memory.
 //!
-//! The code is that of [`pxpl5_geometry::kernel`] for triangles and of [`pxpl5_geometry::sphere_kernel`] for spheres; each structure of
-//! the display list is one call of either. All triangles come first, so that bins hold commands in the order in which they are sent.
+//! [`pxpl5_geometry::kernel`] has the code for triangles and [`pxpl5_geometry::sphere_kernel`] the code for spheres.
+//! Each structure of the display list is one call of either kernel. All triangles come before the spheres, so that bins
+//! hold commands in the order in which they are sent.
 
 use crate::begin::{Beginning, beginning};
 use crate::cost::TransformCost;
@@ -29,51 +30,54 @@ use std::hash::Hash;
 use std::ops::Range;
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
-/// Bytes of a triangle in it, and of a sphere behind the triangles.
+/// Bytes of a triangle in the display list.
 pub(crate) const TRIANGLE_BYTES: u32 = 4 * TRIANGLE_WORDS as u32;
 pub(crate) const SPHERE_BYTES: u32 = 4 * SPHERE_WORDS as u32;
 
-/// Pieces that clipping makes of a triangle at most: six planes leave nine corners.
+/// Largest number of triangles that clipping makes of one: six planes leave up to nine corners.
 const MOST_PIECES: u32 = 7;
 
-/// Instructions after which a kernel is taken to be endless: many times what a primitive needs, and its prologue.
+/// Instruction limits, many times what a primitive and the prologue need. A kernel that exceeds the limit counts as
+/// endless.
 const BUDGET_OF_PRIMITIVE: u64 = 100_000;
 pub(crate) const BUDGET: u64 = 10_000;
 
-/// Instructions for some primitives.
+/// Returns the instruction limit for some primitives.
 pub(crate) const fn budget(primitives: u32) -> u64 {
     BUDGET + BUDGET_OF_PRIMITIVE * primitives as u64
 }
 
-/// The TRANSFORM of a share for one eye, or for both: in one pass where there is code for that
-/// ([`Kernel::can_serve_both_eyes`]), else one after the other.
+/// The TRANSFORM of a share for one eye, or for both eyes.
+///
+/// Both eyes take one pass if a kernel supports that ([`Kernel::can_serve_both_eyes`]), otherwise one pass each.
 #[derive(Clone, Copy, Debug)]
 pub struct Transforming<'a> {
-    /// What each eye's TRANSFORM gives.
+    /// The TRANSFORM results of each eye.
     pub passes: &'a [Arc<Pass>],
-    /// Bin context of the first one, 0 or 1; the next one has the other.
+    /// Bin context of the first eye, 0 or 1. The second eye uses the other context.
     pub context: u8,
-    /// Whether a pass over the display list begins with it.
+    /// True if the TRANSFORM includes the beginning of a pass over the display list.
     pub begins: bool,
 }
 
-/// What a kernel left in the memory of a board.
+/// Result of the kernels in the memory of a board.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct KernelOutput {
-    /// Simulated time that the kernels took.
+    /// Simulated time of the kernels.
     pub span: Span,
-    /// The part of it that spheres took.
+    /// Simulated time of the spheres, which is included in `span`.
     pub of_spheres: Span,
-    /// Addresses of the commands, one after the other: triangles, then spheres.
+    /// Addresses of the commands: first triangles, then spheres.
     pub commands: Range<u32>,
-    /// Where the commands of spheres begin.
+    /// Address of the first sphere's command.
     pub spheres: u32,
-    /// Addresses of the bins' entries, which are addresses of commands; none of triangles where there are no bins.
+    /// Address ranges of the bins' entries. An entry is the address of a command. Without binning the bins hold no
+    /// triangles.
     pub bins: Vec<Range<u32>>,
 }
 
 impl KernelOutput {
-    /// Entries of all bins together.
+    /// Returns the number of entries in all bins.
     #[must_use]
     pub fn entries(&self) -> u64 {
         self.bins.iter().map(|bin| u64::from(bin.end - bin.start) / 4).sum()
@@ -94,11 +98,13 @@ impl Work for Transforming<'_> {
             }
             _ => Span::ZERO,
         };
+        // One pass for both eyes, if a kernel supports that.
         if let [left, right] = self.passes
             && let Some(outputs) = left.run_code_for_both(right, processor, self.context)?
         {
             return Ok(outputs.iter().fold(span, |all, output| all + output.span));
         }
+        // Otherwise one pass for each eye, in alternating contexts.
         for (context, pass) in (self.context..).zip(self.passes) {
             span += match pass.run_code(processor, context % 2)? {
                 Some(output) => output.span,
@@ -124,11 +130,11 @@ impl Transforming<'_> {
 }
 
 impl Share {
-    /// Puts the whole share, of which this may be a clump, into a board's memory.
+    /// Stores the whole share in a board's memory, even if this share is only a clump.
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault::Unmapped`] when it does not fit.
+    /// [`ProcessorFault::Unmapped`] if the share does not fit.
     pub fn install(&self, processor: &mut Processor) -> Result<(), ProcessorFault> {
         for (place, number) in (0..).zip(self.all_triangles()) {
             let words = display_list_words(&self.list.triangle(number));
@@ -141,18 +147,18 @@ impl Share {
         Ok(())
     }
 
-    /// Where the spheres begin in memory.
+    /// Returns the address of the first sphere.
     pub(crate) fn place_of_spheres(&self) -> u32 {
         DISPLAY_LIST + self.all_triangles().len() as u32 * TRIANGLE_BYTES
     }
 
-    /// Where the display list ends in memory.
+    /// Returns the address at the end of the display list.
     pub(crate) fn end_of_list(&self) -> u32 {
         self.place_of_spheres() + self.all_spheres().len() as u32 * SPHERE_BYTES
     }
 }
 
-/// The bytes that a view's output takes: of commands, and entries of each bin.
+/// Number of bytes that a view's output needs: commands, and entries of each bin.
 pub(crate) struct Needs {
     commands: u32,
     entries: Vec<u32>,
@@ -174,13 +180,14 @@ impl Needs {
     }
 }
 
-/// Places of a view's output.
+/// Addresses of a view's output.
 struct Places {
     commands: u32,
     bins: Vec<u32>,
 }
 
-/// Where a kernel goes on: its next command, and the table of bins or, where boxes are kept, the next box.
+/// The continuation of a kernel: address of the next command, and of the table of bins or, if boxes are kept, of the
+/// next box.
 #[derive(Clone, Copy)]
 pub(crate) struct Next {
     pub(crate) command: u32,
@@ -188,14 +195,15 @@ pub(crate) struct Next {
 }
 
 impl Next {
-    /// Behind what a call of a kernel has left.
+    /// Returns the continuation after a call of a kernel.
     pub(crate) const fn left(self, processor: &Processor, keeps_boxes: bool) -> Self {
         let table = if keeps_boxes { processor.register(19) } else { self.table };
         Self { command: processor.register(18), table }
     }
 }
 
-/// Where a view's output goes: its bin context, which of the views that share it, and where the commands begin.
+/// Destination of a view's output: its bin context, its index among the views in that context, and the address of the
+/// commands.
 #[derive(Clone, Copy)]
 pub(crate) struct Destination {
     pub(crate) context: u8,
@@ -203,29 +211,31 @@ pub(crate) struct Destination {
     pub(crate) begin: u32,
 }
 
-/// Words that say which of the held primitives a view is given: those with its bit.
+/// Marks of the primitives that belong to a view: words in which the view's bit is set.
 #[derive(Clone, Copy)]
 pub(crate) struct Marks {
-    /// The word of the first triangle that the GP holds, and of the first sphere.
+    /// Address of the word of the first triangle that the GP holds.
     pub(crate) triangles: u32,
     pub(crate) spheres: u32,
     pub(crate) bit: Word,
 }
 
 impl Pass {
-    /// What it takes by the table, but for the beginning of a pass over the display list.
+    /// Returns the cost of the TRANSFORM by the timing table, without the beginning of the pass.
     #[must_use]
     pub fn cost(&self) -> TransformCost {
         let counted = TransformCost::primitives(self.transformed());
         TransformCost { clipped: self.stats().clipped, entries: self.entries(), ..counted }
     }
 
-    /// Runs the kernels for all primitives on a board that holds the display list, in one of its two bin contexts; `None`
-    /// for a picture that has no kernel.
+    /// Runs the kernels for all primitives on a board that holds the display list. `context` is one of the board's two
+    /// bin contexts.
+    ///
+    /// Returns `None` for a picture that has no kernel.
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault`] when the code does not come to its end, or its data do not fit.
+    /// [`ProcessorFault`] if the code does not end, or its data do not fit.
     pub fn run_code(&self, processor: &mut Processor, context: u8) -> Result<Option<KernelOutput>, ProcessorFault> {
         let Some(kernel) = self.kernel(processor.version()) else { return Ok(None) };
         let needs = self.needs(kernel, self.transformed());
@@ -233,12 +243,13 @@ impl Pass {
         self.run_kernels(processor, kernel, &needs, Destination { context, view: 0, begin }, None).map(Some)
     }
 
-    /// Runs the kernels for this eye, the left one, and for the right one, with one pass over the triangles; `None` where there is no such
-    /// code. The left eye's output has the time of all triangles.
+    /// Runs the kernels for this eye (the left one) and the right one, with a single pass over the triangles.
+    ///
+    /// Returns `None` if no kernel serves both eyes. The time of all triangles is in the left eye's output.
     ///
     /// # Errors
     ///
-    /// As [`Pass::run_code`].
+    /// The errors of [`Pass::run_code`].
     pub fn run_code_for_both(
         &self,
         right: &Self,
@@ -255,6 +266,7 @@ impl Pass {
             let begin = processor.place_output(context % 2, eye.share().end_of_list(), needs.bytes())?;
             Ok((needs.places(begin), Destination { context: context % 2, view: 0, begin }))
         };
+        // Each eye has its own bin context, so the table of bins is written again for each eye's spheres.
         let [(left_places, to_left), (right_places, to_right)] = [place(self, context)?, place(right, context + 1)?];
         let first = [&left_places, &right_places].map(|places| Next { command: places.commands, table: BIN_TABLE });
         let (span, next) = self.run_triangles_for_both(right, processor, kernel, first)?;
@@ -265,8 +277,9 @@ impl Pass {
         Ok(Some([of_left, of_right]))
     }
 
-    /// Time of the triangles of both eyes, and where the commands of each end. A structure that one eye alone can draw goes through the
-    /// kernel of one eye.
+    /// Runs the triangles of both eyes. Returns the time, and where the commands of each eye end.
+    ///
+    /// A structure that only one eye can draw goes through the kernel of one eye.
     fn run_triangles_for_both(
         &self,
         right: &Self,
@@ -282,12 +295,14 @@ impl Pass {
             if held.is_empty() {
                 continue;
             }
+            // Both eyes together, if both can draw the structure.
             let transforms = places.map(|place| place.transform.as_ref());
             let both_eyes = transforms.iter().all(Option::is_some);
             let kernel = Kernel { culls: places[0].structure.culling != Culling::None, both_eyes, ..kernel };
             let program = program(kernel, false);
             let clipper = program.symbol("clipper").unwrap_or_default();
             let blocks = [PARAMETERS, RIGHT_PARAMETERS];
+            // A parameter block for each eye.
             for ((place, transform), block) in places.iter().zip(transforms).zip(blocks) {
                 let Some(transform) = transform else { continue };
                 processor.write(block, &kernel.parameters(transform, &place.light, &heads, clipper))?;
@@ -302,6 +317,7 @@ impl Pass {
                 (next[0].command, next[1].command) = (processor.register(18), processor.register(19));
                 continue;
             }
+            // Otherwise each eye that can draw the structure has a call of its own.
             for eye in (0..2).filter(|eye| transforms[*eye].is_some()) {
                 let call = Call { first, count, next: next[eye], parameters: blocks[eye] };
                 span += call.run(processor, &program, "start", None)?;
@@ -311,7 +327,7 @@ impl Pass {
         Ok((span, next))
     }
 
-    /// The same for those primitives that are marked, or for all, to a place that is taken.
+    /// Runs the kernels for the marked primitives, or for all, with a given destination.
     pub(crate) fn run_kernels(
         &self,
         processor: &mut Processor,
@@ -327,7 +343,8 @@ impl Pass {
         self.run_rest(processor, kernel, &places, to, triangles, marks)
     }
 
-    /// What follows the triangles of a view, of whose bins the table is written: its spheres, and where its bins end.
+    /// Runs the spheres of a view and records the ends of its bins. The triangles are done, and the table of bins is
+    /// written.
     fn run_rest(
         &self,
         processor: &mut Processor,
@@ -346,7 +363,7 @@ impl Pass {
         Ok(KernelOutput { span, of_spheres, commands: places.commands..end, spheres, bins })
     }
 
-    /// Time of the triangles, and where their commands end.
+    /// Runs the triangles. Returns the time, and where their commands end.
     pub(crate) fn run_triangles(
         &self,
         processor: &mut Processor,
@@ -356,6 +373,7 @@ impl Pass {
     ) -> Result<(Span, Next), ProcessorFault> {
         let heads = self.heads();
         let mut span = Span::ZERO;
+        // One call for each structure, with its own parameter block.
         for (place, transform, held) in self.calls_of_triangles() {
             let kernel = Kernel { culls: place.structure.culling != Culling::None, ..kernel };
             let program = program(kernel, marks.is_some());
@@ -368,12 +386,13 @@ impl Pass {
             let marked =
                 marks.map(|Marks { triangles, bit, .. }| [triangles + 4 * held.start as u32, bit, TRIANGLE_BYTES]);
             span += call.run(processor, &program, "start", marked)?;
+            // The next call continues after this call's output.
             next = next.left(processor, kernel.keeps_boxes);
         }
         Ok((span, next))
     }
 
-    /// The same of the spheres.
+    /// Runs the spheres. Returns the time, and where their commands end.
     pub(crate) fn run_spheres(
         &self,
         processor: &mut Processor,
@@ -387,6 +406,7 @@ impl Pass {
         };
         let blank = self.encoded(&blank);
         let mut span = Span::ZERO;
+        // One call for each structure, with its own parameter block.
         for (place, transform, held) in self.calls_of_spheres() {
             let Some(parameters) = kernel.parameters(transform, &place.light, &blank) else { continue };
             processor.write(SPHERE_PARAMETERS, &parameters)?;
@@ -408,13 +428,13 @@ impl Pass {
         self.picture().kernel(schedule)
     }
 
-    /// Words of the commands of a triangle and of a sphere in the bins that code has filled; `None` where no code fills bins of both.
+    /// Returns the command lengths of a triangle and a sphere, in words, if code fills bins of both; otherwise `None`.
     pub(crate) fn binned_words(&self, version: CodeVersion) -> Option<[u32; 2]> {
         let kernel = self.kernel(version).filter(|_| self.is_binned())?;
         Some([kernel.command_bytes() / 4, sphere_kernel(kernel).command_words() as u32])
     }
 
-    /// Whether renderers shade the region at its end.
+    /// Returns true if renderers shade the pixels at the end of a region.
     pub(crate) fn shades_at_pixels(&self) -> bool {
         self.picture().shading == Shading::Phong
     }
@@ -423,7 +443,7 @@ impl Pass {
         self.picture().binning == RegionBinning::Touched
     }
 
-    /// What is alike in all triangle commands, read off one of zeros.
+    /// Returns the words that all triangle commands have in common, taken from a command of zeros.
     pub(crate) fn heads(&self) -> Heads {
         let blank = match self.picture().shading {
             Shading::Gouraud | Shading::Precomputed => Command::Triangle(TriangleCommand::default()),
@@ -440,12 +460,12 @@ impl Pass {
         words
     }
 
-    /// Structures with their triangles, counted in those that the GP holds.
+    /// Returns the structures with their triangles, as indices among the triangles that the GP holds.
     pub(crate) fn calls_of_triangles(&self) -> impl Iterator<Item = (&PlacedStructure, &Transform, Range<usize>)> {
         self.calls(|structure| &structure.triangles, Share::held_places)
     }
 
-    /// The same of spheres.
+    /// Returns the structures with their spheres, as indices among the spheres that the GP holds.
     pub(crate) fn calls_of_spheres(&self) -> impl Iterator<Item = (&PlacedStructure, &Transform, Range<usize>)> {
         self.calls(|structure| &structure.spheres, Share::held_places_of_spheres)
     }
@@ -460,9 +480,11 @@ impl Pass {
         calls.filter(|call| !call.2.is_empty())
     }
 
-    /// The kernel needs a place for a command of every primitive that it is given, seen or not, for as many as a clipped triangle may
-    /// have pieces, and for the one being made, which may be dropped: more than the accounts of [`pxpl5_gp::Memory`], which know
-    /// what will be seen.
+    /// Returns the memory that a kernel needs.
+    ///
+    /// The kernel needs room for a command of every given primitive, visible or not, for the pieces of clipped
+    /// triangles, and for a command that may be dropped. The accounts of [`pxpl5_gp::Memory`] are smaller, since they
+    /// count only visible primitives.
     pub(crate) fn needs(&self, kernel: Kernel, given: PrimitiveCounts) -> Needs {
         let regions = self.picture().viewport.grid().regions() as u16;
         let entries = (0..regions).map(|region| {
@@ -475,13 +497,14 @@ impl Pass {
         Needs { commands, entries }
     }
 
-    /// Commands of triangles that there must be room for, as [`Pass::needs`] says.
+    /// Returns the number of triangle commands that need room, as defined by [`Pass::needs`].
     pub(crate) fn most_commands(&self, given: PrimitiveCounts) -> u32 {
         given.triangles + (MOST_PIECES - 1) * self.stats().clipped as u32 + 1
     }
 }
 
-/// Leaves where the bins of a context begin and end for the tokens of its regions, while the other context's table is in use.
+/// Stores the bounds of a context's bins for the tokens of its regions, since the other context will use the table of
+/// bins.
 fn note_bins(
     processor: &mut Processor,
     to: Destination,
@@ -507,8 +530,9 @@ impl Call {
         [(16, self.first), (17, self.count), (18, command), (2, STACK), (19, table), (20, self.parameters)]
     }
 
-    /// Calls a program's kernel for all of them, or for the runs of those that are marked: the address of their words, the bit of a word
-    /// that counts, and the bytes of a primitive.
+    /// Calls the kernel for all primitives, or for the runs of marked primitives.
+    ///
+    /// `marked` holds the address of the mark words, the bit that selects a primitive, and the bytes of a primitive.
     fn run(
         &self,
         processor: &mut Processor,
@@ -525,15 +549,15 @@ impl Call {
     }
 }
 
-/// The spheres' kernel beside one of triangles.
+/// Returns the kernel for spheres that belongs to a kernel for triangles.
 pub(crate) const fn sphere_kernel(kernel: Kernel) -> SphereKernel {
     SphereKernel { surface: kernel.surface, picture: kernel.picture, keeps_boxes: kernel.keeps_boxes }
 }
 
-/// Programs that were asked for.
+/// A cache of assembled programs.
 pub(crate) type Programs<K> = LazyLock<Mutex<HashMap<K, Arc<Program>>>>;
 
-/// The program of a kernel, assembled when first asked for.
+/// Returns the program of a kernel, which is assembled at its first use.
 pub(crate) fn kept<K: Copy + Eq + Hash>(
     programs: &Programs<K>,
     kernel: K,
@@ -543,10 +567,11 @@ pub(crate) fn kept<K: Copy + Eq + Hash>(
     Arc::clone(programs.entry(kernel).or_insert_with(|| Arc::new(assembled(kernel))))
 }
 
-/// What calls a kernel for runs of primitives.
+/// Source of the code that calls a kernel for runs of primitives.
 const RUNS: (&str, &str) = ("runs", include_str!("../kernels/runs.s"));
 
-/// A kernel's program with its clipper, assembled when first asked for; with what calls it for runs of primitives if wanted.
+/// Returns the program of a kernel and its clipper, assembled at its first use. `by_runs` adds the code for runs of
+/// primitives.
 fn program(kernel: Kernel, by_runs: bool) -> Arc<Program> {
     static PROGRAMS: Programs<(Kernel, bool)> = LazyLock::new(Mutex::default);
     kept(&PROGRAMS, (kernel, by_runs), assembled)
@@ -565,7 +590,8 @@ fn assembled((kernel, by_runs): (Kernel, bool)) -> Program {
     }
 }
 
-/// The same of a kernel for spheres.
+/// Returns the program of a kernel for spheres, assembled at its first use. `by_runs` adds the code for runs of
+/// primitives.
 fn sphere_program(kernel: SphereKernel, by_runs: bool) -> Arc<Program> {
     static PROGRAMS: Programs<(SphereKernel, bool)> = LazyLock::new(Mutex::default);
     kept(&PROGRAMS, (kernel, by_runs), |(kernel, by_runs)| {

@@ -1,4 +1,4 @@
-//! Messages of renderer commands: which kinds are in them, and their words on demand.
+//! Messages of renderer commands: the kinds of their commands, and their words on demand.
 
 use crate::counts::PrimitiveCounts;
 use crate::encoder::Encoder;
@@ -21,18 +21,18 @@ use pxpl5_wire::{
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The commands that enclose a region's primitives: what is sent to its renderer before and after them.
+/// The commands before and after a region's primitives.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RegionEnvelope {
-    /// Select the region's context and clear it first.
+    /// True if the region's context is selected and cleared first.
     pub begin: bool,
-    /// Shade all pixels afterwards, where the picture is shaded at the pixels.
+    /// True if all pixels are shaded afterwards. Only Phong pictures are shaded this way.
     pub shade: bool,
-    /// Copy the region to the frame buffer at last.
+    /// Order to copy the region to the frame buffer at the end, if any.
     pub copy: Option<CopyOrder>,
 }
 
-/// The messages that hold a region's bin in its envelope, as few as their length allows.
+/// Returns the messages that hold a region's bin in its envelope, as few as their maximum length permits.
 #[must_use]
 pub fn region_messages(pass: &Arc<Pass>, region: RegionId, context: u8, envelope: RegionEnvelope) -> Vec<CommandList> {
     if pass.counts(region).total() == 0 && !envelope.begin && pass.ending_words(envelope) == 0 {
@@ -50,7 +50,7 @@ pub fn region_messages(pass: &Arc<Pass>, region: RegionId, context: u8, envelope
     parts.map(list).collect()
 }
 
-/// A message that only copies regions, each from its context.
+/// Returns a message that only copies regions, each from its context.
 #[must_use]
 pub fn copy_message(layout: Layout, copies: Vec<CopyOrder>, pixels: bool) -> CommandList {
     let runs =
@@ -64,24 +64,24 @@ const fn run(kind: CommandKind, count: u32) -> CommandRun {
     CommandRun { opcode: kind.opcode(), words_each: kind.words(), count }
 }
 
-/// What one message holds of a region.
+/// Content of one message of a region.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct RegionPart {
     select: bool,
     clear: bool,
     triangles: Range<u32>,
     spheres: Range<u32>,
-    /// Whether what ends the region is in it: shading, the copy.
+    /// True if the message contains the end of the region: shading and the copy.
     ends: bool,
 }
 
-/// Fills messages one after the other: all triangles, then all spheres.
+/// Iterator over the messages of a region: first all triangles, then all spheres.
 struct Parts {
-    /// Primitives that no message holds yet, and the words of one.
+    /// Triangles that are in no message yet.
     triangles: Range<u32>,
     spheres: Range<u32>,
     words_each: [u32; 2],
-    /// Whether each message selects its context.
+    /// True if every message selects its context.
     selects: bool,
     clears_next: bool,
     ending_words: u32,
@@ -104,7 +104,8 @@ impl Parts {
 }
 
 impl Parts {
-    /// A message by its number. Those between the first and the last one with triangles are alike, and not filled one by one.
+    /// Returns a message by its number. Messages between the first and the last one with triangles are alike, so they
+    /// are skipped at once.
     fn skip_to(mut self, number: u32) -> Option<RegionPart> {
         if number == 0 {
             return self.next();
@@ -121,13 +122,14 @@ impl Parts {
 impl Iterator for Parts {
     type Item = RegionPart;
 
-    /// The next message, unless it would only select.
+    /// Returns the next message. A message that would only select a context is left out.
     fn next(&mut self) -> Option<RegionPart> {
         if self.has_ended {
             return None;
         }
         let clear = std::mem::take(&mut self.clears_next);
         let select = clear || self.selects;
+        // Fill the message with as many primitives as fit; spheres follow only after the last triangle.
         let mut room_words = MAX_MESSAGE_WORDS
             - CommandKind::SelectRegion.words() * u32::from(select)
             - CommandKind::Clear.words() * u32::from(clear);
@@ -145,7 +147,7 @@ impl Iterator for Parts {
     }
 }
 
-/// As many of the remaining primitives, of `words_each` words, as have room.
+/// Removes and returns as many of the remaining primitives, of `words_each` words each, as there is room for.
 fn take_run(remaining: &mut Range<u32>, words_each: u32, room_words: &mut u32) -> Range<u32> {
     let end = remaining.start + (remaining.end - remaining.start).min(*room_words / words_each);
     let taken = std::mem::replace(&mut remaining.start, end)..end;
@@ -182,18 +184,19 @@ impl Pass {
         }
     }
 
-    /// Whether all pixels of a region in this envelope are shaded at its end.
+    /// Returns true if all pixels of a region with this envelope are shaded at its end.
     fn shades(&self, envelope: RegionEnvelope) -> bool {
         envelope.shade && self.picture().shading == Shading::Phong
     }
 
-    /// Length of what ends a region in this envelope.
+    /// Returns the number of words of the end of a region with this envelope.
     fn ending_words(&self, envelope: RegionEnvelope) -> u32 {
         CommandKind::Shade.words() * u32::from(self.shades(envelope))
             + CommandKind::CopyRegion.words() * u32::from(envelope.copy.is_some())
     }
 
-    /// Bytes of the renderer commands of all screen primitives, each held once (TR94: bins point to them).
+    /// Returns the bytes of the renderer commands of all screen primitives. Each command is held once (TR94: bins point
+    /// to commands).
     #[must_use]
     pub fn command_bytes(&self) -> u64 {
         let PrimitiveCounts { triangles, spheres } = self.screen_counts();
@@ -201,18 +204,19 @@ impl Pass {
     }
 }
 
-/// Bytes of a pointer in a bin: the commands that it points to are held once, for all regions (TR94).
+/// Bytes of a bin's entry, a pointer: the commands are held once, for all regions (TR94).
 pub const BIN_ENTRY_BYTES: u64 = 4;
 
-/// Bytes that program, stacks and message buffers take of a GP's memory under every firmware. Assumed: no paper says it; TR94's GPs
-/// have 8 MB each, in which a megabyte decides nothing.
+/// Bytes of a GP's memory for program, stacks and message buffers, under every firmware.
+///
+/// Assumed: no paper gives the number. TR94's GPs have 8 MB each, so a megabyte makes no difference.
 pub const PROGRAM_BYTES: u64 = 1 << 20;
 
 fn bytes(kind: CommandKind, count: u32) -> u64 {
     4 * u64::from(kind.words()) * u64::from(count)
 }
 
-/// Makes the words of a region's messages.
+/// Source of the words of a region's messages.
 #[derive(Debug)]
 struct RegionWords {
     pass: Arc<Pass>,
@@ -239,14 +243,15 @@ impl CommandWords for RegionWords {
 }
 
 impl RegionWords {
-    /// What a message holds: nothing where there are not so many.
+    /// Returns the content of a message, which is empty if there is no message of this number.
     fn part(&self, number: u32) -> RegionPart {
         Parts::new(&self.pass, self.region, self.envelope).skip_to(number).unwrap_or_default()
     }
 
-    /// All commands of a message, with some of the triangles.
+    /// Appends all commands of a message, with the given triangles.
     fn append_with(&self, part: &RegionPart, triangles: &[BinEntry], out: &mut dyn CommandSink) {
         let picture = self.pass.picture();
+        // Start of the region: context and clear.
         if part.select {
             let [left, top, _, _] = picture.viewport.grid().rectangle(self.region);
             let select = SelectRegion { context: self.context, left: left as u16, top: top as u16 };
@@ -255,8 +260,10 @@ impl RegionWords {
         if part.clear {
             append(&Command::Clear(Clear { colour: rgb(self.pass.background()) }), &picture.layout, out.words());
         }
+        // Primitives of the region.
         self.triangles(triangles, out);
         self.spheres(&part.spheres, out.words());
+        // End of the region: shading and copy.
         if part.ends && self.pass.shades(self.envelope) {
             append(
                 &Command::Shade(shade(self.pass.light(), self.pass.share().list().is_matte)),
@@ -307,11 +314,13 @@ impl RegionWords {
             match some {
                 SetupBatch::Unclipped(entries, lanes) => {
                     let expressions = transform.gouraud_lanes(lanes, &mut stats);
+                    // A sink that takes batches needs no words.
                     if !out.triangles(&expressions.batch(entries.len())) {
                         let words = out.words();
                         (0..entries.len()).for_each(|i| encoder.encode(&gouraud_triangle(expressions.get(i)), words));
                     }
                 }
+                // A clipped triangle is clipped again to find its piece.
                 SetupBatch::Clipped(entry) => {
                     let triangle = list.triangle(entry.triangle as usize);
                     let piece = pick(entry, |sink| transform.gouraud(&triangle, light, &mut stats, sink));
@@ -348,6 +357,7 @@ impl RegionWords {
                     let colour = |entry: &BinEntry| list.colours[list.triangles[entry.triangle as usize][0] as usize];
                     let mut colours = [0; LANES];
                     colours.iter_mut().zip(entries).for_each(|(out, entry)| *out = rgb(colour(entry)));
+                    // A sink that takes batches needs no words.
                     if !out.triangles(&expressions.batch(entries.len(), colours)) {
                         let words = out.words();
                         for (i, entry) in entries.iter().enumerate() {
@@ -355,6 +365,7 @@ impl RegionWords {
                         }
                     }
                 }
+                // A clipped triangle is clipped again to find its piece.
                 SetupBatch::Clipped(entry) => {
                     let triangle = list.triangle(entry.triangle as usize);
                     let piece = pick(entry, |sink| transform.phong(&triangle, &mut stats, sink));
@@ -375,6 +386,7 @@ impl RegionWords {
         let list = self.pass.share().list();
         let mut stats = SetupStats::default();
         for (place, transform) in self.pass.drawn() {
+            // Spheres are sorted by number, so a structure's spheres are consecutive.
             let end = place.structure.spheres.end;
             let (here, rest) = numbers.split_at(numbers.partition_point(|number| (*number as usize) < end));
             numbers = rest;
@@ -392,14 +404,15 @@ impl RegionWords {
     }
 }
 
-/// A layout that lacks what a command needs is refused when the machine is configured.
+/// Appends the words of a command. The machine's configuration rejects layouts that lack a field of a command.
 fn append(command: &Command, layout: &Layout, out: &mut Vec<Word>) {
     let encoded = command.encode(layout, out);
     debug_assert!(encoded.is_ok(), "{encoded:?}");
 }
 
-/// Light and highlight in the formats of the command; the eye looks along -z. Nothing is lit without a light, and what is matte has no
-/// highlight.
+/// Converts light and highlight to the formats of the shading command. The eye looks along -z.
+///
+/// Without a light all intensities are zero. Matte surfaces have no highlight.
 #[must_use]
 pub fn shade(light: Option<&Light>, is_matte: bool) -> Shade {
     let Some(light) = light else { return Shade::default() };
@@ -414,20 +427,20 @@ pub fn shade(light: Option<&Light>, is_matte: bool) -> Shade {
     }
 }
 
-/// Entries of a bin in order.
+/// Iterator over batches of a bin's entries, in order.
 struct SetupBatches<'a> {
     entries: &'a [BinEntry],
     list: &'a DisplayList,
-    /// The structure's vertices with their colours or normals, and the number of the first of them.
+    /// The structure's vertices with their colours or normals.
     vertices: &'a [SurfaceVertex],
     first: usize,
     lanes: TriangleLanes<'a>,
 }
 
 enum SetupBatch<'a> {
-    /// Some that are set up together; those of which nothing is seen are among them.
+    /// Triangles that are set up together. Invisible triangles among them have placeholders.
     Unclipped(&'a [BinEntry], &'a TriangleLanes<'a>),
-    /// A piece of a triangle that was clipped.
+    /// A piece of a clipped triangle.
     Clipped(&'a BinEntry),
 }
 
@@ -444,7 +457,7 @@ impl SetupBatches<'_> {
                 break;
             }
         }
-        // Where the first needs clipping, it comes alone.
+        // If the first entry needs clipping, it forms a batch of its own.
         let (now, later) = self.entries.split_at(self.lanes.len().max(1).min(self.entries.len()));
         self.entries = later;
         match now {
@@ -455,7 +468,7 @@ impl SetupBatches<'_> {
     }
 }
 
-/// The piece of an entry among those that clipping hands to the sink; `None` where nothing is seen.
+/// Returns the entry's piece among the pieces that `clip` produces; `None` if the triangle is invisible.
 #[cold]
 fn pick<T>(entry: &BinEntry, clip: impl FnOnce(&mut dyn FnMut(T))) -> Option<T> {
     let mut pieces = Vec::new();
@@ -471,7 +484,7 @@ fn phong_triangle(t: PhongTriangle) -> PhongTriangleCommand {
     PhongTriangleCommand { edges: t.edges, depth: t.z, normal: t.normal, colour: rgb(t.colour) }
 }
 
-/// The command of a sphere with Gouraud shading.
+/// Returns the command of a sphere with Gouraud shading.
 #[must_use]
 pub fn gouraud_sphere(s: &GouraudSphere) -> Command {
     Command::Sphere(SphereCommand {
@@ -489,23 +502,23 @@ fn phong_sphere(s: &PhongSphere) -> Command {
     Command::PhongSphere(PhongSphereCommand { body: body(&s.setup), normal: s.normal, colour: rgb(s.colour) })
 }
 
-/// A triangle of which nothing is seen: its edges exclude every pixel.
+/// A command of an invisible triangle: its edges exclude every pixel.
 const NOWHERE: TriangleCommand =
     TriangleCommand { edges: [Linear::constant(-1); 3], depth: Linear::constant(0), colour: [Linear::constant(0); 3] };
 const PHONG_NOWHERE: PhongTriangleCommand =
     PhongTriangleCommand { edges: NOWHERE.edges, depth: NOWHERE.depth, normal: NOWHERE.colour, colour: 0 };
 
-/// A unit vector in 1/1024.
+/// Converts a unit vector to units of 1/1024.
 fn fixed_direction(v: [f32; 3]) -> [i16; 3] {
     v.map(|c| (c * 1024.0) as i16)
 }
 
-/// A part of 0 to 1 in 1/256.
+/// Converts a share of 0 to 1 to units of 1/256.
 fn fixed_part(part: f32) -> u8 {
     (part * 256.0).clamp(0.0, 255.0) as u8
 }
 
-/// White of a highlight, of 255 (assumed: a slightly glossy surface).
+/// Intensity of a highlight, of at most 255 (assumed: a slightly glossy surface).
 const SPECULAR: u8 = 96;
 
 fn unit(v: [f32; 3]) -> [f32; 3] {
@@ -517,7 +530,7 @@ fn rgb([r, g, b]: [u8; 3]) -> u32 {
     u32::from(r) << 16 | u32::from(g) << 8 | u32::from(b)
 }
 
-/// Words of a message that only copies.
+/// Source of the words of a message that only copies.
 #[derive(Debug)]
 struct CopyWords {
     layout: Layout,

@@ -1,4 +1,4 @@
-//! The time of a TRANSFORM by the table of graphics-processor code, derived in this one place.
+//! The time of a TRANSFORM by the timing table of graphics-processor code.
 
 use crate::counts::PrimitiveCounts;
 use crate::list::DisplayList;
@@ -6,24 +6,24 @@ use crate::structure::DisplayStructure;
 use pxpl5_gp::GpTiming;
 use pxpl5_sim::Span;
 
-/// What a TRANSFORM does, counted; each takes the time that the table gives for it.
+/// Counts of the work of a TRANSFORM. Each count has a time in the timing table.
 ///
-/// Counts of a machine are whole (`u64`); an analytic model may have means (`f64`).
+/// The simulation uses whole counts (`u64`). An analytic model may use means (`f64`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TransformCost<N = u64> {
-    /// Passes over a display list that begin, at [`GpTiming::pass_ns`] each.
+    /// Number of started passes over a display list, at [`GpTiming::pass_ns`] each.
     pub passes: N,
-    /// Structures put in their places, once for each eye, at [`GpTiming::structure_ns`] each.
+    /// Number of placed structures, counted for each eye, at [`GpTiming::structure_ns`] each.
     pub structures: N,
-    /// Of these, those that have spheres, at [`GpTiming::sphere_view_ns`] each besides.
+    /// Number of placed structures with spheres, at an extra [`GpTiming::sphere_view_ns`] each.
     pub sphere_views: N,
-    /// Triangles transformed, seen or not, at [`GpTiming::triangle_ns`] each.
+    /// Number of transformed triangles, visible or not, at [`GpTiming::triangle_ns`] each.
     pub triangles: N,
-    /// Spheres transformed, seen or not, at [`GpTiming::sphere_ns`] each.
+    /// Number of transformed spheres, visible or not, at [`GpTiming::sphere_ns`] each.
     pub spheres: N,
-    /// Triangles that the clipper cuts, at [`GpTiming::guard_ns`] each besides.
+    /// Number of triangles that the clipper cuts, at an extra [`GpTiming::guard_ns`] each.
     pub clipped: N,
-    /// Entries made in bins, one for each region that gets a primitive's commands, at [`GpTiming::bin_entry_ns`] each.
+    /// Number of bin entries, one for each region that gets a primitive's commands, at [`GpTiming::bin_entry_ns`] each.
     pub entries: N,
 }
 
@@ -31,16 +31,16 @@ impl TransformCost {
     const NOTHING: Self =
         Self { passes: 0, structures: 0, sphere_views: 0, triangles: 0, spheres: 0, clipped: 0, entries: 0 };
 
-    /// The beginning of a pass over a display list, without its structures.
+    /// The cost of starting a pass over a display list, without its structures.
     pub const PASS: Self = Self { passes: 1, ..Self::NOTHING };
 
-    /// Primitives transformed, without the beginning of their pass and without entries in bins.
+    /// Returns the cost of transforming primitives, without the start of the pass and without bin entries.
     #[must_use]
     pub const fn primitives(counts: PrimitiveCounts) -> Self {
         Self { triangles: counts.triangles as u64, spheres: counts.spheres as u64, ..Self::NOTHING }
     }
 
-    /// The beginning of a pass over some structures for one eye, before its first primitive.
+    /// Returns the cost of starting a pass over some structures for one eye, before its first primitive.
     #[must_use]
     pub fn beginning<'a>(structures: impl IntoIterator<Item = &'a DisplayStructure>) -> Self {
         structures.into_iter().fold(Self::PASS, |cost, structure| Self {
@@ -50,14 +50,15 @@ impl TransformCost {
         })
     }
 
-    /// A whole pass over a display list for one eye, of whose primitives so many are transformed, without entries in bins.
+    /// Returns the cost of a whole pass over a display list for one eye, without bin entries. `counts` are the
+    /// transformed primitives.
     #[must_use]
     pub fn pass_over(list: &DisplayList, counts: PrimitiveCounts) -> Self {
         let begin = Self::beginning(&list.structures);
         Self { triangles: counts.triangles.into(), spheres: counts.spheres.into(), ..begin }
     }
 
-    /// The processor's time in nanoseconds.
+    /// Returns the processor time in nanoseconds.
     #[must_use]
     pub const fn ns(self, timing: &GpTiming) -> u64 {
         timing.pass_ns * self.passes
@@ -69,7 +70,7 @@ impl TransformCost {
             + timing.bin_entry_ns * self.entries
     }
 
-    /// The processor's time, as the simulation spends it.
+    /// Returns the processor time as a span of simulated time.
     #[must_use]
     pub const fn span(self, timing: &GpTiming) -> Span {
         Span::from_ns(self.ns(timing))
@@ -77,7 +78,7 @@ impl TransformCost {
 }
 
 impl TransformCost<f64> {
-    /// The processor's mean time in nanoseconds; primitives are added before the beginning of the pass is, then entries.
+    /// Returns the mean processor time in nanoseconds.
     #[must_use]
     pub fn ns(self, timing: &GpTiming) -> f64 {
         let structures =
@@ -106,7 +107,7 @@ mod tests {
         ..GpTiming::PAPERS
     };
 
-    /// Three structures, the second of which has spheres.
+    /// Returns a list of three structures, of which the second has spheres.
     fn list() -> DisplayList {
         let structure =
             |spheres| DisplayStructure { triangles: 0..0, spheres, frame: ModelFrame::World, culling: Culling::None };
@@ -137,7 +138,7 @@ mod tests {
         assert_eq!(means.ns(&TIMING), 12_118.0);
     }
 
-    /// What was published speaks of a pass, whatever is in it.
+    /// The published time of a pass includes all of its structures.
     #[test]
     fn in_the_published_table_structures_are_part_of_the_pass() {
         let pass = TransformCost::pass_over(&list(), PrimitiveCounts::default());

@@ -1,6 +1,4 @@
-//! Numbers of primitives.
-
-/// Numbers of primitives or commands.
+/// Numbers of primitives or of their commands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PrimitiveCounts {
     /// Number of triangles, or of triangle commands.
@@ -10,13 +8,13 @@ pub struct PrimitiveCounts {
 }
 
 impl PrimitiveCounts {
-    /// Triangles and spheres together.
+    /// Returns the number of triangles and spheres together.
     #[must_use]
     pub const fn total(self) -> u32 {
         self.triangles + self.spheres
     }
 
-    /// Three corners of each triangle, and the centre of each sphere.
+    /// Returns the number of vertices: three corners of each triangle, and the centre of each sphere.
     #[must_use]
     pub const fn vertices(self) -> u64 {
         3 * self.triangles as u64 + self.spheres as u64

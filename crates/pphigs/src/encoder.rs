@@ -1,9 +1,9 @@
-//! How triangles become words.
+//! Encoder of triangle commands, chosen by the picture's shading.
 
 use crate::picture::{Picture, Shading};
 use pxpl5_renderer::{PhongTriangleEncoder, TriangleEncoder};
 
-/// Makes the words of a picture's triangles.
+/// Encoder of the triangle commands of a picture.
 #[derive(Debug)]
 pub(crate) enum Encoder {
     Gouraud(TriangleEncoder),
@@ -11,7 +11,8 @@ pub(crate) enum Encoder {
 }
 
 impl Encoder {
-    /// `None` where the layout cannot hold what they need, which is refused when the machine is configured.
+    /// Creates the encoder of a picture. Returns `None` if the layout lacks a field; the machine's configuration
+    /// rejects such layouts.
     pub(crate) fn for_picture(picture: &Picture) -> Option<Self> {
         match picture.shading {
             Shading::Gouraud | Shading::Precomputed => Some(Self::Gouraud(TriangleEncoder::new(&picture.layout))),

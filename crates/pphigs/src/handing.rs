@@ -1,7 +1,8 @@
-//! A bin handed over with its token, as work of a board: the messages that its region's commands make, as lists of pieces.
+//! Handover of a region's bin with its token, as work of a board: lists the messages of the region's commands as pieces
+//! of memory.
 //!
-//! The code is kernels/token.s. It walks through the entries that TRANSFORM's code left in the bin; the commands stay where they are.
-//! By the timing table each entry takes `token_entry_ns`.
+//! The code is kernels/token.s. It follows the bin's entries, which TRANSFORM's code has written. The commands are not
+//! moved. By the timing table each entry takes `token_entry_ns`.
 
 use crate::commands::RegionEnvelope;
 use crate::layout::{ENVELOPES, LISTS, LISTS_END, PIECES, TOKEN_CODE, TOKEN_PARAMETERS, bins};
@@ -13,32 +14,33 @@ use pxpl5_sim::Span;
 use pxpl5_wire::{MAX_MESSAGE_WORDS, RegionId, Word};
 use std::sync::{Arc, LazyLock};
 
-/// The bin of a region, handed over in its envelope.
+/// Work of handing over the bin of a region in its envelope.
 #[derive(Clone, Copy, Debug)]
 pub struct Handing<'a> {
-    /// The TRANSFORM that filled it.
+    /// The TRANSFORM that filled the bin.
     pub pass: &'a Pass,
-    /// Its bin context, 0 or 1.
+    /// Bin context, 0 or 1.
     pub context: u8,
-    /// Which of the views that share the context, 0 where there is one.
+    /// Index of the view among the views that share the context; 0 if there is only one.
     pub view: u8,
-    /// The region.
+    /// Region whose bin is handed over.
     pub region: RegionId,
-    /// What encloses its primitives.
+    /// Commands before and after the region's primitives.
     pub envelope: RegionEnvelope,
 }
 
-/// A message as the code lists it: addresses and lengths in words of its pieces.
+/// The pieces of one message: address and length in words of each.
 pub type MessagePieces = Vec<[Word; 2]>;
 
-/// Bytes of a piece, and of a message in the list of messages.
+/// Bytes of a piece in the list of pieces.
 pub(crate) const PIECE_BYTES: u32 = 8;
 pub(crate) const MESSAGE_BYTES: u32 = 16;
-/// Pieces that there is room for, besides what encloses a message: two for each of the messages, which hold 20 commands and more.
+/// Largest number of bin entries. Messages hold 20 commands or more, and each message needs two further pieces for its
+/// envelope.
 pub(crate) const MOST_ENTRIES: u32 = (LISTS_END - PIECES) / PIECE_BYTES * 9 / 10;
 const _: () = assert!((MOST_ENTRIES / 20 + 2) * MESSAGE_BYTES <= PIECES - LISTS, "room for the messages of so many");
 
-/// Instructions after which the code is taken to be endless: many times what it needs.
+/// Instruction limit, many times what the code needs. Code that exceeds the limit counts as endless.
 pub(crate) const BUDGET: u64 = 10_000;
 pub(crate) const BUDGET_OF_ENTRY: u64 = 1_000;
 
@@ -48,6 +50,7 @@ impl Work for Handing<'_> {
     }
 
     fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
+        // Only bins that code has filled can be handed over by code.
         let Some([triangle, sphere]) = self.pass.binned_words(processor.version()) else {
             return Ok(self.by_table(timing));
         };
@@ -60,6 +63,7 @@ impl Work for Handing<'_> {
                 available_bytes: MOST_ENTRIES * PIECE_BYTES,
             });
         }
+        // Lengths of commands and the envelope tell the code how to divide the bin into messages.
         let parameters = [&[triangle, sphere], self.enclosing().as_slice()].concat();
         processor.write(TOKEN_PARAMETERS, &parameters)?;
         let bins = bins(self.context, self.view);
@@ -69,7 +73,10 @@ impl Work for Handing<'_> {
 }
 
 impl Handing<'_> {
-    /// Addresses and words of what begins the region, every other message, and what ends it; words of a message of nothing.
+    /// Returns the parameters of the envelope.
+    ///
+    /// They are: address and words of the region's start, of every other message's start, and of the region's end; and
+    /// the words of an empty message.
     fn enclosing(&self) -> [Word; 7] {
         let words = |kind: CommandKind, is_there: bool| kind.words() * u32::from(is_there);
         let contexts = self.pass.picture().layout.plan().contexts > 1;
@@ -83,17 +90,17 @@ impl Handing<'_> {
         [at_begin, begin, at_again, again, at_end, end, nothing]
     }
 
-    /// The messages that the last call of the code has listed.
+    /// Reads the messages that the last call of the code has listed.
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault::Unmapped`] on a board that no code has run on.
+    /// [`ProcessorFault::Unmapped`] on a board that has not run the code.
     pub fn listed(processor: &Processor) -> Result<Vec<MessagePieces>, ProcessorFault> {
         listed(processor, processor.register(16))
     }
 }
 
-/// The first messages of the list of messages.
+/// Reads the first `count` messages from the list of messages.
 pub(crate) fn listed(processor: &Processor, count: u32) -> Result<Vec<MessagePieces>, ProcessorFault> {
     let message = |number: u32| {
         let bounds = processor.read(LISTS + number * MESSAGE_BYTES, 2)?;
@@ -104,12 +111,13 @@ pub(crate) fn listed(processor: &Processor, count: u32) -> Result<Vec<MessagePie
     (0..count).map(message).collect()
 }
 
-/// The source of what lists messages: of at most so many words before what ends a region, and of at most so many with that.
+/// Returns the source of the code that lists messages.
+///
+/// A message has at most `most` words without the end of a region, and at most `whole` words with it.
 pub(crate) fn token_source([most, whole]: [Word; 2]) -> String {
     format!("MOST = {most}\nWHOLE = {whole}\n{}", include_str!("../kernels/token.s"))
 }
 
-/// The program of all this.
 #[cfg(test)]
 pub(crate) fn program() -> Arc<Program> {
     Arc::clone(&PROGRAM)

@@ -1,7 +1,8 @@
-//! A dual display list as work of a board: each triangle's places in the views of a field's begin and end, and between them the commands
-//! of a strip.
+//! A dual display list as work of a board.
 //!
-//! The code is `ends.s`, `blend.s` and `between.s` of `pxpl5-geometry`, by rules of ours (kernels/between_rules.md).
+//! The code records each triangle's positions in the views of a field's start and end. Then it makes the commands of a
+//! strip for a view in between. The code is `ends.s`, `blend.s` and `between.s` of `pxpl5-geometry`; its rules are the
+//! project's own (kernels/between_rules.md).
 
 use crate::code::{BUDGET, Next, Programs, TRIANGLE_BYTES, budget, kept};
 use crate::layout::{BLENDED, BLENDED_ELEMENTS, CODE, DISPLAY_LIST, PARAMETERS, STACK};
@@ -19,33 +20,35 @@ use pxpl5_wire::Word;
 use std::ops::Range;
 use std::sync::{Arc, LazyLock, Mutex};
 
-/// Bytes of the record of a triangle, and of its corners in one view.
+/// Bytes of the record of a triangle in two views.
 const RECORD_BYTES: u32 = 4 * ENDS_WORDS as u32;
 const VIEW_BYTES: u32 = 4 * ENDS_VIEW_WORDS as u32;
 
-/// The places of all triangles in two views, kept in a part of memory.
+/// Work of recording the positions of all triangles in two views, in a part of memory.
 #[derive(Clone, Copy, Debug)]
 pub struct KeepingEnds<'a> {
-    /// The triangles.
+    /// Primitives of the graphics processor.
     pub share: &'a Share,
-    /// The views.
+    /// The first and the second view.
     pub views: [&'a FrameView; 2],
-    /// The picture that is made of both.
+    /// Picture that both views are drawn for.
     pub picture: Picture,
-    /// Where records go.
+    /// Part of memory that receives the records.
     pub part: MemoryPart,
 }
 
 impl KeepingEnds<'_> {
-    /// Runs the code on a board that holds the display list, from the beginning of both passes on; `None` for a picture that has no kernel.
+    /// Runs the code on a board that holds the display list, including the beginning of both passes.
+    ///
+    /// Returns `None` for a picture that has no kernel.
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault`] when the code does not come to its end, or has no room for the records.
+    /// [`ProcessorFault`] if the code does not end, or has no room for the records.
     pub fn run_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Option<Span>, ProcessorFault> {
         let n_triangles = self.share.counts().triangles;
         let records = self.part.checked(processor, self.share, RECORD_BYTES * n_triangles)?;
-        // Of a structure that is not drawn in one of the views no triangle has two places.
+        // Clear all records: triangles of a structure that one view does not draw must not count as recorded.
         processor.write(records, &vec![0; ENDS_WORDS * n_triangles as usize])?;
         let passes = self.views.map(|view| self.share.transform(view, 0, self.picture));
         let mut span = Span::ZERO;
@@ -65,41 +68,43 @@ impl KeepingEnds<'_> {
     }
 }
 
-/// The first of some triangles in the display list, how many there are, and the record of the first one.
+/// Returns the address of the first triangle, the number of triangles, and the address of the first triangle's record.
 const fn addresses(held: &Range<usize>, records: u32) -> [u32; 3] {
     let first = held.start as u32;
     [DISPLAY_LIST + first * TRIANGLE_BYTES, (held.end - held.start) as u32, records + first * RECORD_BYTES]
 }
 
-/// The triangles of a strip between two views, and all spheres, with their boxes.
+/// Work of making the commands of a strip for a view between two views: its triangles, and all spheres, with their
+/// boxes.
 #[derive(Clone, Copy, Debug)]
 pub struct Interpolating<'a> {
-    /// All primitives.
+    /// Primitives of the graphics processor.
     pub share: &'a Share,
-    /// The views, and one between them.
+    /// The first and the second view, whose triangles have been recorded.
     pub views: [&'a FrameView; 2],
-    /// The view between them that spheres, light, and what is clipped are seen from.
+    /// View in between, which is used for spheres, light and clipped triangles.
     pub between: &'a FrameView,
-    /// How much of the way from the first to the second it is.
+    /// Position between the first view (0) and the second view (1).
     pub part_of_way: f64,
-    /// Whether triangles are interpolated in the view, before the divide, and not on the screen.
+    /// True if triangles are interpolated in eye space before the divide, false if on the screen.
     pub in_view: bool,
-    /// The least and the greatest distance from the frame's top, 1/16 px, of what may be on the strip at any part of the way.
+    /// Least and greatest distance from the frame's top, in 1/16 px, of triangles that may be on the strip at any
+    /// position.
     pub near: [i32; 2],
-    /// The picture that it is a strip of.
+    /// Picture that contains the strip.
     pub picture: Picture,
-    /// Where the [places](KeepingEnds) in both views lie.
+    /// Part of memory with the [recorded positions](KeepingEnds).
     pub ends: MemoryPart,
-    /// Where the strip's commands go.
+    /// Part of memory that receives the strip's commands.
     pub commands: MemoryPart,
 }
 
 impl Interpolating<'_> {
-    /// Runs the code on a board that keeps the places in both views; `None` for a picture that has no kernel.
+    /// Runs the code on a board that holds the recorded positions. Returns `None` for a picture that has no kernel.
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault`] when the code does not come to its end, or has no room for the commands.
+    /// [`ProcessorFault`] if the code does not end, or has no room for the commands.
     pub fn run_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Option<Span>, ProcessorFault> {
         let pass = self.share.transform(self.between, 0, self.picture);
         let Some(kernel) = pass.kernel(processor.version()) else { return Ok(None) };
@@ -111,7 +116,7 @@ impl Interpolating<'_> {
         Ok(Some(blended + beginning + of_kernels))
     }
 
-    /// The matrices between those of the views: of the eye and the head, and of what has moved.
+    /// Interpolates the matrices of the views: those of the eyes and of the edited structures.
     fn blend(&self, processor: &mut Processor, kernel: Kernel) -> Result<Span, ProcessorFault> {
         let [from, to] = self.views.map(elements);
         let [low, high] = [self.part_of_way.to_bits(), self.part_of_way.to_bits() >> 32].map(|word| word as Word);
@@ -139,6 +144,7 @@ impl Interpolating<'_> {
         let [top, bottom] = self.near.map(|y| y as Word);
         let heads = pass.heads();
         let mut span = Span::ZERO;
+        // One call for each structure, with its own parameter block.
         for (place, transform, held) in pass.calls_of_triangles() {
             let kernel = Kernel { culls: place.structure.culling != Culling::None, ..kernel };
             let program = program(kernel);
@@ -155,14 +161,14 @@ impl Interpolating<'_> {
     }
 }
 
-/// The elements that are interpolated: projections are the same in both views.
+/// Returns the matrix elements to interpolate. Projections are left out, since both views have the same.
 fn elements(view: &FrameView) -> Vec<Word> {
     let of_eyes = view.eyes.iter().flat_map(|eye| [eye.world_to_eye, eye.head_to_eye]);
     let matrices = of_eyes.chain(view.edits.iter().map(|edit| edit.model));
     matrices.flat_map(|matrix| matrix.to_cols_array()).map(f32::to_bits).collect()
 }
 
-/// The program of all this for a kernel, with its clipper.
+/// Returns the program of all steps for a kernel, with its clipper.
 pub(crate) fn program(kernel: Kernel) -> Arc<Program> {
     static PROGRAMS: Programs<Kernel> = LazyLock::new(Mutex::default);
     kept(&PROGRAMS, kernel, |kernel| {
@@ -193,7 +199,8 @@ mod tests {
         FrameView { number: ViewNumber::FIRST, eyes: vec![eye], edits: edits.collect() }
     }
 
-    /// The last matrix of as many as memory has room for at once, and of more: `M0 (1 - s) + M1 s` in double precision, rounded once.
+    /// Tests the last matrix of a full chunk and of several chunks: `M0 (1 - s) + M1 s` in double precision, rounded
+    /// once.
     #[test]
     fn code_interpolates_matrices_as_double_precision_does() {
         let share = Share::new(Arc::new(DisplayList::default()), 0, 1);

@@ -1,4 +1,4 @@
-//! Where code and data lie in a board's memory.
+//! Addresses of code and data in a board's memory.
 //!
 //! ```text
 //!   0          1 MB                            ...                 8 MB
@@ -6,79 +6,79 @@
 //!   | table of bins, stack             | of context 0          |  of context 1  |
 //! ```
 
-/// Where the code of triangles begins, with its clipper; below are a processor's vectors.
+/// Address of the code for triangles, with its clipper. The processor's vectors are below it.
 pub(crate) const CODE: u32 = 0x1000;
-/// Where the code begins that decides which of six views a primitive is given to.
+/// Address of the code that selects the views of a primitive among six.
 pub(crate) const SORT_CODE: u32 = 0xB000;
-/// Where the code of edits and of a pass's beginning begins.
+/// Address of the code for edits and the beginning of a pass.
 pub(crate) const BEGIN_CODE: u32 = 0xC000;
-/// Where the code of spheres begins.
+/// Address of the code for spheres.
 pub(crate) const SPHERE_CODE: u32 = 0xE000;
-/// A kernel's parameter block.
+/// Address of a kernel's parameter block.
 pub(crate) const PARAMETERS: u32 = 0x1_0000;
-/// Where a kernel finds the end of each bin, and leaves it.
+/// Address of the table of bins, in which a kernel reads and updates the end of each bin.
 pub(crate) const BIN_TABLE: u32 = 0x1_0200;
-/// The parameter block of spheres.
+/// Address of the parameter block for spheres.
 pub(crate) const SPHERE_PARAMETERS: u32 = 0x1_0400;
-/// A kernel's stack frame; the clipper's lies below, and that of what calls kernels for runs of primitives.
+/// Address of a kernel's stack frame. The frames of the clipper and of the code for runs of primitives are below it.
 pub(crate) const STACK: u32 = 0x1_1400;
-/// The right eye's parameter block, of kernels that serve both eyes: behind a kernel's stack frame.
+/// Address of the right eye's parameter block, for kernels that serve both eyes.
 pub(crate) const RIGHT_PARAMETERS: u32 = 0x1_2500;
-/// The display list lies behind the first megabyte, which is the program's.
+/// Address of the display list, after the first megabyte, which belongs to the program.
 pub(crate) const DISPLAY_LIST: u32 = 1 << 20;
-/// Where a message of the host lies: matrices, edits.
+/// Address of a message from the host, with matrices or edits.
 pub(crate) const MESSAGE: u32 = 0x1_4000;
-/// Model matrices by structure, up to the bins of further views.
+/// Address of the model matrices, by structure.
 pub(crate) const MODELS: u32 = 0x1_6000;
-/// As [`BINS`], of further views that share a context: of each of them both contexts.
+/// Address of the bounds of bins, like [`BINS`], for further views that share a context. Each view has both contexts.
 const MORE_BINS: u32 = 0x7_D000;
-/// Where matrices end.
+/// Address at the end of the model matrices.
 pub(crate) const MODELS_END: u32 = BLENDED;
-/// Elements of matrices of two views and of one between them, and how many there is room for.
+/// Address of the matrix elements of two views and of the view between them.
 pub(crate) const BLENDED: u32 = 0x7_5000;
 pub(crate) const BLENDED_ELEMENTS: u32 = 1024;
-/// Where the code begins that finds what meets windows.
+/// Address of the code that finds the primitives in windows.
 pub(crate) const WINDOWS_CODE: u32 = 0x7_8000;
-/// The windows that are searched for, the rectangle around them first, and the picture's regions as windows.
+/// Address of the windows to search, preceded by the rectangle around them.
 pub(crate) const WINDOWS: u32 = 0x7_9000;
 pub(crate) const REGION_WINDOWS: u32 = 0x7_9C00;
-/// Upper left pixels of windows.
+/// Address of the upper left pixels of the windows.
 pub(crate) const WINDOW_PLACES: u32 = 0x7_AE00;
-/// Lists of what meets windows, as [`bins`] of a context.
+/// Address of the lists of primitives in windows, in the format of [`bins`].
 pub(crate) const WINDOW_LISTS: u32 = 0x7_B000;
-/// Where the passes lie that are kept, of each in a part of memory.
+/// Address of the records of kept passes, one for each part of memory.
 pub(crate) const KEPT: u32 = 0x7_B400;
-/// Bytes of that for one.
+/// Bytes of the record of a kept pass.
 pub(crate) const KEPT_BYTES: u32 = 32;
-/// Passes that there is room for.
+/// Largest number of kept passes.
 pub(crate) const MOST_KEPT: u32 = 16;
-/// Where the code begins that puts orders together.
+/// Address of the code that assembles orders.
 pub(crate) const ORDER_CODE: u32 = 0x7_B600;
-/// What an order says, and its views.
+/// Address of the head of an order.
 pub(crate) const ORDER_HEAD: u32 = 0x7_B800;
 pub(crate) const ORDER_VIEWS: u32 = 0x7_C000;
-/// Windows that are searched for at once.
+/// Largest number of windows in one search.
 pub(crate) const MOST_WINDOWS: u32 = 64;
 /// Bytes of a window.
 pub(crate) const WINDOW_BYTES: u32 = 32;
-/// Bytes at the end of memory for the entries of the windows of an order.
+/// Bytes at the end of memory for the entries of an order's windows.
 pub(crate) const ENTRY_BYTES: u32 = 4 * (LISTS_END - PIECES) / 8;
-/// Views whose bins may share a context: those of the faces of a cube.
+/// Largest number of views whose bins share a context: the faces of a cube.
 pub(crate) const MOST_VIEWS: u32 = 6;
-/// Where the bins of both contexts begin and end, as their tokens find them.
+/// Address of the bounds of the bins of both contexts, which the tokens read.
 const BINS: u32 = 0x1_2F00;
-/// Bytes of that for one context: the number of its spheres, and two addresses for each region.
+/// Bytes of the bounds of one context: the number of its spheres, and two addresses for each region.
 const BIN_BOUNDS_BYTES: u32 = 0x480;
-/// The parameter block of a token's code, the commands that enclose a region, and the code itself.
+/// Address of the parameter block for a token's code.
 pub(crate) const TOKEN_PARAMETERS: u32 = 0x1_3800;
 pub(crate) const ENVELOPES: u32 = 0x1_3900;
 pub(crate) const TOKEN_CODE: u32 = 0x1_3C00;
-/// Messages of a region that is handed over, and their pieces.
+/// Address of the list of messages of a region.
 pub(crate) const LISTS: u32 = 0x8_0000;
 pub(crate) const PIECES: u32 = 0x9_0000;
 pub(crate) const LISTS_END: u32 = pxpl5_gp::RING_MEMORY.start;
 
-/// Where the bins of a context begin and end, of the first view of those that share it or of a further one.
+/// Returns the address of the bounds of a context's bins. `view` is 0 for the first view that shares the context.
 pub(crate) fn bins(context: u8, view: u8) -> u32 {
     let context = u32::from(context % 2);
     match u32::from(view).checked_sub(1) {

@@ -1,6 +1,6 @@
-//! Display list and primitives as the code of the graphics processors holds them.
+//! Display list, primitives and TRANSFORM of the graphics processors.
 //!
-//! PPHIGS was the graphics library of Pixel-Planes 5. This crate is the part of it that both pipelines need:
+//! PPHIGS was the graphics library of Pixel-Planes 5. This crate models the part of it that all pipelines need:
 //!
 //! ```text
 //!   DisplayList --deal--> Share --transform(FrameView, eye)--> Pass --command_list(region)--> CommandList
@@ -9,18 +9,19 @@
 //! ```
 //!
 //! - [`DisplayList`]: triangles, spheres, and structures with a model matrix each.
-//! - [`Share`]: every n-th primitive, as primitives are dealt to the GPs round-robin (TR94).
-//! - [`FrameView`]: what the host sends for a frame: viewing transforms and edits, as words.
-//! - [`send_as_tracked`]: the host of a pipeline that takes the newest view when it needs one.
-//! - [`Pass`]: one TRANSFORM: which primitives touch which regions, counted at once; command words are made when somebody
-//!   wants pixels, from the same transformed vertices.
-//! - [`TransformCost`]: what a TRANSFORM does, counted, and its time by table.
-//! - [`Transforming`]: the same as work of a board, in time by table or by i860 code that makes the same words.
-//! - [`Surrounding`]: six of them around an eye, as code.
-//! - [`Handing`]: a region's bin handed over to the ring, as such work.
-//! - [`Searching`]: what meets rectangles of the screen that no bin was made for, found and handed over, as such work.
-//! - [`KeepingEnds`] and [`Interpolating`]: triangles in two views, and their commands for a strip between these, as code.
-//! - [`put_together`]: an order of a master, as code.
+//! - [`Share`]: every n-th primitive. The GPs get primitives round-robin (TR94).
+//! - [`FrameView`]: the host's message for a frame: viewing transforms and edits, as words.
+//! - [`send_as_tracked`]: the host program of a pipeline that takes the newest view when it needs one.
+//! - [`Pass`]: the result of one TRANSFORM. It counts the primitives of each region immediately. It computes command
+//!   words on demand, from the same transformed vertices.
+//! - [`TransformCost`]: counts of the work of a TRANSFORM, and its time by the timing table.
+//! - [`Transforming`]: TRANSFORM as work of a board, timed by the table or run as i860 code that makes the same words.
+//! - [`Surrounding`]: TRANSFORM of six views around an eye, as i860 code.
+//! - [`Handing`]: handover of a region's bin to the ring, as work of a board.
+//! - [`Searching`]: search and handover of the primitives in rectangles of the screen without bins, as work of a board.
+//! - [`KeepingEnds`] and [`Interpolating`]: positions of triangles in two views, and commands for a strip of a view in
+//!   between, as i860 code.
+//! - [`put_together`]: assembly of a master's order, as i860 code.
 //!
 //! **Not modelled:** traversal of nested structures, picking, text, and PPHIGS's other primitives.
 //!

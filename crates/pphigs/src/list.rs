@@ -1,4 +1,4 @@
-//! The display list and its division among GPs.
+//! The display list and its division among the graphics processors (GPs).
 
 use crate::counts::PrimitiveCounts;
 use crate::placed::RecentViews;
@@ -9,47 +9,49 @@ use pxpl5_geometry::{Triangle, WorldSphere};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Everything to be drawn, in structures that divide it in order.
+/// All primitives to draw, divided into consecutive structures.
 #[derive(Clone, Debug, Default)]
 pub struct DisplayList {
-    /// Positions of the corners in their structure's coordinates.
+    /// Positions of the vertices in their structure's coordinates.
     pub positions: Vec<Vec3>,
-    /// Normals at the corners, as many as positions.
+    /// Normals at the vertices, as many as positions.
     pub normals: Vec<Vec3>,
-    /// Red, green and blue at the corners, as many as positions.
+    /// Red, green and blue at the vertices, as many as positions.
     pub colours: Vec<[u8; 3]>,
-    /// Each triangle's corners, by their places among the positions.
+    /// Corners of each triangle, as indices of `positions`.
     pub triangles: Vec<[u32; 3]>,
     /// Spheres in their structure's coordinates.
     pub spheres: Vec<WorldSphere>,
-    /// The structures, whose triangles and spheres follow one another.
+    /// Structures, whose triangles and spheres follow one another.
     pub structures: Vec<DisplayStructure>,
-    /// Towards the light, unit length, in each structure's frame.
+    /// Unit vector towards the light, in each structure's frame.
     pub towards_light: Vec3,
-    /// Part of the colour that is seen in shadow, 0 to 1.
+    /// Share of the colour that is visible in shadow, 0 to 1.
     pub ambient: f32,
-    /// Part of the colour added where the light falls square, 0 to 1.
+    /// Share of the colour that perpendicular light adds, 0 to 1.
     pub diffuse: f32,
-    /// Red, green, blue where nothing is drawn.
+    /// Background colour: red, green, blue.
     pub background: [u8; 3],
-    /// True if surfaces have no highlight. A highlight needs one direction of the eye for a whole picture.
+    /// True if surfaces have no highlight. A highlight needs a single eye direction for the whole picture.
     pub is_matte: bool,
-    /// What many graphics processors compute alike, kept for the next one; empty at first. Who changes the list empties it.
+    /// Cache of computations common to all graphics processors. Code that changes the list must empty the cache.
     pub recent: RecentViews,
 }
 
 impl DisplayList {
-    /// The same list with each structure's vertices in a row, in the order in which its triangles first name them: what is drawn together
-    /// stands together in memory. A vertex that several structures name is there for each, one that none names is not.
+    /// Sorts each structure's vertices in the order in which its triangles use them, for locality in memory.
+    ///
+    /// A vertex of several structures is duplicated. An unused vertex is dropped.
     ///
     /// # Panics
     ///
-    /// If a structure or a triangle names what does not exist.
+    /// If a structure or a triangle refers to a missing triangle or vertex.
     #[must_use]
     pub fn with_vertices_in_order(mut self) -> Self {
         let mut order: Vec<usize> = Vec::with_capacity(self.positions.len());
-        // By old number, of the structure that named it last.
+        // By old index: the new index in the last structure that used the vertex.
         let mut renumbered = vec![0; self.positions.len()];
+        // Give every vertex a new number at its first use in each structure.
         for structure in &self.structures {
             let first = order.len();
             for corner in self.triangles[structure.triangles.clone()].as_flattened_mut() {
@@ -69,8 +71,10 @@ impl DisplayList {
         self
     }
 
-    /// The same list with colours as its light makes them, for [`Shading::Precomputed`](crate::Shading::Precomputed): ambient, and diffuse on
-    /// the side of the normal. Every structure counts as standing where it does before any edit. Spheres keep their colours.
+    /// Replaces the colours by lit colours, for [`Shading::Precomputed`](crate::Shading::Precomputed).
+    ///
+    /// A colour gets ambient light, and diffuse light on the side of its normal. Structures are taken at their unedited
+    /// places. Spheres keep their colours.
     #[must_use]
     pub fn with_precomputed_colours(mut self) -> Self {
         let towards_light = self.towards_light.to_array().map(f64::from);
@@ -87,11 +91,11 @@ impl DisplayList {
         self
     }
 
-    /// A triangle with everything at its corners.
+    /// Returns a triangle with the values at its corners.
     ///
     /// # Panics
     ///
-    /// If there is no triangle of this number, or it names a corner that does not exist.
+    /// If there is no triangle of this number, or it refers to a missing vertex.
     #[must_use]
     pub fn triangle(&self, number: usize) -> Triangle {
         let corners = self.triangles[number].map(|i| i as usize);
@@ -102,27 +106,28 @@ impl DisplayList {
         }
     }
 
-    /// The positions of a triangle's corners.
+    /// Returns the positions of a triangle's corners.
     ///
     /// # Panics
     ///
-    /// As [`DisplayList::triangle`].
+    /// If there is no triangle of this number, or it refers to a missing vertex.
     #[must_use]
     pub fn corners(&self, number: usize) -> [Vec3; 3] {
         self.triangles[number].map(|i| self.positions[i as usize])
     }
 }
 
-/// The primitives that one GP holds: numbers `first`, `first + step`, ... of triangles and of spheres; or some of them
-/// in a row.
+/// The primitives of one graphics processor (GP), or a consecutive part of them.
+///
+/// The GP holds the triangles and the spheres with numbers `first`, `first + step`, `first + 2 step` and so on.
 #[derive(Clone, Debug)]
 pub struct Share {
     pub(crate) list: Arc<DisplayList>,
     first: usize,
     step: usize,
-    /// Which of the held triangles, counted in held ones.
+    /// Range of triangles, as indices among those that the GP holds.
     triangles: Range<usize>,
-    /// Which of the held spheres.
+    /// Range of spheres, as indices among those that the GP holds.
     spheres: Range<usize>,
 }
 
@@ -133,11 +138,11 @@ impl Share {
     /// Bytes of a sphere in a GP's memory: centre, radius, colour, header (assumed).
     pub const SPHERE_BYTES: u64 = 32;
 
-    /// GP `index` of `of`; dealt round-robin.
+    /// Returns the share of GP `index` of `of` GPs; primitives are distributed round-robin.
     ///
     /// # Panics
     ///
-    /// If `of` is zero: a configuration that was not checked.
+    /// If `of` is zero, which a checked configuration excludes.
     #[must_use]
     pub fn new(list: Arc<DisplayList>, index: usize, of: usize) -> Self {
         assert!(of > 0, "primitives need a graphics processor");
@@ -146,25 +151,26 @@ impl Share {
         Self { list, first: index, step: of, triangles, spheres }
     }
 
-    /// The whole display list, of which this is a share.
+    /// Returns the whole display list that this share belongs to.
     #[must_use]
     pub fn list(&self) -> &Arc<DisplayList> {
         &self.list
     }
 
-    /// The same primitives of another list, whose structures divide it alike: with vertices in other places.
+    /// Returns the same share of another list. The other list must have the same structures, but may order vertices
+    /// differently.
     #[must_use]
     pub fn with_list(&self, list: Arc<DisplayList>) -> Self {
         Self { list, ..self.clone() }
     }
 
-    /// Numbers of primitives that the GP holds of it.
+    /// Returns the numbers of primitives in the share.
     #[must_use]
     pub fn counts(&self) -> PrimitiveCounts {
         PrimitiveCounts { triangles: self.triangles.len() as u32, spheres: self.spheres.len() as u32 }
     }
 
-    /// The same of the structures that are chosen by their place in the display list.
+    /// Returns the numbers of primitives in the chosen structures. `chosen` is indexed by structure.
     #[must_use]
     pub fn chosen_counts(&self, chosen: &[bool]) -> PrimitiveCounts {
         let mut counts = PrimitiveCounts::default();
@@ -175,7 +181,7 @@ impl Share {
         counts
     }
 
-    /// The share cut into pieces of at most `size` primitives, triangles first.
+    /// Divides the share into clumps of at most `size` primitives, triangles first.
     ///
     /// # Panics
     ///
@@ -192,35 +198,35 @@ impl Share {
         })
     }
 
-    /// No primitive of the same display list.
+    /// Returns an empty share of the same display list.
     #[must_use]
     pub fn nothing(&self) -> Self {
         Self { triangles: 0..0, spheres: 0..0, ..self.clone() }
     }
 
-    /// Bytes that the primitives take in the GP's memory.
+    /// Returns the bytes that the primitives take in the GP's memory.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         let PrimitiveCounts { triangles, spheres } = self.counts();
         u64::from(triangles) * Self::TRIANGLE_BYTES + u64::from(spheres) * Self::SPHERE_BYTES
     }
 
-    /// Numbers of all triangles that the GP holds, also where this is a clump of them.
+    /// Returns the numbers of all triangles that the GP holds, even if this share is only a clump of them.
     pub(crate) fn all_triangles(&self) -> impl ExactSizeIterator<Item = usize> + use<> {
         (self.first..self.list.triangles.len()).step_by(self.step)
     }
 
-    /// The same of spheres.
+    /// Returns the numbers of all spheres that the GP holds, even if this share is only a clump of them.
     pub(crate) fn all_spheres(&self) -> impl ExactSizeIterator<Item = usize> + use<> {
         (self.first..self.list.spheres.len()).step_by(self.step)
     }
 
-    /// Places of the held triangles of `of` among all that the GP holds.
+    /// Returns the indices of the share's triangles in the range `of`, among all triangles that the GP holds.
     pub(crate) fn held_places(&self, of: &Range<usize>) -> Range<usize> {
         self.places(&self.triangles, of)
     }
 
-    /// The same of spheres.
+    /// Returns the indices of the share's spheres in the range `of`, among all spheres that the GP holds.
     pub(crate) fn held_places_of_spheres(&self, of: &Range<usize>) -> Range<usize> {
         self.places(&self.spheres, of)
     }
@@ -233,7 +239,7 @@ impl Share {
         self.held(&self.spheres, of)
     }
 
-    /// Numbers of the primitives of `of` that are among the held ones `positions`.
+    /// Returns the numbers of the primitives in `of` that are held at the given indices.
     fn held(&self, positions: &Range<usize>, of: &Range<usize>) -> impl ExactSizeIterator<Item = usize> + use<> {
         let first = self.first;
         let step = self.step;
@@ -247,12 +253,12 @@ impl Share {
     }
 }
 
-/// How many of the first `all` primitives GP `index` of `gps` holds, dealt round-robin.
+/// Returns how many of the first `all` primitives GP `index` of `gps` holds.
 fn dealt(all: usize, index: usize, gps: usize) -> usize {
     all.saturating_sub(index).div_ceil(gps)
 }
 
-/// The elements of a range from its `from`-th to before its `to`-th, as far as there are any.
+/// Returns the elements of a range from index `from` to before index `to`, as far as they exist.
 fn part(range: &Range<usize>, from: usize, to: usize) -> Range<usize> {
     (range.start + from).min(range.end)..(range.start + to).min(range.end)
 }
@@ -279,7 +285,7 @@ mod tests {
     fn vertices_in_order_leave_all_triangles_as_they_were() {
         let structure =
             |triangles| DisplayStructure { triangles, spheres: 0..0, frame: ModelFrame::World, culling: Culling::None };
-        // Vertex 0 is named last, 3 and 4 by both structures, 5 by none.
+        // Vertex 0 is used last, vertices 3 and 4 by both structures, vertex 5 by no structure.
         let list = DisplayList {
             positions: (0..7).map(|i| Vec3::splat(i as f32)).collect(),
             normals: (0..7).map(|i| Vec3::splat(-i as f32)).collect(),

@@ -1,4 +1,5 @@
-//! A master's order put together, as work of a board: kernels/order.s, by rules of ours (kernels/order_rules.md).
+//! Assembly of a master's order, as work of a board: kernels/order.s, by the project's own rules
+//! (kernels/order_rules.md).
 
 use crate::layout::{MESSAGE, ORDER_CODE, ORDER_HEAD, ORDER_VIEWS};
 use i860::Program;
@@ -7,17 +8,18 @@ use pxpl5_sim::Span;
 use pxpl5_wire::{MAX_MESSAGE_WORDS, Word};
 use std::sync::{Arc, LazyLock};
 
-/// Instructions after which the code is taken to be endless: twice those of the longest message.
+/// Instruction limit, twice the need of the longest message. Code that exceeds the limit counts as endless.
 const BUDGET: u64 = 12 * MAX_MESSAGE_WORDS as u64;
 
-/// Words of what an order says that there is room for.
+/// Largest number of words of an order's head.
 const HEAD_WORDS: usize = (ORDER_VIEWS - ORDER_HEAD) as usize / 4;
 
-/// Puts an order together on a board, and gives the time that it takes: what it says, `head` words of it at the beginning, and views.
+/// Assembles an order on a board, and returns the time. The first `head` words of the order are its head, the rest are
+/// views.
 ///
 /// # Errors
 ///
-/// [`ProcessorFault`] when the code does not come to its end, or the order is longer than a message.
+/// [`ProcessorFault`] if the code does not end, or the order is longer than a message.
 pub fn put_together(processor: &mut Processor, order: &[Word], head: usize) -> Result<Span, ProcessorFault> {
     let (head, views) = order.split_at(head.min(order.len()));
     if order.len() > MAX_MESSAGE_WORDS as usize || head.len() > HEAD_WORDS {
@@ -33,7 +35,6 @@ pub fn put_together(processor: &mut Processor, order: &[Word], head: usize) -> R
     processor.call(&PROGRAM, "order", &[of_head.as_slice(), &of_views].concat(), BUDGET)
 }
 
-/// The program of all this.
 #[cfg(test)]
 pub(crate) fn program() -> Arc<Program> {
     Arc::clone(&PROGRAM)
@@ -51,7 +52,7 @@ mod tests {
     use pxpl5_gp::CodeVersion;
     use pxpl5_wire::NodeId;
 
-    /// The buffer holds exactly the order, and an order of nothing but views or none at all is none.
+    /// The buffer holds exactly the order. An order without a head takes no time.
     #[test]
     fn an_order_lies_in_the_buffer_word_for_word() {
         let mut processor = Processor::new(NodeId(1), 8 << 20, CodeVersion::Compiled, i860::Config::cycle());
@@ -59,7 +60,7 @@ mod tests {
             let order: Vec<Word> = (0..words).map(|word| 0x1000_0000 + 7 * word).collect();
             processor.write(MESSAGE, &vec![0; order.len() + 1]).expect("in memory");
             let span = put_together(&mut processor, &order, head).expect("it returns");
-            // A word is six instructions, the last of which is a branch that takes two clocks more when it is taken.
+            // Each word takes six instructions. The last one is a branch, which takes two more clocks when taken.
             assert!(span >= Processor::CLOCK * (6 * u64::from(words)), "{span:?} for {words} words");
             assert_eq!(processor.read(MESSAGE, order.len()).expect("in memory"), order);
             assert_eq!(processor.read(MESSAGE + 4 * words, 1).expect("in memory"), [0], "{words} words and no more");

@@ -13,75 +13,78 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-/// A screen triangle of a bin: what its commands are made from.
+/// A screen triangle of a bin.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BinEntry {
-    /// Number in the display list.
+    /// Number of the triangle in the display list.
     pub(crate) triangle: u32,
-    /// Which of the pieces that it was clipped to, 0 if it was not; `None` where nothing of it is seen.
+    /// Index of the clipped piece, 0 for an unclipped triangle; `None` for an invisible triangle.
     pub(crate) piece: Option<u8>,
 }
 
-/// What touches one region, by rising numbers in the display list.
+/// Primitives that touch one region, in the order of the display list.
 #[derive(Debug)]
 pub(crate) struct Bin {
     pub(crate) triangles: Vec<BinEntry>,
     pub(crate) spheres: Vec<u32>,
 }
 
-/// Bins of one eye: for each region the screen primitives that touch it.
+/// Result of the TRANSFORM for one eye: for each region the screen primitives that touch it.
 ///
-/// Times need their numbers alone. What is in them is found again, from the regions touched, when somebody first asks.
+/// Simulated time needs only their numbers. The content of the bins is computed from the touched regions when it is
+/// first read.
 #[derive(Debug)]
 pub struct Pass {
     walk: Walk,
     found: Found,
     stats: SetupStats,
-    /// By region.
+    /// Bins by region, filled at the first use.
     bins: OnceLock<Vec<Bin>>,
-    /// Where all regions get all triangles.
+    /// Triangles that touch each region, computed at the first use if every region gets all triangles.
     touching: OnceLock<Touching>,
-    /// Makes the words of triangles, once somebody wants them.
+    /// Encoder of triangle commands, created at the first use.
     encoder: OnceLock<Option<Encoder>>,
 }
 
-/// What binning goes through.
+/// Input of the binning: the primitives to go through.
 #[derive(Debug)]
 struct Walk {
     share: Share,
     placed: Arc<[PlacedStructure]>,
     picture: Picture,
-    /// Structures whose primitives are taken, by their place in the display list; `None` for all.
+    /// True for each structure to include, by its index in the display list; `None` includes all.
     chosen: Option<Box<[bool]>>,
 }
 
-/// Who takes what binning finds, in the order of the display list, structure by structure.
+/// A consumer of the binning results, which arrive structure by structure in the order of the display list.
 trait Take {
-    /// A triangle that touches one region alone.
+    /// Takes a triangle that touches only one region.
     fn triangle_in(&mut self, region: RegionId, triangle: u32);
 
-    /// What is left of a triangle, or a piece of it, and the regions that it touches, whose bins get it unless all do.
+    /// Takes a triangle or a piece of it, and the regions that it touches.
+    ///
+    /// The entry belongs to the bins of these regions, or to all bins under [`RegionBinning::All`].
     fn piece(&mut self, touched: RegionMask, entry: BinEntry);
 
-    /// A sphere.
+    /// Takes a sphere and the regions that it touches.
     fn sphere(&mut self, regions: RegionMask, number: u32);
 }
 
-/// Numbers of what was found.
+/// Numbers of primitives found by the binning.
 #[derive(Debug)]
 struct Found {
-    /// By region.
+    /// Entries of each region's bin.
     counts: Vec<PrimitiveCounts>,
     on_screen: PrimitiveCounts,
-    /// Triangles and spheres that are in some bin; of chosen structures only.
+    /// Numbers in the display list of the triangles and spheres in any bin; recorded for chosen structures only.
     touching: Option<[Vec<u32>; 2]>,
 }
 
-/// Primitives being counted.
+/// A consumer that counts primitives.
 struct Counting {
-    /// By region, triangles that touch it alone.
+    /// For each region, the triangles that touch only that region.
     alone: [u32; RegionMask::CAPACITY as usize],
-    /// By region, all else.
+    /// For each region, all other primitives.
     counts: Vec<PrimitiveCounts>,
     on_screen: PrimitiveCounts,
     binning: RegionBinning,
@@ -129,7 +132,7 @@ impl Take for Counting {
     }
 }
 
-/// The same, and the numbers of triangles and of spheres that are in some bin are kept.
+/// A consumer that counts primitives and also records the numbers of those in any bin.
 struct Noting {
     counting: Counting,
     touching: [Vec<u32>; 2],
@@ -154,7 +157,7 @@ impl Take for Noting {
     }
 }
 
-/// Bins being filled.
+/// A consumer that fills bins.
 struct Filling {
     bins: Vec<Bin>,
     binning: RegionBinning,
@@ -180,10 +183,10 @@ impl Take for Filling {
     }
 }
 
-/// The triangles that touch each region, where all regions get all of them.
+/// A consumer that collects the triangles that touch each region, while every region's bin gets all triangles.
 #[derive(Debug)]
 struct Touching {
-    /// By region, with the place in the bin.
+    /// Entries by region, each with its place in the bin.
     entries: Vec<Vec<(u32, BinEntry)>>,
     n_triangles: u32,
 }
@@ -203,7 +206,7 @@ impl Take for Touching {
 }
 
 impl Walk {
-    /// The structures whose primitives are taken.
+    /// Returns the structures to include.
     fn taken(&self) -> impl Iterator<Item = &PlacedStructure> {
         let is_chosen = |structure: usize| self.chosen.as_ref().is_none_or(|all| all.get(structure) == Some(&true));
         self.placed.iter().enumerate().filter(move |(structure, _)| is_chosen(*structure)).map(|(_, place)| place)
@@ -254,20 +257,20 @@ impl Walk {
                 take.piece(RegionMask::EMPTY, BinEntry { triangle, piece: None });
             }
         }
-        // Most triangles by far, counted together.
+        // Triangles in one region are the common case, so they are counted together.
         stats.triangles += in_one_region;
         stats.screen_triangles += in_one_region;
     }
 }
 
 impl Share {
-    /// One TRANSFORM of all held primitives for one eye.
+    /// Runs one TRANSFORM of all primitives in the share for one eye.
     #[must_use]
     pub fn transform(&self, view: &FrameView, eye: usize, picture: Picture) -> Arc<Pass> {
         Arc::new(Pass::new(self.clone(), view, eye, picture, None))
     }
 
-    /// The same of the primitives of some structures: those whose place in the display list is chosen.
+    /// Runs one TRANSFORM of the primitives of the chosen structures. `chosen` is indexed by structure.
     #[must_use]
     pub fn transform_chosen(&self, view: &FrameView, eye: usize, picture: Picture, chosen: &[bool]) -> Arc<Pass> {
         Arc::new(Pass::new(self.clone(), view, eye, picture, Some(chosen)))
@@ -288,7 +291,7 @@ impl Pass {
         Self { walk, found, stats, bins: OnceLock::new(), touching: OnceLock::new(), encoder: OnceLock::new() }
     }
 
-    /// What is in the bins, found again.
+    /// Computes the content of the bins by a second binning.
     fn filled(&self) -> Vec<Bin> {
         let room = |counts: &PrimitiveCounts| Bin {
             triangles: Vec::with_capacity(counts.triangles as usize),
@@ -306,55 +309,56 @@ impl Pass {
         touching
     }
 
-    /// Numbers of entries in a region's bin.
+    /// Returns the numbers of entries in a region's bin.
     #[must_use]
     pub fn counts(&self, region: RegionId) -> PrimitiveCounts {
         self.found.counts[usize::from(region.0)]
     }
 
-    /// Primitives on the screen, each counted once.
+    /// Returns the numbers of primitives on the screen, each counted once.
     #[must_use]
     pub const fn screen_counts(&self) -> PrimitiveCounts {
         self.found.on_screen
     }
 
-    /// Entries of all bins together.
+    /// Returns the number of entries in all bins.
     #[must_use]
     pub fn entries(&self) -> u64 {
         self.found.counts.iter().map(|counts| u64::from(counts.total())).sum()
     }
 
-    /// Numbers of primitives transformed, seen or not.
+    /// Returns the numbers of transformed primitives, visible or not.
     #[must_use]
     pub fn transformed(&self) -> PrimitiveCounts {
         self.walk.share.counts()
     }
 
-    /// Triangles and spheres that are in some bin, by rising numbers in the display list; `None` of a pass over all structures.
+    /// Returns the triangles and spheres in any bin, in the order of the display list. Returns `None` for a pass over
+    /// all structures.
     #[must_use]
     pub const fn touching(&self) -> Option<&[Vec<u32>; 2]> {
         self.found.touching.as_ref()
     }
 
-    /// What happened to the primitives.
+    /// Returns the counts of dropped, clipped and limited primitives.
     #[must_use]
     pub const fn stats(&self) -> SetupStats {
         self.stats
     }
 
-    /// The picture that is made of the view.
+    /// Returns the picture that the view is drawn for.
     #[must_use]
     pub const fn picture(&self) -> &Picture {
         &self.walk.picture
     }
 
-    /// Red, green and blue where nothing is drawn, 0 to 255 each.
+    /// Returns the background colour: red, green and blue, 0 to 255 each.
     #[must_use]
     pub fn background(&self) -> [u8; 3] {
         self.walk.share.list.background
     }
 
-    /// The light as the first structure's eye sees it.
+    /// Returns the light in the eye coordinates of the first structure.
     #[must_use]
     pub fn light(&self) -> Option<&Light> {
         self.walk.placed.first().map(|placed| &placed.light)
@@ -376,12 +380,14 @@ impl Pass {
         &self.bins.get_or_init(|| self.filled())[usize::from(region.0)]
     }
 
-    /// Triangles of some places in a region's bin.
+    /// Returns the triangles at some places in a region's bin.
     pub(crate) fn triangles_in(&self, region: RegionId, places: &Range<u32>) -> &[BinEntry] {
         &self.bin(region).triangles[places.start as usize..places.end as usize]
     }
 
-    /// Those of them that touch the region; all of them, unless all regions get everything.
+    /// Returns the triangles at some places in a region's bin that touch the region.
+    ///
+    /// Under [`RegionBinning::Touched`] these are all triangles at the places.
     pub(crate) fn triangles_touching(&self, region: RegionId, places: &Range<u32>) -> Cow<'_, [BinEntry]> {
         if self.walk.picture.binning == RegionBinning::Touched {
             return Cow::Borrowed(self.triangles_in(region, places));
@@ -391,12 +397,12 @@ impl Pass {
         all[from..to].iter().map(|entry| entry.1).collect()
     }
 
-    /// Structures in order, with their transforms.
+    /// Returns the structures to draw in order, with their transforms.
     pub(crate) fn drawn(&self) -> impl Iterator<Item = (&PlacedStructure, &Transform)> {
         self.walk.taken().filter_map(|place| Some((place, place.transform.as_ref()?)))
     }
 
-    /// The places of the structures in the display list that are drawn; `None` for all.
+    /// Returns which structures to draw, by index in the display list; `None` for all.
     pub(crate) fn chosen(&self) -> Option<&[bool]> {
         self.walk.chosen.as_deref()
     }

@@ -1,48 +1,51 @@
-//! Pictures: what is made of a view.
+//! Pictures: parameters of drawing a view.
 
 use pxpl5_geometry::Viewport;
 use pxpl5_geometry::kernel::{Kernel, KernelSurface, Schedule};
 use pxpl5_renderer::Layout;
 
-/// Where colours are computed.
+/// Shading mode: where and when colours are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shading {
-    /// At the corners, by the GP; interpolated by the renderers.
+    /// The GP computes colours at the corners; the renderers interpolate them.
     Gouraud,
-    /// Before the run: the display list's colours are taken as they are and interpolated by the renderers. Spheres, which have no corners,
-    /// are lit as under [`Shading::Gouraud`].
+    /// The colours of the display list were lit before the run; the renderers interpolate them. Spheres have no
+    /// corners, so they are lit as under [`Shading::Gouraud`].
     Precomputed,
-    /// At the pixels, by the renderers, once at the end of the frame.
+    /// The renderers compute colours at the pixels, once at the end of the frame.
     Phong,
 }
 
-/// Which regions a primitive's commands are sent to.
+/// Binning mode: the regions that receive a primitive's commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegionBinning {
-    /// Those that it touches.
+    /// The regions that the primitive touches.
     Touched,
-    /// All; a triangle that is not seen costs as much as any other, and draws nothing (Slats prototype, TR94). Spheres,
-    /// which the prototype did not have, go to the regions that they touch: elsewhere a quadratic leaves its 48 bits.
+    /// All regions (Slats prototype, TR94). An invisible triangle costs as much as any other, but draws nothing.
+    ///
+    /// Spheres, which the prototype did not have, go to the touched regions only. In other regions a quadratic would
+    /// exceed 48 bits.
     All,
 }
 
-/// What to make of a view.
+/// Parameters of drawing a view.
 #[derive(Clone, Copy, Debug)]
 pub struct Picture {
-    /// Lines of the frame that it holds, and how it is cut into regions.
+    /// Lines of the frame that the picture contains, and its division into regions.
     pub viewport: Viewport,
-    /// Whether colours are computed at corners or at pixels.
+    /// Shading mode: colours computed at corners or at pixels.
     pub shading: Shading,
-    /// Which regions get a primitive's commands.
+    /// Binning mode: regions that receive a primitive's commands.
     pub binning: RegionBinning,
-    /// Division of pixel memory that the commands are encoded for.
+    /// Layout of pixel memory for which commands are encoded.
     pub layout: Layout,
-    /// Whether somebody may want the command words.
+    /// True if command words may be needed to compute pixels.
     pub pixels: bool,
 }
 
 impl Picture {
-    /// The kernel of its triangles; `None` where there is no i860 code for its TRANSFORM, which takes the time of the table then.
+    /// Returns the kernel for the picture's triangles. Returns `None` if TRANSFORM has no i860 code for it and takes
+    /// the table's time.
     pub(crate) fn kernel(&self, schedule: Schedule) -> Option<Kernel> {
         let surface = match self.shading {
             Shading::Gouraud => KernelSurface::Gouraud,

@@ -1,4 +1,4 @@
-//! Structures in place, as one eye sees them, and those that were placed lately.
+//! Structures in the coordinates of one eye, and a cache of recent views.
 
 use crate::structure::DisplayStructure;
 use crate::view::{EyeView, ModelEdit};
@@ -8,41 +8,45 @@ use std::collections::VecDeque;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-/// One structure as an eye sees it.
+/// One structure in the coordinates of an eye.
 #[derive(Debug)]
 pub struct PlacedStructure {
-    /// From its coordinates to the picture; `None` where a matrix is not finite, so that it is not drawn.
+    /// Map from the structure's coordinates to the picture; `None` if a matrix is not finite, so that the structure is
+    /// not drawn.
     pub transform: Option<Transform>,
     /// The light in eye coordinates.
     pub light: Light,
-    /// Which primitives belong to it, and what it is fixed to.
+    /// The structure's primitives and its frame of reference.
     pub structure: DisplayStructure,
-    /// From its frame to the eye, from its own coordinates to its frame, and from the eye to the picture.
+    /// Matrices from the structure's frame to the eye, from its own coordinates to its frame, and from the eye to the
+    /// picture.
     pub(crate) matrices: [Mat4; 3],
-    /// Places among the list's vertices, from the first that one of its triangles names to the last.
+    /// Range of the list's vertices from the first to the last one that the structure's triangles use.
     pub(crate) named: Range<usize>,
     pub(crate) vertices: OnceLock<Vertices>,
     pub(crate) touched: OnceLock<Touched>,
 }
 
-/// The vertices of a structure, from the first [named](PlacedStructure::named) one.
+/// The vertices of a structure, from the first [used](PlacedStructure::named) one on.
 #[derive(Debug)]
 pub(crate) struct Vertices {
     pub(crate) first: usize,
     pub(crate) on_screen: Vec<ScreenVertex>,
     pub(crate) normals: OnceLock<Vec<SurfaceVertex>>,
     pub(crate) colours: OnceLock<Vec<SurfaceVertex>>,
-    /// The colours as the display list has them.
+    /// Vertices with the unlit colours of the display list.
     pub(crate) precomputed: OnceLock<Vec<SurfaceVertex>>,
 }
 
-/// Views of a display list that graphics processors asked for lately. All of them ask for the same ones, and get the
-/// same transformed vertices; only the host's time is saved by it.
+/// Cache of a display list's recent views.
+///
+/// All graphics processors use the same views, so they share the transformed vertices. The cache saves only the
+/// simulator's time.
 #[derive(Debug)]
 pub struct RecentViews {
     views: Mutex<VecDeque<(ViewKey, Arc<[PlacedStructure]>)>>,
     kept: usize,
-    /// By structure, the vertices that it names: the same in all views.
+    /// By structure, the vertices that it uses, which are the same in all views.
     named: OnceLock<Vec<Range<usize>>>,
 }
 
@@ -52,17 +56,17 @@ impl Default for RecentViews {
     }
 }
 
-/// A clone holds none.
+/// A clone starts empty.
 impl Clone for RecentViews {
     fn clone(&self) -> Self {
         Self::keeping(self.kept)
     }
 }
 
-/// Two eyes of two views: a frame being transformed while a slower processor is at the one before.
+/// Capacity for two eyes of two views: one frame is transformed while a slower processor works at the frame before.
 const RECENT: usize = 4;
 
-/// All that the place of a structure depends on.
+/// Cache key of a view: everything that the placement of structures depends on.
 #[derive(Debug, PartialEq)]
 pub(crate) struct ViewKey {
     pub(crate) eye: EyeView,
@@ -71,18 +75,18 @@ pub(crate) struct ViewKey {
 }
 
 impl RecentViews {
-    /// None yet; so many will be kept, at least one.
+    /// Creates an empty cache for `views` views, at least one.
     #[must_use]
     pub fn keeping(views: usize) -> Self {
         Self { views: Mutex::default(), kept: views.max(1), named: OnceLock::new() }
     }
 
-    /// By structure, the vertices that it names, found when first asked for.
+    /// Returns the vertices that each structure uses, computed at the first call.
     pub(crate) fn named(&self, find: impl FnOnce() -> Vec<Range<usize>>) -> &[Range<usize>] {
         self.named.get_or_init(find)
     }
 
-    /// The structures of a view, placed by `place` unless somebody asked for the same view lately.
+    /// Returns the structures of a view from the cache, or places them by `place`.
     pub(crate) fn find_or_place(
         &self,
         key: ViewKey,

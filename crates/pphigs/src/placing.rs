@@ -1,4 +1,5 @@
-//! The display list as one eye sees it: structures in place, vertices transformed once for all who share them.
+//! Placement of a display list's structures for one eye. Vertices are transformed once for all triangles that share
+//! them.
 
 use crate::list::DisplayList;
 use crate::picture::Shading;
@@ -10,15 +11,15 @@ use pxpl5_geometry::{Light, SurfaceVertex, Touched, Transform, ViewTransform, Vi
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-/// The model matrix of a structure that was never edited.
+/// The model matrix of a structure without edits.
 const UNMOVED: Mat4 = Mat4::IDENTITY;
 
-/// All structures of a display list as an eye (0, or 0 and 1) of a view sees them.
+/// Places all structures of a display list for an eye of a view (0, or 0 and 1).
 ///
 /// # Panics
 ///
-/// If the view has no eye; if the list has other structures than when it was first placed, and its
-/// [`recent`](DisplayList::recent) is the same.
+/// If the view has no eye. If the list has got other structures since its first placement, but kept its
+/// [`recent`](DisplayList::recent).
 #[must_use]
 pub fn place_all(list: &DisplayList, view: &FrameView, eye: usize, viewport: Viewport) -> Vec<PlacedStructure> {
     let eye = eye_of(view, eye);
@@ -28,7 +29,7 @@ pub fn place_all(list: &DisplayList, view: &FrameView, eye: usize, viewport: Vie
     structures.map(|(i, (s, named))| place(list, s, named, model(view, i), eye, viewport)).collect()
 }
 
-/// By structure, the vertices from the first that one of its triangles names to the last.
+/// Returns, by structure, the range of vertices from the first to the last one that its triangles use.
 fn named(list: &DisplayList) -> Vec<Range<usize>> {
     let of = |structure: &DisplayStructure| {
         let all = list.triangles[structure.triangles.clone()].iter().flatten();
@@ -38,7 +39,7 @@ fn named(list: &DisplayList) -> Vec<Range<usize>> {
     list.structures.iter().map(of).collect()
 }
 
-/// As [`place_all`], made once for all who ask.
+/// Places all structures like [`place_all`], with a cache for all callers.
 pub(crate) fn place_once(
     list: &DisplayList,
     view: &FrameView,
@@ -57,7 +58,7 @@ fn model(view: &FrameView, structure: usize) -> Mat4 {
     view.edits.iter().rev().find(|edit| edit.structure as usize == structure).map_or(UNMOVED, |edit| edit.model)
 }
 
-/// A structure whose matrices are not finite is not drawn.
+/// Places one structure. A structure whose matrices are not finite has no transform and is not drawn.
 fn place(
     list: &DisplayList,
     structure: &DisplayStructure,
@@ -66,6 +67,7 @@ fn place(
     eye: &EyeView,
     viewport: Viewport,
 ) -> PlacedStructure {
+    // World structures move with the world, head structures with the viewer's head.
     let to_eye = match structure.frame {
         ModelFrame::World => eye.world_to_eye,
         ModelFrame::Head => eye.head_to_eye,
@@ -84,20 +86,20 @@ fn place(
     }
 }
 
-/// A direction in eye coordinates; the matrix is a rotation and a translation.
+/// Returns a direction in eye coordinates; the matrix is a rotation and a translation.
 fn turned(matrix: &Mat4, v: Vec3) -> [f32; 3] {
     let [x, y, z, _] = matrix.to_cols_array_2d();
     std::array::from_fn(|i| x[i] * v.x + y[i] * v.y + z[i] * v.z)
 }
 
 impl PlacedStructure {
-    /// The light in which the colours of corners are computed: none where they are precomputed.
+    /// Returns the light for the colours of corners, which is [`Light::NONE`] if colours are precomputed.
     #[must_use]
     pub fn light_of_corners(&self, shading: Shading) -> &Light {
         if shading == Shading::Precomputed { &Light::NONE } else { &self.light }
     }
 
-    /// Its vertices on the screen, transformed when first asked for.
+    /// Returns the structure's vertices on the screen, transformed at the first call.
     pub(crate) fn vertices(&self, list: &DisplayList, transform: &Transform) -> &Vertices {
         self.vertices.get_or_init(|| {
             let positions = list.positions.get(self.named.clone()).unwrap_or_default();
@@ -112,7 +114,7 @@ impl PlacedStructure {
         })
     }
 
-    /// The regions that its triangles touch, found when first asked for.
+    /// Returns the regions that the structure's triangles touch, computed at the first call.
     pub(crate) fn touched(&self, list: &DisplayList, transform: &Transform) -> &Touched {
         self.touched.get_or_init(|| {
             let vertices = self.vertices(list, transform);
@@ -127,14 +129,14 @@ impl Vertices {
         self.first..self.first + self.on_screen.len()
     }
 
-    /// All vertices with their normals.
+    /// Returns all vertices with their normals.
     pub(crate) fn normals(&self, list: &DisplayList, transform: &Transform) -> &[SurfaceVertex] {
         let find =
             || transform.vertex_normals(&self.on_screen, &list.positions[self.named()], &list.normals[self.named()]);
         self.normals.get_or_init(find)
     }
 
-    /// All vertices with their colours under a light, which is none where they are precomputed.
+    /// Returns all vertices with their colours under `light`, which must be [`Light::NONE`] for precomputed colours.
     pub(crate) fn colours(
         &self,
         list: &DisplayList,

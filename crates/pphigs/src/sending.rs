@@ -4,17 +4,18 @@ use pxpl5_gp::{Fault, Gp, HostTiming, Stage, Ticket};
 use pxpl5_sim::Time;
 use pxpl5_wire::{Body, NodeId, ViewNumber, Word};
 
-/// Sends what the tracker delivers to one board, as quickly and as often as tracker, link and ring allow (TR94): a message
-/// for each report, as soon as the report is there and the message before it has been accepted. Of several reports that wait
-/// meanwhile the newest is sent.
+/// Sends the tracker's reports to one board, as often as tracker, link and ring permit (TR94).
 ///
-/// The first message goes at `first`; `None` if there is none. `next_report` gives the arrival of the first report after an
-/// instant; `None` when the tracker has fallen silent for good. `message` makes the words of a message by its number, with
-/// all that the host knows at an instant.
+/// A message is sent for each report, as soon as the report has arrived and the previous message has been accepted. If
+/// several reports have arrived meanwhile, the newest is sent.
+///
+/// The first message goes at `first`; `None` sends no message. `next_report` returns the arrival of the first report
+/// after an instant, or `None` if there are no more reports. `message` makes the words of a message from its number and
+/// the knowledge of the host at an instant.
 ///
 /// # Errors
 ///
-/// None of its own; the type is that of a program.
+/// The function itself returns no error; the type is that of a program.
 pub async fn send_as_tracked(
     gp: Gp,
     receiver: NodeId,
@@ -28,7 +29,7 @@ pub async fn send_as_tracked(
     while let Some(at) = due {
         gp.spend(at.since(gp.now())).await;
         let known = gp.now();
-        // Which pictures will show it is not known here: SEND is marked by the message's own number.
+        // The pictures that will show this view are not known yet, so SEND is marked by the message's own number.
         let marked_as = number.picture_taken_for();
         gp.begin(Stage::Send, marked_as, None);
         let sent = send(&gp, receiver, timing, message(number, known)).await;
@@ -40,7 +41,7 @@ pub async fn send_as_tracked(
     Ok(())
 }
 
-/// Pays the link, then the message.
+/// Spends the time of the link, then sends the message.
 async fn send(gp: &Gp, receiver: NodeId, timing: HostTiming, words: Vec<Word>) -> Ticket {
     let length = words.len() as u32;
     gp.spend(timing.link_span(length)).await;

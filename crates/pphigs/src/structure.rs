@@ -1,26 +1,26 @@
-//! Structures: primitives that move together.
+//! Structures: groups of primitives that move together.
 
 use pxpl5_geometry::Culling;
 use std::ops::Range;
 
-/// What the coordinates of a structure are fixed to.
+/// Frame of reference of a structure's coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ModelFrame {
-    /// The room in which the viewer stands.
+    /// The room, in which the viewer moves.
     World,
-    /// The viewer's head, with which it moves.
+    /// The viewer's head; the structure moves with it.
     Head,
 }
 
-/// A run of primitives with one model matrix.
+/// A run of primitives with a common model matrix.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DisplayStructure {
-    /// Numbers of its triangles in the display list.
+    /// Range of the structure's triangles in the display list.
     pub triangles: Range<usize>,
-    /// Numbers of its spheres in the display list.
+    /// Range of the structure's spheres in the display list.
     pub spheres: Range<usize>,
-    /// Whether it stands in the room or moves with the head.
+    /// Frame of reference: the room or the viewer's head.
     pub frame: ModelFrame,
-    /// Which of its triangles are dropped for the way they face, as PHIGS+ has it for a structure.
+    /// Culling mode of the structure's triangles, which PHIGS+ sets for each structure.
     pub culling: Culling,
 }

@@ -1,7 +1,7 @@
 //! TRANSFORM of six views around an eye, such as the faces of a cube, as i860 code over the board's memory.
 //!
-//! Each primitive is transformed for those views alone that it may touch: kernels/sort.s finds them, kernels/runs.s gives them to the
-//! kernels. The rules are ours and stand in kernels/sort_rules.md.
+//! Each primitive is transformed only for the views that it may touch. kernels/sort.s finds these views, and
+//! kernels/runs.s passes the primitives to the kernels. The rules are the project's own (kernels/sort_rules.md).
 
 use crate::begin::Beginning;
 use crate::code::{Destination, KernelOutput, Marks, Needs, SPHERE_BYTES, TRIANGLE_BYTES, budget, sphere_kernel};
@@ -17,39 +17,40 @@ use pxpl5_wire::Word;
 use std::ops::Range;
 use std::sync::{Arc, LazyLock};
 
-/// How much farther out the sides of a view are taken when primitives are sorted: rule 4.
+/// Margin by which the sides of a view are moved outwards when primitives are sorted (rule 4).
 const MARGIN: f32 = 1.0 / 32.0;
 
-/// The TRANSFORM of a share for six views of one place.
+/// Work of the TRANSFORM of a share for six views of one place.
 #[derive(Clone, Copy, Debug)]
 pub struct Surrounding<'a> {
-    /// What the views give: those along +x, -x, +y, -y, +z and -z of the last one's eye, with one projection, whose axes these are.
+    /// TRANSFORM results of the views along +x, -x, +y, -y, +z and -z, in the axes of the last view's eye. All have the
+    /// same projection.
     pub passes: &'a [Arc<Pass>; MOST_VIEWS as usize],
-    /// The bin context of all of them, 0 or 1.
+    /// Bin context of all views, 0 or 1.
     pub context: u8,
 }
 
-/// What the code left in the memory of a board.
+/// Result of the six views in the memory of a board.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SurroundingOutput {
-    /// Simulated time of all.
+    /// Simulated time of all steps.
     pub span: Span,
-    /// The part of it that the beginning of the pass took.
+    /// Simulated time of the beginning of the pass, which is included in `span`.
     pub of_beginning: Span,
-    /// The part that it took to find the views of each primitive.
+    /// Simulated time to find the views of each primitive, which is included in `span`.
     pub of_sorting: Span,
-    /// What each view is given, seen or not.
+    /// Numbers of primitives transformed for each view, visible or not.
     pub given: Vec<PrimitiveCounts>,
-    /// What each view's kernels left.
+    /// Results of each view's kernels.
     pub views: Vec<KernelOutput>,
 }
 
 impl Surrounding<'_> {
-    /// Runs the code on a board that holds the display list; `None` for pictures that have no kernel.
+    /// Runs the code on a board that holds the display list. Returns `None` for pictures that have no kernel.
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault`] when the code does not come to its end, or its data do not fit.
+    /// [`ProcessorFault`] if the code does not end, or its data do not fit.
     pub fn run_code(
         &self,
         timing: &GpTiming,
@@ -58,14 +59,17 @@ impl Surrounding<'_> {
         let [.., ahead] = self.passes;
         let Some(kernel) = ahead.kernel(processor.version()) else { return Ok(None) };
         let eyes = self.passes.iter().map(|pass| pass.placed()).collect();
+        // The pass begins once for all six views, with the picture and structures of the last one.
         let beginning = Beginning::new(ahead.share().list(), eyes, *ahead.picture()).of_chosen(ahead.chosen());
         let of_beginning = beginning.by_code(timing, processor)?;
         let (of_sorting, given) = self.sort(processor, kernel)?;
+        // Each view needs room only for the primitives that were sorted into it.
         let needs = || self.passes.iter().zip(&given).map(|(pass, given)| pass.needs(kernel, *given));
         let bytes = needs().map(|needs| needs.bytes()).sum();
         let [.., end] = marks(ahead);
         let mut begin = processor.place_output(self.context, end, bytes)?;
         let mut views = Vec::with_capacity(given.len());
+        // The views' outputs follow each other in memory.
         for ((view, pass), needs) in (0..).zip(self.passes).zip(needs()) {
             views.push(self.run_view(processor, kernel, (view, pass), &needs, begin)?);
             begin += needs.bytes();
@@ -89,13 +93,15 @@ impl Surrounding<'_> {
         pass.run_kernels(processor, kernel, needs, to, Some(marks))
     }
 
-    /// Marks every primitive of the structures that are drawn; the time, and what each view is given.
+    /// Marks every primitive of the drawn structures with its views. Returns the time, and the number of primitives of
+    /// each view.
     fn sort(&self, processor: &mut Processor, kernel: Kernel) -> Result<(Span, Vec<PrimitiveCounts>), ProcessorFault> {
         let [.., ahead] = self.passes;
         let [triangles, spheres, _] = marks(ahead);
         let mut given = vec![PrimitiveCounts::default(); self.passes.len()];
         let mut span = Span::ZERO;
         let heads = ahead.heads();
+        // Triangles first, then spheres, as in the display list.
         for (place, transform, held) in ahead.calls_of_triangles() {
             processor.write(PARAMETERS, &kernel.parameters(transform, &place.light, &heads, 0))?;
             let sorted = Sorted { held, first: DISPLAY_LIST, bytes: TRIANGLE_BYTES, marks: triangles };
@@ -116,7 +122,7 @@ impl Surrounding<'_> {
     }
 }
 
-/// Where the words that mark triangles begin, behind the display list, and those that mark spheres; and where these end.
+/// Returns the addresses of the mark words of triangles (after the display list) and spheres, and the end of the marks.
 fn marks(pass: &Pass) -> [u32; 3] {
     let share = pass.share();
     let triangles = share.end_of_list();
@@ -124,8 +130,10 @@ fn marks(pass: &Pass) -> [u32; 3] {
     [triangles, spheres, spheres + 4 * share.all_spheres().len() as u32]
 }
 
-/// Primitives of a structure that are sorted: their places among those that the GP holds, where the first of all lies, how large one
-/// is, and where the word of the first of all lies.
+/// Primitives of a structure to sort.
+///
+/// `held` are their indices among those that the GP holds. `first` is the address of the GP's first primitive, `bytes`
+/// the size of one, and `marks` the address of the first mark word.
 struct Sorted {
     held: Range<usize>,
     first: u32,
@@ -148,14 +156,13 @@ impl Sorted {
         processor.call(&PROGRAM, entry, &[data.as_slice(), &numbers].concat(), budget(count))
     }
 
-    /// How many of them each view is given.
+    /// Returns how many of the primitives each view gets.
     fn counts(&self, processor: &Processor) -> Result<[u32; MOST_VIEWS as usize], ProcessorFault> {
         let words: Vec<Word> = processor.read(self.words(), self.held.len())?;
         Ok(std::array::from_fn(|view| words.iter().map(|word| word >> view & 1).sum()))
     }
 }
 
-/// The program that sorts.
 #[cfg(test)]
 pub(crate) fn program() -> Arc<Program> {
     Arc::clone(&PROGRAM)

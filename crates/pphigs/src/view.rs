@@ -1,4 +1,4 @@
-//! What the host sends for a frame: viewing transforms and edits, as words of the ring.
+//! The host's message for a frame: viewing transforms and edits, as words of the ring.
 
 use glam::{DMat4, Mat4};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, ViewNumber, Word};
@@ -6,31 +6,31 @@ use pxpl5_wire::{MAX_MESSAGE_WORDS, ViewNumber, Word};
 /// The matrices of one eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EyeView {
-    /// World to eye coordinates.
+    /// Matrix from world to eye coordinates.
     pub world_to_eye: Mat4,
-    /// Head to eye coordinates.
+    /// Matrix from head to eye coordinates.
     pub head_to_eye: Mat4,
-    /// Eye to clip coordinates.
+    /// Matrix from eye to clip coordinates.
     pub projection: Mat4,
 }
 
-/// A structure's new model matrix.
+/// The new model matrix of a structure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelEdit {
-    /// The structure's place in the display list.
+    /// Index of the structure in the display list.
     pub structure: u32,
-    /// From its own to its frame's coordinates.
+    /// Matrix from the structure's coordinates to its frame's coordinates.
     pub model: Mat4,
 }
 
-/// One view: transforms and edits.
+/// One view: the transforms of the eyes, and edits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameView {
-    /// Its number in the pipeline's own count of views.
+    /// Number of the view, in the pipeline's own count.
     pub number: ViewNumber,
-    /// One eye, or left and right.
+    /// Matrices of a single eye, or of the left and the right eye.
     pub eyes: Vec<EyeView>,
-    /// Edits since the frame before.
+    /// Edits since the previous frame.
     pub edits: Vec<ModelEdit>,
 }
 
@@ -38,21 +38,21 @@ const EYE_WORDS: usize = 48;
 const EDIT_WORDS: usize = 17;
 const HEADER_WORDS: usize = 4;
 
-/// Most edits that fit into one message beside the transforms of two eyes.
+/// Largest number of edits that fit in one message together with the transforms of two eyes.
 pub const MAX_EDITS: usize = (MAX_MESSAGE_WORDS as usize - 8 - HEADER_WORDS - 2 * EYE_WORDS) / EDIT_WORDS;
 
-/// Words that are not a frame's view.
+/// The error for words that do not encode a view.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("a view of {expected} words was expected, {found} were found")]
 pub struct ViewWordsError {
-    /// Number of words that the header asks for, itself included.
+    /// Number of words according to the header, including the header.
     pub expected: usize,
-    /// Number of words that there are.
+    /// Number of words found.
     pub found: usize,
 }
 
 impl FrameView {
-    /// The words: number (two), eyes, edits; then the matrices column by column.
+    /// Encodes the view: number (two words), count of eyes, count of edits, then the matrices column by column.
     #[must_use]
     pub fn to_words(&self) -> Vec<Word> {
         let [low, high] = self.number.to_words();
@@ -68,16 +68,17 @@ impl FrameView {
         words
     }
 
-    /// Reads words made by [`FrameView::to_words`].
+    /// Decodes words made by [`FrameView::to_words`].
     ///
     /// # Errors
     ///
-    /// [`ViewWordsError`] when the length is not what the header says.
+    /// [`ViewWordsError`] if the length does not match the header.
     pub fn from_words(words: &[Word]) -> Result<Self, ViewWordsError> {
         let n_eyes = header_word(words, 2);
         let n_edits = header_word(words, 3);
         let expected =
             HEADER_WORDS + n_eyes.saturating_mul(EYE_WORDS).saturating_add(n_edits.saturating_mul(EDIT_WORDS));
+        // Check the length once, so that the slices below cannot fail.
         if words.len() != expected {
             return Err(ViewWordsError { expected, found: words.len() });
         }
@@ -93,7 +94,7 @@ impl FrameView {
     }
 }
 
-/// A word of the header; 0 where there is none.
+/// Returns a word of the header; 0 if it is missing.
 fn header_word(words: &[Word], place: usize) -> usize {
     words.get(place).map_or(0, |word| *word as usize)
 }
@@ -111,7 +112,7 @@ fn eye(words: &[Word]) -> EyeView {
     EyeView { world_to_eye, head_to_eye, projection }
 }
 
-/// `left * right` formed in double precision and rounded once, the same on every host.
+/// Returns `left * right`, computed in double precision and rounded once, so that it is the same on every host.
 pub(crate) fn product(left: &Mat4, right: &Mat4) -> Mat4 {
     let left: DMat4 = left.as_dmat4();
     let right: DMat4 = right.as_dmat4();

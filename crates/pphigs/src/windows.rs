@@ -1,8 +1,9 @@
-//! What meets rectangles of the screen that no bin was made for, as work of a board: strips of lines, blocks.
+//! Search of the primitives in rectangles of the screen without bins (strips of lines, blocks), as work of a board.
 //!
-//! A TRANSFORM is [kept](Pass::keep) in a part of memory, commands and the box of each; [`Searching`] finds what meets each window of an
-//! order and lists the messages that draw it. The code is kernels/windows.s, its rules are ours (kernels/windows_rules.md). By the timing
-//! table each entry of a window takes `bin_entry_ns`.
+//! [`Pass::keep`] stores a TRANSFORM in a part of memory: commands, and the bounding box of each. [`Searching`] finds
+//! the primitives in each window of an order, and lists the messages that draw the window. The code is
+//! kernels/windows.s, by the project's own rules (kernels/windows_rules.md). By the timing table each entry of a window
+//! takes `bin_entry_ns`.
 
 use crate::begin::Beginning;
 use crate::code::{Next, budget, sphere_kernel};
@@ -32,11 +33,11 @@ const BOX_BYTES: u32 = 16;
 /// Bytes of a line of the data cache.
 const LINE: u32 = 32;
 
-/// Words around what draws a window: it is selected and cleared first, copied at last.
+/// Number of words before a window's primitives: select and clear.
 const OPENING: u32 = CommandKind::SelectRegion.words() + CommandKind::Clear.words();
 const CLOSING: u32 = CommandKind::CopyRegion.words();
 
-/// One of some equal parts of the memory behind a display list, for a pass that is kept.
+/// One of several equal parts of the memory after a display list, for one kept pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MemoryPart {
     number: u8,
@@ -44,10 +45,10 @@ pub struct MemoryPart {
 }
 
 impl MemoryPart {
-    /// All of the memory.
+    /// The whole memory after the display list.
     pub const WHOLE: Self = Self { number: 0, of: 1 };
 
-    /// Part `number`, counted round, of `of`, at least 1 and at most 16.
+    /// Returns part `number` of `of` parts. `number` is taken modulo `of`, and `of` is limited to 1 to 16.
     #[must_use]
     pub const fn of(number: usize, of: u8) -> Self {
         let of = if of == 0 { 1 } else { of };
@@ -55,7 +56,7 @@ impl MemoryPart {
         Self { number: (number % of as usize) as u8, of }
     }
 
-    /// Where it lies: whole lines of the data cache.
+    /// Returns the addresses of the part, which consists of whole lines of the data cache.
     fn place(self, processor: &Processor, share: &Share) -> Range<u32> {
         let begin = share.end_of_list().next_multiple_of(LINE);
         let bytes = entries(processor).saturating_sub(begin) / u32::from(self.of) / LINE * LINE;
@@ -63,7 +64,7 @@ impl MemoryPart {
         begin..begin + bytes
     }
 
-    /// Where it begins, if it has so many bytes.
+    /// Returns the start address of the part, if it has at least `needed_bytes` bytes.
     pub(crate) fn checked(
         self,
         processor: &Processor,
@@ -84,12 +85,12 @@ impl MemoryPart {
     }
 }
 
-/// Where entries of windows begin.
+/// Returns the address of the entries of windows.
 fn entries(processor: &Processor) -> u32 {
     processor.memory_bytes().saturating_sub(ENTRY_BYTES)
 }
 
-/// Commands of one kind, one behind the other, and where their boxes begin.
+/// Consecutive commands of one kind, and the address of their boxes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct KeptCommands {
     first: u32,
@@ -97,7 +98,7 @@ struct KeptCommands {
     boxes: u32,
 }
 
-/// What a pass left in a part of memory: triangles and spheres.
+/// Triangles and spheres that a pass has left in a part of memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Kept([KeptCommands; 2]);
 
@@ -107,7 +108,7 @@ impl Kept {
         processor.write(part.note(), words.as_flattened())
     }
 
-    /// `None` where nothing was kept.
+    /// Returns the kept primitives of a part of memory, or `None` if there are none.
     fn noted(processor: &Processor, part: MemoryPart) -> Result<Option<Self>, ProcessorFault> {
         let words = processor.read(part.note(), 6)?;
         let mut kinds = words.as_chunks::<3>().0.iter().map(|[first, count, boxes]| KeptCommands {
@@ -121,12 +122,14 @@ impl Kept {
 }
 
 impl Pass {
-    /// Runs the kernels of a pass that has no bins, from its beginning on, and leaves in a part of memory the command of every
-    /// primitive with its box; `None` for a picture that has no kernel.
+    /// Runs the kernels of a pass without bins, including its beginning. Keeps the command and box of every primitive
+    /// in a part of memory.
+    ///
+    /// Returns `None` for a picture that has no kernel.
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault`] when the code does not come to its end, or its data do not fit.
+    /// [`ProcessorFault`] if the code does not end, or its data do not fit.
     pub fn keep(
         &self,
         timing: &GpTiming,
@@ -146,7 +149,7 @@ impl Pass {
         Beginning::new(self.share().list(), vec![self.placed()], *self.picture()).without_bins()
     }
 
-    /// Leaves in a part of memory what `triangles` makes, and all spheres behind it.
+    /// Keeps the output of `triangles` in a part of memory, followed by all spheres.
     pub(crate) fn keep_what(
         &self,
         processor: &mut Processor,
@@ -157,6 +160,7 @@ impl Pass {
         let first = self.room(processor, kernel, part)?;
         let (of_triangles, next) = triangles(processor, first)?;
         let (of_spheres, end) = self.run_spheres(processor, sphere_kernel(kernel), next, None)?;
+        // The distance between two continuations gives the number of boxes, so of commands.
         let commands = |from: Next, to: Next| KeptCommands {
             first: from.command,
             count: (to.table - from.table) / BOX_BYTES,
@@ -166,7 +170,7 @@ impl Pass {
         Ok(of_triangles + of_spheres)
     }
 
-    /// Where its boxes and its commands begin.
+    /// Returns the addresses of the pass's boxes and commands.
     fn room(&self, processor: &Processor, kernel: Kernel, part: MemoryPart) -> Result<Next, ProcessorFault> {
         let given = self.transformed();
         let triangles = self.most_commands(given);
@@ -178,18 +182,18 @@ impl Pass {
     }
 }
 
-/// Windows in which a kept pass is searched for what meets them.
+/// Work of searching a kept pass for the primitives in some windows.
 #[derive(Clone, Copy, Debug)]
 pub struct Searching<'a> {
-    /// Where the pass lies.
+    /// Part of memory with the kept pass.
     pub part: MemoryPart,
-    /// The picture that it is of.
+    /// Picture of the kept pass.
     pub viewport: Viewport,
-    /// How that is cut into windows.
+    /// Division of the picture into windows.
     pub grid: RegionGrid,
-    /// The windows, by their places in the grid.
+    /// Windows to search, by their indices in the grid.
     pub windows: &'a [RegionId],
-    /// What meets each of them.
+    /// Numbers of primitives that meet each window.
     pub counts: &'a [PrimitiveCounts],
 }
 
@@ -203,23 +207,23 @@ impl Work for Searching<'_> {
     }
 }
 
-/// What the code has listed.
+/// Result of a search: the listed messages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SearchOutput {
-    /// Simulated time of all.
+    /// Simulated time of all steps.
     pub span: Span,
-    /// The part of it that it took to hand over what was found.
+    /// Simulated time of the handover, which is included in `span`.
     pub of_handing: Span,
     /// Number of messages of each window.
     pub messages: Vec<u32>,
 }
 
 impl SearchOutput {
-    /// The messages, window by window.
+    /// Reads the messages, window by window.
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault::Unmapped`] on another board than that of the code.
+    /// [`ProcessorFault::Unmapped`] on a board that has not run the code.
     pub fn listed(&self, processor: &Processor) -> Result<Vec<MessagePieces>, ProcessorFault> {
         listed(processor, self.messages.iter().sum())
     }
@@ -230,15 +234,16 @@ impl Searching<'_> {
         self.counts.iter().map(|counts| counts.total()).sum()
     }
 
-    /// Runs the code on a board that keeps the pass; `None` where none is kept.
+    /// Runs the code on a board that holds the kept pass. Returns `None` if no pass is kept.
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault`] when the code does not come to its end, or has no room for what is found.
+    /// [`ProcessorFault`] if the code does not end, or has no room for the result.
     pub fn run_code(&self, processor: &mut Processor) -> Result<Option<SearchOutput>, ProcessorFault> {
         let Some(kept) = Kept::noted(processor, self.part)? else { return Ok(None) };
         self.check_room(processor)?;
         let mut output = SearchOutput { span: Span::ZERO, of_handing: Span::ZERO, messages: Vec::new() };
+        // A window across regions may find primitives that touch none of its regions, so the regions are tested too.
         if self.lies_across_regions() {
             output.span +=
                 make_windows(processor, self.viewport.grid(), &self.viewport, &self.all_regions(), REGION_WINDOWS)?;
@@ -258,7 +263,7 @@ impl Searching<'_> {
         Ok(Some(output))
     }
 
-    /// Entries and messages have as much room as [`crate::Handing`] gives those of a region.
+    /// Checks that entries and messages fit. They have the same room as the entries of a region in [`crate::Handing`].
     fn check_room(&self, processor: &Processor) -> Result<(), ProcessorFault> {
         let entries = self.entries() + 2 * self.windows.len() as u32;
         let fits =
@@ -274,7 +279,7 @@ impl Searching<'_> {
         })
     }
 
-    /// Whether a window may hold pixels of several regions of the picture.
+    /// Returns true if a window may contain pixels of several regions of the picture.
     fn lies_across_regions(&self) -> bool {
         let regions = self.viewport.grid();
         !regions.region_width.is_multiple_of(self.grid.region_width)
@@ -285,13 +290,15 @@ impl Searching<'_> {
         (0..self.viewport.grid().regions() as u16).map(RegionId).collect()
     }
 
-    /// Goes over the boxes of all that is kept; lists begin where those before them, as long as they are known to become, end.
+    /// Searches the boxes of all kept primitives. The list of each window begins after the known lengths of the lists
+    /// before it.
     fn search(
         &self,
         processor: &mut Processor,
         Kept([triangles, spheres]): &Kept,
         counts: &[PrimitiveCounts],
     ) -> Result<Span, ProcessorFault> {
+        // Reserve a list for each window, as long as its known count.
         let mut place = entries(processor);
         let mut lists = vec![spheres.first];
         for counts in counts {
@@ -306,6 +313,7 @@ impl Searching<'_> {
         };
         let of_lines = line_registers(&self.viewport, 24);
         let mut span = Span::ZERO;
+        // One call for all triangles, one for all spheres.
         for (entry, KeptCommands { first, count, boxes }) in [("triangles", *triangles), ("spheres", *spheres)] {
             if count == 0 {
                 continue;
@@ -319,12 +327,12 @@ impl Searching<'_> {
     }
 }
 
-/// Line of the frame of row 0, and whether every second line is a row.
+/// Returns the registers for the frame line of row 0, and for the step between rows minus one.
 fn line_registers(viewport: &Viewport, first: usize) -> [(usize, Word); 2] {
     [(first, viewport.first_line()), (first + 1, viewport.line_step() - 1)]
 }
 
-/// Has the limits of windows made, cut out of a picture by a grid.
+/// Runs the code that computes the limits of windows from a grid over a picture.
 fn make_windows(
     processor: &mut Processor,
     grid: RegionGrid,
@@ -337,6 +345,7 @@ fn make_windows(
         let [left, top, _, _] = grid.rectangle(*window);
         pair(left, top)
     });
+    // The code computes the limits of each window from its upper left pixel and the common size.
     processor.write(WINDOW_PLACES, &places.collect::<Vec<_>>())?;
     let picture = viewport.grid();
     let data = [(16, WINDOW_PLACES), (17, windows.len() as u32), (18, to)];
@@ -345,7 +354,7 @@ fn make_windows(
     processor.call(&PROGRAM, "windows", &registers, BUDGET + BUDGET_OF_ENTRY * windows.len() as u64)
 }
 
-/// Has the list of a window handed over, behind the pieces and messages before it.
+/// Runs the code that hands over the list of a window, after the pieces and messages of earlier windows.
 fn hand_over(
     processor: &mut Processor,
     window: u32,
@@ -362,13 +371,12 @@ fn hand_over(
     Ok(span)
 }
 
-/// The program of all this.
 #[cfg(test)]
 pub(crate) fn program() -> Arc<Program> {
     Arc::clone(&PROGRAM)
 }
 
-/// Of every message there is room kept for the copy, as the native messages have it.
+/// The program of the search and the handover. Every message keeps room for the copy, like the native messages.
 static PROGRAM: LazyLock<Arc<Program>> = LazyLock::new(|| {
     let token = token_source([MAX_MESSAGE_WORDS - CLOSING, MAX_MESSAGE_WORDS]);
     let sources = [("windows", include_str!("../kernels/windows.s")), ("token", token.as_str())];

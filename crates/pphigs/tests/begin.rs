@@ -1,4 +1,5 @@
-//! The beginning of a pass and edits as i860 code: the same parameter blocks and matrices as the native firmware's.
+//! Tests of the beginning of a pass and of edits as i860 code: the parameter blocks and matrices must equal those of
+//! the native firmware.
 
 use glam::{Mat4, Quat, Vec3};
 use pphigs::{
@@ -25,7 +26,7 @@ fn board() -> Processor {
 struct Numbers(SplitMix64);
 
 impl Numbers {
-    /// -1 to 1.
+    /// Returns a number from -1 to 1.
     fn next(&mut self) -> f32 {
         2.0 * self.0.unit() - 1.0
     }
@@ -39,7 +40,7 @@ impl Numbers {
         Mat4::from_rotation_translation(turn, self.vector(20.0))
     }
 
-    /// Turned, moved, as large as before up to a factor, one in three mirrored.
+    /// Returns a matrix that rotates, moves and scales uniformly; every third one mirrors.
     fn model(&mut self, n: usize) -> Mat4 {
         let size = 10.0_f32.powf(self.next());
         let mirror = if n.is_multiple_of(3) { -1.0 } else { 1.0 };
@@ -73,7 +74,7 @@ fn view(numbers: &mut Numbers, n: usize) -> FrameView {
     let eye =
         EyeView { world_to_eye: numbers.rigid(), head_to_eye: numbers.rigid(), projection: numbers.projection(n) };
     let edits = (0..2).map(|structure| ModelEdit { structure, model: numbers.model(n + structure as usize) });
-    // One in seven has a structure that was never edited.
+    // Every seventh view leaves a structure without an edit.
     FrameView { number: ViewNumber::FIRST, eyes: vec![eye], edits: edits.skip(usize::from(n % 7 == 6)).collect() }
 }
 
@@ -95,7 +96,7 @@ fn the_code_fills_parameter_blocks_as_the_native_firmware_does() {
         let kernel = Kernel { culls, ..kernel };
         for place in place_all(&list, &view, 0, viewport) {
             let expected = native(kernel, &place);
-            // What a view decides is spoilt first.
+            // First overwrite the part that depends on a view.
             let mut spoilt = expected;
             [0..19, 68..71, 72..75, 76..79, 80..83, 84..86, 118..120]
                 .into_iter()
@@ -111,7 +112,7 @@ fn the_code_fills_parameter_blocks_as_the_native_firmware_does() {
     }
 }
 
-/// Of structures that have spheres, whatever they are seen through; others leave the block alone.
+/// Tests structures with spheres under any projection. Other structures must leave the block unchanged.
 #[test]
 fn the_code_fills_the_parameter_block_of_spheres_as_the_native_firmware_does() {
     let mut numbers = Numbers(SplitMix64::new(35));
@@ -143,7 +144,7 @@ fn edits_replace_the_matrices_of_their_structures_and_no_others() {
     let mut numbers = Numbers(SplitMix64::new(32));
     let mut processor = board();
     let mut models = vec![[0; 16]; 40];
-    // More than fit into one message, and far more than there is room for.
+    // More edits than fit in one message, and far more than the table can hold.
     for count in [0, 1, 2, 17, 54, 55, 200, 500] {
         let edits: Vec<_> =
             (0..count).map(|n| ModelEdit { structure: (7 * n + count) as u32 % 40, model: numbers.model(n) }).collect();
@@ -155,7 +156,7 @@ fn edits_replace_the_matrices_of_their_structures_and_no_others() {
     }
 }
 
-/// A structure's number that no table has room for is left out, whatever its size.
+/// Structure numbers beyond the table must be ignored, however large.
 #[test]
 fn edits_of_structures_that_are_not_there_change_nothing() {
     let edits = vec![ModelEdit { structure: u32::MAX, model: Mat4::IDENTITY }];
@@ -165,7 +166,7 @@ fn edits_of_structures_that_are_not_there_change_nothing() {
     assert!(processor.read(MODELS, 1 << 10).expect("in memory").iter().all(|word| *word == 0));
 }
 
-/// Without structures a pass begins with its bins alone.
+/// Without structures, a pass begins with its bins only.
 #[test]
 fn bins_are_reset_to_where_they_begin() {
     const MESSAGE: u32 = 0x1_4000;

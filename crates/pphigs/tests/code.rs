@@ -1,4 +1,5 @@
-//! TRANSFORM as i860 code on a board: the same words as the native firmware's, and its time.
+//! Tests of TRANSFORM as i860 code on a board: the words must equal those of the native firmware. Also tests of its
+//! time.
 
 use glam::{Mat4, Vec3};
 use pphigs::{
@@ -15,7 +16,7 @@ use std::sync::Arc;
 const MEMORY: u64 = 8 << 20;
 const VERSIONS: [CodeVersion; 3] = [CodeVersion::Unoptimised, CodeVersion::Compiled, CodeVersion::Scheduled];
 
-/// Numbers in 0 to 1, the same on every host.
+/// A generator of numbers from 0 to 1 that are the same on every host.
 struct Numbers(SplitMix64);
 
 impl Numbers {
@@ -28,7 +29,7 @@ impl Numbers {
     }
 }
 
-/// Triangles in two structures, one fixed to the head, all in front of the eye.
+/// Returns triangles in front of the eye in two structures, one of them fixed to the head.
 fn list(triangles: u32) -> Arc<DisplayList> {
     let mut numbers = Numbers(SplitMix64::new(7));
     let mut list = DisplayList { towards_light: Vec3::new(0.48, 0.6, 0.64), ..DisplayList::default() };
@@ -52,7 +53,7 @@ fn list(triangles: u32) -> Arc<DisplayList> {
     Arc::new(list)
 }
 
-/// An eye beside the middle of the head.
+/// Returns an eye beside the middle of the head.
 fn eye(x: f32) -> EyeView {
     EyeView {
         world_to_eye: Mat4::from_translation(Vec3::new(x, 0.1, 0.0)) * Mat4::from_rotation_y(0.1),
@@ -80,7 +81,7 @@ fn board(version: CodeVersion, share: &Share) -> Processor {
     processor
 }
 
-/// The words of a region's primitives as the native firmware makes them.
+/// Returns the words of a region's primitives as the native firmware makes them.
 fn native(pass: &Arc<Pass>, region: RegionId) -> Vec<Word> {
     let mut words = Vec::new();
     for list in region_messages(pass, region, 0, RegionEnvelope::default()) {
@@ -89,7 +90,7 @@ fn native(pass: &Arc<Pass>, region: RegionId) -> Vec<Word> {
     words
 }
 
-/// The same as the code left them in memory.
+/// Returns the words of a region's primitives that the code left in memory.
 fn of_code(processor: &Processor, output: &KernelOutput, region: usize, command_words: usize) -> Vec<Word> {
     let bin = &output.bins[region];
     let entries = processor.read(bin.start, (bin.end - bin.start) as usize / 4).expect("in memory");
@@ -101,7 +102,7 @@ fn the_words_in_memory_are_those_of_the_native_firmware() {
     assert_native_words(list(300));
 }
 
-/// Both structures leave out what faces away; the first is seen through other matrices than the second.
+/// Both structures drop back faces. The first structure has different matrices than the second.
 #[test]
 fn code_leaves_out_what_faces_away() {
     let mut list = Arc::unwrap_or_clone(list(300));
@@ -123,7 +124,7 @@ fn assert_native_words(list: Arc<DisplayList>) {
                     for region in 0..viewport.grid().regions() as u16 {
                         let expected = native(&pass, RegionId(region));
                         let found = of_code(&processor, &made, usize::from(region), command_words);
-                        // A context of several selects first; this layout has one.
+                        // A context of several begins with a select; this layout has only one context.
                         assert!(found == expected, "region {region}, {version:?}, {shading:?}, {viewport:?}");
                     }
                 }
@@ -151,8 +152,8 @@ fn without_bins_every_command_is_made_in_order() {
     }
 }
 
-/// All corners left of the picture, one of them beyond the guard band too, and the place that is reserved: none is cut, so that none has
-/// more than one command.
+/// All corners are left of the picture, one of them also outside the guard band. No triangle is cut, so none has more
+/// than one command.
 #[test]
 fn what_lies_beside_the_picture_is_not_cut_without_bins_either() {
     let mut list = Arc::unwrap_or_clone(list(30));
@@ -171,7 +172,7 @@ fn what_lies_beside_the_picture_is_not_cut_without_bins_either() {
     }
 }
 
-/// Triangles that reach behind the eye, in both structures: their pieces lie in the bins where the native ones do.
+/// Triangles that reach behind the eye, in both structures: their pieces must be in the same bins as the native ones.
 #[test]
 fn pieces_of_clipped_triangles_are_those_of_the_native_firmware() {
     let mut list = Arc::unwrap_or_clone(list(300));
@@ -189,7 +190,7 @@ fn pieces_of_clipped_triangles_are_those_of_the_native_firmware() {
     }
 }
 
-/// No number of the table is in the time of a pass that has code, spheres included.
+/// The time of a pass by code must not depend on any number of the timing table, including those for spheres.
 #[test]
 fn a_pass_by_code_takes_the_same_time_whatever_the_table_says() {
     let mut list = Arc::unwrap_or_clone(list(30));
@@ -228,15 +229,17 @@ fn a_display_list_larger_than_the_memory_is_refused() {
     assert_eq!(error.to_string(), "graphics processor at node 4: no memory for 24 words at 0x00100000");
 }
 
-/// Bytes that the output of a context takes, from its definition: a command for every triangle and for the one being made, and an
-/// entry of four bytes for each in each bin; nothing is clipped.
+/// Returns the bytes of a context's output, by its definition.
+///
+/// They are a command for every triangle and one more, and an entry of four bytes for each triangle in each bin. No
+/// triangle is clipped.
 fn output_bytes(pass: &Pass, triangles: u32, command_bytes: u32) -> u32 {
     let regions = pass.picture().viewport.grid().regions() as u16;
     let entries: u32 = (0..regions).map(|region| pass.counts(RegionId(region)).triangles).sum();
     command_bytes * (triangles + 1) + 4 * entries
 }
 
-/// A board whose memory is as large as given, both eyes' passes over 90 triangles, and the bytes of a command.
+/// Returns a board with the given memory, both eyes' passes over 90 triangles, and the bytes of a command.
 fn both_contexts(memory: u64) -> (Processor, [Arc<Pass>; 2]) {
     let share = Share::new(list(90), 0, 1);
     let view = view();
@@ -277,7 +280,7 @@ fn two_contexts_that_touch_keep_their_words_and_one_byte_less_is_refused() {
     assert!(
         (0..20).all(|region| of_code(&processor, &made, region, 30) == native(&passes[0], RegionId(region as u16)))
     );
-    // The other way round it is the lower one that is refused.
+    // In the opposite order the lower context is rejected.
     let (mut processor, passes) = both_contexts(fits - 1);
     passes[1].run_code(&mut processor, 1).expect("it is alone");
     let error = passes[0].run_code(&mut processor, 0).expect_err("they would meet");
@@ -295,8 +298,11 @@ fn a_context_larger_than_the_memory_is_refused_and_does_not_reach_the_code() {
     }
 }
 
-/// Both structures, of which one is edited, clump after clump: the words of either eye are the native ones, in the display list's order. One
-/// compiled pass for both takes less time than one after the other. (The scheduled one does not, because its code does not stay in the cache.)
+/// Both structures, one of them edited, clump by clump: the words of either eye must be the native ones, in the order
+/// of the display list.
+///
+/// One compiled pass for both eyes takes less time than two passes. The scheduled one does not, since its code does not
+/// stay in the cache.
 #[test]
 fn one_pass_for_both_eyes_gives_the_native_words_of_each() {
     let share = Share::new(list(90), 0, 1);
@@ -323,7 +329,7 @@ fn one_pass_for_both_eyes_gives_the_native_words_of_each() {
     }
 }
 
-/// A structure that the left eye cannot draw has commands of the right eye alone.
+/// A structure that the left eye cannot draw must have commands of the right eye only.
 #[test]
 fn a_structure_that_one_eye_cannot_draw_is_drawn_for_the_other() {
     let mut view = view();
@@ -341,7 +347,8 @@ fn a_structure_that_one_eye_cannot_draw_is_drawn_for_the_other() {
     }
 }
 
-/// A triangle lit by ambient light alone where its normal turns away, fully where it faces the light, and partly in between.
+/// A triangle has only ambient light if its normal points away, full light if it faces the light, and a part in
+/// between.
 #[test]
 fn precomputed_colours_are_ambient_and_diffuse_light_on_the_side_of_the_normal() {
     let mut list = DisplayList { towards_light: Vec3::Z, ambient: 0.25, diffuse: 0.5, ..DisplayList::default() };

@@ -1,4 +1,4 @@
-//! A bin handed over by code: the same messages, with the same words, as the native firmware sends.
+//! Tests of the handover of a bin by code: the messages and words must equal those of the native firmware.
 
 use glam::{Mat4, Vec3};
 use pphigs::{
@@ -14,14 +14,15 @@ use pxpl5_wire::{
 };
 use std::sync::Arc;
 
-/// Commands lie behind the first megabyte; what encloses them is the program's.
+/// Commands are after the first megabyte; the envelopes are in the program's part of memory.
 const PROGRAMS_END: Word = 1 << 20;
 
 fn vector(numbers: &mut SplitMix64, size: f32) -> Vec3 {
     Vec3::new(numbers.unit() - 0.5, numbers.unit() - 0.5, numbers.unit() - 0.5) * (2.0 * size)
 }
 
-/// Small triangles and spheres before the eye, most of them in the middle, so that some bins fill several messages.
+/// Returns small triangles and spheres in front of the eye, most of them in the middle, so that some bins fill several
+/// messages.
 fn share(triangles: u32, spheres: usize) -> Share {
     let mut numbers = SplitMix64::new(3);
     let mut list = DisplayList { towards_light: Vec3::Z, ambient: 0.2, diffuse: 0.8, ..DisplayList::default() };
@@ -69,7 +70,7 @@ fn envelopes(region: RegionId) -> [RegionEnvelope; 4] {
     [nothing, begin, end, RegionEnvelope { begin: true, ..end }]
 }
 
-/// Compares the messages of a bin that code has filled; how many there are.
+/// Compares the messages of a bin that code has filled, and returns their number.
 fn compare(
     processor: &mut Processor,
     pass: &Arc<Pass>,
@@ -111,7 +112,7 @@ fn pieces_hold_the_words_of_the_native_firmwares_messages() {
             for (context, pass) in (0..).zip(&passes) {
                 pass.run_code(&mut processor, context).expect("it returns").expect("it has a kernel");
             }
-            // Tokens of both contexts come when both bins are full.
+            // Tokens of both contexts arrive when both bins are full.
             let mut most = 0;
             for (region, (context, pass)) in
                 (0..20).map(RegionId).flat_map(|r| (0..).zip(&passes).map(move |of| (r, of)))
@@ -126,7 +127,7 @@ fn pieces_hold_the_words_of_the_native_firmwares_messages() {
     }
 }
 
-/// The list of pieces has room for 44,236 entries of a bin. A board of 8 MB never holds so many, one of more may.
+/// The list of pieces has room for 44,236 entries of a bin. A board of 8 MB never has so many, but a larger one may.
 #[test]
 fn a_bin_of_more_entries_than_the_list_of_pieces_holds_is_a_fault() {
     let triangles: usize = 44_300;

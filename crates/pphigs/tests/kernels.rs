@@ -1,4 +1,4 @@
-//! The triangle kernels against the native transform and set-up, word for word.
+//! Tests of the triangle kernels against the native transform and set-up, word for word.
 
 mod kernel;
 
@@ -10,7 +10,7 @@ use pxpl5_geometry::{Triangle, ViewTransform, Viewport};
 use pxpl5_sim::SplitMix64;
 use pxpl5_wire::{FieldParity, Lines, REGION_SIZE, RegionGrid};
 
-/// Small, middling and large triangles, among them ones outside the guard band.
+/// Returns small, medium and large triangles, some of them outside the guard band.
 fn mixture() -> Vec<Triangle> {
     let mut all = triangles(3000, 0.12, 1);
     all.extend(triangles(1500, 0.8, 2));
@@ -18,8 +18,8 @@ fn mixture() -> Vec<Triangle> {
     all
 }
 
-/// Triangles with corners about the near and the far plane, where rounding decides whether they are clipped, and where a
-/// depth may come out beyond the far plane.
+/// Returns triangles with corners near the near and far planes. There rounding decides about clipping, and a depth may
+/// be beyond the far plane.
 fn at_the_planes() -> Vec<Triangle> {
     let from_eye = kernel::view().model_view.inverse();
     let depths = [0.5, 0.500_000_1, 0.500_01, 40.0, 39.999_996, 39.999_9, 40.000_1];
@@ -55,7 +55,8 @@ fn assert_same_output(found: &Output, expected: &Output, kernel: Kernel) {
     assert_eq!(found.commands.len(), expected.commands.len());
 }
 
-/// Strips of 1 to 100 triangles, some longer than a batch, small to large; and one about the near and the far plane.
+/// Returns strips of 1 to 100 triangles, some longer than a batch, small to large; and one near the near and far
+/// planes.
 fn strips_of_all_sizes() -> Vec<Strip> {
     let lengths: Vec<usize> = (1..60).chain([1, 2, 74, 75, 76, 77, 78, 79, 151, 152, 153, 400]).collect();
     [0.12, 0.8, 6.0].into_iter().zip(5..).flat_map(|(size, seed)| strips(&lengths, size, seed)).collect()
@@ -108,7 +109,7 @@ fn the_kernels_of_strips_give_the_native_words_and_bins() {
     }
 }
 
-/// About half of the triangles face away, pieces of clipped ones among them.
+/// About half of the triangles are back faces, including pieces of clipped ones.
 #[test]
 fn kernels_that_cull_give_the_native_words_and_bins() {
     let input = mixture();
@@ -128,8 +129,9 @@ fn kernels_that_cull_give_the_native_words_and_bins() {
     }
 }
 
-/// Triangles all around the eye, from far outside to across several planes at once, some with a corner on a plane of the guard band as
-/// nearly as singles can say; seen through matrices that mirror and others.
+/// Returns triangles all around the eye, from far outside to across several planes, under mirroring and other matrices.
+///
+/// Some have a corner on a plane of the guard band, as nearly as single precision permits.
 fn around_the_eye(seed: u64, mirrored: bool, viewport: Viewport) -> (ViewTransform, Vec<Triangle>) {
     let mut all = triangles(1000, 1.0, seed);
     let mut numbers = SplitMix64::new(seed);
@@ -139,7 +141,7 @@ fn around_the_eye(seed: u64, mirrored: bool, viewport: Viewport) -> (ViewTransfo
     }
     let to_world = (view.projection * view.model_view).inverse();
     for (n, triangle) in all.iter_mut().enumerate() {
-        // Sizes over four powers of ten, mostly before the eye.
+        // Sizes over four powers of ten, mostly in front of the eye.
         let eye = view.model_view.inverse().transform_point3(Vec3::ZERO);
         let ahead = view.model_view.inverse().transform_vector3(Vec3::new(numbers.unit() - 0.5, 0.0, -1.0));
         let size = 10.0_f32.powf(4.0 * numbers.unit() - 1.0);
@@ -158,12 +160,12 @@ fn around_the_eye(seed: u64, mirrored: bool, viewport: Viewport) -> (ViewTransfo
             triangle.positions[n / 3 % 3] = world.truncate() / world.w;
         }
         if n % 4 == 1 {
-            // Seen nearly edge-on: slivers, whose planes are steep.
+            // Nearly edge-on: slivers with steep planes.
             let [a, b, _] = triangle.positions.map(|p| p - eye);
             triangle.positions[2] = eye + a * (2.0 * numbers.unit() - 0.5) + b * numbers.unit();
         }
     }
-    // Steep planes of what is not clipped are the kernels' affair, which do not flatten them.
+    // The kernels do not flatten steep planes of unclipped triangles.
     let kernel = frame(Schedule::Dual);
     all.retain(|triangle| {
         let (_, stats) = native(kernel, &view, viewport, std::slice::from_ref(triangle));
@@ -195,7 +197,7 @@ fn the_clipper_gives_the_native_words_and_bins_of_triangles_all_around_the_eye()
     assert!(flattened > 0, "steep planes are among them");
 }
 
-/// Two eyes that look in slightly different directions, some way apart.
+/// Returns two eyes some distance apart that look in slightly different directions.
 fn two_eyes(left: &ViewTransform) -> [ViewTransform; 2] {
     let aside = Mat4::from_translation(Vec3::new(-0.4, 0.01, 0.0)) * Mat4::from_rotation_y(0.04);
     [*left, ViewTransform { model_view: aside * left.model_view, projection: left.projection }]
@@ -216,8 +218,8 @@ fn assert_same_words_for_both_eyes(kernel: Kernel, left: &ViewTransform, viewpor
     }
 }
 
-/// The kernels of one pass for both eyes, which have one bin for all regions of an eye. What the native code drops because it touches no
-/// region has a command there, so that only triangles that touch one are given.
+/// The kernels of one pass for both eyes have one bin for all regions of an eye. They make commands for triangles that
+/// touch no region, which the native code drops. So the test uses only triangles that touch a region.
 #[test]
 fn the_kernels_of_both_eyes_give_the_native_words_of_each() {
     for viewport in &PICTURES[1..] {
@@ -243,21 +245,21 @@ fn the_kernels_of_both_eyes_give_the_native_words_of_each() {
     }
 }
 
-/// The triangles of which no piece lies beside the picture, for either eye.
+/// Returns the triangles without a piece outside the picture, for either eye.
 fn seen_by_both(kernel: Kernel, left: &ViewTransform, viewport: Viewport, input: &[Triangle]) -> Vec<Triangle> {
     let views = two_eyes(left);
     let is_seen = |triangle: &&Triangle| {
         views.iter().all(|view| {
             let (_, stats) = native(kernel, view, viewport, std::slice::from_ref(*triangle));
-            // As above, steep planes are the clipper's affair alone.
+            // As above, only the clipper flattens steep planes.
             stats.untouched == 0 && (stats.flattened_planes == 0 || stats.clipped > 0)
         })
     };
     input.iter().filter(is_seen).copied().collect()
 }
 
-/// Frames that are no NTSC frame: faces of a cube from one region to 121, as many regions as there may be, and two whose last regions are
-/// cut off.
+/// Returns frames that are no NTSC frames: faces of a cube from one region to 121, the largest number of regions, and
+/// two frames with partial regions.
 fn other_frames() -> impl Iterator<Item = Viewport> {
     let sizes = [(128, 128), (256, 256), (512, 512), (1408, 1408), (2048, 1024), (700, 500), (1280, 1000)];
     sizes.into_iter().map(|(width, height)| {
@@ -320,7 +322,7 @@ fn pictures_that_no_code_knows_have_no_kernel() {
     assert_eq!(kernel(RegionGrid { region_height: 120, ..small }, Lines::Frame, true), None);
 }
 
-/// Corners that are no numbers, or larger than clip coordinates may be: nothing is drawn.
+/// Corners that are NaN, or larger than clip coordinates may be, must draw nothing.
 #[test]
 fn triangles_that_cannot_be_represented_are_left_out() {
     let mut input = triangles(30, 0.12, 1);
@@ -356,8 +358,8 @@ fn the_straight_kernel_is_larger_than_the_instruction_cache() {
     assert!(program.symbol("bins").expect("label") - program.symbol("start").expect("label") > 4096);
 }
 
-/// Independent triangles of about 30 pixels streamed from memory, all tests and bins included; the second call, so that
-/// the caches are as they always are.
+/// Independent triangles of about 30 pixels are streamed from memory, with all tests and bins. The second call is
+/// measured, with warm caches.
 #[test]
 fn the_dual_kernel_takes_800_clocks_a_phong_triangle_at_most() {
     let input = triangles(1000, 0.12, 1);
@@ -370,7 +372,7 @@ fn the_dual_kernel_takes_800_clocks_a_phong_triangle_at_most() {
     assert!(profile.clocks() <= 800 * input.len() as u64, "{profile}");
 }
 
-/// The same for strips, which share vertices: one vertex a triangle.
+/// Strips share vertices, so there is one vertex per triangle.
 #[test]
 fn the_dual_kernel_takes_500_clocks_a_phong_triangle_of_a_strip_at_most() {
     let input = strips(&[1000], 0.12, 1);

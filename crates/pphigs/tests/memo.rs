@@ -1,5 +1,5 @@
-//! Memoising the clocks of the triangle kernels changes nothing but the host's time. The same of random programs:
-//! crates/i860/tests/memo.rs.
+//! Tests that memoizing the clocks of the triangle kernels changes only the host's time. crates/i860/tests/memo.rs
+//! tests random programs.
 
 mod kernel;
 
@@ -23,7 +23,7 @@ fn assert_same_kernel(freezes: FreezeRules, schedule: Schedule) {
     assert!(memoised.output() == counted.output() && memoised.cpu.state == counted.cpu.state);
 }
 
-/// All rows, one of them with so many clocks that it is felt wherever it applies.
+/// Returns all freeze rules, one of them with so many clocks that its use is noticeable.
 fn slower(row: &FreezeRow) -> FreezeRules {
     let mut rules = FreezeRules::all();
     rules.clocks.set(row.clocks.name, 10.into()).expect("the table has all rows");

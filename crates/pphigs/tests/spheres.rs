@@ -1,4 +1,4 @@
-//! Spheres as i860 code on a board: the same words, in the bins of the same regions, as the native firmware's.
+//! Tests of spheres as i860 code on a board: the words and bins must equal those of the native firmware.
 
 use glam::{Mat4, Quat, Vec3};
 use pphigs::{
@@ -15,7 +15,7 @@ use std::sync::Arc;
 struct Numbers(SplitMix64);
 
 impl Numbers {
-    /// -1 to 1.
+    /// Returns a number from -1 to 1.
     fn next(&mut self) -> f32 {
         2.0 * self.0.unit() - 1.0
     }
@@ -28,7 +28,7 @@ impl Numbers {
         [0; 3].map(|_| self.0.bits() as u8)
     }
 
-    /// Turned, moved, as large as before up to a factor, one in three mirrored.
+    /// Returns a matrix that rotates, moves and scales uniformly; every third one mirrors.
     fn model(&mut self, n: usize) -> Mat4 {
         let size = 4.0_f32.powf(self.next());
         let mirror = if n.is_multiple_of(3) { -1.0 } else { 1.0 };
@@ -36,7 +36,7 @@ impl Numbers {
         Mat4::from_rotation_translation(turn, self.vector(2.0)) * Mat4::from_scale(Vec3::new(mirror * size, size, size))
     }
 
-    /// Perspective, also beside the middle, and parallel.
+    /// Returns a perspective projection, also off centre, or a parallel one.
     fn projection(&mut self, n: usize) -> Mat4 {
         let mut lens = Mat4::perspective_rh(1.0 + 0.4 * self.next(), 4.0 / 3.0, 0.25, 60.0);
         match n % 4 {
@@ -50,7 +50,8 @@ impl Numbers {
         }
     }
 
-    /// From tiny to larger than the picture, most of them before the eye; some behind it, around it, and across its planes.
+    /// Returns a sphere from tiny to larger than the picture, mostly in front of the eye. Some are behind it, around
+    /// it, or across its planes.
     fn sphere(&mut self) -> WorldSphere {
         let radius = 10.0_f32.powf(1.5 * self.next() - 1.0);
         let along = Vec3::new(0.5 * self.next(), 0.4 * self.next(), -1.0);
@@ -59,7 +60,7 @@ impl Numbers {
     }
 }
 
-/// Numbers that are none or too large, sizes of nothing, the eye inside, pictures that just touch a border.
+/// Returns spheres with NaN or too large numbers, zero sizes, the eye inside, or images that barely touch a border.
 fn odd_spheres() -> Vec<WorldSphere> {
     let mut all = Vec::new();
     for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 2e30, -3e38, 1e30, -1e29, 0.0] {
@@ -112,7 +113,7 @@ fn view(numbers: &mut Numbers, n: usize) -> FrameView {
     FrameView { number: ViewNumber::FIRST, eyes: vec![eye], edits }
 }
 
-/// The words of a region's primitives as the native firmware makes them.
+/// Returns the words of a region's primitives as the native firmware makes them.
 fn native(pass: &Arc<Pass>, region: RegionId) -> Vec<Word> {
     let mut words = Vec::new();
     for list in region_messages(pass, region, 0, RegionEnvelope::default()) {
@@ -139,7 +140,7 @@ fn spheres_of_the_code_are_those_of_the_native_firmware_in_words_and_bins() {
         Viewport::new(grid, Lines::Frame).expect("at most 128 regions")
     };
     let ntsc = [Viewport::FRAME, Viewport::field(FieldParity::Even), Viewport::field(FieldParity::Odd)];
-    // Faces of a cube, and a frame whose last regions are cut off.
+    // Faces of a cube, and a frame with partial regions.
     let pictures = [ntsc.as_slice(), &[frame(256, 256), frame(1408, 1408), frame(700, 500)]].concat();
     for n in 0..8 {
         let list = list(&mut numbers, 2000);

@@ -1,5 +1,5 @@
-//! Six views around an eye by code: each view's words and bins are those of the native firmware, and few primitives are given to a view
-//! that does not see them.
+//! Tests of six views around an eye by code: each view's words and bins must equal those of the native firmware. Few
+//! primitives may go to a view that does not see them.
 
 use glam::{Mat4, Quat, Vec3, Vec4};
 use pphigs::{
@@ -18,7 +18,7 @@ const VERSIONS: [CodeVersion; 3] = [CodeVersion::Unoptimised, CodeVersion::Compi
 struct Numbers(SplitMix64);
 
 impl Numbers {
-    /// -1 to 1.
+    /// Returns a number from -1 to 1.
     fn next(&mut self) -> f32 {
         2.0 * self.0.unit() - 1.0
     }
@@ -27,14 +27,15 @@ impl Numbers {
         Vec3::new(self.next(), self.next(), self.next()) * size
     }
 
-    /// Around the eye, near and far.
+    /// Returns a place around the eye, near or far.
     fn place(&mut self) -> Vec3 {
         self.vector(1.0).normalize_or(Vec3::X) * 20.0_f32.powf(0.9 * self.next())
     }
 }
 
-/// Triangles and spheres all around the origin, most small beside their distance, some large, in five structures: one fixed to the head,
-/// one that is not drawn, one that leaves out what faces away.
+/// Returns triangles and spheres all around the origin, most of them small for their distance, in five structures.
+///
+/// One structure is fixed to the head, one is not drawn, and one drops back faces.
 fn list(numbers: &mut Numbers, triangles: u32, spheres: usize) -> Arc<DisplayList> {
     let mut list = DisplayList { towards_light: Vec3::Y, ambient: 0.25, diffuse: 0.75, ..DisplayList::default() };
     for number in 0..triangles {
@@ -66,7 +67,7 @@ fn list(numbers: &mut Numbers, triangles: u32, spheres: usize) -> Arc<DisplayLis
 
 const CHOSEN: [bool; 5] = [true, true, false, true, true];
 
-/// The six views, along +x, -x, +y, -y, +z, -z, of an eye whose axes are nearly the world's.
+/// Returns the six views along +x, -x, +y, -y, +z and -z of an eye whose axes are nearly the world's.
 fn views(numbers: &mut Numbers, scale: f32) -> FrameView {
     let ahead =
         Mat4::from_translation(numbers.vector(0.5)) * Mat4::from_quat(Quat::from_scaled_axis(numbers.vector(0.1)));
@@ -78,7 +79,7 @@ fn views(numbers: &mut Numbers, scale: f32) -> FrameView {
         Vec4::new(0.0, 0.0, deep, -1.0),
         Vec4::new(0.0, 0.0, near * deep, 0.0),
     );
-    // Rows: to the right, up, and against the direction of the view.
+    // Rows of a rotation: to the right, up, and opposite to the view direction.
     let turns = [
         [Vec3::Z, Vec3::Y, Vec3::NEG_X],
         [Vec3::NEG_Z, Vec3::Y, Vec3::X],
@@ -124,7 +125,7 @@ fn run(processor: &mut Processor, passes: &[Arc<Pass>; 6], context: u8) -> Surro
     surrounding.run_code(&GpTiming::PAPERS, processor).expect("it returns").expect("it has kernels")
 }
 
-/// The words of a region's primitives as the native firmware makes them.
+/// Returns the words of a region's primitives as the native firmware makes them.
 fn native(pass: &Arc<Pass>, region: RegionId) -> Vec<Word> {
     let mut words = Vec::new();
     for list in region_messages(pass, region, 0, RegionEnvelope::default()) {
@@ -133,7 +134,7 @@ fn native(pass: &Arc<Pass>, region: RegionId) -> Vec<Word> {
     words
 }
 
-/// The same as a token hands them over.
+/// Returns the words of a region's primitives as a token hands them over.
 fn handed_over(processor: &mut Processor, pass: &Pass, context: u8, view: u8, region: RegionId) -> Vec<Word> {
     let handing = Handing { pass, context, view, region, envelope: RegionEnvelope::default() };
     handing.by_code(&GpTiming::PAPERS, processor).expect("it returns");
@@ -154,7 +155,7 @@ fn each_view_gets_the_words_and_bins_of_the_native_firmware() {
             let mut processor = board(version, &share);
             let shading = if n % 2 == 0 { Shading::Phong } else { Shading::Gouraud };
             let passes = passes(&share, &view, shading, face(texels));
-            // Both contexts are in use at once; the second has another eye.
+            // Both contexts are in use at once; the second one has another eye.
             let other = self::passes(&share, &views(&mut numbers, scale), shading, face(texels));
             let made = run(&mut processor, &passes, 0);
             run(&mut processor, &other, 1);
@@ -175,7 +176,7 @@ fn each_view_gets_the_words_and_bins_of_the_native_firmware() {
     }
 }
 
-/// What is given and not seen lies within the margin, is large, or faces away.
+/// A primitive in an unnecessary view must be within the margin, large, or a back face.
 #[test]
 fn few_primitives_are_given_to_a_view_that_does_not_see_them() {
     let mut numbers = Numbers(SplitMix64::new(52));

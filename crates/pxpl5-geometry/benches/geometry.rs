@@ -8,7 +8,7 @@ use pxpl5_geometry::{
 };
 use std::hint::black_box;
 
-/// A sphere of `2 * 186 * 160` = 59,520 triangles, as many as the head of the published measurements.
+/// A sphere of `2 * 186 * 160` = 59,520 triangles, as many as the head model of the published measurements.
 struct Ball {
     positions: Vec<Vec3>,
     colours: Vec<[u8; 3]>,
@@ -53,7 +53,7 @@ impl Ball {
     }
 }
 
-/// The angle of `n` of so many steps around, in radians.
+/// Returns the angle of step `n` of `steps` steps around a circle, in radians.
 fn part_of_turn(n: u32, steps: u32) -> f32 {
     std::f32::consts::TAU * n as f32 / steps as f32
 }
@@ -116,7 +116,7 @@ fn transform(c: &mut Criterion) {
     group.finish();
 }
 
-/// Puts triangles that need no clipping into lanes.
+/// Adds triangles that need no clipping to the lanes.
 fn fill<'a>(lanes: &mut TriangleLanes<'a>, some: &[[u32; 3]], vertices: &'a [SurfaceVertex]) {
     lanes.clear();
     for corners in some {

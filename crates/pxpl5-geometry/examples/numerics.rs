@@ -1,4 +1,4 @@
-//! Compares the pipeline with an exact oracle on hard cases and writes docs/numerics.md.
+//! Compares the pipeline with exact geometry on hard cases, and writes docs/numerics.md.
 //!
 //! `cargo run -p pxpl5-geometry --release --example numerics`
 

@@ -1,22 +1,22 @@
-//! Binning: which regions a screen triangle touches.
+//! Binning: finds the regions that a screen triangle touches.
 //!
-//! A region is *touched* when both hold:
+//! A region is *touched* when both of these are true:
 //!
-//! - the bounding box of the triangle holds the centre of one of its columns and of one of its rows, and
-//! - for each edge, some point of the region's *pixel-centre box* (the smallest rectangle around the centres of its
-//!   pixels) is on the inner side, with the tie rule of the edge.
+//! - The bounding box of the triangle contains the centre of one of the region's columns and of one of its rows.
+//! - For each edge, some point of the region's *pixel-centre box* is on the inner side, with the tie rule of the edge.
+//!   The box is the smallest rectangle around the centres of the region's pixels.
 //!
-//! These are the sides of the sum of triangle and box, so the test is exact for the question "does the triangle, of
-//! which right and bottom edges are not a part, meet the pixel-centre box". Every region with a covered pixel is
-//! touched. The reverse does not hold: a triangle that passes between the pixel centres of a region touches it without
-//! a pixel, unless it passes between two columns or two rows.
+//! These conditions are the sides of the Minkowski sum of triangle and box. So the test decides exactly whether the
+//! triangle, without its right and bottom edges, meets the pixel-centre box. Every region with a covered pixel is
+//! touched. A touched region may have no covered pixel, if the triangle passes between its pixel centres. A triangle
+//! between two columns or two rows touches no region there.
 
 use crate::outline::{Outline, extent};
 use crate::regions::RegionMask;
 use crate::view::Viewport;
 use pxpl5_wire::Linear;
 
-/// First and last pixel of an interval along one axis; empty if `first > last`.
+/// First and last pixel of an interval along one axis. The interval is empty if `first > last`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Range {
     pub(crate) first: i32,
@@ -28,7 +28,7 @@ impl Range {
         self.first > self.last
     }
 
-    /// Pixels whose centres lie in [low, high), in subpixels. The tie rule draws nothing at `high`.
+    /// Returns the pixels whose centres lie in [low, high), in subpixels. The tie rule draws no pixel at `high`.
     #[inline(always)]
     pub(crate) const fn of_centres(low: i32, high: i32) -> Self {
         Self { first: (low + 7) >> 4, last: (high - 9) >> 4 }
@@ -40,7 +40,7 @@ impl Range {
     }
 }
 
-/// The regions of a picture, ready for look-up by pixel.
+/// The regions of a picture, with reciprocals for a fast look-up by pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Binner {
     pub(crate) width: i32,
@@ -54,8 +54,9 @@ pub(crate) struct Binner {
     first_line: i32,
 }
 
-/// `n / size == n * reciprocal(size) >> 20` for n below 2^13 and size up to 128: the excess of the reciprocal, below
-/// `size / 2^20`, times n stays below `1 / size`.
+/// Returns a reciprocal with `n / size == n * reciprocal(size) >> 20`, for n below 2^13 and size up to 128.
+///
+/// The reciprocal is too large by less than `size / 2^20`. Times n, the excess stays below `1 / size`.
 const fn reciprocal(size: u32) -> u32 {
     (1_u32 << 20).div_ceil(size)
 }
@@ -85,7 +86,7 @@ impl Binner {
         self.columns
     }
 
-    /// Picture rows of a range of frame lines.
+    /// Returns the picture rows of a range of frame lines.
     #[inline(always)]
     pub(crate) fn rows_of_lines(&self, lines: Range) -> Range {
         let round_up = (1 << self.line_shift) - 1;
@@ -95,7 +96,7 @@ impl Binner {
         }
     }
 
-    /// The regions that a rectangle of pixels, given in frame lines, meets.
+    /// Returns the regions that a rectangle of pixels meets. Its rows are given as frame lines.
     pub(crate) fn rectangle(&self, x: Range, lines: Range) -> RegionMask {
         let x = x.within(self.width);
         let y = self.rows_of_lines(lines).within(self.height);
@@ -105,7 +106,7 @@ impl Binner {
         self.cells(x, y, |_, _| true)
     }
 
-    /// The regions that a triangle touches, as defined at the top of this file.
+    /// Returns the regions that a triangle touches, as the module documentation defines.
     #[inline(always)]
     pub(crate) fn triangle(&self, outline: &Outline) -> RegionMask {
         let [low_x, high_x] = extent(&outline.x);
@@ -115,6 +116,7 @@ impl Binner {
         if x.is_empty() || y.is_empty() {
             return RegionMask::EMPTY;
         }
+        // Fast path: a triangle inside the pixel-centre box of one region touches only that region.
         let column = quotient(x.first, self.column_reciprocal);
         let row = quotient(y.first, self.row_reciprocal);
         let (left, right) = self.column_box(column);
@@ -127,7 +129,10 @@ impl Binner {
         self.test_edges(outline.x, outline.y, x, y)
     }
 
-    /// Takes the corners alone: were the outline passed on, callers that need no depths would still compute them.
+    /// Tests the edges of a triangle against the regions of some pixels.
+    ///
+    /// The parameters are the corners only. With the whole outline as a parameter, callers that need no depths would
+    /// still compute them.
     #[inline(never)]
     pub(crate) fn test_edges(&self, corners_x: [i32; 3], corners_y: [i32; 3], x: Range, y: Range) -> RegionMask {
         let outline = Outline { x: corners_x, y: corners_y, z: [0; 3], regions: RegionMask::EMPTY };
@@ -139,7 +144,7 @@ impl Binner {
         })
     }
 
-    /// The cells of the grid that hold pixels of `x` and `y` and pass `test(column, row)`.
+    /// Returns the cells of the grid that hold pixels of `x` and `y` and pass `test(column, row)`.
     fn cells(&self, x: Range, y: Range, test: impl Fn(i32, i32) -> bool) -> RegionMask {
         let columns = [x.first, x.last].map(|n| quotient(n, self.column_reciprocal));
         let rows = [y.first, y.last].map(|n| quotient(n, self.row_reciprocal));
@@ -152,14 +157,14 @@ impl Binner {
         RegionMask::with_bits(mask)
     }
 
-    /// First and last pixel of a column of regions.
+    /// Returns the first and last pixel of a column of regions.
     #[inline(always)]
     pub(crate) fn column_box(&self, column: i32) -> (i32, i32) {
         let left = column * self.region_width;
         (left, (left + self.region_width).min(self.width) - 1)
     }
 
-    /// First and last frame line of a row of regions.
+    /// Returns the first and last frame line of a row of regions.
     #[inline(always)]
     pub(crate) fn row_box(&self, row: i32) -> (i32, i32) {
         let top = row * self.region_height;
@@ -167,7 +172,7 @@ impl Binner {
         (self.line_of_row(top), self.line_of_row(bottom))
     }
 
-    /// The line of the frame that a row of the picture's pixels is.
+    /// Returns the frame line of a row of the picture's pixels.
     #[inline(always)]
     const fn line_of_row(&self, row: i32) -> i32 {
         (row << self.line_shift) + self.first_line
@@ -175,8 +180,10 @@ impl Binner {
 }
 
 impl Outline {
-    /// Whether the triangle meets the box around the centres of a rectangle's pixels: first and last pixel across,
-    /// first and last line of the frame down. The rule is that of the regions.
+    /// Returns true if the triangle meets the box around the centres of a rectangle's pixels.
+    ///
+    /// The rectangle is given by its first and last pixel across and its first and last frame line. The rule is the
+    /// same as for regions.
     #[must_use]
     pub fn meets(&self, across: [i32; 2], lines: [i32; 2]) -> bool {
         let x = pixels_between(&self.x);
@@ -188,13 +195,14 @@ impl Outline {
     }
 }
 
-/// Pixels whose centres lie between the least and the greatest of three corners, given in subpixels.
+/// Returns the pixels whose centres lie between the least and the greatest of three corners, in subpixels.
 fn pixels_between(corners: &[i32; 3]) -> Range {
     let [low, high] = extent(corners);
     Range::of_centres(low, high)
 }
 
-/// Largest value of an edge expression over a box of pixels. No overflow: see [`crate::GUARD_PIXELS`].
+/// Returns the largest value of an edge expression over a box of pixels. It cannot overflow: see
+/// [`crate::GUARD_PIXELS`].
 fn greatest(edge: &Linear, (left, right): (i32, i32), (top, bottom): (i32, i32)) -> i32 {
     let x = if edge.a > 0 { right } else { left };
     let y = if edge.b > 0 { bottom } else { top };

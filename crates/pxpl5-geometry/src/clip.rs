@@ -1,59 +1,58 @@
-//! Clipping in homogeneous clip coordinates, before the divide.
+//! Clipping in homogeneous clip coordinates, before the divide by w.
 //!
-//! Only as far as the formats need: by the near plane (z = 0), the far plane (z = w), and four planes of a guard
-//! band some 4,000 px from the picture. Whatever leaves the picture but not the guard band is left to the edge
-//! expressions.
+//! Triangles are clipped only as far as the formats need: by the near plane (z = 0), the far plane (z = w), and four
+//! planes of a guard band some 4,000 px outside the picture. Edge expressions handle triangles that leave the picture
+//! but not the guard band.
 //!
-//! An edge that two triangles share is cut at the same point in both, bit for bit: the point is computed from the
-//! lesser to the greater end in one fixed order of clip coordinates, whichever way the triangle runs. So the cut
-//! opens no gap.
+//! An edge shared by two triangles is cut at the same point in both, bit for bit. The point is computed from the lesser
+//! to the greater end in a fixed order of clip coordinates, whatever the winding. So the cut opens no gap.
 //!
-//! Cuts are made and kept in double precision until they are on the screen: close to the eye a long edge has small
-//! coordinates that are differences of large ones, and a cut some pixels off would fold the pieces over.
+//! Cuts are computed in double precision until they are on the screen. Close to the eye, the small coordinates of a
+//! long edge are differences of large numbers. A cut that is some pixels off would fold over the pieces.
 
 use crate::newton;
 use std::cmp::Ordering;
 
-/// Largest clip coordinate. Larger ones, infinities and NaN are refused, so that no step overflows.
+/// Largest absolute clip coordinate. Larger ones, infinities and NaN are rejected, so that no step overflows.
 pub const MAX_CLIP: f32 = 1e30;
 
-/// Smallest w that is divided by: its reciprocal times a clip coordinate stays finite.
+/// Smallest w for the divide: its reciprocal times a clip coordinate stays finite.
 pub(crate) const MIN_W: f32 = 1e-30;
 
-/// Most corners after cutting a triangle by six planes.
+/// Largest number of corners after a triangle is cut by six planes.
 const MAX_CORNERS: usize = 9;
 
-/// A vertex in clip coordinates with `N` numbers that vary linearly.
+/// A vertex in clip coordinates with `N` values that vary linearly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ClipVertex<const N: usize> {
     pub(crate) clip: [f32; 4],
     pub(crate) extra: [f32; N],
 }
 
-/// The guard band: |x| at most `x w`, |y| at most `y w`.
+/// The guard band: |x| is at most `x w`, and |y| is at most `y w`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Guard {
     pub(crate) x: f32,
     pub(crate) y: f32,
 }
 
-/// A corner of what is left of a triangle.
+/// A corner of a clipped triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Corner<const N: usize> {
     pub(crate) clip: [f64; 4],
     pub(crate) extra: [f64; N],
-    /// Whether it is a cut, and not a vertex.
+    /// True if the corner is a cut, false if it is a vertex of the triangle.
     pub(crate) cut: bool,
 }
 
 impl<const N: usize> Corner<N> {
-    /// The corner where a vertex of the triangle is, not a cut.
+    /// Returns the corner at a vertex of the triangle.
     fn at_vertex(vertex: &ClipVertex<N>) -> Self {
         Self { clip: vertex.clip.map(f64::from), extra: vertex.extra.map(f64::from), cut: false }
     }
 }
 
-/// What planes leave of a triangle: a convex polygon of at most nine corners.
+/// A clipped triangle: a convex polygon of at most nine corners.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Polygon<const N: usize> {
     corners: [Corner<N>; MAX_CORNERS],
@@ -70,7 +69,7 @@ impl<const N: usize> Polygon<N> {
         &self.corners[..self.len]
     }
 
-    /// Rounding can make a polygon slightly concave; more corners than a convex one can have are left out.
+    /// Adds a corner. Rounding can make a polygon slightly concave; corners beyond the ninth are dropped.
     fn push(&mut self, corner: Corner<N>) {
         if let Some(slot) = self.corners.get_mut(self.len) {
             *slot = corner;
@@ -80,7 +79,7 @@ impl<const N: usize> Polygon<N> {
 }
 
 impl Guard {
-    /// Signed distances of a point from the six planes; not negative is inside.
+    /// Returns the signed distance of a point from one of the six planes; a point inside has none below 0.
     fn distance(self, plane: usize, [x, y, z, w]: [f64; 4]) -> f64 {
         let [right, top] = [self.x, self.y].map(f64::from);
         match plane {
@@ -93,7 +92,7 @@ impl Guard {
         }
     }
 
-    /// Whether a vertex needs no clipping; false for NaN and for coordinates beyond [`MAX_CLIP`].
+    /// Returns true if a vertex needs no clipping. Returns false for NaN and for coordinates beyond [`MAX_CLIP`].
     #[inline(always)]
     pub(crate) fn contains(self, [x, y, z, w]: [f32; 4]) -> bool {
         let across = (x.abs() <= self.x * w) & (y.abs() <= self.y * w);
@@ -101,10 +100,11 @@ impl Guard {
         across & depth & (MIN_W..=MAX_CLIP).contains(&w)
     }
 
-    /// What is left of a triangle.
+    /// Clips a triangle by the six planes.
     pub(crate) fn clip<const N: usize>(self, triangle: &[ClipVertex<N>; 3]) -> Polygon<N> {
         let mut polygon = Polygon::empty();
         triangle.iter().for_each(|v| polygon.push(Corner::at_vertex(v)));
+        // Most triangles cross few planes, so cut only by planes that have a corner outside.
         for plane in 0..6 {
             if polygon.corners().iter().any(|corner| self.distance(plane, corner.clip) < 0.0) {
                 polygon = self.cut(plane, &polygon);
@@ -129,7 +129,7 @@ impl Guard {
         out
     }
 
-    /// Where an edge crosses a plane, computed from its lesser end.
+    /// Returns the point where an edge crosses a plane, computed from the lesser end of the edge.
     fn crossing<const N: usize>(self, plane: usize, one: &Corner<N>, other: &Corner<N>) -> Corner<N> {
         let (from, to) = match order(&one.clip, &other.clip) {
             Ordering::Greater => (other, one),
@@ -146,17 +146,17 @@ impl Guard {
     }
 }
 
-/// The number that lies the part `t` of the way from one to the other.
+/// Interpolates linearly: `t` is 0 at `from` and 1 at `to`.
 fn interpolate(from: f64, to: f64, t: f64) -> f64 {
     from + (to - from) * t
 }
 
-/// A total order of clip coordinates.
+/// Compares clip coordinates by a total order.
 fn order(a: &[f64; 4], b: &[f64; 4]) -> Ordering {
     a.iter().zip(b).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
 }
 
-/// Whether all corners lie beyond one side of the picture, before the near plane or behind the far plane.
+/// Returns true if all corners lie outside one of the six planes of the view volume.
 pub(crate) fn all_outside(corners: &[[f32; 4]; 3]) -> bool {
     let beyond_a_side: [fn(&[f32; 4]) -> bool; 6] = [
         |[x, _, _, w]| x > w,
@@ -169,7 +169,7 @@ pub(crate) fn all_outside(corners: &[[f32; 4]; 3]) -> bool {
     beyond_a_side.iter().any(|beyond| corners.iter().all(beyond))
 }
 
-/// Whether every coordinate is a number of at most [`MAX_CLIP`].
+/// Returns true if the absolute value of every coordinate is at most [`MAX_CLIP`].
 pub(crate) fn representable(corners: &[[f32; 4]; 3]) -> bool {
     corners.iter().flatten().all(|v| v.abs() <= MAX_CLIP)
 }

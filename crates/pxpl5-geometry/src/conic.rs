@@ -1,24 +1,24 @@
-//! Conics on the screen: the pictures of spheres, in floating point and in the renderer's fixed point.
+//! Conics on the screen, which are the images of spheres, in floating point and in the renderer's fixed point.
 
 use crate::newton::{reciprocal_double, reciprocal_root, root, whole};
 use pxpl5_wire::Quadratic;
 
-/// Bits of a silhouette's value within its regions: one less than the renderer evaluates, sign included.
+/// Bits of a silhouette's value within its regions: one less than the renderer evaluates, including the sign.
 const VALUE_BITS: i32 = 46;
 
-/// Most bits of a root as the renderer computes it.
+/// Largest number of bits of a root in the renderer.
 pub(crate) const ROOT_BITS: i32 = 12;
 
-/// Most low bits of a silhouette that a root can leave out.
+/// Largest number of low bits of a silhouette that a root can ignore.
 const MAX_ROOT_SHIFT: i32 = 24;
 
-/// Largest left shift of a root before it is subtracted from a depth.
+/// Largest left shift of a root before its subtraction from a depth.
 const MAX_DEPTH_SHIFT: i32 = 20;
 
-/// `constant + x dx + y dy + xx dx^2 + xy dx dy + yy dy^2`, (dx, dy) in pixels from `origin`.
+/// The quadratic `constant + x dx + y dy + xx dx^2 + xy dx dy + yy dy^2`, with (dx, dy) in pixels from `origin`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Conic {
-    /// In pixels of the frame; (0, 0) is the centre of the top left pixel.
+    /// Origin in pixels of the frame; (0, 0) is the centre of the top left pixel.
     pub(crate) origin: [f64; 2],
     pub(crate) constant: f64,
     pub(crate) x: f64,
@@ -36,34 +36,35 @@ pub(crate) struct FixedConic {
     pub(crate) depth_shift: u8,
 }
 
-/// 2 to a power from -1022 to 1023, exactly.
+/// Returns 2 to a power from -1022 to 1023, exactly.
 pub(crate) fn power_of_two(exponent: i32) -> f64 {
     f64::from_bits(((exponent.clamp(-1022, 1023) + 1023) as u64) << 52)
 }
 
-/// The power of two just above `value`: `value < 2^n`; 0 gives -1022.
+/// Returns the smallest n with `value < 2^n`; -1022 for 0.
 fn exponent_above(value: f64) -> i32 {
     ((value.to_bits() >> 52) & 0x7ff) as i32 - 1022
 }
 
-/// Where an ellipse that is positive inside is greatest, and how large it is.
+/// Position, value and size of an ellipse that is positive inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Ellipse {
-    /// In the frame's pixels.
+    /// Position of the greatest value, in pixels of the frame.
     pub(crate) peak: [f64; 2],
-    /// The greatest value.
+    /// The greatest value of the conic.
     pub(crate) value: f64,
-    /// Squares of half the width and half the height in pixels.
+    /// Squares of half the width and half the height, in pixels.
     half_squares: [f64; 2],
 }
 
 impl Ellipse {
-    /// One over half the width and half the height.
+    /// Returns the reciprocals of half the width and half the height.
     pub(crate) fn per_half_size(&self) -> [f64; 2] {
         self.half_squares.map(reciprocal_root)
     }
 
-    /// Least and greatest x and y in the frame's pixels; `None` if it is no ellipse (NaN, overflow, no size).
+    /// Returns the least and greatest x and y in pixels of the frame. Returns `None` if the conic is no ellipse (NaN,
+    /// overflow, no size).
     pub(crate) fn bounds(&self) -> Option<[[f64; 2]; 2]> {
         let [x, y] = self.peak;
         let [half_x, half_y] = self.half_squares.map(root);
@@ -85,7 +86,7 @@ impl Conic {
         }
     }
 
-    /// The same conic from another origin.
+    /// Returns the same conic with another origin.
     pub(crate) fn around(&self, origin: [f64; 2]) -> Self {
         let dx = origin[0] - self.origin[0];
         let dy = origin[1] - self.origin[1];
@@ -98,18 +99,18 @@ impl Conic {
         }
     }
 
-    /// The value at (dx, dy) from the origin.
+    /// Returns the value at (dx, dy) from the origin.
     fn at(&self, dx: f64, dy: f64) -> f64 {
         let row = (self.xx * dx + self.xy * dy) + self.x;
         (row * dx + (self.yy * dy + self.y) * dy) + self.constant
     }
 
-    /// `4 xx yy - xy^2`, positive for an ellipse.
+    /// Returns `4 xx yy - xy^2`, which is positive for an ellipse.
     fn determinant(&self) -> f64 {
         4.0 * self.xx * self.yy - self.xy * self.xy
     }
 
-    /// What the conic is as an ellipse.
+    /// Returns the position, value and size of the conic, if it is an ellipse.
     pub(crate) fn ellipse(&self) -> Ellipse {
         let inverse = reciprocal_double(self.determinant());
         let dx = (self.xy * self.y - 2.0 * self.yy * self.x) * inverse;
@@ -123,11 +124,13 @@ impl Conic {
         }
     }
 
-    /// Rounds for evaluation on the frame's pixels of `rectangle` (first and last along x, and along y).
+    /// Rounds the conic to fixed point, for evaluation on the frame's pixels of `rectangle` (first and last along x,
+    /// and along y).
     ///
-    /// The values are powers of two times the conic's, as large as fits in 46 bits on the whole rectangle.
-    /// Coefficients are rounded around `pixel` and restated exactly for pixel (0, 0), so the error grows from
-    /// there and not from the picture's corner. With the pixel of the peak, whose value is `peak`, no small sphere is lost.
+    /// The values are scaled by a power of two, as large as fits 46 bits on the whole rectangle. Coefficients are
+    /// rounded around pixel (px, py) and restated exactly for pixel (0, 0). So the error grows from (px, py) and not
+    /// from the picture's corner. If this pixel is the one of the peak, whose value is `peak`, no small sphere
+    /// vanishes.
     pub(crate) fn fixed(&self, peak: f64, rectangle: [[i32; 2]; 2], [px, py]: [i32; 2]) -> FixedConic {
         let local = self.around([f64::from(px), f64::from(py)]);
         let depth_shift = ((exponent_above(peak) + 1).div_euclid(2) - ROOT_BITS).clamp(0, MAX_DEPTH_SHIFT);
@@ -142,18 +145,19 @@ impl Conic {
         }
     }
 
-    /// Greatest absolute value at the corners of a rectangle; with the peak this bounds a concave conic.
+    /// Returns the greatest absolute value at the corners of a rectangle. Together with the peak it bounds a concave
+    /// conic.
     fn greatest_on(&self, [across, down]: [[i32; 2]; 2]) -> f64 {
         let values = across.into_iter().flat_map(|x| down.map(|y| self.at_pixel(x, y).abs()));
         values.fold(0.0, f64::max)
     }
 
-    /// The value at a pixel of the frame.
+    /// Returns the value at a pixel of the frame.
     fn at_pixel(&self, x: i32, y: i32) -> f64 {
         self.at(f64::from(x) - self.origin[0], f64::from(y) - self.origin[1])
     }
 
-    /// Coefficients as integers around pixel (px, py), then exactly around pixel (0, 0).
+    /// Rounds the coefficients to integers around pixel (px, py), then restates them exactly around pixel (0, 0).
     fn rounded(&self, px: i64, py: i64) -> Quadratic {
         let [xx, xy, yy] = [self.xx, self.xy, self.yy].map(whole);
         let [x, y] = [self.x, self.y].map(whole);
@@ -170,7 +174,8 @@ impl Conic {
     }
 }
 
-/// A quadratic over the frame's pixels, restated for every `step`-th line from `first`: exactly the same values.
+/// Converts a quadratic from frame lines to rows, which are every `step`-th line from `first`. The values at the pixels
+/// stay exactly the same.
 pub(crate) fn for_rows(frame: Quadratic, step: i64, first: i64) -> Quadratic {
     Quadratic {
         xx: frame.xx,

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Triangle {
     /// Corners in world coordinates, in either winding.
     pub positions: [Vec3; 3],
-    /// Normals at the corners, of any length (zero counts as facing the eye).
+    /// Normals at the corners, of any length. A zero normal counts as facing the eye.
     pub normals: [Vec3; 3],
     /// Red, green and blue at the corners, 0 to 255 each.
     pub colours: [[u8; 3]; 3],
@@ -19,27 +19,27 @@ pub struct Triangle {
 pub struct WorldSphere {
     /// Centre in world coordinates.
     pub centre: Vec3,
-    /// Radius in units of the world, not negative.
+    /// Radius in world units, not negative.
     pub radius: f32,
     /// Red, green and blue, 0 to 255 each.
     pub colour: [u8; 3],
 }
 
-/// A directional light and the surface's answer to it: `ambient + diffuse * max(0, n . l)`, at most 1.
+/// A directional light. It shows the share `ambient + diffuse * max(0, n . l)`, at most 1, of a surface's colour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Light {
-    /// Towards the light, in eye coordinates, unit length.
+    /// Unit vector towards the light, in eye coordinates.
     pub direction: [f32; 3],
-    /// Part of the colour seen without the light, 0 to 1.
+    /// Share of the colour that is visible without the light, 0 to 1.
     pub ambient: f32,
-    /// Part of the colour added where the light falls at a right angle, 0 to 1.
+    /// Share of the colour that perpendicular light adds, 0 to 1.
     pub diffuse: f32,
 }
 
 impl Light {
-    /// At the eye, looking where it looks: 0.25 ambient, 0.75 diffuse.
+    /// A light at the eye that shines in the view direction: 0.25 ambient, 0.75 diffuse.
     pub const HEADLIGHT: Self = Self { direction: [0.0, 0.0, 1.0], ambient: 0.25, diffuse: 0.75 };
 
-    /// Colours as they are, whatever the normals.
+    /// A light that leaves colours unchanged for any normal.
     pub const NONE: Self = Self { direction: [0.0, 0.0, 1.0], ambient: 1.0, diffuse: 0.0 };
 }

@@ -1,9 +1,9 @@
-//! The same computation as code of the graphics processor: i860 assembly, and the memory that it works on.
+//! Set-up of triangles as code of the graphics processor: i860 assembly, and its memory layout.
 //!
-//! A [`Kernel`] takes Gouraud or Phong triangles from the display list to the words of renderer commands and to bins:
-//! transform, guard band, light or normals, snapping, planes, the restatement for a field, regions. It calls the clipper, a
-//! program of its own, for triangles that are not wholly inside the guard band. Of steep planes only those of pieces are
-//! flattened.
+//! A [`Kernel`] computes the words of renderer commands and the bins of Gouraud or Phong triangles from the display
+//! list. It does the transform, guard band test, light or normals, snapping, planes, the restatement for a field, and
+//! regions. For triangles not wholly inside the guard band it calls the clipper, which is a program of its own. Of
+//! steep planes it flattens only the planes of clipped pieces.
 //!
 //! ```text
 //!   display list (96 bytes a triangle, --+
@@ -14,14 +14,14 @@
 //!                                             clipper -> the same for pieces
 //! ```
 //!
-//! The computation is that of the native code, so that the words are the same bit for bit: 1 / w by a seed and two Newton steps in
-//! single precision, normals as the display list holds them turned by a matrix and not made unit again, light in the coordinates of
-//! the normals. Registers and layouts stand in kernels/parameters.s. The sources are put together as a linker would, one file for
-//! each choice. This crate does not assemble or run them.
+//! The computation equals the native code, so that the words are the same bit for bit. 1 / w is a seed and two Newton
+//! steps in single precision. Normals are turned by a matrix and not normalized again. Light is computed in the
+//! coordinates of the normals. kernels/parameters.s defines registers and memory layouts. Each choice of [`Kernel`]
+//! concatenates its own source files, like a linker. This crate does not assemble or run the sources.
 
 mod between;
 
-/// What the clipper interpolates of surfaces that depend on normals.
+/// Source of the clipper's interpolation for surfaces that depend on normals.
 macro_rules! clip_with_normals {
     ($surface:literal) => {
         concat!(include_str!("../kernels/clip_away.s"), "\n", include_str!(concat!("../kernels/clip_", $surface, ".s")))
@@ -36,99 +36,108 @@ use crate::{DEPTH_FAR, DEPTH_NEAR, Light, MAX_CLIP, NORMAL_UNIT, Transform, Tria
 use glam::Vec3;
 use pxpl5_wire::{Lines, REGION_SIZE, RegionGrid, Word};
 
-/// How the code was made.
+/// Optimization level of the kernel's code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Schedule {
-    /// As a compiler without optimisation would give it: every statement through the stack frame, everything inlined, larger than
-    /// the instruction cache.
+    /// Code of a compiler without optimization: every statement goes through the stack frame. Everything is inlined, so
+    /// the code exceeds the instruction cache.
     Straight,
-    /// As a good compiler of about 1990 would give it: functions, loops, locals in registers, scalar operations
+    /// Code of a good compiler of about 1990: functions, loops, locals in registers, scalar operations
     /// (kernels/compiled_rules.md).
     Compiled,
-    /// In dual-instruction mode, in two loops over batches that each fit the instruction cache. Most of it is linear code, which
-    /// the i860's assembler does not know: what assembles it puts it in order first.
+    /// Code in dual-instruction mode: two loops over batches, each of which fits the instruction cache.
+    ///
+    /// Most of the source is linear code, which the i860's assembler does not support. The assembler of this project
+    /// schedules the linear code first.
     Dual,
 }
 
-/// What the planes of a triangle are made of besides depth.
+/// Values that a triangle's planes interpolate besides depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum KernelSurface {
-    /// Colours, lit at the corners.
+    /// Colours that are lit at the corners.
     Gouraud,
     /// Colours as the display list has them.
     Precomputed,
-    /// Normals in eye coordinates.
+    /// Normals in eye coordinates, for Phong shading.
     Phong,
 }
 
-/// How the display list holds corners.
+/// Storage of corners in the display list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum KernelList {
-    /// Triangles, each with three corners of its own ([`display_list_words`]).
+    /// Triangles with three corners each ([`display_list_words`]).
     Triangles,
-    /// Strips, in which each vertex makes a triangle with the two before it ([`vertex_words`]).
+    /// Strips, in which each vertex makes a triangle with the two vertices before it ([`vertex_words`]).
     Strips,
 }
 
-/// What the code knows of the picture.
+/// Kind of picture that the code is written for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum KernelPicture {
     /// An NTSC frame: 640 x 480 in regions of 128 x 128.
     Frame,
     /// An NTSC field: 640 x 240 in regions of 128 x 120.
     Field,
-    /// A frame of any size in regions of 128 x 128, which the parameter block gives: the face of a cube, another display.
+    /// A frame in regions of 128 x 128, of a size given by the parameter block. Examples are a face of a cube and other
+    /// displays.
     Grid,
 }
 
-/// Code for one kind of triangle and picture.
+/// The choice of code for one kind of triangle and picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Kernel {
-    /// How the code was made: by a compiler or by hand.
+    /// Optimization level: compiled or hand-written.
     pub schedule: Schedule,
-    /// Kind of triangle that it sets up.
+    /// Kind of triangle that the kernel sets up.
     pub surface: KernelSurface,
-    /// Kind of display list that it reads.
+    /// Kind of display list that the kernel reads.
     pub list: KernelList,
-    /// What it knows of the picture.
+    /// Kind of picture that the kernel draws.
     pub picture: KernelPicture,
-    /// Whether it puts commands into bins; else all of them go everywhere.
+    /// True if the kernel puts commands into bins, false if all commands go to every region.
     pub binned: bool,
-    /// Whether triangles that face away are not drawn.
+    /// True if back faces are dropped.
     pub culls: bool,
-    /// Whether it keeps the box of each command behind the table of bins' address, where there are no bins: low x, high x, low y, high y in
-    /// 1/16 px of the frame.
+    /// True if an unbinned kernel keeps the bounding box of each command.
+    ///
+    /// The box follows the address of the table of bins: low x, high x, low y, high y, in 1/16 px of the frame.
     pub keeps_boxes: bool,
-    /// Whether one pass over the triangles makes the commands of both eyes (kernels/slats_rules.md): registers 19 and 21 are then
-    /// where the right eye's commands go, and its parameter block. Only where [`Kernel::can_serve_both_eyes`].
+    /// True if one pass over the triangles makes the commands of both eyes (kernels/slats_rules.md).
+    ///
+    /// Registers 19 and 21 then hold the right eye's destination of commands and its parameter block. Requires
+    /// [`Kernel::can_serve_both_eyes`].
     pub both_eyes: bool,
 }
 
-/// Instruction heads of a triangle's command, in the order of the kernel's parameter block: enable, edge, depth
-/// compared, depth loaded again, three components, colour (Phong).
+/// Instruction heads of a triangle's command, in the order of the kernel's parameter block.
+///
+/// The order is: enable, edge, depth compare, depth load, three components, colour (Phong).
 pub type Heads = [Word; 8];
 
-/// Words of a triangle in the display list.
+/// Number of words of a triangle in the display list.
 pub const TRIANGLE_WORDS: usize = 24;
 
-/// Words of a vertex of a strip in the display list.
+/// Number of words of a strip's vertex in the display list.
 pub const VERTEX_WORDS: usize = 8;
 
-/// Words of the parameter block.
+/// Number of words of the parameter block.
 pub const PARAMETER_WORDS: usize = 128;
 
-/// The constants of single precision whose bits the kernels know: 1.5 * 2^23 and 2^23.
+/// Single-precision constants whose bits the kernels use: 1.5 * 2^23 and 2^23.
 const ROUND_SINGLE: f32 = 12_582_912.0;
 const TWO_23: f32 = 8_388_608.0;
-/// More than any distance of two corners within the guard band, in subpixels.
+/// A number greater than any distance of two corners within the guard band, in subpixels.
 const TWO_18: f32 = 262_144.0;
 
-/// Less a biased integer, this word turns the order of integers round.
+/// A word that reverses the order of biased integers when they are subtracted from it.
 const FLIP: Word = 0x9700_0000;
 
 impl Kernel {
-    /// The kernel for a picture of triangles, each with corners of its own; `None` where there is none: regions of other sizes than
-    /// [`KernelPicture`] has, and pictures other than NTSC frames and fields without bins.
+    /// Returns the kernel for a picture of triangles with separate corners.
+    ///
+    /// Returns `None` for region sizes that [`KernelPicture`] lacks. Without bins, only NTSC frames and fields have a
+    /// kernel.
     #[must_use]
     pub fn for_picture(schedule: Schedule, surface: KernelSurface, viewport: &Viewport, binned: bool) -> Option<Self> {
         let picture = KernelPicture::of(viewport).filter(|picture| binned || *picture != KernelPicture::Grid)?;
@@ -136,7 +145,7 @@ impl Kernel {
         Some(Self { schedule, surface, list, picture, binned, culls: false, keeps_boxes: false, both_eyes: false })
     }
 
-    /// Returns true if there is code that makes the commands of both eyes in one pass over the triangles.
+    /// Returns true if this kernel has a variant that makes the commands of both eyes in one pass over the triangles.
     #[must_use]
     pub fn can_serve_both_eyes(&self) -> bool {
         self.surface == KernelSurface::Precomputed
@@ -146,8 +155,9 @@ impl Kernel {
             && !self.keeps_boxes
     }
 
-    /// The source in i860 assembly, with linear stretches where the schedule is [`Schedule::Dual`]; its entry is the label
-    /// `start`.
+    /// Returns the source in i860 assembly, whose entry is the label `start`.
+    ///
+    /// For [`Schedule::Dual`] the source contains linear stretches.
     #[must_use]
     pub fn source(&self) -> String {
         let bins = self.bins();
@@ -165,7 +175,7 @@ impl Kernel {
         let triangle = match self.schedule {
             Schedule::Straight => [self.straight(), vec![bins]].concat(),
             Schedule::Compiled => [self.compiled(self.compiled_loop()), vec![bins]].concat(),
-            // What is seldom needed comes last, so that bins do not share sets of the cache with the end of the second loop.
+            // Rarely used code comes last, so that bins do not share cache sets with the end of the second loop.
             Schedule::Dual => {
                 let last = [bins_of_frames, include_str!("../kernels/scheduled_doubt.s")];
                 [self.dual(), last.to_vec(), self.right_eye()].concat()
@@ -174,10 +184,13 @@ impl Kernel {
         [common.as_slice(), &triangle].concat().join("\n")
     }
 
-    /// The source of the clipper that goes with it; its entry is the label `clipper`, whose address goes into
-    /// [the parameter block](Self::parameters). It is the same whatever the schedule.
+    /// Returns the source of the kernel's clipper, whose entry is the label `clipper`.
+    ///
+    /// The address of the clipper goes into [the parameter block](Self::parameters). The source is the same for all
+    /// schedules.
     #[must_use]
     pub fn clipper_source(&self) -> String {
+        // Finish and interpolation depend on the surface; the rest of the clipper is common.
         let (finish, extras) = match self.surface {
             KernelSurface::Gouraud => (include_str!("../kernels/finish_gouraud.s"), clip_with_normals!("gouraud")),
             KernelSurface::Precomputed => {
@@ -230,7 +243,7 @@ impl Kernel {
         ]
     }
 
-    /// The compiled main loop over triangles: what it says of a corner's place in memory, the loop, and a corner.
+    /// Returns the compiled main loop over triangles: the addressing of corners, the loop, and the code for a corner.
     const fn compiled_loop(&self) -> [&'static str; 3] {
         let one = include_str!("../kernels/compiled_one.s");
         let main = include_str!("../kernels/compiled.s");
@@ -242,6 +255,7 @@ impl Kernel {
     }
 
     fn compiled(&self, main: [&'static str; 3]) -> Vec<&'static str> {
+        // Functions first, then the main loop, then scalar helpers.
         let (finish, surface) = match self.surface {
             KernelSurface::Gouraud => {
                 (include_str!("../kernels/finish_gouraud.s"), include_str!("../kernels/compiled_gouraud.s"))
@@ -271,7 +285,7 @@ impl Kernel {
     fn dual(&self) -> Vec<&'static str> {
         let strips = self.list == KernelList::Strips;
         let (vertices, setup) = self.schedules();
-        // With bins the expressions are restated for a field when the regions are known.
+        // With bins, the expressions are restated for a field once the regions are known.
         let field = self.picture == KernelPicture::Field;
         let [edges, reference, planes] = match field && !self.binned {
             true => [
@@ -285,6 +299,7 @@ impl Kernel {
                 include_str!("../kernels/planes_frame.s"),
             ],
         };
+        // Regions and the tail of the loop depend on bins and on the picture.
         let (regions, tail) = match (self.binned, self.picture) {
             (false, _) if self.keeps_boxes => (
                 concat!(include_str!("../kernels/regions_later.s"), "\n", include_str!("../kernels/regions_kept.s")),
@@ -356,7 +371,7 @@ impl Kernel {
         ]
     }
 
-    /// The second way of a batch through the first loop, of kernels for both eyes.
+    /// Returns the second pass of a batch through the first loop, for kernels for both eyes.
     fn right_eye(&self) -> Vec<&'static str> {
         if !self.both_eyes {
             return Vec::new();
@@ -372,9 +387,12 @@ impl Kernel {
         ]
     }
 
-    /// What depends on the surface in the scheduled code: how long a command is; before the corners' surface, that, and after it;
-    /// the side of a triangle; words of the command.
+    /// Returns the parts of the scheduled code that depend on the surface.
+    ///
+    /// The parts are: size of a command; code before, for and after the corners' surface; the side of a triangle; the
+    /// words of the command.
     fn dual_surface(&self, strips: bool) -> [&'static str; 6] {
+        // Phong commands have the colour as a further word, so they are longer.
         match (self.surface, strips) {
             (KernelSurface::Gouraud, false) => [
                 "COMMAND_BYTES = 120",
@@ -419,10 +437,12 @@ impl Kernel {
         }
     }
 
-    /// Window, eagerness, reserve, slope and shake of the shortest schedules that were found, of both loops.
+    /// Returns the scheduler settings of the shortest schedules found, for both loops: window, eagerness, reserve,
+    /// slope and shake.
     const fn schedules(&self) -> (&'static str, &'static str) {
         use KernelList::{Strips, Triangles};
         use KernelSurface::{Gouraud, Phong, Precomputed};
+        // Settings of the first loop, over vertices.
         let vertices = match (self.list, self.surface) {
             (_, Precomputed) => ".linear 100 30 1 5 0",
             (Triangles, Gouraud) => ".linear 300 20 2 3 0",
@@ -430,6 +450,7 @@ impl Kernel {
             (Triangles, Phong) => ".linear 100 30 1 5 0",
             (Strips, Phong) => ".linear 100 30 1 8 0",
         };
+        // Settings of the second loop, over triangles.
         let setup = match (self.list, self.surface, matches!(self.picture, KernelPicture::Field)) {
             (_, Phong, true) if !self.binned && !self.culls => ".linear 300 20 2 8 0",
             _ if !self.binned || self.culls => ".linear 64 15 2 8 0",
@@ -443,7 +464,7 @@ impl Kernel {
         (vertices, setup)
     }
 
-    /// Bytes of a command that it makes.
+    /// Returns the size of a command in bytes.
     #[must_use]
     pub const fn command_bytes(&self) -> u32 {
         match self.surface {
@@ -452,7 +473,7 @@ impl Kernel {
         }
     }
 
-    /// The parameter block for a view; `clipper` is the address at which the clipper begins.
+    /// Returns the parameter block for a view. `clipper` is the start address of the clipper.
     #[must_use]
     pub fn parameters(
         &self,
@@ -479,6 +500,7 @@ impl Kernel {
         words.singles(320, &transform.normals.to_world(light.direction));
         words.singles(336, &[light.ambient, light.diffuse, 1.0, TWO_23, clip::MIN_W, MAX_CLIP]);
         words.integers(360, &[20 << 23]);
+        // Line 0 with bins, since the restatement for a field comes later.
         let line = if self.binned { 0 } else { transform.viewport.first_line() };
         words.singles(364, &[ROUND_SINGLE - 16.0 * line as f32]);
         words.doubles(368, &[ROUND_DOUBLE + f64::from(DEPTH_NEAR), 16.0 * ROUND_DOUBLE]);
@@ -498,7 +520,7 @@ impl Kernel {
         words.0
     }
 
-    /// Unit of the surface's words in the planes, and half a unit less the bias in it, as they are and turned over.
+    /// Returns the surface's unit in the planes, and half a unit minus its bias, for each side of a triangle.
     fn sides(&self) -> [(f64, f64); 2] {
         let (units, half) = match self.surface {
             KernelSurface::Gouraud | KernelSurface::Precomputed => ([16.0, 16.0], screen::colour_value(0)),
@@ -514,6 +536,7 @@ impl Kernel {
             KernelSurface::Gouraud | KernelSurface::Precomputed => two_52,
             KernelSurface::Phong => two_52 + two_31,
         };
+        // The order is that of kernels/parameters.s.
         [
             2.0,
             f64::from(DEPTH_FAR - DEPTH_NEAR),
@@ -533,7 +556,7 @@ impl Kernel {
 }
 
 impl KernelPicture {
-    /// `None` where no code knows the picture.
+    /// Returns the kind of a picture; `None` if no kernel supports the picture.
     pub(crate) fn of(viewport: &Viewport) -> Option<Self> {
         let grid = viewport.grid();
         match viewport.lines() {
@@ -554,20 +577,23 @@ impl KernelPicture {
     }
 }
 
-/// The last subpixel of a picture across and down the frame, and its regions across.
+/// Returns the last subpixel of a picture across and down the frame, and its number of regions across.
 pub(crate) const fn size_words(viewport: &Viewport) -> [Word; 3] {
     let grid = viewport.grid();
     [16 * grid.width - 1, 16 * viewport.frame_lines() - 1, grid.columns()]
 }
 
-/// What is not farther than this from pixel (0, 0), in subpixels along either axis, is inside the guard band: this ends a pixel before
-/// [`screen::GUARD_PIXELS`] beyond the far side, as far from the middle before the near one, and a pixel is left for rounding.
+/// Returns the distance from pixel (0, 0), in subpixels along either axis, within which every point is inside the guard
+/// band.
+///
+/// The guard band ends one pixel before [`screen::GUARD_PIXELS`] on the far side. It is symmetric around the picture's
+/// middle, so the near side is closer by the picture's size. One pixel is left for rounding.
 fn safe_distance(viewport: &Viewport) -> Word {
     let size = viewport.grid().width.max(viewport.frame_lines());
     16 * (screen::GUARD_PIXELS as u32 - 2 - size)
 }
 
-/// A parameter block in the making; places in bytes, as in kernels/parameters.s.
+/// A parameter block under construction. Places are in bytes, as in kernels/parameters.s.
 struct ParameterWords([Word; PARAMETER_WORDS]);
 
 impl ParameterWords {
@@ -584,19 +610,22 @@ impl ParameterWords {
     }
 }
 
-/// What the area's high word is turned over and masked with, to be negative for triangles that are not drawn.
+/// Returns the XOR and AND masks that make the area's high word negative for culled triangles.
 const fn culled(dropped: Option<Turn>) -> [Word; 2] {
     const SIGN: Word = 1 << 31;
     match dropped {
         None => [0, 0],
-        // A positive area is clockwise.
+        // A positive area means clockwise.
         Some(Turn::Clockwise) => [SIGN, SIGN],
         Some(Turn::Counterclockwise) => [0, SIGN],
     }
 }
 
-/// The source of what a processor does before the triangles of a pass: the labels `edit`, `reset` and `place` (kernels/place.s), of
-/// which the last one fills in what [`Kernel::parameters`] and [`crate::sphere_kernel`]'s take from a view and a light.
+/// Returns the source of the work before the triangles of a pass: the labels `edit`, `reset` and `place`
+/// (kernels/place.s).
+///
+/// `place` writes the parts of [`Kernel::parameters`] and of [`crate::sphere_kernel`]'s parameters that depend on a
+/// view and a light.
 #[must_use]
 pub fn place_source() -> String {
     [
@@ -608,18 +637,18 @@ pub fn place_source() -> String {
     .join("\n")
 }
 
-/// A row of the matrix of normals in units of the command's normal.
+/// Returns a row of the matrix of normals, in units of the command's normal.
 fn normal_row(row: [f32; 3]) -> [f32; 4] {
     let [x, y, z] = row.map(|v| v * f32::from(NORMAL_UNIT));
     [x, y, z, 0.0]
 }
 
-/// A double as the i860 holds it in memory: the low half first.
+/// Returns the words of a double in the memory order of the i860: the low half first.
 pub(crate) const fn halves(value: f64) -> [Word; 2] {
     [value.to_bits() as Word, (value.to_bits() >> 32) as Word]
 }
 
-/// A triangle as the display list holds it, its normals of unit length.
+/// Returns a triangle in the format of the display list, with normals of unit length.
 #[must_use]
 pub fn display_list_words(triangle: &Triangle) -> [Word; TRIANGLE_WORDS] {
     let mut words = [0; TRIANGLE_WORDS];
@@ -630,9 +659,10 @@ pub fn display_list_words(triangle: &Triangle) -> [Word; TRIANGLE_WORDS] {
     words
 }
 
-/// A vertex of a strip as the display list holds it, its normal of unit length; the two that begin a strip make no triangle.
+/// Returns a vertex of a strip in the format of the display list, with a normal of unit length.
 ///
-/// The corners of a triangle are, in this order, the vertex two before, the one before, and this one, whichever way round that is.
+/// The two vertices with `begins` make no triangle. The corners of a triangle are the vertex two before, the vertex one
+/// before, and this vertex, in this order, whatever the winding.
 #[must_use]
 pub fn vertex_words(position: Vec3, normal: Vec3, colour: [u8; 3], begins: bool) -> [Word; VERTEX_WORDS] {
     let [x, y, z] = position.to_array().map(f32::to_bits);

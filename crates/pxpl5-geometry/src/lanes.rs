@@ -1,9 +1,9 @@
 //! Set-up of several triangles together, one in each lane of a vector unit.
 //!
-//! Every lane computes what [`crate::ScreenTriangle`] and [`crate::plane`] compute for one triangle, bit for bit. Integers
-//! that need more than 32 bits (products of two differences of corners, below 2^34) are held as doubles, which are exact.
-//! The loops are plain Rust, compiled once for each vector unit (see [`mod@multiversion`]); there is nothing in which the units
-//! could differ.
+//! Every lane computes the same bits as [`crate::ScreenTriangle`] and [`crate::plane`] do for one triangle. Integers of
+//! more than 32 bits (products of two differences of corners, below 2^34) are held as doubles, which are exact. The
+//! loops are plain Rust, compiled once for each vector unit (see [`mod@multiversion`]). They use no operation in which
+//! the units could differ.
 
 use crate::newton;
 use crate::outline::SUBPIXELS;
@@ -15,18 +15,18 @@ use multiversion::multiversion;
 pub use pxpl5_wire::LANES;
 use pxpl5_wire::{Linear, LinearLanes, TriangleBatch, format};
 
-/// One of each triangle.
+/// One value for each triangle.
 pub(crate) type EachLane<T> = [T; LANES];
 
-/// Up to [`LANES`] triangles that need no clipping, with what their surfaces need.
+/// Up to [`LANES`] triangles that need no clipping, with the values at their corners.
 #[derive(Clone, Debug)]
 pub struct TriangleLanes<'a> {
     len: usize,
-    /// First by corner, then by triangle.
+    /// Vertices, indexed by corner, then by triangle.
     corners: [EachLane<&'a SurfaceVertex>; 3],
 }
 
-/// All corners of a triangle of which nothing is seen.
+/// Corner of a triangle of which nothing is visible.
 static NOWHERE: SurfaceVertex = SurfaceVertex::NOWHERE;
 
 impl Default for TriangleLanes<'_> {
@@ -36,27 +36,29 @@ impl Default for TriangleLanes<'_> {
 }
 
 impl<'a> TriangleLanes<'a> {
-    /// Triangles held, at most [`LANES`].
+    /// Returns the number of triangles, at most [`LANES`].
     #[must_use]
     pub const fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether there is none.
+    /// Returns true if there are no triangles.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// Takes all triangles out.
+    /// Removes all triangles.
     pub const fn clear(&mut self) {
         self.len = 0;
     }
 
-    /// Adds a triangle, all corners of which are seen in the same view; false, and it is not added, where it needs clipping.
+    /// Adds a triangle and returns true, or returns false if the triangle needs clipping.
+    ///
+    /// All corners must be seen in the same view.
     ///
     /// # Panics
-    /// If there are [`LANES`] already.
+    /// If [`LANES`] triangles have already been added.
     #[inline(always)]
     #[must_use]
     pub fn push(&mut self, [a, b, c]: [&'a SurfaceVertex; 3]) -> bool {
@@ -70,10 +72,10 @@ impl<'a> TriangleLanes<'a> {
         inside
     }
 
-    /// Takes the place of a triangle of which nothing is seen.
+    /// Adds a placeholder for a triangle of which nothing is visible.
     ///
     /// # Panics
-    /// If there are [`LANES`] already.
+    /// If [`LANES`] triangles have already been added.
     pub fn push_nothing(&mut self) {
         for corner in &mut self.corners {
             corner[self.len] = &NOWHERE;
@@ -82,14 +84,14 @@ impl<'a> TriangleLanes<'a> {
     }
 }
 
-/// What is at the corners of some triangles: first by corner, then by triangle.
+/// Values at the corners of some triangles, indexed by corner, then by triangle.
 struct CornerValues {
-    /// In 1/16 px.
+    /// Screen x in 1/16 px.
     x: [EachLane<i32>; 3],
     y: [EachLane<i32>; 3],
     z: [EachLane<f64>; 3],
     facing: [EachLane<f32>; 3],
-    /// First by component of colour or normal.
+    /// Colour or normal, indexed by component first.
     surface: [[EachLane<f32>; 3]; 3],
 }
 
@@ -99,6 +101,7 @@ impl CornerValues {
         let integers = [[0; LANES]; 3];
         let reals = [[0.0; LANES]; 3];
         let mut all = Self { x: integers, y: integers, z: [[0.0; LANES]; 3], facing: reals, surface: [reals; 3] };
+        // Gather the corners from the vertices into lanes.
         for corner in 0..3 {
             for i in 0..LANES {
                 let vertex = triangles.corners[corner][i];
@@ -115,7 +118,7 @@ impl CornerValues {
     }
 }
 
-/// A constant where `there` is not all ones, but zero.
+/// Replaces the expressions by a constant in lanes where `there` is 0; elsewhere all bits of `there` are 1.
 #[inline(always)]
 fn or_constant(mut all: LinearLanes, constant: i32, there: &EachLane<i32>) -> LinearLanes {
     for (i, there) in there.iter().enumerate() {
@@ -126,17 +129,17 @@ fn or_constant(mut all: LinearLanes, constant: i32, there: &EachLane<i32>) -> Li
     all
 }
 
-/// The expressions of some triangles.
+/// The edge and plane expressions of some triangles.
 #[derive(Clone, Debug)]
 struct Expressions {
     edges: [LinearLanes; 3],
     /// Depth, then the components.
     planes: [LinearLanes; 4],
-    /// How many of the planes are flat.
+    /// Number of flattened planes of each triangle.
     flattened: EachLane<u8>,
 }
 
-/// The expressions of one triangle: its edges, its depth, and the components of its colour or normal.
+/// The expressions of one triangle: edges, depth, and the components of colour or normal.
 type OneTriangle = ([Linear; 3], Linear, [Linear; 3]);
 
 impl Expressions {
@@ -149,18 +152,18 @@ impl Expressions {
     }
 }
 
-/// The expressions of some Gouraud triangles. The edges of one without area exclude every pixel.
+/// The expressions of some Gouraud triangles. The edges of a triangle without area exclude every pixel.
 #[derive(Clone, Debug)]
 pub struct GouraudLanes(Expressions);
 
 impl GouraudLanes {
-    /// The expressions of the first `len` side by side.
+    /// Returns the expressions of the first `len` triangles as a batch.
     #[must_use]
     pub const fn batch(&self, len: usize) -> TriangleBatch<'_> {
         TriangleBatch { len, edges: &self.0.edges, planes: &self.0.planes, colours: None }
     }
 
-    /// The expressions of triangle `i`, in the order in which they were pushed.
+    /// Returns the expressions of triangle `i`, in the order of [`TriangleLanes::push`].
     ///
     /// # Panics
     /// If `i` is not below [`LANES`].
@@ -172,18 +175,18 @@ impl GouraudLanes {
     }
 }
 
-/// The expressions of some Phong triangles. The edges of one without area exclude every pixel.
+/// The expressions of some Phong triangles. The edges of a triangle without area exclude every pixel.
 #[derive(Clone, Debug)]
 pub struct PhongLanes(Expressions);
 
 impl PhongLanes {
-    /// The expressions of the first `len` side by side, with their colours, 0x00RRGGBB.
+    /// Returns the expressions of the first `len` triangles as a batch, with their colours, 0x00RRGGBB.
     #[must_use]
     pub const fn batch(&self, len: usize, colours: [u32; LANES]) -> TriangleBatch<'_> {
         TriangleBatch { len, edges: &self.0.edges, planes: &self.0.planes, colours: Some(colours) }
     }
 
-    /// Those of triangle `i` with the colour of its first corner.
+    /// Returns the expressions of triangle `i`, with the given colour.
     ///
     /// # Panics
     /// If `i` is not below [`LANES`].
@@ -196,13 +199,15 @@ impl PhongLanes {
 }
 
 impl Transform {
-    /// As [`Self::gouraud`] and set-up of what it gives, for each triangle. It does not ask whether any region is touched.
+    /// Sets up each triangle like [`Self::gouraud`] does, including the edges and planes. It does not test for touched
+    /// regions.
     #[must_use]
     pub fn gouraud_lanes(&self, triangles: &TriangleLanes<'_>, stats: &mut SetupStats) -> GouraudLanes {
         GouraudLanes(self.set_up_lanes(triangles, 0.0, stats))
     }
 
-    /// As [`Self::phong`] and set-up of what it gives, for each triangle. It does not ask whether any region is touched.
+    /// Sets up each triangle like [`Self::phong`] does, including the edges and planes. It does not test for touched
+    /// regions.
     #[must_use]
     pub fn phong_lanes(&self, triangles: &TriangleLanes<'_>, stats: &mut SetupStats) -> PhongLanes {
         PhongLanes(self.set_up_lanes(triangles, screen::NORMAL_HALF, stats))
@@ -221,7 +226,7 @@ const fn last_subpixel(pixels: u32) -> i32 {
     pixels as i32 * SUBPIXELS - 1
 }
 
-/// How the rows of a picture lie among the lines of the frame.
+/// Positions of a picture's rows among the lines of the frame.
 #[derive(Clone, Copy)]
 struct PictureRows {
     line_step: i32,
@@ -239,7 +244,7 @@ impl PictureRows {
         }
     }
 
-    /// The same values at the rows of the picture, as [`screen::for_rows`] gives them.
+    /// Converts expressions from frame lines to the rows of the picture, like [`screen::for_rows`].
     #[inline(always)]
     fn restate(&self, frame: LinearLanes) -> LinearLanes {
         let mut all = frame;
@@ -259,6 +264,7 @@ fn set_up(triangles: &TriangleLanes<'_>, half: f32, rows: PictureRows) -> Expres
     let planes = LanePlanes::through_corners(&corners, rows);
     let away = away(&corners.facing);
     let mut flattened = [0; LANES];
+    // A triangle without area gets edges of constant -1, which exclude every pixel.
     let there = with_area(&planes.twice_area);
     let swapped = counterclockwise(&planes.twice_area);
     let x = clockwise(&corners.x, &swapped);
@@ -281,7 +287,7 @@ fn set_up(triangles: &TriangleLanes<'_>, half: f32, rows: PictureRows) -> Expres
     Expressions { edges, planes: planes_through, flattened }
 }
 
-/// Which surfaces face away from the eye on the whole, as in [`crate::light::turned`].
+/// Returns true for the triangles that face away from the eye on average, as in [`crate::light::turned`].
 #[inline(always)]
 fn away([p, q, r]: &[EachLane<f32>; 3]) -> EachLane<bool> {
     let mut away = [false; LANES];
@@ -291,7 +297,7 @@ fn away([p, q, r]: &[EachLane<f32>; 3]) -> EachLane<bool> {
     away
 }
 
-/// A component at the corners, turned over where it faces away, and `half` a unit more.
+/// Returns a component at the corners, negated if the triangle faces away, plus `half` for rounding.
 #[inline(always)]
 fn component([p, q, r]: &[EachLane<f32>; 3], away: &EachLane<bool>, half: f32) -> [EachLane<f64>; 3] {
     [values(p, away, half), values(q, away, half), values(r, away, half)]
@@ -307,7 +313,7 @@ fn values(corner: &EachLane<f32>, away: &EachLane<bool>, half: f32) -> EachLane<
     out
 }
 
-/// Which triangles have an area: all bits set there.
+/// Returns all ones for the triangles that have an area, else 0.
 #[inline(always)]
 fn with_area(twice_area: &EachLane<f64>) -> EachLane<i32> {
     let mut out = [0; LANES];
@@ -317,7 +323,7 @@ fn with_area(twice_area: &EachLane<f64>) -> EachLane<i32> {
     out
 }
 
-/// Which triangles run counterclockwise: all bits set there.
+/// Returns all ones for the counterclockwise triangles, else 0.
 #[inline(always)]
 fn counterclockwise(twice_area: &EachLane<f64>) -> EachLane<i32> {
     let mut out = [0; LANES];
@@ -327,8 +333,9 @@ fn counterclockwise(twice_area: &EachLane<f64>) -> EachLane<i32> {
     out
 }
 
-/// Corners in clockwise order: two change places where told. By masks, since compilers make choices between addresses of
-/// choices between values.
+/// Returns corners in clockwise order by exchanging two corners where `swapped` is set.
+///
+/// Masks do the exchange, since compilers would turn a choice of values into a choice of addresses.
 #[inline(always)]
 fn clockwise([p, q, r]: &[EachLane<i32>; 3], swapped: &EachLane<i32>) -> [EachLane<i32>; 3] {
     let mut second = [0; LANES];
@@ -341,7 +348,7 @@ fn clockwise([p, q, r]: &[EachLane<i32>; 3], swapped: &EachLane<i32>) -> [EachLa
     [*p, second, third]
 }
 
-/// The edge from one corner to the next at the pixels of the frame, as in [`crate::Outline`].
+/// Returns the edge from one corner to the next at the pixels of the frame, as in [`crate::Outline`].
 #[inline(always)]
 fn edge([x, to_x]: [&EachLane<i32>; 2], [y, to_y]: [&EachLane<i32>; 2]) -> LinearLanes {
     let mut out = LinearLanes::default();
@@ -359,14 +366,14 @@ fn edge([x, to_x]: [&EachLane<i32>; 2], [y, to_y]: [&EachLane<i32>; 2]) -> Linea
     out
 }
 
-/// A whole number below 2^34 divided by 16 and rounded down: from a sixteenth below the middle, the nearest integer.
+/// Divides an integer below 2^34 by 16 and rounds down. It rounds the quotient minus 15/32 to the nearest integer.
 #[inline(always)]
 fn sixteenth(k: f64) -> i32 {
     const _: () = assert!(1 << format::SUBPIXEL_BITS == 16);
     plane::rounded(k * (1.0 / 16.0) - 15.0 / 32.0)
 }
 
-/// What the planes of each triangle share; see [`plane::Planes`].
+/// Values common to all planes of each triangle; see [`plane::Planes`].
 struct LanePlanes {
     twice_area: EachLane<f64>,
     x: [EachLane<f64>; 2],
@@ -377,7 +384,8 @@ struct LanePlanes {
 }
 
 impl LanePlanes {
-    /// The corners may run either way: a change of direction changes the signs of products and area alike.
+    /// Computes the common values of the planes. The winding does not matter: it changes the signs of products and area
+    /// alike.
     #[inline(always)]
     fn through_corners(corners: &CornerValues, rows: PictureRows) -> Self {
         let [p, q, r] = &corners.x;
@@ -395,12 +403,13 @@ impl LanePlanes {
         Self { twice_area, x, y, per_pixel, to_reference, reference }
     }
 
-    /// The planes through three values of each at the frame's pixels; counts the flat ones.
+    /// Returns the planes through three values of each triangle at the frame's pixels, and counts the flattened planes.
     #[inline(always)]
     fn through(&self, [p, q, r]: &[EachLane<f64>; 3], flattened: &mut EachLane<u8>) -> LinearLanes {
         let mut out = LinearLanes::default();
         let mut flat = [false; LANES];
         for i in 0..LANES {
+            // Slopes from cross products, then the value at the reference pixel.
             let d1 = q[i] - p[i];
             let d2 = r[i] - p[i];
             let slope_x = (d1 * self.y[1][i] - d2 * self.y[0][i]) * self.per_pixel[i];
@@ -409,11 +418,13 @@ impl LanePlanes {
             let there = (p[i] + slope_x * self.to_reference[0][i]) + slope_y * self.to_reference[1][i];
             let a = plane::rounded(slope_x);
             let b = plane::rounded(slope_y);
+            // Restate the plane for pixel (0, 0), modulo 2^32.
             let back = a.wrapping_mul(self.reference[0][i]).wrapping_add(b.wrapping_mul(self.reference[1][i]));
             out.a[i] = a;
             out.b[i] = b;
             out.c[i] = plane::rounded(there).wrapping_sub(back);
         }
+        // Steep planes are rare, so they are replaced afterwards.
         if flat.iter().fold(false, |any, flat| any | flat) {
             flatten([p, q, r], &flat, &mut out, flattened);
         }
@@ -432,7 +443,7 @@ fn flatten(v: [&EachLane<f64>; 3], flat: &EachLane<bool>, out: &mut LinearLanes,
     }
 }
 
-/// From one corner to another.
+/// Returns the distance from one corner to another, in subpixels.
 #[inline(always)]
 fn side(from: &EachLane<i32>, to: &EachLane<i32>) -> EachLane<f64> {
     let mut out = [0.0; LANES];
@@ -442,7 +453,7 @@ fn side(from: &EachLane<i32>, to: &EachLane<i32>) -> EachLane<f64> {
     out
 }
 
-/// The pixel in the middle of what the picture shows of the corners' range, as in [`crate::Outline`].
+/// Returns the pixel in the middle of the visible part of the corners' range, as in [`crate::Outline`].
 #[inline(always)]
 fn middle([p, q, r]: &[EachLane<i32>; 3], last: i32) -> EachLane<i32> {
     let mut out = [0; LANES];
@@ -454,7 +465,7 @@ fn middle([p, q, r]: &[EachLane<i32>; 3], last: i32) -> EachLane<i32> {
     out
 }
 
-/// From a corner to the centre of a pixel, in pixels.
+/// Returns the distance from a corner to the centre of a pixel, in pixels.
 #[inline(always)]
 fn pixels(from: &EachLane<i32>, pixel: &EachLane<i32>) -> EachLane<f64> {
     let mut out = [0.0; LANES];

@@ -4,47 +4,52 @@ use crate::newton::reciprocal_double;
 use crate::screen::{DEPTH_FAR, DEPTH_NEAR};
 use crate::view::Columns;
 
-/// How eye coordinates become pixels and depths, as far as spheres need it.
+/// Mapping from eye coordinates to pixels and depths, as far as spheres need it.
 ///
-/// Depth is `constant + slope u` between 0 and 1, u = 1/t under perspective, -t under a parallel projection, where t is the distance
-/// along -Z.
+/// Depth is `constant + slope u` between 0 and 1. With t as the distance along -Z, u is 1/t under perspective and -t
+/// under a parallel projection.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lens {
-    /// Whether the projection is parallel, so that distance does not shrink.
+    /// True if the projection is parallel, so that distance does not change sizes.
     pub(crate) parallel: bool,
-    /// Eye units per pixel along x and along y (negative: y grows downwards), at distance 1 under perspective.
+    /// Eye units per pixel along x and y, at distance 1 under perspective. The y step is negative, since pixel y grows
+    /// downwards.
     pub(crate) step: [f64; 2],
-    /// Pixels per eye unit.
+    /// Pixels per eye unit along x and y, at distance 1 under perspective.
     pub(crate) rate: [f64; 2],
     /// Eye x and y of the centre of the frame's pixel (0, 0), at distance 1 under perspective.
     pub(crate) corner: [f64; 2],
-    /// Of t and 1: less than 0 before the near plane, greater than 0 behind the far plane. Depth less 0 or less 1, times t under
-    /// perspective.
+    /// Coefficients of t and 1 of an expression that is negative before the near plane (`near`) or positive behind the
+    /// far plane (`far`).
+    ///
+    /// The expression is depth, or depth - 1 for `far`, times t under perspective.
     pub(crate) near: [f64; 2],
     pub(crate) far: [f64; 2],
-    /// What is not farther than this is behind the eye.
+    /// Largest distance t that counts as behind the eye.
     pub(crate) least: f64,
-    /// Depth in units of the depth expression is `base + reach u`.
+    /// Coefficients of the depth in units of the depth expression, which is `base + reach u`.
     pub(crate) base: f64,
     pub(crate) reach: f64,
 }
 
-/// Depths from the near to the far plane in units of the depth expression.
+/// Distance from the near to the far plane, in units of the depth expression.
 pub(crate) const DEPTH_RANGE: f64 = (DEPTH_FAR - DEPTH_NEAR) as f64;
 
-/// Where the middle of the frame's first pixel lies in normalised device coordinates.
+/// Returns the position of the centre of the frame's first pixel in normalized device coordinates.
 pub(crate) fn first_pixel(width: u32, lines: u32) -> [f64; 2] {
     [1.0 / f64::from(width) - 1.0, 1.0 - 1.0 / f64::from(lines)]
 }
 
-/// What scales of a projection give pixels by: half the width and height of the frame, the latter downwards.
+/// Returns the factors from a projection's scale to pixels: half the frame's width, and minus half its height.
 pub(crate) fn half_frame(width: u32, lines: u32) -> [f64; 2] {
     [f64::from(width) * 0.5, f64::from(lines) * -0.5]
 }
 
 impl Lens {
-    /// `None` unless the matrix is a perspective or parallel projection along -Z, possibly off centre.
+    /// Creates a lens from a perspective or parallel projection along -Z, possibly off centre. Returns `None` for other
+    /// matrices.
     pub(crate) fn from_projection(projection: &Columns, width: u32, lines: u32) -> Option<Self> {
+        // Only matrices without rotation and shear are supported.
         if !projection.is_zero_at(&[(0, 1), (1, 0), (2, 0), (2, 1), (3, 0), (3, 1)]) {
             return None;
         }
@@ -53,6 +58,7 @@ impl Lens {
             (0.0, 1.0) if projection.is_zero_at(&[(0, 2), (1, 2)]) => true,
             _ => return None,
         };
+        // Both kinds of projection give the same four numbers.
         let [shift_x, shift_y, slope, constant] = if parallel {
             [-projection.cell(0, 3), -projection.cell(1, 3), projection.cell(2, 2), projection.cell(2, 3)]
         } else {
@@ -73,26 +79,28 @@ impl Lens {
             base: f64::from(DEPTH_NEAR) + DEPTH_RANGE * constant,
             reach: DEPTH_RANGE * slope,
         };
+        // A mirrored or reversed projection is not supported.
         (scale.iter().all(|scale| *scale > 0.0) && slope < 0.0).then_some(lens)
     }
 
-    /// Whether distance t along -Z lies before the near plane, or behind the eye.
+    /// Returns true if distance t along -Z is before the near plane or behind the eye.
     pub(crate) fn is_before_near(&self, t: f64) -> bool {
         t <= self.least || self.near[0] * t + self.near[1] < 0.0
     }
 
-    /// Whether distance t, greater than 0 under perspective, lies behind the far plane.
+    /// Returns true if distance t is behind the far plane. Under perspective t must be positive.
     pub(crate) fn is_beyond_far(&self, t: f64) -> bool {
         self.far[0] * t + self.far[1] > 0.0
     }
 
-    /// Depth at distance t along -Z, in units of the depth expression.
+    /// Returns the depth at distance t along -Z, in units of the depth expression.
     pub(crate) fn depth(&self, t: f64) -> f64 {
         let u = if self.parallel { -t } else { reciprocal_double(t) };
         self.base + self.reach * u
     }
 
-    /// Pixel coordinates of an eye position in the plane t = 1 (any plane if parallel).
+    /// Returns the pixel coordinates of an eye position in the plane t = 1, or in any plane if the projection is
+    /// parallel.
     pub(crate) fn pixel(&self, x: f64, y: f64) -> [f64; 2] {
         [(x - self.corner[0]) * self.rate[0], (y - self.corner[1]) * self.rate[1]]
     }

@@ -1,4 +1,4 @@
-//! What graphics-processor code computes between the display list and the renderer's commands.
+//! Geometry of the graphics processors: the computation from the display list to the renderer's commands.
 //!
 //! ```text
 //! Triangle --> Transform ---> ScreenTriangle ---> GouraudTriangle, PhongTriangle   (expressions)
@@ -11,21 +11,22 @@
 //!
 //! # Behaviour, in the order of the signal
 //!
-//! 1. **Transform** in 32-bit floating point, relative to the eye (so that models far from the origin lose nothing),
-//!    to clip coordinates: right-handed, looking along -Z, depth 0 to 1.
-//! 2. **Light**: for Gouraud shading each vertex by a directional [`Light`], two-sided; for Phong shading the normals
-//!    in eye coordinates. Normals are made unit once, as the display list takes them, and turned by a matrix without
-//!    being made unit again, as the code of the processors does.
-//! 3. **Clip** by the near and far planes and a guard band of [`GUARD_PIXELS`], before the divide. Nothing is clipped by
-//!    the sides of the picture. A shared edge is cut at one point, whichever triangle it is cut for.
-//! 4. **Divide** by w as a processor without a divider does: a seed of 8 bits and two Newton steps in single precision.
-//!    **Snap** to 1/16 px of the *frame*. A field is its frame's even or odd lines exactly: the same snapped vertices,
-//!    the expressions restated for every second line.
+//! 1. **Transform** in 32-bit floating point to clip coordinates: right-handed, looking along -Z, depth 0 to 1.
+//!    Positions are relative to the eye, so models far from the origin lose no precision.
+//! 2. **Light**: Gouraud shading lights each vertex by a directional, two-sided [`Light`]. Phong shading keeps normals
+//!    in eye coordinates. Normals get unit length once, when the display list takes them. A matrix then turns them
+//!    without a new normalization, as in the processors' code.
+//! 3. **Clip** by the near and far planes and a guard band of [`GUARD_PIXELS`], before the divide. The sides of the
+//!    picture clip nothing. A shared edge is cut at the same point for both of its triangles.
+//! 4. **Divide** by w without a divider: a seed of 8 bits and two Newton steps in single precision. **Snap** to 1/16 px
+//!    of the *frame*. A field is exactly the even or odd lines of its frame: the vertices are the same, and the
+//!    expressions are restated for every second line.
 //! 5. **Drop** triangles without area and, on request, back faces ([`Culling`]).
-//! 6. **Bin**: the exact set of regions touched ([`RegionMask`]), from the edges; one comparison per side for the many
-//!    triangles inside one region. [`Transform::bin`] and [`Transform::touched`] stop here.
-//! 7. **Set up** on demand: edges exact in integers (at least 0 is inside, the tie rule folded in, so that each pixel of
-//!    a shared edge is drawn once), planes of depth, colour or normal, spheres as one quadratic with a root for depth.
+//! 6. **Bin**: the edges give the exact set of touched regions ([`RegionMask`]). A triangle inside one region, the
+//!    common case, needs one comparison per side. [`Transform::bin`] and [`Transform::touched`] stop here.
+//! 7. **Set up** on demand. Edges are exact integers: at least 0 is inside, and the tie rule is folded in, so that each
+//!    pixel of a shared edge is drawn once. Planes give depth, colour or normal. A sphere is one quadratic, with a root
+//!    for depth.
 //!
 //! # Formats and limits
 //!
@@ -38,8 +39,8 @@
 //! | slope | up to [`MAX_SLOPE`], kept modulo 2^32; steeper planes are made flat and counted | tests/setup.rs |
 //! | sphere | silhouette below 2^47 in its regions, root of 12 bits | tests/input.rs |
 //!
-//! docs/numerics.md compares all of this with exact geometry on hard cases. All results are the same on every host:
-//! only additions, multiplications, divisions and square roots, in a fixed order, and no vector types; loops over several
+//! docs/numerics.md compares these formats with exact geometry on hard cases. All results are the same on every host:
+//! the code uses only additions, multiplications, divisions and square roots, in a fixed order. Loops over several
 //! triangles are compiled for each vector unit and give the same bits.
 //!
 //! # Example
@@ -70,13 +71,14 @@
 //!
 //! # Not modelled
 //!
-//! - Colour interpolated with perspective: planes are linear on the screen, as on the machine.
-//! - Spheres that the near or far plane cuts (not drawn, counted) and shadows or specular light on vertices.
-//! - The time all this takes on an i860: [`kernel`] and [`sphere_kernel`] hold the same computation as its code, which others run.
+//! - Perspective-correct colour: planes are linear on the screen, as on the machine.
+//! - Spheres that the near or far plane cuts, which are not drawn but counted; shadows; specular light on vertices.
+//! - The time of this work on an i860. [`kernel`] and [`sphere_kernel`] provide the same computation as i860 code for
+//!   other crates to run.
 //!
 //! # Sources
 //!
-//! TR94 (triangle recipe, regions, fields), F89 (quadratic expressions). The formats are assumed, see
+//! TR94 (triangle recipe, regions, fields), F89 (quadratic expressions). The formats are assumed; see
 //! `pxpl5_wire::format`.
 
 mod bin;

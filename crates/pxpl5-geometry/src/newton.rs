@@ -1,18 +1,20 @@
-//! Quotients, roots and whole numbers as an i860 forms them, which has no divider and no square root: a seed with 8 bits of fraction
-//! (`frcp`, `frsqr`), then Newton steps; a large number added and taken off again. Native code takes the very steps of the kernels,
-//! so that both give the same words.
+//! Quotients, roots and rounding as the i860 computes them. The i860 has no divider and no square root.
+//!
+//! A seed has 8 bits of fraction (`frcp`, `frsqr`), and Newton steps refine it. Rounding adds a large number and
+//! subtracts it again. The native code takes the same steps as the kernels, so that both give the same words.
 
-/// The bits of a seed.
+/// Mask of the bits that a seed keeps.
 const SEED: u64 = !((1 << (52 - 8)) - 1);
 
-/// 1.5 * 2^52: a double of less than 2^51 added to it is rounded to a whole number, to even between two.
+/// 1.5 * 2^52. A double below 2^51 that is added to it is rounded to an integer, ties to even.
 pub(crate) const ROUND_DOUBLE: f64 = 6_755_399_441_055_744.0;
 
 fn seed(exact: f64) -> f64 {
     f64::from_bits(exact.to_bits() & SEED)
 }
 
-/// The reciprocal of a positive number by two steps in single precision. Wrong by two of the last place at most.
+/// Returns the reciprocal of a positive number by two steps in single precision. The error is at most two units in the
+/// last place.
 #[inline(always)]
 pub(crate) fn reciprocal(w: f32) -> f32 {
     let near = seed(1.0 / f64::from(w)) as f32;
@@ -20,25 +22,26 @@ pub(crate) fn reciprocal(w: f32) -> f32 {
     better * (2.0 - w * better)
 }
 
-/// The reciprocal of a number that is not 0 by three steps in double precision; NaN for 0 and for infinities.
+/// Returns the reciprocal of a nonzero number by three steps in double precision; NaN for 0 and for infinities.
 #[inline(always)]
 pub(crate) fn reciprocal_double(value: f64) -> f64 {
     (0..3).fold(seed(1.0 / value), |near, _| near * (2.0 - value * near))
 }
 
-/// The reciprocal of a positive number's root by three steps in double precision; NaN for all others and for infinity.
+/// Returns the reciprocal square root of a positive number by three steps in double precision; NaN for other numbers
+/// and infinity.
 pub(crate) fn reciprocal_root(value: f64) -> f64 {
     let half = value * 0.5;
     (0..3).fold(seed(1.0 / value.sqrt()), |near, _| near * (1.5 - half * (near * near)))
 }
 
-/// The root of a positive number; NaN for all others.
+/// Returns the square root of a positive number; NaN for other numbers.
 pub(crate) fn root(value: f64) -> f64 {
     value * reciprocal_root(value)
 }
 
-/// The whole number nearest to one of less than 2^51, to even between two. What is greater gives bits without a meaning, the same
-/// ones everywhere.
+/// Returns the nearest integer, ties to even, for a number below 2^51. Larger numbers give meaningless bits, the same
+/// on every host.
 pub(crate) fn whole(value: f64) -> i64 {
     ((value + ROUND_DOUBLE).to_bits() as i64).wrapping_sub(ROUND_DOUBLE.to_bits() as i64)
 }

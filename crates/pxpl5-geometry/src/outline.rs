@@ -3,12 +3,12 @@
 use crate::regions::RegionMask;
 use pxpl5_wire::{Linear, format};
 
-/// Subpixels along one side of a pixel.
+/// Number of subpixels along one side of a pixel.
 pub(crate) const SUBPIXELS: i32 = 1 << format::SUBPIXEL_BITS;
 
-/// Corners and depths of a triangle on the screen, and the regions it touches.
+/// Corners and depths of a triangle on the screen, and the regions that it touches.
 ///
-/// The corners run clockwise as seen on the screen (y grows downwards), whatever the input's winding.
+/// The corners run clockwise on the screen (y grows downwards), for either winding of the input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outline {
     /// Distance from the picture's left border in 1/16 px.
@@ -17,12 +17,12 @@ pub struct Outline {
     pub y: [i32; 3],
     /// Depths, from [`crate::DEPTH_NEAR`] to [`crate::DEPTH_FAR`].
     pub z: [u32; 3],
-    /// The regions that the triangle touches, to which its commands go.
+    /// The regions that the triangle touches, which receive its commands.
     pub regions: RegionMask,
 }
 
 impl Outline {
-    /// Twice the area in 1/256 square px; positive unless the corners lie on one line.
+    /// Returns twice the area in 1/256 square px; positive unless the corners are on one line.
     #[inline(always)]
     pub(crate) fn twice_area(&self) -> i64 {
         let x = &self.x;
@@ -30,17 +30,18 @@ impl Outline {
         i64::from(x[1] - x[0]) * i64::from(y[2] - y[0]) - i64::from(y[1] - y[0]) * i64::from(x[2] - x[0])
     }
 
-    /// The edges from corner 0 to 1, 1 to 2 and 2 to 0 at the pixels of the *frame*.
+    /// Returns the edges from corner 0 to 1, 1 to 2 and 2 to 0, as expressions over the pixels of the *frame*.
     #[inline(always)]
     pub(crate) fn edges(&self) -> [Linear; 3] {
         [self.edge(0, 1), self.edge(1, 2), self.edge(2, 0)]
     }
 
-    /// Twice the area of (from, to, pixel centre), in 1/16 square px, rounded down.
+    /// Returns the edge between two corners: twice the area of (from, to, pixel centre), in 1/16 square px, rounded
+    /// down.
     ///
-    /// The area in 1/256 square px is `16 (dx y - dy x) + k` at pixel (x, y). It is at least 0 exactly where
-    /// `dx y - dy x + floor(k / 16)` is, so nothing is lost. A pixel centre on the line itself belongs to the
-    /// triangle only along a top or a left edge: elsewhere k is less by one.
+    /// The area in 1/256 square px is `16 (dx y - dy x) + k` at pixel (x, y). It is at least 0 exactly if `dx y - dy x
+    /// + floor(k / 16)` is, so rounding changes no pixel. A pixel centre on the line belongs to the triangle only along
+    /// a top or left edge. For other edges k is reduced by one.
     #[inline(always)]
     fn edge(&self, from: usize, to: usize) -> Linear {
         let dx = self.x[to] - self.x[from];
@@ -53,7 +54,7 @@ impl Outline {
     }
 }
 
-/// Smallest and largest of three.
+/// Returns the smallest and the largest of three values.
 #[inline(always)]
 pub(crate) fn extent(v: &[i32; 3]) -> [i32; 2] {
     [v[0].min(v[1]).min(v[2]), v[0].max(v[1]).max(v[2])]

@@ -1,14 +1,14 @@
 //! Planes: linear expressions through the values of three corners.
 //!
-//! Slopes are rounded to integers, so at distance (dx, dy) from the pixel of reference a plane is wrong by at most
-//! `(|dx| + |dy|) (1/2 + 2^-15) + 1` of the expression's last bit: the rounding of the slopes, the rounding of the
-//! constant (1/2) and that of the 64-bit floating-point steps (1/2, and 2^-15 per pixel, see [`MAX_SLOPE`]). The
-//! reference is a pixel of the picture in the middle of the triangle's visible bounding box, so |dx| + |dy| is
-//! at most half the picture's width plus height, and the error on the largest picture below 1,026.
+//! Slopes are rounded to integers. At distance (dx, dy) from the reference pixel, the error of a plane is at most
+//! `(|dx| + |dy|) (1/2 + 2^-15) + 1` of the expression's last bit. It comes from rounding the slopes, rounding the
+//! constant (1/2), and the 64-bit floating-point steps (1/2, and 2^-15 per pixel, see [`MAX_SLOPE`]). The reference
+//! pixel is in the middle of the triangle's visible bounding box, so |dx| + |dy| is at most half the picture's width
+//! plus height. On the largest picture the error is below 1,026.
 //!
-//! A depth slope may need more than 32 bits: a wall seen edge-on can pass through the whole depth range, 2^32,
-//! within a pixel. Expressions are evaluated modulo 2^32 at integer pixels, so coefficients modulo 2^32 give the
-//! right value wherever the true value fits in 32 bits, which it does at every covered pixel.
+//! A depth slope may need more than 32 bits: a wall seen edge-on can pass through the whole depth range, 2^32, within a
+//! pixel. Expressions are evaluated modulo 2^32 at integer pixels. So coefficients modulo 2^32 give the right value at
+//! every pixel whose true value fits 32 bits, which includes every covered pixel.
 
 use crate::newton::reciprocal_double;
 use crate::outline::Outline;
@@ -17,47 +17,49 @@ use pxpl5_wire::Linear;
 
 /// Steepest plane in units of the expression's last bit per pixel: the whole range of 32 bits in one subpixel.
 ///
-/// A steeper plane, which only a triangle thinner than a subpixel can have, is made *flat*: it gets the mean of its
-/// corners everywhere, and [`SetupStats::flattened_planes`] counts it. Below this limit a slope, off by 2^-51 of
-/// itself (one over the area is formed by Newton steps), is off by 2^-15; over the 2^13 px from a corner to the pixel of
-/// reference no step exceeds 2^50, and the steps together are off by less than 1/2.
+/// A steeper plane, which only a triangle thinner than a subpixel can have, becomes *flat*: it takes the mean of its
+/// corners everywhere. [`SetupStats::flattened_planes`] counts such planes.
+///
+/// The relative error of a slope is 2^-51, since Newton steps compute the reciprocal of the area. Below this limit its
+/// absolute error is 2^-15. Over the 2^13 px from a corner to the reference pixel no step exceeds 2^50, and the error
+/// of all steps together is less than 1/2.
 pub const MAX_SLOPE: f64 = 68_719_476_736.0;
 
-/// 1.5 * 2^52: adding it rounds to an integer, to even, for absolute values below 2^51.
+/// 1.5 * 2^52. A number below 2^51 in absolute value that is added to it is rounded to an integer, ties to even.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
-/// Nearest integer of a value below 2^51 in absolute value, modulo 2^32.
+/// Returns the nearest integer, modulo 2^32, of a number below 2^51 in absolute value.
 #[inline(always)]
 pub(crate) fn rounded(value: f64) -> i32 {
     (value + ROUND).to_bits() as i32
 }
 
-/// What a plane that is too steep becomes.
+/// Returns the flat plane that replaces a plane that is too steep.
 pub(crate) fn flat(v: [f64; 3]) -> Linear {
     Linear::constant(rounded(((v[0] + v[1]) + v[2]) / 3.0))
 }
 
-/// From a corner, in subpixels, to the centre of a pixel, in pixels.
+/// Returns the distance from a corner (in subpixels) to the centre of a pixel, in pixels.
 #[inline(always)]
 fn pixels_to_centre(corner: i32, pixel: i32) -> f64 {
     f64::from(16 * pixel + 8 - corner) * (1.0 / 16.0)
 }
 
-/// What the planes of one triangle share.
+/// Values common to all planes of one triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Planes {
-    /// From corner 0 to corners 1 and 2 in subpixels.
+    /// Distances from corner 0 to corners 1 and 2, in subpixels.
     x: [f64; 2],
     y: [f64; 2],
-    /// 16 over twice the area: from cross products to slopes per pixel.
+    /// 16 over twice the area: the factor from cross products to slopes per pixel.
     per_pixel: f64,
-    /// From corner 0 to the centre of the pixel of reference, in pixels.
+    /// Distance from corner 0 to the centre of the reference pixel, in pixels.
     to_reference: [f64; 2],
     reference: [i32; 2],
 }
 
 impl Planes {
-    /// For the corners of `outline`, most exact at the frame's pixel `reference`.
+    /// Computes the common values for the corners of `outline`. Planes are most exact at the frame's pixel `reference`.
     #[inline(always)]
     pub(crate) fn for_outline(outline: &Outline, reference: [i32; 2]) -> Self {
         let x = &outline.x;
@@ -71,9 +73,9 @@ impl Planes {
         }
     }
 
-    /// The plane through three integers below 2^32 in absolute value, at the frame's pixels.
+    /// Returns the plane through three integers below 2^32 in absolute value, over the frame's pixels.
     ///
-    /// The cross products are sums of two products below 2^32 * 2^17, hence exact.
+    /// The cross products are sums of two products below 2^32 * 2^17, so they are exact.
     #[inline(always)]
     pub(crate) fn through(&self, v: [f64; 3], stats: &mut SetupStats) -> Linear {
         let d1 = v[1] - v[0];

@@ -1,5 +1,3 @@
-//! Sets of regions.
-
 use pxpl5_wire::RegionId;
 use serde::{Deserialize, Serialize};
 
@@ -8,13 +6,12 @@ use serde::{Deserialize, Serialize};
 pub struct RegionMask(u128);
 
 impl RegionMask {
-    /// Most regions that a picture can have: region numbers 0 to 127.
+    /// Largest number of regions in a picture: region numbers are 0 to 127.
     pub const CAPACITY: u32 = u128::BITS;
 
-    /// The set that holds no region.
     pub const EMPTY: Self = Self(0);
 
-    /// One region; empty if its number is [`Self::CAPACITY`] or more.
+    /// Returns the set of one region. The set is empty if the region's number is [`Self::CAPACITY`] or more.
     #[must_use]
     pub const fn only(region: RegionId) -> Self {
         if region.0 as u32 >= Self::CAPACITY {
@@ -23,42 +20,42 @@ impl RegionMask {
         Self(1 << region.0)
     }
 
-    /// Whether the set is empty.
+    /// Returns true if the set contains no region.
     #[must_use]
     pub const fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    /// Number of regions in the set.
+    /// Returns the number of regions in the set.
     #[must_use]
     pub const fn len(self) -> u32 {
         self.0.count_ones()
     }
 
-    /// Whether `region` is in the set.
+    /// Returns true if `region` is in the set.
     #[must_use]
     pub const fn contains(self, region: RegionId) -> bool {
         Self::only(region).0 & self.0 != 0
     }
 
-    /// The regions that are in this set or in the other.
+    /// Returns the regions that are in this set or in `other`.
     #[must_use]
     pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// Bit n stands for region n.
+    /// Creates a set from its bits: bit n stands for region n.
     pub(crate) const fn with_bits(bits: u128) -> Self {
         Self(bits)
     }
 
-    /// The set as bits: bit n is region n.
+    /// Returns the set as bits: bit n stands for region n.
     #[must_use]
     pub const fn bits(self) -> u128 {
         self.0
     }
 
-    /// The regions by rising number.
+    /// Returns the regions in ascending order.
     pub fn iter(self) -> impl Iterator<Item = RegionId> {
         let mut rest = self.0;
         std::iter::from_fn(move || {

@@ -1,21 +1,22 @@
 //! Spheres: one quadratic each, exact under perspective.
 //!
-//! A pixel's ray is `t d`, where d is linear in the pixel's coordinates and has z = -1, so that t is the distance
-//! along -Z. It meets the sphere of centre c and radius r where, with u = 1/t and D = c.c - r^2,
+//! A pixel's ray is `t d`, where d is linear in the pixel's coordinates and has z = -1, so that t is the distance along
+//! -Z. Let c and r be centre and radius of the sphere, u = 1/t and D = c.c - r^2. Then the ray meets the sphere where
 //!
 //! ```text
 //! D u^2 - 2 (d.c) u + d.d = 0,   u = (d.c + sqrt(Q)) / D,   Q = (d.c)^2 - D (d.d) = r^2 d.d - |d x c|^2
 //! ```
 //!
-//! Q is a quadratic in the pixel's coordinates and at least 0 exactly on the sphere's picture, an ellipse. Depth is
-//! linear in u, so it is a plane less a multiple of the root of Q. Under a parallel projection
-//! `Q = r^2 - |p - c|^2` and depth is a constant less a multiple of its root.
+//! Q is a quadratic in the pixel's coordinates. It is at least 0 exactly inside the sphere's image, an ellipse. Depth
+//! is linear in u, so it is a plane minus a multiple of the root of Q. Under a parallel projection `Q = r^2 - |p -
+//! c|^2`, and depth is a constant minus a multiple of the root of Q.
 //!
-//! **Not drawn, but counted:** spheres that the near plane cuts (one quadratic cannot show the hole, and this holds
-//! the eye inside a sphere too) and spheres whose picture reaches beyond the far plane. Spheres without a size have no picture
-//! and count as outside.
+//! **Not drawn, but counted:** spheres that the near plane cuts, since one quadratic cannot show the hole (the eye
+//! inside a sphere is such a case), and spheres whose image reaches beyond the far plane. Spheres of radius 0 have no
+//! image and count as outside.
 //!
-//! There is no division and no root but by Newton steps, as an i860 takes them: [`crate::sphere_kernel`] is the same as code.
+//! Newton steps compute all quotients and roots, as on an i860. [`crate::sphere_kernel`] has the same computation as
+//! i860 code.
 
 use crate::bin::Range;
 use crate::conic::{Conic, Ellipse};
@@ -25,32 +26,34 @@ use crate::transform::Transform;
 use crate::view::{FromWorld, dot};
 use crate::{RegionMask, SetupStats, WorldSphere};
 
-/// Largest eye coordinate and radius of a sphere; the squares of larger ones could overflow.
+/// Largest absolute eye coordinate and radius of a sphere. The squares of larger numbers could overflow.
 pub(crate) const MAX_COORDINATE: f64 = 1e30;
 
 /// A sphere on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScreenSphere {
-    /// Regions that the bounding box of its picture meets: all that it touches, and perhaps corners beside it.
+    /// Regions that meet the bounding box of the sphere's image: all touched regions, and possibly regions at its
+    /// corners.
     pub regions: RegionMask,
     /// Red, green and blue, 0 to 255 each.
     pub colour: [u8; 3],
-    /// The picture, with `Q = bulge^2`: how far, in units of the depth expression, the surface stands before its
-    /// plane of depth.
+    /// The image as a conic `Q = bulge^2`. The bulge is the distance of the surface in front of the plane of depth, in
+    /// units of the depth expression.
     pub(crate) conic: Conic,
-    /// Where it is greatest, and how large it is.
+    /// Position, value and size of the conic's maximum.
     pub(crate) ellipse: Ellipse,
-    /// Value at the conic's centre and slopes per pixel of the plane of depth.
+    /// Plane of depth: value at the conic's centre, and slopes per pixel along x and y.
     pub(crate) depth: [f64; 3],
-    /// Depth of the plane that touches the front, in units of the depth expression: nothing is nearer.
+    /// Depth of the sphere's nearest point, in units of the depth expression.
     pub(crate) front: f64,
-    /// The middle of the sphere as seen from the eye: unit vectors across, up and towards the eye.
+    /// Unit vectors at the sphere's centre: across, up and towards the eye.
     pub(crate) axes: [[f64; 3]; 3],
 }
 
 impl ScreenSphere {
-    /// Whether the box around its picture meets a rectangle: first and last pixel across, first and last line of the
-    /// frame down.
+    /// Returns true if the bounding box of the sphere's image meets a rectangle.
+    ///
+    /// The rectangle is given by its first and last pixel across and its first and last frame line.
     #[must_use]
     pub fn meets(&self, across: [i32; 2], lines: [i32; 2]) -> bool {
         self.ellipse.bounds().is_some_and(|[x, y]| overlaps(pixels(x), across) && overlaps(pixels(y), lines))
@@ -66,7 +69,7 @@ fn unit(v: [f64; 3]) -> [f64; 3] {
     v.map(|c| c * inverse)
 }
 
-/// What of `v` is at a right angle to the unit vector `axis`, with length 1.
+/// Returns the component of `v` perpendicular to the unit vector `axis`, with length 1.
 fn across(v: [f64; 3], axis: [f64; 3]) -> [f64; 3] {
     let along = dot(v, axis);
     unit(std::array::from_fn(|i| v[i] - along * axis[i]))
@@ -80,7 +83,7 @@ struct EyeSphere {
 }
 
 impl EyeSphere {
-    /// `None` for NaN, huge numbers and a negative radius.
+    /// Creates a sphere in eye coordinates. Returns `None` for NaN, huge numbers and a negative radius.
     fn new(to_eye: &FromWorld, sphere: &WorldSphere) -> Option<Self> {
         let [x, y, z, _] = to_eye.point(sphere.centre).map(f64::from);
         let radius = f64::from(sphere.radius) * to_eye.scale();
@@ -88,7 +91,8 @@ impl EyeSphere {
         (radius >= 0.0 && fits).then_some(Self { centre: [x, y, z], radius })
     }
 
-    /// Greatest distance t on the silhouette under perspective: the farthest point of the circle of tangents.
+    /// Returns the greatest distance t on the silhouette under perspective: the farthest point of the circle of
+    /// tangents.
     fn farthest_tangent(&self) -> f64 {
         let inverse = reciprocal_double(dot(self.centre, self.centre));
         let shrink = 1.0 - (self.radius * self.radius) * inverse;
@@ -116,19 +120,19 @@ impl Lens {
         if self.is_beyond_far(front) {
             return Sight::Outside;
         }
-        // No tangent is behind the back.
+        // No tangent point is behind the sphere's back.
         if self.is_beyond_far(back) && self.is_beyond_far(self.deepest(sphere)) {
             return Sight::AcrossFar;
         }
         Sight::Visible
     }
 
-    /// Distance along -Z of the silhouette's deepest point.
+    /// Returns the distance along -Z of the silhouette's deepest point.
     fn deepest(&self, sphere: &EyeSphere) -> f64 {
         if self.parallel { -sphere.centre[2] } else { sphere.farthest_tangent() }
     }
 
-    /// The picture scaled to bulges, and the plane of depth around its centre.
+    /// Returns the sphere's image as a conic `Q = bulge^2`, and the plane of depth around its centre.
     fn picture(&self, sphere: &EyeSphere) -> (Conic, [f64; 3]) {
         let [cx, cy, cz] = sphere.centre;
         let r = sphere.radius;
@@ -161,7 +165,7 @@ impl Lens {
         };
         let square = dot(sphere.centre, sphere.centre);
         let k = self.reach * reciprocal_double(square - rr);
-        // At the origin d = -c / c_z, hence d.c = c.c / -c_z.
+        // At the origin d = -c / c_z, so d.c = c.c / -c_z.
         let depth = self.base + k * (square * inverse);
         (conic.scaled(k * k), [depth, k * gx * cx, k * gy * cy])
     }
@@ -173,12 +177,13 @@ impl Lens {
 }
 
 impl Transform {
-    /// Transforms a sphere; `None`, counted, if it is not drawn.
+    /// Transforms a sphere. Returns `None`, and counts the reason, if the sphere is not drawn.
     ///
-    /// The model-view matrix must be a rotation, translation and uniform scale, the projection along -Z; other
-    /// projections are counted as [`SetupStats::spheres_unprojectable`].
+    /// The model-view matrix must be a rotation, translation and uniform scale. The projection must be along -Z; other
+    /// projections count as [`SetupStats::spheres_unprojectable`].
     pub fn sphere(&self, sphere: &WorldSphere, stats: &mut SetupStats) -> Option<ScreenSphere> {
         stats.spheres += 1;
+        // Count the reason for every sphere that is not drawn.
         let Some(lens) = &self.lens else {
             stats.spheres_unprojectable += 1;
             return None;
@@ -199,6 +204,7 @@ impl Transform {
     fn visible(&self, lens: &Lens, eye: &EyeSphere, colour: [u8; 3], stats: &mut SetupStats) -> Option<ScreenSphere> {
         let (conic, depth) = lens.picture(eye);
         let ellipse = conic.ellipse();
+        // Bin by the bounding box of the ellipse.
         let regions = ellipse.bounds().map_or(RegionMask::EMPTY, |bounds| {
             let [x, y] = bounds.map(pixels);
             self.binner.rectangle(x, y)
@@ -220,15 +226,15 @@ impl Transform {
     }
 }
 
-/// Slack around a bounding box in pixels, more than the rounding of the quadratic can move the silhouette.
+/// Margin around a bounding box in pixels, greater than the effect of rounding the quadratic on the silhouette.
 pub(crate) const SLACK: f64 = 1.0 / 64.0;
 
-/// The pixels whose centres lie in an interval of pixel coordinates (0 is the centre of pixel 0).
+/// Returns the pixels whose centres are in an interval of pixel coordinates (0 is the centre of pixel 0).
 fn pixels([low, high]: [f64; 2]) -> Range {
     Range { first: near_screen((low - SLACK).ceil()) as i32, last: near_screen((high + SLACK).floor()) as i32 }
 }
 
-/// A pixel coordinate limited to what fits in 32 bits in every later step.
+/// Limits a pixel coordinate to a range that fits 32 bits in every later step.
 fn near_screen(pixel: f64) -> f64 {
     pixel.clamp(-4096.0, 4096.0)
 }

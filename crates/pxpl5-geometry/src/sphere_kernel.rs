@@ -1,12 +1,13 @@
-//! Spheres as code of the graphics processor: i860 assembly, and the memory that it works on, as [`crate::kernel`] has them for
+//! Set-up of spheres as code of the graphics processor: i860 assembly and its memory layout, like [`crate::kernel`] for
 //! triangles.
 //!
-//! A [`SphereKernel`] takes spheres from the display list to the words of renderer commands and to bins: centre and radius to the eye,
-//! near and far plane, conic, bounding box, regions, the conic in fixed point, planes of depth and of the surface. There is one code
-//! for all versions of the kernels, by the rules of the compiled one. The computation is that of the native code, so that the words
-//! are the same bit for bit.
+//! A [`SphereKernel`] computes the words of renderer commands and the bins from the spheres of the display list. The
+//! steps are: centre and radius in eye coordinates, near and far plane, conic, bounding box, regions, the conic in
+//! fixed point, and the planes of depth and surface. All schedules of the triangle kernels use the same sphere code,
+//! which follows the rules of the compiled one. The computation equals the native code, so that the words are the same
+//! bit for bit.
 //!
-//! The parameter block stands in kernels/sphere_parameters.s. What a view decides of it `place` fills in on the processor
+//! kernels/sphere_parameters.s defines the parameter block. On the processor, `place` writes its view-dependent part
 //! ([`crate::kernel::place_source`]).
 
 use crate::kernel::{self, KernelPicture, KernelSurface};
@@ -16,40 +17,40 @@ use crate::sphere::{MAX_COORDINATE, SLACK};
 use crate::{DEPTH_NEAR, Light, Transform, Viewport, WorldSphere, sphere_setup};
 use pxpl5_wire::{Word, format};
 
-/// Code for spheres of one kind of surface and picture.
+/// The choice of code for spheres of one kind of surface and picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SphereKernel {
-    /// Interpolated colour, or normals.
+    /// Kind of surface: interpolated colour, or normals.
     pub surface: KernelSurface,
-    /// What it knows of the picture.
+    /// Kind of picture that the kernel draws.
     pub picture: KernelPicture,
-    /// Whether it keeps the box of each command and has no bins.
+    /// True if the kernel keeps the bounding box of each command and has no bins.
     pub keeps_boxes: bool,
 }
 
-/// Words of a sphere in the display list.
+/// Number of words of a sphere in the display list.
 pub const SPHERE_WORDS: usize = 8;
 
-/// Words of the parameter block.
+/// Number of words of the parameter block.
 pub const SPHERE_PARAMETER_WORDS: usize = SIZE + 3;
 
-/// Where the words of the command begin in the parameter block.
+/// Position of the command's words in the parameter block.
 const TEMPLATE: usize = 110;
 
-/// Where the size of the picture stands, behind the longest command.
+/// Position of the picture's size in the parameter block, after the longest command.
 const SIZE: usize = TEMPLATE + 53;
 
-/// Words of the parameter block that a view and a light decide, from the first one on.
+/// Number of words at the start of the parameter block that depend on a view and a light.
 pub const SPHERE_VIEW_WORDS: usize = 55;
 
 impl SphereKernel {
-    /// The kernel for a picture; `None` where there is none: regions of other sizes than [`KernelPicture`] has.
+    /// Returns the kernel for a picture, or `None` if [`KernelPicture`] has no such picture.
     #[must_use]
     pub fn for_picture(surface: KernelSurface, viewport: &Viewport) -> Option<Self> {
         KernelPicture::of(viewport).map(|picture| Self { surface, picture, keeps_boxes: false })
     }
 
-    /// The source in i860 assembly; its entry is the label `spheres`.
+    /// Returns the source in i860 assembly, whose entry is the label `spheres`.
     #[must_use]
     pub fn source(&self) -> String {
         let surface = match self.surface {
@@ -60,6 +61,7 @@ impl SphereKernel {
             false => include_str!("../kernels/sphere_binned.s"),
             true => include_str!("../kernels/sphere_kept.s"),
         };
+        // Shared functions come first, then the macros, the loop and its functions.
         [
             include_str!("../kernels/sphere_parameters.s"),
             self.picture.source(),
@@ -75,7 +77,7 @@ impl SphereKernel {
         .join("\n")
     }
 
-    /// Words of a command that it makes.
+    /// Returns the number of words of a command.
     #[must_use]
     pub const fn command_words(&self) -> usize {
         match self.surface {
@@ -84,7 +86,9 @@ impl SphereKernel {
         }
     }
 
-    /// The parameter block for a view; `command` is a command of zeros. `None` where the projection cannot show spheres.
+    /// Returns the parameter block for a view. Returns `None` if the projection cannot show spheres.
+    ///
+    /// `command` is a command of zeros, into which the kernel writes operands.
     #[must_use]
     pub fn parameters(
         &self,
@@ -96,22 +100,25 @@ impl SphereKernel {
         let mut words = [0; SPHERE_PARAMETER_WORDS];
         let [x, y, z, _] = transform.to_eye.rows();
         let origin = transform.to_eye.origin().to_array();
+        // Words 0 to 14: matrix and eye, in single precision.
         let singles = [x, y, z].concat().into_iter().chain(origin).map(f32::to_bits);
         words.iter_mut().zip(singles).for_each(|(word, single)| *word = single);
         let [light_x, light_y, light_z] = light.direction.map(f64::from);
         let pairs = [lens.step, lens.rate, lens.corner, lens.near, lens.far].concat();
         let of_light = [light_x, light_y, light_z, light.ambient.into(), light.diffuse.into()];
         let depths = [lens.least, lens.base, lens.reach];
+        // Words 16 to 53: projection and light, in double precision.
         doubles(&mut words[16..], &[&[transform.to_eye.scale()], pairs.as_slice(), &depths, &of_light].concat());
         words[54] = Word::from(lens.parallel);
         words[55] = transform.viewport.first_line();
+        // Words 56 to 109: constants that depend only on the picture.
         doubles(&mut words[56..], &self.constants(&transform.viewport));
         words[TEMPLATE..SIZE].iter_mut().zip(command).for_each(|(word, of_command)| *word = *of_command);
         words[SIZE..].copy_from_slice(&kernel::size_words(&transform.viewport));
         Some(words)
     }
 
-    /// What the picture decides, and numbers.
+    /// Returns the constants that depend on the picture, and other numbers of the code.
     fn constants(&self, viewport: &Viewport) -> [f64; 27] {
         let [width, lines] = [viewport.grid().width, viewport.frame_lines()];
         let half = lens::half_frame(width, lines);
@@ -121,6 +128,7 @@ impl SphereKernel {
             KernelSurface::Phong => 1_u32 << format::NORMAL_FRACTION_BITS,
         });
         let near = f64::from(DEPTH_NEAR);
+        // The order is that of kernels/sphere_parameters.s.
         [
             half[0],
             half[1],
@@ -153,14 +161,14 @@ impl SphereKernel {
     }
 }
 
-/// Doubles into words, the low half first.
+/// Stores doubles as words, the low half first.
 fn doubles(words: &mut [Word], values: &[f64]) {
     for (pair, value) in words.chunks_exact_mut(2).zip(values) {
         pair.copy_from_slice(&kernel::halves(*value));
     }
 }
 
-/// A sphere as the display list holds it.
+/// Returns a sphere in the format of the display list.
 #[must_use]
 pub fn sphere_words(sphere: &WorldSphere) -> [Word; SPHERE_WORDS] {
     let [x, y, z] = sphere.centre.to_array().map(f32::to_bits);

@@ -1,4 +1,4 @@
-//! Set-up of spheres: from a conic and a plane to the renderer's operands.
+//! Set-up of spheres: computes the renderer's operands from a conic and a plane.
 
 use crate::conic::{self, FixedConic};
 use crate::newton::{reciprocal_root, root, whole};
@@ -15,33 +15,34 @@ use pxpl5_wire::{Linear, Quadratic, REGION_SIZE, format};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SphereSetup {
-    /// Inside where at least 0. Within the regions that it was computed for it fits in 48 bits.
+    /// Silhouette expression: a pixel is inside where it is at least 0. It fits 48 bits within the sphere's regions.
     ///
-    /// Its scale is not that of [`format::QUADRATIC_FRACTION_BITS`]: it is chosen so that the root needs no factor.
+    /// Its scale is not [`format::QUADRATIC_FRACTION_BITS`], but is chosen so that the root needs no factor.
     pub silhouette: Quadratic,
-    /// Low bits of the silhouette that are left out of the root, 0 to 24.
+    /// Number of low bits of the silhouette that the root ignores, 0 to 24.
     pub root_shift: u8,
-    /// Depth of the plane of the silhouette with [`format::Z_FRACTION_BITS`], rounded for the root.
+    /// Depth of the plane of the silhouette with [`format::Z_FRACTION_BITS`], including a correction for the rounding
+    /// of the root.
     pub depth: Linear,
-    /// Left shift of the root before it is subtracted from the depth, 0 to 20.
+    /// Left shift of the root before its subtraction from the depth, 0 to 20.
     pub depth_shift: u8,
 }
 
 /// A sphere with interpolated colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GouraudSphere {
-    /// Which pixels it covers, and how deep it is there.
+    /// Silhouette and depth of the sphere.
     pub setup: SphereSetup,
     /// Linear part of red, green and blue with [`format::COLOUR_FRACTION_BITS`].
     pub rgb: [Linear; 3],
-    /// Component = limit(linear + ((root >> 4) * factor >> 8)), factors 0 to 511.
+    /// Factors of the root, 0 to 511: component = limit(linear + ((root >> 4) * factor >> 8)).
     pub root_factor: [u16; 3],
 }
 
 /// A sphere for deferred shading. The z of its normal is `root >> 2`; x and y have the same scale.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PhongSphere {
-    /// Which pixels it covers, and how deep it is there.
+    /// Silhouette and depth of the sphere.
     pub setup: SphereSetup,
     /// x and y of the normal in eye coordinates with [`format::NORMAL_FRACTION_BITS`].
     pub normal: [Linear; 2],
@@ -49,10 +50,10 @@ pub struct PhongSphere {
     pub colour: [u8; 3],
 }
 
-/// Steepest slope of a plane in units of its expression per pixel: what 32 bits hold.
+/// Steepest slope of a plane, in units of its expression per pixel: the limit of 32 bits.
 pub(crate) const MAX_SLOPE: f64 = 2_147_483_648.0;
 
-/// A plane by its value at a point of the frame and its slopes.
+/// A plane, given by its value at a point of the frame and its slopes.
 struct Slope {
     origin: [f64; 2],
     value: f64,
@@ -60,8 +61,10 @@ struct Slope {
 }
 
 impl Slope {
-    /// In fixed point, most exact at `pixel`; modulo 2^32 like every linear expression. With a slope
-    /// beyond 2^31 it is flat, and counted as flattened.
+    /// Converts the plane to fixed point, modulo 2^32 like every linear expression. The result is most exact at
+    /// `pixel`.
+    ///
+    /// A plane with a slope beyond 2^31 becomes flat, and counts as flattened.
     fn fixed(&self, pixel: [i32; 2], stats: &mut SetupStats) -> Linear {
         if !self.slope.iter().all(|s| s.abs() < MAX_SLOPE) {
             stats.flattened_planes += 1;
@@ -75,12 +78,12 @@ impl Slope {
     }
 }
 
-/// The nearest integer's low 32 bits.
+/// Returns the low 32 bits of the nearest integer.
 fn modulo_2_32(value: f64) -> i32 {
     whole(value) as i32
 }
 
-/// A factor of the root as the command holds it; 0 for NaN.
+/// Limits a factor of the root to the range of the command, 0 to 511; NaN becomes 0.
 #[allow(clippy::manual_clamp, reason = "`clamp` would leave a NaN")]
 fn limited(factor: f64) -> i64 {
     whole(factor.max(0.0).min(511.0))
@@ -90,13 +93,14 @@ fn rows(linear: Linear, viewport: &Viewport) -> Linear {
     crate::screen::for_rows(linear, viewport)
 }
 
-/// The line of the frame that a row of the picture is.
+/// Returns the frame line of a row of the picture.
 fn frame_line(viewport: &Viewport, row: u32) -> i32 {
     (row * viewport.line_step() + viewport.first_line()) as i32
 }
 
 impl ScreenSphere {
-    /// Frame pixels that the renderers of the touched regions evaluate, beyond the picture's border too.
+    /// Returns the frame's pixels that the renderers of the touched regions evaluate, which may extend beyond the
+    /// picture.
     fn rectangle(&self, viewport: &Viewport) -> [[i32; 2]; 2] {
         let grid = viewport.grid();
         let corners = self.regions.iter().map(|r| grid.rectangle(r));
@@ -110,7 +114,7 @@ impl ScreenSphere {
         ]
     }
 
-    /// Where planes are rounded: the visible part's middle.
+    /// Returns the pixel at which planes are rounded: the middle of the visible part.
     fn middle(&self, rectangle: [[i32; 2]; 2]) -> [i32; 2] {
         std::array::from_fn(|i| {
             let [first, last] = rectangle[i].map(f64::from);
@@ -123,8 +127,8 @@ impl ScreenSphere {
         let middle = self.middle(rectangle);
         let conic = self.conic.fixed(self.ellipse.value, rectangle, middle);
         let [value, slope_x, slope_y] = self.depth;
-        // Roots are rounded down, so surfaces lie up to a step too deep: half a step nearer, as far as there is room
-        // before depth 0, makes that a rounding to the nearest.
+        // Roots are rounded down, so surfaces are up to one step too deep. Moving the plane half a step nearer, as far
+        // as depth 0 permits, makes this a rounding to the nearest.
         let half_step = conic::power_of_two(i32::from(conic.depth_shift) - 1);
         let room = (self.front - f64::from(DEPTH_NEAR) * 0.5).max(0.0);
         let plane = Slope { origin: self.conic.origin, value: value - half_step.min(room), slope: [slope_x, slope_y] };
@@ -139,7 +143,8 @@ impl ScreenSphere {
         (setup, conic)
     }
 
-    /// `scale` times the x (0) or y (1) of a unit normal in the sphere's own axes, plus `value`.
+    /// Returns the plane `scale * n + value`, where n is the x (scale 0) and y (scale 1) of a unit normal in the
+    /// sphere's axes.
     fn tilt(&self, scale: [f64; 2], value: f64) -> Slope {
         let [per_x, per_y] = self.ellipse.per_half_size();
         Slope { origin: self.ellipse.peak, value, slope: [scale[0] * per_x, -scale[1] * per_y] }
@@ -147,8 +152,8 @@ impl ScreenSphere {
 
     /// Computes the operands for interpolated colour.
     ///
-    /// The normal is taken as linear on the screen but for its part towards the eye, which is the root. Where it
-    /// turns from the light a sphere gets darker than ambient light, and light from behind adds nothing.
+    /// The part of the normal towards the eye is the root; the rest is approximated as linear on the screen. A pixel
+    /// that turns away from the light gets darker than ambient light. Light from behind the sphere adds nothing.
     #[must_use]
     pub fn gouraud(&self, viewport: &Viewport, light: &Light, stats: &mut SetupStats) -> GouraudSphere {
         let (setup, conic) = self.common(viewport, stats);
@@ -164,7 +169,7 @@ impl ScreenSphere {
             let plane = self.tilt(scale, full * ambient + unit * 0.5);
             rows(plane.fixed(middle, stats), viewport)
         });
-        // One over the greatest value of the root's upper bits, which lack four.
+        // Reciprocal of the greatest value of the root's upper bits, which lack four bits.
         let per_root = reciprocal_root(self.ellipse.value) * conic::power_of_two(i32::from(conic.depth_shift) + 4);
         let root_factor = self.colour.map(|c| {
             let factor = f64::from(c) * diffuse * towards * 256.0 * per_root;
@@ -179,7 +184,7 @@ impl ScreenSphere {
         let (setup, conic) = self.common(viewport, stats);
         let middle = self.middle(self.rectangle(viewport));
         let unit = f64::from(1_u32 << format::NORMAL_FRACTION_BITS);
-        // The root at the middle, a quarter of which is z.
+        // The root at the middle. A quarter of it is z.
         let greatest = root(self.ellipse.value) * conic::power_of_two(-i32::from(conic.depth_shift));
         let scale = greatest * 0.25 * unit;
         let normal = [[scale, 0.0], [0.0, scale]].map(|scale| {

@@ -1,32 +1,34 @@
-//! What happened to the primitives, counted.
+//! Counters of the set-up.
 
 use serde::{Deserialize, Serialize};
 
-/// Counts of everything that did not go straight through. All start at zero; callers add them up over GPs.
+/// Counts of primitives, and of everything that the set-up dropped, cut or limited.
+///
+/// All counts start at zero. Callers add the counts of several graphics processors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SetupStats {
-    /// Triangles handed in, seen or not.
+    /// Triangles passed to the set-up, visible or not.
     pub triangles: u64,
-    /// Screen triangles handed out (clipping can give several, or none, per triangle).
+    /// Screen triangles produced. Clipping can give several or none per triangle.
     pub screen_triangles: u64,
-    /// Triangles, or pieces of one, dropped because a clip coordinate is NaN, infinite or beyond
-    /// [`crate::MAX_CLIP`], or w is nearly 0.
+    /// Triangles or pieces dropped because a clip coordinate is NaN, infinite or beyond [`crate::MAX_CLIP`], or w is
+    /// nearly 0.
     pub not_finite: u64,
-    /// Triangles dropped because all vertices lie beyond one side of the view.
+    /// Triangles dropped because all vertices are beyond one side of the view.
     pub outside: u64,
     /// Triangles cut by the near plane, the far plane or the guard band.
     pub clipped: u64,
-    /// Screen triangles dropped as facing away (only with [`crate::Culling::Back`]).
+    /// Screen triangles dropped as back faces (only with [`crate::Culling::Back`]).
     pub back_facing: u64,
     /// Screen triangles dropped because their area is zero after snapping.
     pub degenerate: u64,
     /// Screen triangles dropped because they touch no region: off the screen, or between pixel centres.
     pub untouched: u64,
-    /// Depth, colour or normal planes that were steeper than [`crate::MAX_SLOPE`] and were made flat.
+    /// Planes of depth, colour or normal that were steeper than [`crate::MAX_SLOPE`] and became flat.
     pub flattened_planes: u64,
-    /// Spheres handed in, seen or not.
+    /// Spheres passed to the set-up, visible or not.
     pub spheres: u64,
-    /// Spheres handed out: those on the screen.
+    /// Spheres produced, which are on the screen.
     pub screen_spheres: u64,
     /// Spheres dropped because the near plane cuts them or the eye is inside.
     pub spheres_across_near: u64,
@@ -41,7 +43,7 @@ pub struct SetupStats {
 }
 
 impl SetupStats {
-    /// Adds another count to this one.
+    /// Adds the counts of `other` to this one.
     pub fn add(&mut self, other: &Self) {
         self.triangles += other.triangles;
         self.screen_triangles += other.screen_triangles;

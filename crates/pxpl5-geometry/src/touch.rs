@@ -1,23 +1,23 @@
-//! What binning can find.
+//! Results of binning.
 
 use crate::regions::RegionMask;
 use crate::stats::SetupStats;
 use pxpl5_wire::RegionId;
 
-/// What binning finds of a triangle.
+/// The result of binning one triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Touch {
-    /// Not known before it is clipped, which [`crate::Transform::bin`] does.
+    /// The triangle needs clipping; [`crate::Transform::bin`] clips it and finds its regions.
     NeedsClipping,
-    /// It has no area after snapping.
+    /// The triangle has no area after snapping.
     Degenerate,
-    /// It faces away, and such are culled.
+    /// The triangle is a back face, and back faces are culled.
     BackFacing,
-    /// It touches no region: off the screen, or between pixel centres.
+    /// The triangle touches no region: off the screen, or between pixel centres.
     Untouched,
-    /// It touches this region alone.
+    /// The triangle touches exactly this region.
     Region(RegionId),
-    /// These regions, more than one.
+    /// The triangle touches these regions, more than one.
     Regions(RegionMask),
 }
 
@@ -31,7 +31,7 @@ impl Touch {
         }
     }
 
-    /// The regions, if there are any; counts the screen triangle, or why it is none.
+    /// Returns the touched regions, if there are any, and counts the screen triangle or the reason for its absence.
     #[inline(always)]
     pub const fn count(self, stats: &mut SetupStats) -> Option<RegionMask> {
         match self {

@@ -1,4 +1,4 @@
-//! The regions that the triangles of a mesh touch, found once for all who hold some of them.
+//! The regions that the triangles of a mesh touch, computed once for all processors that hold some of them.
 
 use crate::bin::{Binner, Range, quotient};
 use crate::lanes::{EachLane, LANES};
@@ -9,10 +9,10 @@ use crate::{RegionMask, ScreenVertex, Transform};
 use multiversion::multiversion;
 use pxpl5_wire::RegionId;
 
-/// What binning finds of the triangles of a mesh, four bytes each.
+/// Binning results for the triangles of a mesh, four bytes each.
 #[derive(Clone, Debug, Default)]
 pub struct Touched {
-    /// A region, one of the codes below, or [`SEVERAL`] and a place in `several`.
+    /// For each triangle a region, one of the codes below, or [`SEVERAL`] plus an index of `several`.
     codes: Vec<u32>,
     several: Vec<RegionMask>,
 }
@@ -24,10 +24,10 @@ const BACK_FACING: u32 = NEEDS_CLIPPING + 2;
 const UNTOUCHED: u32 = NEEDS_CLIPPING + 3;
 
 impl Touched {
-    /// What was found of triangle `i`.
+    /// Returns the binning result of triangle `i`.
     ///
     /// # Panics
-    /// If there are not as many triangles.
+    /// If there is no triangle `i`.
     #[inline(always)]
     #[must_use]
     pub fn get(&self, i: usize) -> Touch {
@@ -41,10 +41,10 @@ impl Touched {
         }
     }
 
-    /// The region of triangle `i` where that is the only one.
+    /// Returns the region of triangle `i` if the triangle touches only one region.
     ///
     /// # Panics
-    /// If there are not as many triangles.
+    /// If there is no triangle `i`.
     #[inline(always)]
     #[must_use]
     pub fn only_region(&self, i: usize) -> Option<RegionId> {
@@ -68,11 +68,13 @@ impl Touched {
 }
 
 impl Transform {
-    /// What [`Self::bin`] finds of triangles, given by the numbers of their corners; `vertices`, which this view sees, begin with
-    /// number `first`.
+    /// Bins triangles, with the results of [`Self::bin`].
+    ///
+    /// Triangles are given by the numbers of their corners. `vertices` begins with number `first`, and must come from
+    /// this view.
     ///
     /// # Panics
-    /// If there is no vertex of such a number.
+    /// If a corner's number is not in `vertices`.
     #[must_use]
     pub fn touched(&self, vertices: &[ScreenVertex], first: u32, triangles: &[[u32; 3]]) -> Touched {
         let mut all = Touched { codes: Vec::with_capacity(triangles.len()), several: Vec::new() };
@@ -101,7 +103,7 @@ impl Transform {
         all.codes.extend_from_slice(&found.codes[..len]);
     }
 
-    /// A triangle whose box lies in more than one region.
+    /// Bins a triangle whose box lies in more than one region.
     fn touch_several(&self, corners: &CornerLanes, found: &LaneTouches, lane: usize) -> Touch {
         let [x, y] = corners.clockwise(lane);
         Touch::from_mask(self.binner.test_edges(x, y, range_in(lane, &found.x), range_in(lane, &found.y)))
@@ -112,12 +114,12 @@ fn range_in(lane: usize, [first, last]: &[EachLane<i32>; 2]) -> Range {
     Range { first: first[lane], last: last[lane] }
 }
 
-/// x and y of the corners of some triangles, first by corner.
+/// x and y of the corners of some triangles, indexed by corner first.
 #[derive(Debug)]
 struct CornerLanes([EachLane<[i32; 2]>; 3]);
 
 impl CornerLanes {
-    /// Those of triangles whose corners are some of the vertices, which begin with number `first`.
+    /// Collects the corners of triangles from `vertices`, which begins with number `first`.
     #[inline(always)]
     fn of(vertices: &[ScreenVertex], first: u32, triangles: &EachLane<[u32; 3]>) -> Self {
         let mut all = [[[0; 2]; LANES]; 3];
@@ -130,7 +132,7 @@ impl CornerLanes {
         Self(all)
     }
 
-    /// One of the two coordinates.
+    /// Returns x (axis 0) or y (axis 1) of the corners.
     #[inline(always)]
     fn coordinate(&self, axis: usize) -> [EachLane<i32>; 3] {
         let mut all = [[0; LANES]; 3];
@@ -142,7 +144,7 @@ impl CornerLanes {
         all
     }
 
-    /// x and y of a triangle's corners in clockwise order.
+    /// Returns x and y of a triangle's corners in clockwise order.
     fn clockwise(&self, lane: usize) -> [[i32; 3]; 2] {
         let [[a, d], [b, e], [c, f]] = [self.0[0][lane], self.0[1][lane], self.0[2][lane]];
         let counterclockwise = i64::from(b - a) * i64::from(f - d) < i64::from(e - d) * i64::from(c - a);
@@ -150,12 +152,12 @@ impl CornerLanes {
     }
 }
 
-/// What is found of some triangles at once.
+/// Binning results of several triangles at once.
 struct LaneTouches {
-    /// As in [`Touched`]; [`SEVERAL`] alone where the edges decide between several regions.
+    /// Codes as in [`Touched`], but plain [`SEVERAL`] if the edges must decide between several regions.
     codes: EachLane<u32>,
     any_several: bool,
-    /// First and last column and row of pixels.
+    /// First and last column of pixels.
     x: [EachLane<i32>; 2],
     y: [EachLane<i32>; 2],
 }
@@ -176,12 +178,13 @@ fn touch_lanes(corners: &CornerLanes, binner: &Binner, dropped: Option<Turn>) ->
         (row, binner.row_box(row))
     });
     let areas = areas(&corners);
-    // Positive times the area of what is dropped.
+    // Sign that makes the area of a culled triangle positive.
     let dropped = match dropped {
         None => 0.0,
         Some(Turn::Clockwise) => 1.0,
         Some(Turn::Counterclockwise) => -1.0,
     };
+    // Later lines override earlier ones, so the order of these tests matters.
     let mut codes = [0; LANES];
     let mut n_several = 0;
     for i in 0..LANES {
@@ -197,7 +200,7 @@ fn touch_lanes(corners: &CornerLanes, binner: &Binner, dropped: Option<Turn>) ->
     LaneTouches { codes, any_several: n_several > 0, x: columns, y: rows }
 }
 
-/// Twice the areas, exact: products of two differences of corners need 35 bits.
+/// Returns twice the areas. Products of two differences of corners need 35 bits, so doubles are exact.
 #[inline(always)]
 fn areas([[a, b, c], [d, e, f]]: &[[EachLane<i32>; 3]; 2]) -> EachLane<f64> {
     let mut out = [0.0; LANES];
@@ -208,7 +211,7 @@ fn areas([[a, b, c], [d, e, f]]: &[[EachLane<i32>; 3]; 2]) -> EachLane<f64> {
     out
 }
 
-/// Smallest and largest of the corners.
+/// Returns the smallest and largest of the corners' coordinates.
 #[inline(always)]
 fn extent([p, q, r]: &[EachLane<i32>; 3]) -> [EachLane<i32>; 2] {
     let mut low = [0; LANES];
@@ -220,7 +223,7 @@ fn extent([p, q, r]: &[EachLane<i32>; 3]) -> [EachLane<i32>; 2] {
     [low, high]
 }
 
-/// First and last pixel between the smallest and the largest of the corners, as far as the picture goes.
+/// Returns the first and last pixel between the smallest and largest corner, limited to the picture.
 #[inline(always)]
 fn ranges([low, high]: &[EachLane<i32>; 2], within: impl Fn(Range) -> Range) -> [EachLane<i32>; 2] {
     let mut first = [0; LANES];
@@ -233,8 +236,9 @@ fn ranges([low, high]: &[EachLane<i32>; 2], within: impl Fn(Range) -> Range) -> 
     [first, last]
 }
 
-/// The column or row of regions whose pixel-centre box holds all corners, -1 where none does; `of` gives that of a pixel
-/// and its first and last pixel or line.
+/// Returns the column or row of regions whose pixel-centre box holds all corners, or -1 if there is none.
+///
+/// `of` returns the column or row of a pixel, and the first and last pixel or line of that column or row.
 #[inline(always)]
 fn cells(
     [low, high]: &[EachLane<i32>; 2],

@@ -13,15 +13,15 @@ use crate::{Light, RegionMask, SetupStats, Triangle, ViewTransform, Viewport};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Which triangles are dropped for the way they face.
+/// Culling mode: the triangles that are dropped for their winding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Culling {
-    /// All are drawn, whichever way they face.
+    /// All triangles are drawn.
     #[default]
     None,
-    /// Those whose corners run clockwise as they are seen in their own (model) coordinates. Matrices that mirror turn a picture of
-    /// them round, and change nothing in what is dropped.
+    /// Triangles are dropped if their corners run clockwise in model coordinates, seen from the eye. Mirroring matrices
+    /// do not change which triangles are dropped.
     Back,
 }
 
@@ -31,24 +31,24 @@ pub struct Transform {
     pub(crate) viewport: Viewport,
     pub(crate) to_eye: FromWorld,
     pub(crate) normals: NormalRows,
-    /// `None` where spheres cannot be drawn.
+    /// Projection of spheres; `None` if the projection does not support spheres.
     pub(crate) lens: Option<Lens>,
     pub(crate) to_clip: FromWorld,
     pub(crate) to_screen: ToScreen,
     pub(crate) guard: Guard,
     pub(crate) binner: Binner,
-    /// The way in which the corners of a dropped triangle run on the screen; `None` where all are drawn.
+    /// Winding on the screen of the triangles to drop; `None` if all are drawn.
     pub(crate) dropped: Option<Turn>,
 }
 
-/// The way in which the corners of a triangle run on the screen.
+/// Winding of a triangle's corners on the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Turn {
     Clockwise,
     Counterclockwise,
 }
 
-/// From normalised device coordinates to subpixels of the frame: `scale * v + centre`.
+/// Mapping from normalized device coordinates to subpixels of the frame: `scale * v + centre`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ToScreen {
     pub(crate) scale: [f32; 2],
@@ -71,7 +71,7 @@ pub struct TriangleEnds {
 }
 
 impl TriangleEnds {
-    /// Corners between the views, in whole subpixels.
+    /// Returns the corners interpolated between the views (0 to 1), in whole subpixels.
     fn at(&self, s: f64) -> [Snapped; 3] {
         std::array::from_fn(|i| Snapped {
             x: whole_between(self.from[i].x.into(), self.to[i].x.into(), s) as i32,
@@ -80,7 +80,7 @@ impl TriangleEnds {
         })
     }
 
-    /// The least and the greatest distance from the frame's top border that a corner has in either view, in 1/16 px.
+    /// Returns the least and greatest distance of a corner from the frame's top border in either view, in 1/16 px.
     #[must_use]
     pub fn y_range(&self) -> [i32; 2] {
         let ys = self.from.iter().chain(&self.to).map(|corner| corner.y);
@@ -88,12 +88,12 @@ impl TriangleEnds {
     }
 }
 
-/// The whole number nearest to where the part `s` of the way from one number to another is.
+/// Returns the integer nearest to the interpolated value: `s` is 0 at `from` and 1 at `to`.
 fn whole_between(from: f64, to: f64, s: f64) -> f64 {
     (from + (to - from) * s + 0.5).floor()
 }
 
-/// Half of so many pixels, in subpixels.
+/// Returns half of a number of pixels, in subpixels.
 fn half_in_subpixels(pixels: u32) -> f32 {
     (pixels * SUBPIXELS as u32) as f32 * 0.5
 }
@@ -105,13 +105,14 @@ impl ToScreen {
         Self { scale: [x, -y], centre: [x, y] }
     }
 
-    /// The guard band lies one pixel inside [`screen::GUARD_PIXELS`], so that rounding cannot reach beyond.
+    /// Returns the guard band. It is one pixel inside [`screen::GUARD_PIXELS`], so that rounding cannot exceed this
+    /// limit.
     fn guard(&self) -> Guard {
         let limit = ((screen::GUARD_PIXELS - 1) * SUBPIXELS) as f32;
         Guard { x: (limit - self.centre[0]) / self.centre[0], y: (limit - self.centre[1]) / self.centre[1] }
     }
 
-    /// Divides by w and snaps. Only for vertices inside the guard band.
+    /// Divides by w and snaps to subpixels. The vertex must be inside the guard band.
     #[inline(always)]
     pub(crate) fn snap(&self, [x, y, z, w]: [f32; 4]) -> Snapped {
         let inverse = newton::reciprocal(w);
@@ -122,8 +123,9 @@ impl ToScreen {
         }
     }
 
-    /// Divides by w and snaps a corner that clipping left; `None` if it is not inside even so (w near 0). A vertex is
-    /// snapped as everywhere, a cut in double precision.
+    /// Divides by w and snaps a corner of a clipped triangle. Returns `None` if the corner is still outside (w near 0).
+    ///
+    /// A vertex is snapped like all vertices, a cut in double precision.
     fn snap_corner<const N: usize>(&self, Corner { clip, cut, .. }: &Corner<N>) -> Option<Snapped> {
         let limit = f64::from(screen::GUARD_PIXELS * SUBPIXELS);
         if clip[3] < f64::from(clip::MIN_W) {
@@ -143,15 +145,15 @@ impl ToScreen {
     }
 }
 
-/// Corners of a screen triangle and where each came from.
+/// Outline of a screen triangle, with the order of its corners.
 pub(crate) struct Assembled {
     pub(crate) outline: Outline,
-    /// Whether corners 1 and 2 changed places to run clockwise.
+    /// True if corners 1 and 2 were exchanged to run clockwise.
     swapped: bool,
 }
 
 impl Assembled {
-    /// Corners in clockwise order, with no regions yet; `None` without area.
+    /// Arranges corners in clockwise order, without regions yet. Returns `None` if the triangle has no area.
     #[inline(always)]
     pub(crate) fn clockwise([p, q, r]: [Snapped; 3]) -> Option<Self> {
         let mut outline =
@@ -166,15 +168,17 @@ impl Assembled {
         (twice_area != 0).then_some(Self { outline, swapped })
     }
 
-    /// What belongs to the corners, in the order in which they came, in the order of the outline.
+    /// Rearranges values of the corners from input order to the outline's order.
     #[inline(always)]
     pub(crate) fn order<T>(&self, [p, q, r]: [T; 3]) -> [T; 3] {
         if self.swapped { [p, r, q] } else { [p, q, r] }
     }
 }
 
-/// Whether a view turns round the way in which corners run: the sign of the determinant of what takes model coordinates to x, y and w of
-/// the screen, or to x, y and depth where w is the same everywhere, is the other one than that of a view along -Z.
+/// Returns true if a view reverses the winding of corners.
+///
+/// The sign of a determinant decides. It is the determinant of the map from model coordinates to x, y and w of the
+/// screen, or to x, y and depth if w is constant. A view along -Z has a negative determinant.
 fn is_mirrored(view: &ViewTransform) -> bool {
     let matrix = view.projection * view.model_view;
     let [x, y, z, w] = [0, 1, 2, 3].map(|row| matrix.row(row).truncate().as_dvec3());
@@ -187,10 +191,11 @@ impl Transform {
     /// Prepares a view of the world on a picture.
     ///
     /// # Errors
-    /// [`ViewError::NotFinite`] if a matrix holds NaN or an infinity.
+    /// [`ViewError::NotFinite`] if a matrix contains NaN or an infinity.
     pub fn new(view: &ViewTransform, viewport: Viewport, culling: Culling) -> Result<Self, ViewError> {
         let model_view = Columns::from_matrix(&view.model_view);
         let projection = Columns::from_matrix(&view.projection);
+        // Reject NaN and infinities here, so that later steps need not test them.
         for (matrix, columns) in [("model-view", &model_view), ("projection", &projection)] {
             if !columns.is_finite() {
                 return Err(ViewError::NotFinite { matrix });
@@ -207,6 +212,7 @@ impl Transform {
             guard: to_screen.guard(),
             to_screen,
             binner: Binner::new(&viewport),
+            // A mirroring view reverses the winding of back faces on the screen.
             dropped: match culling {
                 Culling::None => None,
                 Culling::Back if is_mirrored(view) => Some(Turn::Counterclockwise),
@@ -215,15 +221,15 @@ impl Transform {
         })
     }
 
-    /// The picture that the view is prepared for.
+    /// Returns the picture of this view.
     #[must_use]
     pub const fn viewport(&self) -> &Viewport {
         &self.viewport
     }
 
-    /// Transforms one triangle as far as its regions: calls `sink` for each screen triangle that touches any.
+    /// Bins one triangle: calls `sink` with the regions of each screen triangle that touches any.
     ///
-    /// The same screen triangles, in the same order, as [`Self::gouraud`] and [`Self::phong`] give.
+    /// [`Self::gouraud`] and [`Self::phong`] give the same screen triangles in the same order.
     #[inline]
     pub fn bin(&self, positions: &[Vec3; 3], stats: &mut SetupStats, mut sink: impl FnMut(RegionMask)) {
         stats.triangles += 1;
@@ -239,7 +245,8 @@ impl Transform {
         self.clipped(&corners, stats, |piece, _| sink(piece.outline.regions));
     }
 
-    /// As [`Self::bin`], with the whole outlines, for a caller that bins into regions of its own.
+    /// Transforms one triangle like [`Self::bin`], but calls `sink` with outlines, for callers that bin into regions of
+    /// their own.
     #[inline]
     pub fn outlines(&self, positions: &[Vec3; 3], stats: &mut SetupStats, mut sink: impl FnMut(&Outline)) {
         self.triangle(positions, |_| [0.0; 3], stats, |outline, _| sink(&outline));
@@ -285,7 +292,7 @@ impl Transform {
         );
     }
 
-    /// Transforms a triangle; `extra` gives three more numbers of a corner, asked for only when it is seen.
+    /// Transforms a triangle. `extra` returns three more values of a corner, and is called only for visible triangles.
     #[inline(always)]
     fn triangle(
         &self,
@@ -296,6 +303,7 @@ impl Transform {
     ) {
         stats.triangles += 1;
         let clip = positions.map(|p| self.to_clip.point(p));
+        // Fast path: a triangle inside the guard band needs no clipping.
         if clip.iter().all(|c| self.guard.contains(*c)) {
             let corners = clip.map(|c| self.to_screen.snap(c));
             if let Some(whole) = self.assemble(corners, stats) {
@@ -307,20 +315,21 @@ impl Transform {
         self.clipped(&corners, stats, |piece, extras| sink(piece.outline, extras));
     }
 
-    /// Where the corners of a triangle are in this view and in another one of the same picture; `None` where a corner
-    /// lies outside of the guard band of either.
+    /// Returns the corners of a triangle on the screen, in this view and in another view of the same picture.
+    ///
+    /// Returns `None` if a corner is outside the guard band of either view.
     #[must_use]
     pub fn ends(&self, end: &Self, positions: &[Vec3; 3]) -> Option<TriangleEnds> {
         Some(TriangleEnds { from: self.snap_unclipped(positions)?, to: end.snap_unclipped(positions)? })
     }
 
-    /// The corners of a triangle on the screen; `None` where one lies outside of the guard band.
+    /// Returns the corners of a triangle on the screen; `None` if a corner is outside the guard band.
     fn snap_unclipped(&self, positions: &[Vec3; 3]) -> Option<[Snapped; 3]> {
         let clip = positions.map(|p| self.to_clip.point(p));
         clip.iter().all(|c| self.guard.contains(*c)).then(|| clip.map(|c| self.to_screen.snap(c)))
     }
 
-    /// A triangle whose places on the screen lie the part `s` (0 to 1) of the way between two views, lit as in this one.
+    /// Sets up a triangle between two views, lit as in this view. Its screen position is interpolated: `s` is 0 to 1.
     pub fn gouraud_between(
         &self,
         ends: &TriangleEnds,
@@ -338,7 +347,8 @@ impl Transform {
         }
     }
 
-    /// The outline alone of [`Self::gouraud_between`].
+    /// Calls `sink` with the outline of a triangle between two views, like [`Self::gouraud_between`] without its
+    /// colours.
     pub fn outline_between(&self, ends: &TriangleEnds, s: f64, stats: &mut SetupStats, mut sink: impl FnMut(&Outline)) {
         stats.triangles += 1;
         if let Some(whole) = self.assemble(ends.at(s), stats) {
@@ -346,7 +356,8 @@ impl Transform {
         }
     }
 
-    /// Corners in clockwise order with the regions touched; `None`, counted, if there is nothing to draw.
+    /// Returns the corners in clockwise order with the touched regions. Returns `None`, and counts the reason, if
+    /// nothing is drawn.
     #[inline(always)]
     fn assemble(&self, corners: [Snapped; 3], stats: &mut SetupStats) -> Option<Assembled> {
         let whole = Assembled::clockwise(corners);
@@ -356,7 +367,7 @@ impl Transform {
         Some(whole)
     }
 
-    /// What binning finds of a triangle with corners inside the guard band; `None` is one without area.
+    /// Bins a triangle with corners inside the guard band; `None` stands for a triangle without area.
     #[inline(always)]
     fn touch(&self, whole: Option<&Assembled>) -> Touch {
         let Some(whole) = whole else { return Touch::Degenerate };
@@ -367,7 +378,7 @@ impl Transform {
         Touch::from_mask(self.binner.triangle(&whole.outline))
     }
 
-    /// Clips a triangle and hands out the fan of what is left.
+    /// Clips a triangle, and calls `sink` for each triangle of the resulting polygon's fan.
     #[inline(never)]
     fn clipped<const N: usize>(
         &self,
@@ -375,6 +386,7 @@ impl Transform {
         stats: &mut SetupStats,
         mut sink: impl FnMut(Assembled, [[f32; N]; 3]),
     ) {
+        // Drop what clipping cannot handle or would remove completely.
         let clip = corners.map(|v| v.clip);
         if !clip::representable(&clip) {
             stats.not_finite += 1;
@@ -389,6 +401,7 @@ impl Transform {
         let [first, rest @ ..] = polygon.corners() else {
             return;
         };
+        // The polygon is convex, so a fan around its first corner covers it.
         for pair in rest.windows(2) {
             let piece = [*first, pair[0], pair[1]];
             if let Some(assembled) = self.piece(&piece, stats) {

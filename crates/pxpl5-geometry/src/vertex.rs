@@ -1,7 +1,8 @@
-//! Vertices that many triangles share, each transformed once.
+//! Vertices shared by many triangles, each transformed once.
 //!
-//! Triangles that need no clipping are [binned](Transform::touched) and set up [together](crate::TriangleLanes) from them,
-//! exactly as by [`Transform::bin`], [`Transform::gouraud`] and [`Transform::phong`]. The others are left to those.
+//! Triangles that need no clipping are [binned](Transform::touched) and set up [together](crate::TriangleLanes) from
+//! these vertices. The results equal those of [`Transform::bin`], [`Transform::gouraud`] and [`Transform::phong`],
+//! which handle the other triangles.
 
 use crate::clip::Guard;
 use crate::light::{self, ModelLight, NormalRows};
@@ -14,24 +15,25 @@ use glam::Vec3;
 use multiversion::multiversion;
 use pxpl5_wire::LANES;
 
-/// A vertex on the screen, as a view shows it to all triangles that share it.
+/// A vertex on the screen in one view, for all triangles that share the vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ScreenVertex(pub(crate) Snapped);
 
-/// x of a vertex that is not inside the guard band: beyond all that are, and differences with them are as exact as others.
+/// The x of a vertex outside the guard band: greater than any x inside. Differences with this x stay exact.
 pub(crate) const OUTSIDE: i32 = 2 * screen::GUARD_PIXELS * SUBPIXELS;
 
 const NOT_INSIDE: Snapped = Snapped { x: OUTSIDE, y: 0, z: 0 };
 
-/// A vertex on the screen with what its surface needs there, its lit colour or its normal as an eye sees it: 32 bytes, which never lie
-/// in two cache lines.
+/// A vertex on the screen with its lit colour or its normal in eye coordinates.
+///
+/// A vertex has 32 bytes and is aligned, so that it never crosses a cache line.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub struct SurfaceVertex {
     pub(crate) screen: ScreenVertex,
-    /// How far a normal turns towards the eye; 0 for colours.
+    /// Measure by which a normal faces the eye, negative if it faces away; 0 for colours.
     pub(crate) facing: f32,
-    /// In the expressions' units; normals without the half unit that rounds.
+    /// Colour or normal in the expressions' units. Normals lack the half unit for rounding.
     pub(crate) values: [f32; 3],
 }
 
@@ -41,27 +43,27 @@ impl SurfaceVertex {
 }
 
 impl ScreenVertex {
-    /// Inside the guard band, so that it needs no clipping.
+    /// Returns true if the vertex is inside the guard band, so that it needs no clipping.
     #[inline(always)]
     pub(crate) const fn is_inside(&self) -> bool {
         self.0.x != OUTSIDE
     }
 }
 
-/// A component of a normal on the grid of [`screen::normal_fixed`], in the expressions' units.
+/// Rounds a component of a normal as [`screen::normal_fixed`] does, and returns it in the expressions' units.
 #[inline(always)]
 fn snapped_component(component: f32) -> f32 {
     screen::normal_value(screen::normal_fixed(component)) - screen::NORMAL_HALF
 }
 
-/// A component of a lit colour on the grid of [`screen::colour_fixed`], in the expressions' units.
+/// Rounds a component of a lit colour as [`screen::colour_fixed`] does, and returns it in the expressions' units.
 #[inline(always)]
 fn snapped_colour(component: f32) -> f32 {
     screen::colour_value(screen::colour_fixed(component))
 }
 
 impl Transform {
-    /// Transforms a vertex, given by its position in the world, to the screen.
+    /// Transforms a vertex from its world position to the screen.
     #[inline(always)]
     #[must_use]
     pub fn screen_vertex(&self, position: Vec3) -> ScreenVertex {
@@ -69,7 +71,7 @@ impl Transform {
         ScreenVertex(if self.guard.contains(clip) { self.to_screen.snap(clip) } else { NOT_INSIDE })
     }
 
-    /// The same of many, several side by side.
+    /// Transforms many vertices from their world positions to the screen, several at once.
     #[must_use]
     pub fn screen_vertices(&self, positions: &[Vec3]) -> Vec<ScreenVertex> {
         let mut out = Vec::with_capacity(positions.len());
@@ -79,8 +81,10 @@ impl Transform {
         out
     }
 
-    /// Vertices with their normals in eye coordinates, for Phong shading; of each its place on the screen, and its position and normal in
-    /// the world. As many as the fewest of them.
+    /// Returns vertices with normals in eye coordinates, for Phong shading.
+    ///
+    /// The slices hold each vertex's place on the screen, and its position and normal in the world. The shortest slice
+    /// determines the number of vertices.
     #[must_use]
     pub fn vertex_normals(
         &self,
@@ -94,8 +98,10 @@ impl Transform {
         out
     }
 
-    /// Vertices with their lit colours, for Gouraud shading; of each its place on the screen, and its position, normal and colour in the
-    /// world. As many as the fewest of them.
+    /// Returns vertices with lit colours, for Gouraud shading.
+    ///
+    /// The slices hold each vertex's place on the screen, and its position, normal and colour in the world. The
+    /// shortest slice determines the number of vertices.
     #[must_use]
     pub fn vertex_colours(
         &self,
@@ -117,7 +123,8 @@ fn without_surface(on_screen: &[ScreenVertex]) -> Vec<SurfaceVertex> {
     on_screen.iter().map(|screen| SurfaceVertex { screen: *screen, ..SurfaceVertex::NOWHERE }).collect()
 }
 
-/// Appends what [`Transform::screen_vertex`] gives of each. Plain loops, compiled once for each vector unit: see [`crate::lanes`].
+/// Appends the results of [`Transform::screen_vertex`]. The loops are plain and compiled once for each vector unit: see
+/// [`crate::lanes`].
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn append_lanes(
     positions: &[[Vec3; LANES]],
@@ -127,6 +134,7 @@ fn append_lanes(
     out: &mut Vec<ScreenVertex>,
 ) {
     for some in positions {
+        // Transform all vertices of the chunk.
         let mut clip = [[0.0; LANES]; 4];
         for i in 0..LANES {
             let [x, y, z, w] = to_clip.point(some[i]);
@@ -138,6 +146,7 @@ fn append_lanes(
         let mut x = [0; LANES];
         let mut y = [0; LANES];
         let mut z = [0; LANES];
+        // Divide and snap all of them, also those outside: a loop without branches is vectorized.
         for i in 0..LANES {
             let point = [clip[0][i], clip[1][i], clip[2][i], clip[3][i]];
             let inside = guard.contains(point);
@@ -154,12 +163,13 @@ fn append_lanes(
     }
 }
 
-/// Sets normals, several side by side.
+/// Sets the normals of vertices, several at once.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn set_normals(rows: &NormalRows, positions: &[Vec3], normals: &[Vec3], out: &mut [SurfaceVertex]) {
     let (chunks, rest) = out.as_chunks_mut::<LANES>();
     let whole = chunks.len() * LANES;
     let given = positions.as_chunks::<LANES>().0.iter().zip(normals.as_chunks::<LANES>().0);
+    // Whole chunks are computed lane by lane.
     for (out, (position, normal)) in chunks.iter_mut().zip(given) {
         let mut found = [[0.0; LANES]; 4];
         for i in 0..LANES {
@@ -174,6 +184,7 @@ fn set_normals(rows: &NormalRows, positions: &[Vec3], normals: &[Vec3], out: &mu
             out[i].facing = found[3][i];
         }
     }
+    // The remaining vertices are computed one by one.
     for ((out, position), normal) in rest.iter_mut().zip(&positions[whole..]).zip(&normals[whole..]) {
         let (normal, facing) = light::normal_and_facing(rows, *position, *normal);
         out.values = normal.map(snapped_component);
@@ -181,7 +192,7 @@ fn set_normals(rows: &NormalRows, positions: &[Vec3], normals: &[Vec3], out: &mu
     }
 }
 
-/// Sets lit colours, several side by side.
+/// Sets the lit colours of vertices, several at once.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn set_colours(
     light: &ModelLight<'_>,
@@ -193,6 +204,7 @@ fn set_colours(
     let (chunks, rest) = out.as_chunks_mut::<LANES>();
     let whole = chunks.len() * LANES;
     let given = positions.as_chunks::<LANES>().0.iter().zip(normals.as_chunks::<LANES>().0);
+    // Whole chunks are computed lane by lane.
     for ((out, (position, normal)), colour) in chunks.iter_mut().zip(given).zip(colours.as_chunks::<LANES>().0) {
         let mut lit = [[0.0; LANES]; 3];
         for i in 0..LANES {
@@ -205,6 +217,7 @@ fn set_colours(
             out[i].values = [lit[0][i], lit[1][i], lit[2][i]];
         }
     }
+    // The remaining vertices are computed one by one.
     for (i, out) in rest.iter_mut().enumerate() {
         let i = whole + i;
         out.values = light.colour(positions[i], normals[i], colours[i]).map(snapped_colour);
@@ -224,7 +237,7 @@ mod tests {
             projection: Mat4::perspective_rh(1.0, 4.0 / 3.0, 0.1, 50.0),
         };
         let transform = Transform::new(&view, Viewport::FRAME, Culling::None).expect("finite");
-        // In front, behind, beside, in the plane of the eye, and what is no number.
+        // Positions in front, behind, beside and in the plane of the eye, and positions that are not finite.
         let place = |i: i32| Vec3::new((i % 23 - 11) as f32, (i % 7 - 3) as f32 * 0.7, (i % 41 - 30) as f32 * 0.8);
         let mut positions: Vec<_> = (0..2_003).map(place).collect();
         positions.extend([Vec3::ZERO, Vec3::NAN, Vec3::splat(f32::MAX), Vec3::new(0.0, 0.0, f32::NEG_INFINITY)]);
@@ -241,7 +254,7 @@ mod tests {
         };
         let transform = Transform::new(&view, Viewport::FRAME, Culling::None).expect("finite");
         let light = Light { direction: [0.6, 0.0, 0.8], ambient: 0.2, diffuse: 0.7 };
-        // All ways to face, and what is no direction.
+        // Normals in all directions, and some without a direction.
         let direction = |i: i32| match i % 40 {
             38 => Vec3::ZERO,
             39 => Vec3::NAN,

@@ -1,4 +1,4 @@
-//! From world to clip coordinates: the eye's matrices and the picture that they fill.
+//! From world to clip coordinates: the matrices of an eye, and the picture.
 
 use crate::newton;
 use crate::regions::RegionMask;
@@ -6,22 +6,25 @@ use glam::{Mat4, Vec3};
 use pxpl5_wire::{Lines, REGION_SIZE, RegionGrid};
 use serde::{Deserialize, Serialize};
 
-/// Largest width, and height in frame lines, of a picture in pixels.
+/// Largest width of a picture in pixels, and largest height in frame lines.
 ///
-/// With vertices at most [`crate::GUARD_PIXELS`] from pixel (0, 0) this keeps edge expressions in 32 bits.
+/// Together with [`crate::GUARD_PIXELS`], this limit keeps edge expressions in 32 bits.
 pub const MAX_PICTURE: u32 = 2048;
 
-/// The matrices of one eye. Right-handed eye coordinates, looking along -Z; depth 0 at the near plane to 1 at the
-/// far plane (what `Mat4::perspective_rh` and `Mat4::orthographic_rh` give).
+/// The matrices of one eye.
+///
+/// Eye coordinates are right-handed, looking along -Z. Depth is 0 at the near plane and 1 at the far plane, as in
+/// `Mat4::perspective_rh` and `Mat4::orthographic_rh`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewTransform {
-    /// World (or model) to eye coordinates; for lighting and spheres a rotation, translation and uniform scale.
+    /// Matrix from world (or model) to eye coordinates. Lighting and spheres need a rotation, translation and uniform
+    /// scale.
     pub model_view: Mat4,
-    /// Eye to clip coordinates.
+    /// Matrix from eye to clip coordinates.
     pub projection: Mat4,
 }
 
-/// A picture: how it is cut into regions, and which lines of the frame it holds.
+/// A picture: its division into regions, and the lines of the frame that it contains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(try_from = "PictureFields", into = "PictureFields")]
 pub struct Viewport {
@@ -36,7 +39,7 @@ struct PictureFields {
     lines: Lines,
 }
 
-/// Why a picture or a view is refused.
+/// Reason why a picture or a view is rejected.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ViewError {
@@ -58,16 +61,16 @@ pub enum ViewError {
         /// Height found, in lines.
         height: u32,
     },
-    /// More regions than a [`RegionMask`] holds.
+    /// The picture has more regions than a [`RegionMask`] can hold.
     #[error("picture: expected at most {} regions, found {found}", RegionMask::CAPACITY)]
     Regions {
         /// Number of regions found.
         found: u32,
     },
-    /// A matrix holds NaN or an infinity.
+    /// A matrix contains NaN or an infinity.
     #[error("{matrix} matrix: expected finite numbers, found NaN or infinity")]
     NotFinite {
-        /// Which of the view's matrices it is: `"model-view"` or `"projection"`.
+        /// Name of the matrix: `"model-view"` or `"projection"`.
         matrix: &'static str,
     },
 }
@@ -76,16 +79,17 @@ impl Viewport {
     /// A whole NTSC frame: 640 x 480 in 20 regions (TR94).
     pub const FRAME: Self = Self { grid: RegionGrid::FRAME, lines: Lines::Frame };
 
-    /// One NTSC field: 640 x 240 in 10 regions (TR94). Row r of it is line 2r (even) or 2r + 1 (odd) of the frame.
+    /// Returns one NTSC field: 640 x 240 in 10 regions (TR94). Row r of the field is line 2r (even) or 2r + 1 (odd) of
+    /// the frame.
     #[must_use]
     pub const fn field(parity: pxpl5_wire::FieldParity) -> Self {
         Self { grid: RegionGrid::FIELD, lines: Lines::Field(parity) }
     }
 
-    /// A picture of any size, cut in any way.
+    /// Creates a picture of any size and division into regions.
     ///
     /// # Errors
-    /// [`ViewError`] if a size is zero or too large, or there are more regions than a mask holds.
+    /// [`ViewError`] if a size is zero or too large, or if there are more regions than a [`RegionMask`] can hold.
     pub fn new(grid: RegionGrid, lines: Lines) -> Result<Self, ViewError> {
         let step = Self { grid, lines }.line_step();
         let frame_lines = grid.height.saturating_mul(step);
@@ -103,19 +107,19 @@ impl Viewport {
         Ok(Self { grid, lines })
     }
 
-    /// How the picture is cut into regions.
+    /// Returns the division of the picture into regions.
     #[must_use]
     pub const fn grid(&self) -> RegionGrid {
         self.grid
     }
 
-    /// Which lines of the frame the picture's rows are.
+    /// Returns the lines of the frame that the picture contains.
     #[must_use]
     pub const fn lines(&self) -> Lines {
         self.lines
     }
 
-    /// Frame lines from one row of the picture to the next: 1 or 2.
+    /// Returns the number of frame lines from one row of the picture to the next: 1 or 2.
     #[must_use]
     pub const fn line_step(&self) -> u32 {
         match self.lines {
@@ -124,7 +128,7 @@ impl Viewport {
         }
     }
 
-    /// Frame line of the picture's row 0: 0 or 1.
+    /// Returns the frame line of the picture's row 0: 0 or 1.
     #[must_use]
     pub const fn first_line(&self) -> u32 {
         match self.lines {
@@ -133,7 +137,7 @@ impl Viewport {
         }
     }
 
-    /// Lines of the frame that the picture belongs to.
+    /// Returns the number of lines of the frame that the picture belongs to.
     #[must_use]
     pub const fn frame_lines(&self) -> u32 {
         self.grid.height * self.line_step()
@@ -158,9 +162,9 @@ impl From<Viewport> for PictureFields {
     }
 }
 
-/// Columns of a 4 x 4 matrix, multiplied in one fixed order on every host.
+/// Columns of a 4 x 4 matrix, which is multiplied in one fixed order on every host.
 ///
-/// glam's own product uses the host's vector unit, whose order of additions differs from the scalar one.
+/// The product of glam uses the host's vector unit, whose order of additions differs from the scalar order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Columns(pub(crate) [[f32; 4]; 4]);
 
@@ -169,12 +173,12 @@ impl Columns {
         Self(matrix.to_cols_array_2d())
     }
 
-    /// The number in a row and a column.
+    /// Returns the number in a row and a column.
     pub(crate) fn cell(&self, row: usize, column: usize) -> f64 {
         f64::from(self.0[column][row])
     }
 
-    /// Whether the matrix is zero in all of these cells, given as row and column.
+    /// Returns true if the matrix is zero in all of these cells, given as row and column.
     pub(crate) fn is_zero_at(&self, cells: &[(usize, usize)]) -> bool {
         cells.iter().all(|&(row, column)| self.cell(row, column) == 0.0)
     }
@@ -183,7 +187,7 @@ impl Columns {
         self.0.iter().flatten().all(|v| v.is_finite())
     }
 
-    /// `self * v`, formed in 64 bits.
+    /// Returns `self * v`, computed in 64 bits.
     fn times(&self, v: [f64; 4]) -> [f64; 4] {
         std::array::from_fn(|row| {
             let terms: [f64; 4] = std::array::from_fn(|column| self.cell(row, column) * v[column]);
@@ -191,7 +195,7 @@ impl Columns {
         })
     }
 
-    /// The point that an affine matrix takes to the origin; the origin itself if there is none.
+    /// Returns the point that an affine matrix maps to the origin, or the origin if there is no such point.
     fn origin(&self) -> Vec3 {
         let [x, y, z, t] = self.0.map(|c| [c[0], c[1], c[2]].map(f64::from));
         let determinant = dot(x, cross(y, z));
@@ -201,11 +205,11 @@ impl Columns {
     }
 }
 
-/// Takes points of the world to eye or clip coordinates, relative to the eye.
+/// Maps points of the world to eye or clip coordinates, relative to the eye.
 ///
-/// `A p + t` loses the difference of two large numbers where p is far from the world's origin. `A (p - o) + t'`,
-/// with o the eye's position and `t' = A o + t` formed in 64 bits, does not: the subtraction is wrong by half a last
-/// bit of its result at most.
+/// `A p + t` loses precision if p is far from the world's origin, since it is a difference of two large numbers. The
+/// code computes `A (p - o) + t'` instead, where o is the eye's position and `t' = A o + t` is computed in 64 bits. The
+/// error of the subtraction is at most half the last bit of its result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FromWorld {
     columns: [[f32; 4]; 4],
@@ -213,13 +217,13 @@ pub(crate) struct FromWorld {
 }
 
 impl FromWorld {
-    /// From world to eye coordinates.
+    /// Creates the map from world to eye coordinates.
     pub(crate) fn to_eye(model_view: &Columns) -> Self {
         let identity = Columns::from_matrix(&Mat4::IDENTITY);
         Self::to_clip(&identity, model_view)
     }
 
-    /// From world to clip coordinates.
+    /// Creates the map from world to clip coordinates.
     pub(crate) fn to_clip(projection: &Columns, model_view: &Columns) -> Self {
         let origin = model_view.origin();
         let [x, y, z] = origin.to_array().map(f64::from);
@@ -228,17 +232,17 @@ impl FromWorld {
         Self { columns, origin }
     }
 
-    /// Rows x, y, z, w of the matrix for points relative to [`Self::origin`].
+    /// Returns rows x, y, z, w of the matrix for points relative to [`Self::origin`].
     pub(crate) fn rows(&self) -> [[f32; 4]; 4] {
         std::array::from_fn(|row| self.columns.map(|column| column[row]))
     }
 
-    /// The eye in the world.
+    /// Returns the position of the eye in the world.
     pub(crate) const fn origin(&self) -> Vec3 {
         self.origin
     }
 
-    /// A point of the world, with its fourth coordinate.
+    /// Maps a point of the world; the result has four coordinates.
     #[inline(always)]
     pub(crate) fn point(&self, p: Vec3) -> [f32; 4] {
         let [x, y, z] = [p.x - self.origin.x, p.y - self.origin.y, p.z - self.origin.z];
@@ -246,7 +250,7 @@ impl FromWorld {
         std::array::from_fn(|i| ((cx[i] * x + cy[i] * y) + cz[i] * z) + ct[i])
     }
 
-    /// The greatest factor by which an axis is stretched; NaN if there is none.
+    /// Returns the greatest factor by which an axis is stretched; NaN if there is none.
     pub(crate) fn scale(&self) -> f64 {
         let squares = self.columns[..3].iter().map(|&[x, y, z, _]| {
             let axis = [x, y, z].map(f64::from);

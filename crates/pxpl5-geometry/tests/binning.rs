@@ -1,4 +1,4 @@
-//! Regions touched, against brute force and against an independent exact test.
+//! Tests of the touched regions, against brute force and an independent exact test.
 
 mod support;
 
@@ -19,7 +19,7 @@ fn viewports() -> [Viewport; 4] {
 }
 
 fn screen(viewport: Viewport, points: [[i32; 2]; 3]) -> (Option<Outline>, SetupStats) {
-    // Places in 1/16 px of a frame of 640 x 480; scaled for smaller pictures.
+    // Positions in 1/16 px of a frame of 640 x 480, scaled for smaller pictures.
     let [sx, sy] = [viewport.grid().width as f32 / 640.0, viewport.frame_lines() as f32 / 480.0];
     let positions = points.map(|[x, y]| at_pixel(x as f32 / 16.0 / sx, y as f32 / 16.0 / sy, 1.0));
     let transform = Transform::new(&pixel_view(1.0, 16_384.0), viewport, Culling::None).expect("a finite view");
@@ -34,7 +34,7 @@ fn screen(viewport: Viewport, points: [[i32; 2]; 3]) -> (Option<Outline>, SetupS
     (found.first().copied(), stats)
 }
 
-/// The line of the frame that a row of the picture is.
+/// Returns the frame line of a row of the picture.
 fn line(viewport: &Viewport, row: u32) -> i32 {
     (row * viewport.line_step() + viewport.first_line()) as i32
 }
@@ -54,15 +54,16 @@ fn covered(o: &Outline, x: i32, y: i32) -> bool {
     (0..3).all(|i| edge(o, i, centre) >= 0)
 }
 
-/// Whether a region holds a covered pixel.
+/// Returns true if a region contains a covered pixel.
 fn holds_a_pixel(viewport: &Viewport, o: &Outline, region: RegionId) -> bool {
     let [left, top, width, height] = viewport.grid().rectangle(region);
     let rows = top..top + height;
     rows.clone().any(|row| (left..left + width).any(|x| covered(o, x as i32, line(viewport, row))))
 }
 
-/// Whether the closed triangle meets the closed box of a region's pixel centres: some corner of one in the other, or
-/// some edge crosses a side. In 1/16 px, exactly.
+/// Returns true if the closed triangle meets the closed box of a region's pixel centres, computed exactly in 1/16 px.
+///
+/// They meet if a corner of one is inside the other, or if an edge crosses a side.
 fn meets(viewport: &Viewport, o: &Outline, region: RegionId) -> bool {
     let [left, top, width, height] = viewport.grid().rectangle(region);
     let x = [left, left + width - 1].map(|v| 16 * i64::from(v) + 8);
@@ -75,12 +76,12 @@ fn meets(viewport: &Viewport, o: &Outline, region: RegionId) -> bool {
         || sides.iter().any(|side| (0..4).any(|k| cross(*side, [corners[k], corners[(k + 1) % 4]])))
 }
 
-/// Whether two lines cross or touch.
+/// Returns true if two lines cross or touch.
 fn cross(one: [[i64; 2]; 2], other: [[i64; 2]; 2]) -> bool {
     !on_one_side(one, other) && !on_one_side(other, one)
 }
 
-/// Whether both ends lie strictly on the same side of the line through two points.
+/// Returns true if both ends are strictly on the same side of the line through two points.
 fn on_one_side([from, to]: [[i64; 2]; 2], ends: [[i64; 2]; 2]) -> bool {
     let [first, last] = ends.map(|end| twice_area(from, to, end).signum());
     first * last > 0
@@ -112,7 +113,7 @@ proptest! {
     ) {
         for viewport in viewports() {
             let (outline, stats) = screen(viewport, points);
-            // Without regions the outline is not handed out, but is needed here: take it from the whole picture.
+            // A triangle without regions produces no outline, so take the outline from the whole picture.
             let Some(outline) = outline else {
                 prop_assert_eq!(stats.untouched + stats.degenerate + stats.outside, 1);
                 continue;
@@ -155,8 +156,8 @@ fn a_triangle_inside_one_region_touches_it_alone() {
 
 #[test]
 fn a_triangle_that_only_leans_over_a_regions_border_must_pass_the_edge_test() {
-    // Region 6 has pixel centres from 128.5 to 255.5 px. The bounding box holds the centre at (128.5, 128.5) and no
-    // other; the hypotenuse passes it at a distance, outside.
+    // Region 6 has pixel centres from 128.5 to 255.5 px. The bounding box contains only the centre at (128.5, 128.5).
+    // The hypotenuse passes this centre on the outside.
     let (outline, stats) = screen(Viewport::FRAME, [[2049, 2067], [2067, 2049], [2050, 2050]]);
     assert_eq!(outline.expect("the corner is inside").regions, RegionMask::only(RegionId(6)));
     assert_eq!(stats.untouched, 0);

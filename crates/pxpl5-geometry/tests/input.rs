@@ -1,4 +1,4 @@
-//! What a user can hand in: meshes, bad numbers, culling, spheres out of sight.
+//! Tests of user input: meshes, bad numbers, culling, invisible spheres.
 
 mod support;
 
@@ -93,15 +93,15 @@ fn matrices_that_mirror_turn_no_face_round() {
         (Vec3::splat(3.0), false),
     ] {
         let scaled = ViewTransform { model_view: Mat4::from_scale(scale), ..view };
-        // At the same place of the screen: the model's own triangle runs the other way round where the matrix mirrors.
+        // The same place on the screen: a mirroring matrix reverses the winding of the model's triangle.
         let there = clockwise().map(|p| p / scale);
         assert_eq!(culled(&scaled, there), !mirrors, "{scale}");
         assert_eq!(culled(&scaled, [there[0], there[2], there[1]]), mirrors, "{scale}");
     }
-    // A projection with y downwards turns the picture round, and not the model.
+    // A projection with y downwards mirrors the picture but not the model.
     let down = ViewTransform { projection: Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0)) * view.projection, ..view };
     assert!(culled(&down, clockwise()));
-    // Without perspective the depth says which way the eye looks.
+    // Without perspective, the depth tells the direction of the view.
     let projection = Mat4::orthographic_rh(-960.0, 960.0, -960.0, 960.0, 1.0, 16_384.0);
     for (scale, mirrors) in [(Vec3::ONE, false), (Vec3::new(-1.0, 1.0, 1.0), true)] {
         let flat = ViewTransform { model_view: Mat4::from_scale(scale), projection };
@@ -127,7 +127,7 @@ fn a_vertex_that_faces_the_light_has_its_full_colour_and_one_edge_on_the_ambient
     let mut out = Vec::new();
     let mut stats = SetupStats::default();
     transform(Culling::None).gouraud(&lit, &light, &mut stats, |t| out.push(t));
-    // Two-sided: a normal that points away counts like its opposite.
+    // Lighting is two-sided: a normal that points away counts like its opposite.
     assert_eq!(out[0].surface.0.map(|c| c[0]), [200 * 192, 200 * 192, 200 * 64]);
 }
 
@@ -138,7 +138,7 @@ fn phong_normals_are_unit_length_and_face_the_eye() {
     let mut out = Vec::new();
     let mut stats = SetupStats::default();
     transform(Culling::None).phong(&away, &mut stats, |t| out.push(t));
-    // 0.6 and 0.8 in 1/2^14, rounded.
+    // 0.6 and 0.8 in units of 1/2^14, rounded.
     assert_eq!(out[0].surface.normals, [[0, 0, 16_384], [0, 9830, 13_107], [0, 0, 16_384]]);
     assert_eq!(out[0].surface.colour, [10, 20, 30]);
 }
@@ -160,8 +160,8 @@ fn shared_vertices_give_what_their_triangles_give() {
     }
 }
 
-/// Holds a triangle, alone, against the same with corners that it may share, in a lane behind others. False where nothing
-/// of it is seen, or it is clipped.
+/// Compares a triangle with the same triangle from shared vertices, in a lane after others. Returns false if the
+/// triangle is invisible or clipped.
 fn agrees_with_its_shared_vertices(transform: &Transform, t: &Triangle, lane: usize, name: &str) -> bool {
     let light = Light { direction: [0.6, 0.0, 0.8], ambient: 0.2, diffuse: 0.7 };
     let [a, b, c] = t.positions.map(|p| transform.screen_vertex(p));
@@ -171,7 +171,7 @@ fn agrees_with_its_shared_vertices(transform: &Transform, t: &Triangle, lane: us
     transform.gouraud(t, &light, &mut stats[0], |t| lit.push(t));
     transform.phong(t, &mut SetupStats::default(), |t| normals.push(t));
     stats[1].triangles += 1;
-    // Numbered from 5.
+    // Vertex numbers begin with 5.
     let vertices = [a, b, c, transform.screen_vertex(Vec3::NAN)];
     let triangles: Vec<_> = (0..=lane).map(|i| if i == lane { [5, 6, 7] } else { [5, 8, 6] }).collect();
     let touch = transform.touched(&vertices, 5, &triangles);
@@ -195,7 +195,7 @@ fn agrees_with_its_shared_vertices(transform: &Transform, t: &Triangle, lane: us
     true
 }
 
-/// A triangle in a lane behind others of which nothing is seen.
+/// Returns lanes with a triangle in one lane, after invisible triangles.
 fn in_lane(lane: usize, corners: &[SurfaceVertex]) -> TriangleLanes<'_> {
     let mut lanes = TriangleLanes::default();
     (0..lane).for_each(|_| lanes.push_nothing());
@@ -217,7 +217,7 @@ fn spheres_behind_around_or_cut_are_counted_each_under_its_own_name() {
     assert_eq!(one(-5.0, 0.0).spheres_outside, 1);
 }
 
-/// Counts of one sphere with its centre on the eye's axis.
+/// Returns the counts for one sphere with its centre on the eye's axis.
 fn one(z: f32, radius: f32) -> SetupStats {
     let mut stats = SetupStats::default();
     let sphere = WorldSphere { centre: Vec3::new(0.0, 0.0, z), radius, colour: [1; 3] };
@@ -272,7 +272,7 @@ fn depths_of_spheres_that_touch_the_near_or_the_far_plane_never_wrap() {
         let screen = spheres::transform().sphere(&sphere, &mut stats).unwrap_or_else(|| panic!("{z}: {stats:?}"));
         let setup = screen.phong(&Viewport::FRAME, &mut stats).setup;
         let exact = ExactSphere::new(&sphere);
-        // A step of the root, and a few units for planes and pixels.
+        // One step of the root, and a few units for planes and pixels.
         let allowed = f64::from(1_u32 << setup.depth_shift) / 256.0 + 4.0;
         for (y, x) in (0..480).step_by(3).flat_map(|y| (0..640).step_by(3).map(move |x| (y, x))) {
             if let (true, Some(depth)) = (exact.covers(x, y), native(&setup, x, y)) {
@@ -300,7 +300,7 @@ fn a_sphere_of_a_field_is_every_second_line_of_the_frame() {
                 let a = native(&field.setup, x, row);
                 let b = native(&frame.setup, x, line);
                 assert_eq!(a.is_some(), b.is_some(), "{x}, {row}");
-                // Planes may be rounded around another pixel: one unit of depth.
+                // Planes may be rounded around different pixels, which changes depth by one unit.
                 assert!(a.unwrap_or(0).abs_diff(b.unwrap_or(0)) <= 1);
             }
         }
@@ -309,7 +309,7 @@ fn a_sphere_of_a_field_is_every_second_line_of_the_frame() {
 
 #[test]
 fn a_sphere_under_a_parallel_projection_is_a_circle_with_a_root_for_its_depth() {
-    // 64 px a unit along both axes, depth 0 to 1 from 1 to 9.
+    // A view of 64 px per unit along both axes; depth is 0 to 1 from distance 1 to 9.
     let view = ViewTransform {
         model_view: Mat4::IDENTITY,
         projection: Mat4::orthographic_rh(-5.0, 5.0, -3.75, 3.75, 1.0, 9.0),
@@ -330,7 +330,7 @@ fn a_sphere_under_a_parallel_projection_is_a_circle_with_a_root_for_its_depth() 
             if let (true, Some(depth)) = (square > 0.0, native(&setup, x, y)) {
                 seen += 1;
                 let exact = (4.0 - square.sqrt()) / 8.0 * 16_777_216.0;
-                // Half a step of a 12-bit root that spans 1.5 / 8 of the depth range; near the rim the root is steep.
+                // Half a step of a 12-bit root that spans 1.5 / 8 of the depth range. Near the rim the root is steep.
                 let allowed = 1.5 / 8.0 * 16_777_216.0 / 2048.0 + 20.0;
                 assert!((f64::from(depth) - exact).abs() <= allowed, "{depth} {exact}");
             }
@@ -347,12 +347,12 @@ fn a_gouraud_sphere_is_full_in_the_middle_and_ambient_at_its_rim_under_a_headlig
     let sphere = screen.gouraud(&Viewport::FRAME, &Light::HEADLIGHT, &mut stats);
     let middle = red(&sphere, 320, 240);
     assert!((198..=200).contains(&middle), "{middle}");
-    // 600 at 1920 is 105 px in radius; the rim has the ambient quarter.
+    // A radius of 600 at distance 1920 is 105 px. The rim has the ambient share, a quarter.
     let rim = red(&sphere, 320 + 104, 240);
     assert!((50..=70).contains(&rim), "{rim}");
 }
 
-/// The red that the renderer stores, as the operands' documentation says.
+/// Returns the red value that the renderer stores, by the operands' documentation.
 fn red(sphere: &GouraudSphere, x: i32, y: i32) -> i32 {
     let value = sphere.setup.silhouette.at(x, y).max(0) >> sphere.setup.root_shift;
     let root = (value as u64 & 0xff_ffff).isqrt() as i32;

@@ -1,4 +1,4 @@
-//! Hard cases: nothing holds worse than docs/numerics.md says, and the file is what the code gives.
+//! Tests of hard cases: errors are within the limits of docs/numerics.md, and the file is up to date.
 
 mod support;
 
@@ -8,7 +8,7 @@ use support::cases::Case;
 use support::measure::Row;
 use support::report::{self, Measured};
 
-/// All cases, measured once for all tests.
+/// Returns the measurements of all cases, which are made once for all tests.
 fn measured() -> &'static Measured {
     static MEASURED: OnceLock<Measured> = OnceLock::new();
     MEASURED.get_or_init(Measured::all)
@@ -52,7 +52,7 @@ fn corners_on_pixel_centres_and_region_borders_give_every_pixel_right() {
 
 #[test]
 fn models_far_from_the_origin_are_as_good_as_near_ones() {
-    // The grid's own error, and a few pixels for 32-bit vertices.
+    // Includes the error of the grid itself, and a few pixels for 32-bit vertices.
     let far = row("10^6 from the origin");
     assert!(far.wrong <= far.grids[2] + 10, "{} {}", far.wrong, far.grids[2]);
 }
@@ -60,7 +60,7 @@ fn models_far_from_the_origin_are_as_good_as_near_ones() {
 #[test]
 fn planes_add_less_than_a_unit_and_a_half_of_depth_and_a_quarter_of_colour() {
     for (case, row) in rows().iter().filter(|(_, row)| row.stats.flattened_planes == 0) {
-        // Half a unit is the rounding of the pixel; 282/256 and 282/4096 are the set-up's.
+        // Half a unit is the rounding of the pixel. The set-up contributes 282/256 and 282/4096.
         assert!(row.depth_plane <= 0.5 + 282.0 / 256.0, "{} {}", case.name, row.depth_plane);
         assert!(row.colour_plane <= 0.5 + 282.0 / 4096.0, "{} {}", case.name, row.colour_plane);
     }

@@ -1,4 +1,4 @@
-//! Set-up against exact integers: edges, planes, ranges.
+//! Tests of the set-up against exact integers: edges, planes, ranges.
 
 mod support;
 
@@ -12,7 +12,7 @@ use support::native::Piece;
 
 const GUARD: i32 = pxpl5_geometry::GUARD_PIXELS * 16;
 
-/// A clockwise triangle that touches every region, so that brute force looks everywhere.
+/// Returns a clockwise triangle that counts as touching every region, so that brute force tests all pixels.
 fn screen(x: [i32; 3], y: [i32; 3], z: [u32; 3], colours: [[u16; 3]; 3]) -> Option<Piece> {
     let regions = (0..20).map(|n| RegionMask::only(pxpl5_wire::RegionId(n)));
     let mut outline = Outline { x, y, z, regions: regions.fold(RegionMask::EMPTY, RegionMask::union) };
@@ -26,7 +26,7 @@ fn screen(x: [i32; 3], y: [i32; 3], z: [u32; 3], colours: [[u16; 3]; 3]) -> Opti
     (twice_area != 0).then(|| Piece::new(screen, &mut SetupStats::default()))
 }
 
-/// Coordinates near the screen, in the whole guard band, and on pixel centres.
+/// Returns coordinates near the screen, in the whole guard band, or on pixel centres.
 fn coordinate(size: i32) -> impl Strategy<Value = i32> {
     prop_oneof![
         4 => -160..(size + 10) * 16,
@@ -52,7 +52,7 @@ fn pixel_centre(size: i32) -> impl Strategy<Value = i32> {
     (0..size).prop_map(|p| p * 16 + 8)
 }
 
-/// Draws the second and the third number `s` times nearer to the first.
+/// Moves the second and the third number `s` times nearer to the first.
 fn pulled(v: [i32; 3], s: i32) -> [i32; 3] {
     v.map(|c| v[0] + (c - v[0]) / s)
 }
@@ -77,7 +77,7 @@ fn component() -> impl Strategy<Value = u16> {
     prop_oneof![Just(0_u16), Just(255 * 256), 0..=255_u16 * 256]
 }
 
-/// The tie rule and the edge in 1/256 square px, as their definitions say, in 128 bits.
+/// Returns true if a pixel is inside, by the definition of edges and the tie rule in 1/256 square px, in 128 bits.
 fn inside(outline: &Outline, x: i32, y: i32) -> bool {
     let centre = [16 * i128::from(x) + 8, 16 * i128::from(y) + 8];
     let corners = [0, 1, 2].map(|i| [i128::from(outline.x[i]), i128::from(outline.y[i])]);
@@ -91,15 +91,17 @@ fn inside(outline: &Outline, x: i32, y: i32) -> bool {
     })
 }
 
-/// The error that the set-up states: `(|dx| + |dy|) / 2 + 1` from the visible bounding box's middle, rounded up; one
-/// pixel more each way for the middle's own rounding.
+/// Returns the error that the set-up states: `(|dx| + |dy|) / 2 + 1` from the middle of the visible bounding box,
+/// rounded up.
+///
+/// One more pixel each way accounts for the rounding of the middle itself.
 fn allowed_error(piece: &Piece, x: i32, y: i32) -> i128 {
     let outline = &piece.screen.outline;
     let from_middle = (visible_middle(&outline.x, 640) - x).abs() + (visible_middle(&outline.y, 480) - y).abs();
     i128::from(from_middle / 2 + 2)
 }
 
-/// The pixel in the middle of the visible bounding box, along one axis of a picture.
+/// Returns the pixel in the middle of the visible bounding box, along one axis of a picture.
 fn visible_middle(corners: &[i32; 3], size: i32) -> i32 {
     let clamped = corners.map(|c| c.clamp(0, size * 16 - 1));
     let ends = clamped.iter().min().zip(clamped.iter().max());
@@ -127,7 +129,7 @@ proptest! {
                 prop_assert_eq!(piece.inside_edges(px, py), inside(&piece.screen.outline, px, py));
             }
         }
-        // Ties: the rows and columns of the corners.
+        // Ties occur in the rows and columns of the corners.
         for corner in 0..9 {
             let px = x[corner % 3] >> 4;
             let py = y[corner / 3] >> 4;
@@ -239,7 +241,7 @@ proptest! {
 
 #[test]
 fn a_plane_too_steep_for_64_bits_is_flat_and_counted() {
-    // Twice the area is 1/256 square px, the depth range is whole: 2^32 * 2^12 and more per pixel.
+    // Twice the area is 1/256 square px, and the depth range is complete: 2^32 * 2^12 and more per pixel.
     let piece = screen([0, 8000, 7999], [8, 5008, 5007], [DEPTH_NEAR, DEPTH_NEAR, DEPTH_FAR], [[0; 3]; 3])
         .expect("it has an area");
     let mut stats = SetupStats::default();

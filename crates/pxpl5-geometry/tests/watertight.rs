@@ -1,4 +1,4 @@
-//! Shared edges: no hole and no pixel twice, also where clipping cuts them.
+//! Tests of shared edges: no pixel is missing or drawn twice, even if clipping cuts the edges.
 
 mod support;
 
@@ -8,7 +8,7 @@ use pxpl5_geometry::{Culling, Light, SetupStats, Transform, Triangle, ViewTransf
 use support::native::Piece;
 use support::{HEIGHT, WIDTH, at_pixel, pixel_view};
 
-/// How often each pixel is drawn.
+/// Counts how often each pixel is drawn.
 fn draw(view: &ViewTransform, triangles: &[[Vec3; 3]]) -> (Vec<u8>, SetupStats) {
     let transform = Transform::new(view, Viewport::FRAME, Culling::None).expect("a finite view");
     let mut counts = vec![0_u8; (WIDTH * HEIGHT) as usize];
@@ -28,7 +28,7 @@ fn count(counts: &[u8], x: i32, y: i32) -> u8 {
     counts[(y * WIDTH + x) as usize]
 }
 
-/// A fan of `rim` around `hub`, every second triangle turned over.
+/// Returns a fan of `rim` around `hub`, with every second triangle reversed.
 fn fan(hub: Vec3, rim: &[Vec3]) -> Vec<[Vec3; 3]> {
     let sectors = (0..rim.len()).map(|n| {
         let next = rim[(n + 1) % rim.len()];
@@ -38,7 +38,7 @@ fn fan(hub: Vec3, rim: &[Vec3]) -> Vec<[Vec3; 3]> {
 }
 
 fn on_screen() -> impl Strategy<Value = [i32; 2]> {
-    // Multiples of half a pixel, so that edges run through pixel centres often.
+    // Multiples of half a pixel, so that edges often pass through pixel centres.
     [40..1240, 40..920]
 }
 
@@ -50,7 +50,7 @@ proptest! {
         hub in on_screen(), steps in prop::collection::vec(0..64_i32, 4..12),
     ) {
         let hub = at_pixel(hub[0] as f32 * 0.5, hub[1] as f32 * 0.5, 1.0);
-        // The rim walks around a frame 10 px outside of the screen.
+        // The rim follows a frame 10 px outside the screen.
         let corners = [[-10, -10], [650, -10], [650, 490], [-10, 490]];
         let mut rim = Vec::new();
         for (side, from) in corners.iter().enumerate() {
@@ -73,7 +73,7 @@ proptest! {
         a in prop::array::uniform3(-3.0..3.0_f32), b in prop::array::uniform3(-3.0..3.0_f32),
         depth in -4.0..-1.5_f32, scale in prop_oneof![Just(1.0_f32), Just(1e3), Just(1e5)],
     ) {
-        // A plane through the eye's neighbourhood, cut by lines through a hub: the whole plane once.
+        // A plane near the eye, cut by lines through a hub: it must cover the whole screen once.
         let view = ViewTransform {
             model_view: Mat4::IDENTITY,
             projection: Mat4::perspective_rh(1.0, 4.0 / 3.0, 0.25, 1e6),
@@ -83,7 +83,7 @@ proptest! {
         let spokes = [a, b, -a, -b].map(|v| hub + v * scale);
         let (counts, stats) = draw(&view, &fan(hub, &spokes));
         prop_assert!(counts.iter().all(|&n| n <= 1), "a pixel twice: {stats:?}");
-        // Holes: a pixel that is not covered between neighbours that are, away from the parallelogram's rim.
+        // A hole is an uncovered pixel between covered neighbours, away from the parallelogram's rim.
         for y in 2..HEIGHT - 2 {
             for x in 2..WIDTH - 2 {
                 let ring = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
@@ -96,7 +96,7 @@ proptest! {
 
 #[test]
 fn an_edge_of_10_5_units_that_passes_the_eye_closely_is_cut_where_it_is() {
-    // In single precision a cut was five pixels off; the pieces folded over and drew 85 pixels twice.
+    // In single precision a cut was five pixels off: the pieces folded over and drew 85 pixels twice.
     let projection = Mat4::perspective_rh(1.0, 4.0 / 3.0, 0.25, 1e6);
     let view = ViewTransform { model_view: Mat4::IDENTITY, projection };
     let [a, b] = [Vec3::new(0.182_420_76, 0.094_211_22, 2.811_083_8), Vec3::new(2.750_59, -2.228_786_5, -2.321_554_4)];
@@ -111,23 +111,22 @@ fn a_corner_on_a_pixel_centre_belongs_to_exactly_one_of_its_triangles() {
     let rim = [[90.5, 100.5], [100.5, 90.5], [110.5, 100.5], [100.5, 110.5]].map(|[x, y]| at_pixel(x, y, 1.0));
     let (counts, _) = draw(&pixel_view(1.0, 16_384.0), &fan(hub, &rim));
     assert_eq!(count(&counts, 100, 100), 1);
-    // The diamond |x| + |y| <= 10 of pixel centres, without its lower and right rim: 221 - 20 - 1 + ...
-    // Row by row: a row at height k from the middle has centres -w..=w with w = 10 - |k|; its left end is on a left
-    // edge and counts, its right end is on a right edge and does not. The bottom corner is on no left or top edge
-    // that contains it as an inner point: its row is empty; the top corner's row is empty too, since it is
-    // on a right edge.
+    // The diamond |x| + |y| <= 10 of pixel centres, without its lower and right rim: 221 - 20 - 1 + ... A row at height
+    // k from the middle has centres -w..=w with w = 10 - |k|. Its left end is on a left edge and counts. Its right end
+    // is on a right edge and does not count. The row of the bottom corner is empty, since no left or top edge contains
+    // the corner as an inner point. The row of the top corner is empty, since the corner is on a right edge.
     let expected: u32 = (-9_i32..=9).map(|k| 2 * (10 - k.unsigned_abs())).sum();
     assert_eq!(counts.iter().map(|&n| u32::from(n)).sum::<u32>(), expected);
 }
 
 #[test]
 fn a_triangle_that_passes_the_eye_covers_what_is_before_the_near_plane() {
-    // The floor y = -1, from far before the eye to far behind it: below the horizon everything is covered.
+    // The floor y = -1, from far in front of the eye to far behind it: every pixel below the horizon is covered.
     let view = pixel_view(0.5, 1e6);
     let corners = [Vec3::new(-1e5, -1.0, 1e4), Vec3::new(1e5, -1.0, 1e4), Vec3::new(0.0, -1.0, -9e5)];
     let (counts, stats) = draw(&view, &[corners]);
     assert_eq!(stats.clipped, 1);
-    // y = -1 at distance t is at 240 + 240 / t px: row 479 is at t = 1.002, before the near plane.
+    // y = -1 at distance t is at 240 + 240 / t px. Row 479 is at t = 1.002, before the near plane.
     for y in [242, 300, 479] {
         assert!((0..WIDTH).all(|x| count(&counts, x, y) == 1), "row {y}");
     }
@@ -136,7 +135,7 @@ fn a_triangle_that_passes_the_eye_covers_what_is_before_the_near_plane() {
 
 #[test]
 fn triangles_a_million_pixels_beyond_the_screen_still_meet_along_one_line() {
-    // Without the guard band these edges would need 40 bits. Every second triangle is turned over.
+    // Without the guard band these edges would need 40 bits. Every second triangle is reversed.
     let rim = [[-1.0, -0.9], [1.0, -1.1], [0.8, 1.0], [-0.7, 1.0]];
     let rim = rim.map(|[x, y]| at_pixel(320.0 + x * 1e6, 240.0 + y * 1e6, 1.0));
     let hub = at_pixel(300.25, 200.75, 1.0);
@@ -147,7 +146,7 @@ fn triangles_a_million_pixels_beyond_the_screen_still_meet_along_one_line() {
 
 #[test]
 fn what_the_near_plane_cuts_off_is_not_drawn() {
-    // The floor again, with the near plane at 2: nothing nearer, that is below row 240 + 120.
+    // The same floor with the near plane at 2. No pixel is nearer, so rows below 240 + 120 stay empty.
     let corners = [Vec3::new(-1e5, -1.0, 1e4), Vec3::new(1e5, -1.0, 1e4), Vec3::new(0.0, -1.0, -9e5)];
     let (counts, _) = draw(&pixel_view(2.0, 1e6), &[corners]);
     assert_eq!((count(&counts, 320, 359), count(&counts, 320, 360)), (1, 0));

@@ -1,4 +1,4 @@
-//! What should be on the screen: an ideal renderer of one process, against which every picture of the machine can be held.
+//! Ideal renderer: computes the correct picture directly, as a reference for every picture of the machine.
 //!
 //! ```text
 //!   DisplayList, FrameView --place_all--> Transform --gouraud, phong, sphere--> expressions of one primitive
@@ -6,18 +6,18 @@
 //!                            IdealPicture <-- nearest depth wins, ties are kept <--+
 //! ```
 //!
-//! It takes the primitives one after the other in the order of the display list, sets each up as graphics processors do
-//! ([`pxpl5_geometry`]), and evaluates its expressions at every pixel by itself, in the widths that a renderer has: edges
-//! modulo 2^32, depth in the bits that the layout keeps, colour in 8 bits a component. There is no ring, no bin, no
-//! pixel memory and no time, and nothing is shared with the pixel arrays of `pxpl5-renderer` but the formats of commands
-//! that are written down there, which both follow.
+//! The renderer takes the primitives in the order of the display list. It sets each up like the graphics processors do
+//! ([`pxpl5_geometry`]), and evaluates its expressions at every pixel. The widths are those of a renderer board: edges
+//! modulo 2^32, depth in the bits of the layout, colour in 8 bits per component. No ring, bin, pixel memory or time is
+//! involved. The code shares nothing with the pixel arrays of `pxpl5-renderer`, except for the formats of commands,
+//! which are documented there.
 //!
-//! What remains open on the machine is which of two primitives wins that have the same depth to the last bit: the one
-//! whose commands come first, which depends on the number of processors. An [`IdealPicture`] knows these pixels and
-//! all colours that they may have ([`IdealPicture::ties`]); any other difference is an error of the machine.
+//! One thing stays open on the machine: the winner of two primitives with exactly the same depth. It is the one whose
+//! commands arrive first, which depends on the number of processors. An [`IdealPicture`] knows these pixels and all
+//! colours that they may have ([`IdealPicture::ties`]). Any other difference is an error of the machine.
 //!
-//! **Not modelled:** light and pictures of more than one moment; interlace (a field is every second line of its frame, to the
-//! bit, so a frame can be held against two fields).
+//! **Not modelled:** light and pictures of more than one moment; interlace (a field is exactly every second line of its
+//! frame, so a frame can be compared with two fields).
 
 mod picture;
 mod raster;

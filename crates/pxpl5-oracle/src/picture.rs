@@ -1,14 +1,14 @@
-//! Pixels with their depths, and those at which more than one primitive is nearest.
+//! Ideal pictures: pixels with their depths, and the pixels at which several primitives are nearest.
 
 use crate::shade::Paint;
 use image::{Rgb, RgbImage};
 use pxpl5_wire::format::Z_BITS;
 use std::collections::BTreeMap;
 
-/// The depth of what nothing is drawn on: the farthest of 24 bits.
+/// Depth of a pixel on which nothing is drawn: the farthest of 24 bits.
 pub const DEPTH_FARTHEST: u32 = (1 << Z_BITS) - 1;
 
-/// A picture as it should be.
+/// The correct picture of a view.
 #[derive(Clone, Debug)]
 pub struct IdealPicture {
     image: RgbImage,
@@ -16,37 +16,38 @@ pub struct IdealPicture {
     ties: BTreeMap<[u32; 2], Vec<[u8; 3]>>,
 }
 
-/// A pixel at which several primitives are nearest, with the same depth to the last bit.
+/// A pixel at which several primitives are nearest, with exactly the same depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tie<'a> {
-    /// Column, from the left.
+    /// Column, counted from the left.
     pub x: u32,
-    /// Row of the picture, from the top.
+    /// Row of the picture, counted from the top.
     pub y: u32,
-    /// Red, green and blue that each of them would give, in the order of the display list.
+    /// Red, green and blue of each of the nearest primitives, in the order of the display list.
     pub colours: &'a [[u8; 3]],
 }
 
 impl IdealPicture {
-    /// What is seen; at a tie the primitive that comes first in the display list.
+    /// Returns the image. At a tie it shows the primitive that comes first in the display list.
     #[must_use]
     pub const fn image(&self) -> &RgbImage {
         &self.image
     }
 
-    /// The depth of every pixel in 24 bits, 0 at the near plane, row by row; [`DEPTH_FARTHEST`] where nothing is drawn.
+    /// Returns the depth of every pixel in 24 bits, row by row: 0 is the near plane, [`DEPTH_FARTHEST`] an empty pixel.
     #[must_use]
     pub fn depths(&self) -> &[u32] {
         &self.depths
     }
 
-    /// The pixels at which the order of arrival decides, row by row.
+    /// Returns the pixels at which the order of arrival decides, row by row.
     pub fn ties(&self) -> impl ExactSizeIterator<Item = Tie<'_>> {
         self.ties.iter().map(|([y, x], colours)| Tie { x: *x, y: *y, colours })
     }
 
-    /// Pixels (x, y) of another picture that no order of arrival explains, row by row; all of its pixels where it has another
-    /// size.
+    /// Returns the pixels (x, y) of another image that differ and are not explained by a tie, row by row.
+    ///
+    /// If `other` has a different size, all of its pixels are returned.
     #[must_use]
     pub fn differences(&self, other: &RgbImage) -> Vec<[u32; 2]> {
         let same_size = other.dimensions() == self.image.dimensions();
@@ -61,7 +62,7 @@ impl IdealPicture {
     }
 }
 
-/// What the nearest primitive of a pixel leaves there.
+/// The nearest primitive at a pixel, with its depth and colour.
 #[derive(Clone, Copy, Debug)]
 struct Nearest {
     depth: u32,
@@ -69,24 +70,25 @@ struct Nearest {
     paint: Paint,
 }
 
-/// Pixels while primitives are drawn.
+/// Pixels while primitives are being drawn.
 #[derive(Debug)]
 pub(crate) struct DepthBuffer {
     width: u32,
     far: u32,
     nearest: Vec<Option<Nearest>>,
-    /// What others than the first would have left that were as near.
+    /// Colours of further primitives that are as near as the first one.
     tied: BTreeMap<[u32; 2], Vec<Paint>>,
 }
 
 impl DepthBuffer {
-    /// Nothing drawn yet; depths of at least `far` are behind everything.
+    /// Creates an empty buffer. Depths of at least `far` are behind everything.
     pub(crate) fn new(width: u32, height: u32, far: u32) -> Self {
         Self { width, far, nearest: vec![None; (width * height) as usize], tied: BTreeMap::new() }
     }
 
-    /// Draws one pixel of a primitive, numbered in the order of drawing; `paint` is asked only where it is as near as the
-    /// nearest.
+    /// Draws one pixel of a primitive. Primitives are numbered in the order of drawing.
+    ///
+    /// `paint` is called only if the primitive is at least as near as the nearest one.
     pub(crate) fn draw(&mut self, pixel: [i32; 2], primitive: usize, depth: u32, paint: impl FnOnce() -> Paint) {
         let [x, y] = pixel.map(i32::cast_unsigned);
         let place = &mut self.nearest[(y * self.width + x) as usize];
@@ -99,7 +101,8 @@ impl DepthBuffer {
         }
     }
 
-    /// The picture over a background, each pixel coloured by `colour`, its depth of 24 bits made by `depth`.
+    /// Returns the picture over a background. `colour` and `depth` convert the stored values of each pixel; depths
+    /// become 24 bits.
     pub(crate) fn finish(
         self,
         background: [u8; 3],

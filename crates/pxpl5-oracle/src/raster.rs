@@ -1,4 +1,4 @@
-//! Primitives in the order of the display list, each evaluated at every pixel of its box.
+//! Drawing of primitives in the order of the display list, pixel by pixel.
 
 use crate::picture::{DepthBuffer, IdealPicture};
 use crate::shade::{Paint, Surface, component, normal};
@@ -10,8 +10,9 @@ use pxpl5_wire::Linear;
 use pxpl5_wire::format::SUBPIXEL_BITS;
 use std::ops::Range;
 
-/// What an eye (0, or 0 and 1) of a view sees of a display list, as `picture` wants it: lines, shading and the widths of its
-/// layout. Who gets commands and whether there are pixels means nothing here.
+/// Returns the ideal picture of a display list for an eye of a view (0, or 0 and 1).
+///
+/// `picture` gives the lines, the shading and the widths of the layout. Its binning and `pixels` are ignored.
 ///
 /// # Panics
 ///
@@ -21,11 +22,11 @@ pub fn ideal_picture(list: &DisplayList, view: &FrameView, eye: usize, picture: 
     ideal_picture_of(list, |_| true, view, eye, picture)
 }
 
-/// The same of some structures alone, chosen by their place in the list.
+/// Returns the ideal picture of the chosen structures only. `chosen` gets the index of a structure in the list.
 ///
 /// # Panics
 ///
-/// As [`ideal_picture`].
+/// If the view has no eye.
 #[must_use]
 pub fn ideal_picture_of(
     list: &DisplayList,
@@ -39,12 +40,14 @@ pub fn ideal_picture_of(
     let raster = Raster { list, picture, widths };
     let grid = picture.viewport.grid();
     let mut buffer = DepthBuffer::new(grid.width, grid.height, widths.stored_depth(u32::MAX));
+    // Primitives in the order of the display list; the buffer keeps the nearest one.
     for (_, place) in placed.iter().enumerate().filter(|(number, _)| chosen(*number)) {
         let Some(transform) = &place.transform else { continue };
         let placed = Placed { place, transform };
         place.structure.triangles.clone().for_each(|number| raster.triangle(&placed, number, &mut buffer));
         place.structure.spheres.clone().for_each(|number| raster.sphere(&placed, number, &mut buffer));
     }
+    // Phong surfaces are shaded at the end, like on the machine.
     let shade = shade(placed.first().map(|first| &first.light), list.is_matte);
     buffer.finish(list.background, |paint| paint.colour(&shade), |stored| widths.sent_depth(stored))
 }
@@ -65,7 +68,7 @@ impl Raster<'_> {
     fn triangle(&self, Placed { place, transform }: &Placed<'_>, number: usize, buffer: &mut DepthBuffer) {
         let viewport = &self.picture.viewport;
         let triangle = self.list.triangle(number);
-        // What is cut, dropped or made flat is so on the machine.
+        // The machine clips, drops and flattens the same primitives, so the counts are not needed.
         let mut stats = SetupStats::default();
         let light = place.light_of_corners(self.picture.shading);
         match self.picture.shading {
@@ -89,6 +92,7 @@ impl Raster<'_> {
 
     fn sphere(&self, Placed { place, transform }: &Placed<'_>, sphere: usize, buffer: &mut DepthBuffer) {
         let viewport = &self.picture.viewport;
+        // Spheres are numbered after all triangles.
         let number = self.list.triangles.len() + sphere;
         let mut stats = SetupStats::default();
         let Some(seen) = transform.sphere(&self.list.spheres[sphere], &mut stats) else { return };
@@ -119,7 +123,7 @@ impl Raster<'_> {
         self.widths.stored_depth(plane.at(x, y) as u32)
     }
 
-    /// Calls `sink` for each pixel (x, row of the picture) that lies inside of all edges.
+    /// Calls `sink` for each pixel (x, row of the picture) that lies inside all edges.
     fn inside(&self, outline: &Outline, edges: &[Linear; 3], mut sink: impl FnMut(i32, i32)) {
         let viewport = &self.picture.viewport;
         let grid = viewport.grid();
@@ -134,7 +138,7 @@ impl Raster<'_> {
         }
     }
 
-    /// Calls `sink` for each pixel of some regions: a box around a sphere.
+    /// Calls `sink` for each pixel of some regions, which enclose a sphere.
     fn around(&self, regions: RegionMask, mut sink: impl FnMut(i32, i32)) {
         let grid = self.picture.viewport.grid();
         for region in regions.iter() {
@@ -146,8 +150,9 @@ impl Raster<'_> {
     }
 }
 
-/// Which of `count` columns, or of rows that are every `step`-th line from `first` on, may lie between the outermost of three
-/// corners in subpixels: one more at either end than needed.
+/// Returns the columns or rows that may lie between the outermost of three corners, with one extra at either end.
+///
+/// Corners are in subpixels. Row r is line `first + r * step` of the frame, and there are `count` rows.
 fn between(corners: &[i32; 3], [first, step]: [i32; 2], count: u32) -> Range<i32> {
     let low = corners.iter().copied().fold(i32::MAX, i32::min) >> SUBPIXEL_BITS;
     let high = corners.iter().copied().fold(i32::MIN, i32::max) >> SUBPIXEL_BITS;

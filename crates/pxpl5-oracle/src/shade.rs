@@ -1,22 +1,22 @@
-//! Colours at pixels: planes of colour, or normals that are lit when all is drawn.
+//! Colours of pixels: planes of colour, or normals that are shaded when all primitives are drawn.
 
 use pxpl5_renderer::Shade;
 use pxpl5_wire::Linear;
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_BITS, NORMAL_FRACTION_BITS};
 
-/// What a primitive leaves at a pixel.
+/// The value that a primitive stores at a pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Paint {
-    /// What is seen: red, green, blue.
+    /// The final colour: red, green, blue.
     Lit([u8; 3]),
-    /// What is lit when all is drawn.
+    /// A surface that is shaded when all primitives are drawn.
     Surface(Surface),
 }
 
-/// A piece of a surface.
+/// Normal and colour of a surface at a pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surface {
-    /// x, y, z of the normal, each in 12 bits.
+    /// x, y and z of the normal, each in 12 bits.
     pub(crate) normal: [i32; 3],
     pub(crate) colour: [u8; 3],
 }
@@ -30,29 +30,29 @@ impl Paint {
     }
 }
 
-/// Largest cosine: 10 bits, of which 1024 would be 1.0.
+/// Largest cosine, which has 10 bits; 1024 would be 1.0.
 const COSINE_MAX: i32 = 1023;
 
-/// How often the cosine of a highlight is squared.
+/// Number of times the cosine of a highlight is squared.
 const SQUARINGS: usize = 5;
 
-/// A colour component of a plane, as bits leave it.
+/// Returns a colour component of a plane, truncated to 8 bits.
 pub(crate) fn component(plane: &Linear, x: i32, y: i32) -> u8 {
     (plane.at(x, y) >> COLOUR_FRACTION_BITS) as u8
 }
 
-/// A component of a normal, as bits leave it.
+/// Returns a component of a normal, truncated to its bits in two's complement.
 pub(crate) fn normal(plane: &Linear, x: i32, y: i32) -> i32 {
     two_s_complement(plane.at(x, y) >> NORMAL_FRACTION_BITS, NORMAL_BITS)
 }
 
-/// The low bits of a number, with their sign.
+/// Returns the low bits of a number as a two's complement number.
 pub(crate) fn two_s_complement(value: i32, bits: u32) -> i32 {
     value << (32 - bits) >> (32 - bits)
 }
 
 impl Surface {
-    /// Its colour under a light, as the renderer's formula has it.
+    /// Returns the shaded colour under a light, by the formula of [`Shade`].
     fn lit(&self, shade: &Shade) -> [u8; 3] {
         let diffuse = self.cosine(shade.light);
         let highlight = (0..SQUARINGS).fold(self.cosine(shade.half), |cosine, _| (cosine * cosine) >> 10);
@@ -62,8 +62,8 @@ impl Surface {
         self.colour.map(|component| (((i32::from(component) * intensity) >> 8) + white).min(255) as u8)
     }
 
-    /// Cosine between the normal and a vector, 0 where they are turned from each other. A normal of zero counts as turned
-    /// to it.
+    /// Returns the cosine between the normal and a vector, 0 if they point away from each other. A zero normal gives
+    /// the largest cosine.
     fn cosine(&self, vector: [i16; 3]) -> i32 {
         let square: i32 = self.normal.iter().map(|n| n * n).sum();
         let length = square.isqrt();

@@ -5,21 +5,21 @@ use crate::widths::{ROOT_BITS, Widths};
 use pxpl5_geometry::{GouraudSphere, SphereSetup};
 use pxpl5_wire::format::COLOUR_FRACTION_BITS;
 
-/// Upper bits of the root that enter a colour, and the z of a normal.
+/// Number of upper bits of the root that contribute to a colour.
 const COLOUR_ROOT_BITS: u32 = 8;
 const NORMAL_ROOT_BITS: u32 = 10;
 
-/// What a sphere has at a pixel that it covers.
+/// Depth and root of a sphere at a pixel that it covers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SpherePoint {
     pub(crate) depth: u32,
-    /// Floor of the root, in `root_bits`.
+    /// Floor of the square root, in `root_bits` bits.
     root: u32,
     root_bits: u32,
 }
 
 impl SpherePoint {
-    /// The sphere at (x, y); `None` outside of it.
+    /// Returns the sphere's values at (x, y); `None` outside the sphere.
     pub(crate) fn at(setup: &SphereSetup, x: i32, y: i32, widths: Widths) -> Option<Self> {
         let silhouette = u64::try_from(setup.silhouette.at(x, y)).ok()?;
         let missing = ROOT_BITS - widths.root_bits;
@@ -34,7 +34,7 @@ impl SpherePoint {
         (self.root >> (self.root_bits - bits)) as i32
     }
 
-    /// Its colour: limit(linear + (upper root x factor >> 8)), the sum in 10 bits.
+    /// Returns the colour: limit(linear + (upper root x factor >> 8)), where the sum has 10 bits.
     pub(crate) fn colour(&self, sphere: &GouraudSphere, x: i32, y: i32) -> [u8; 3] {
         let root = self.upper_root(COLOUR_ROOT_BITS);
         std::array::from_fn(|i| {
@@ -44,7 +44,7 @@ impl SpherePoint {
         })
     }
 
-    /// The z of its normal.
+    /// Returns the z component of the normal.
     pub(crate) fn normal_z(&self) -> i32 {
         self.upper_root(NORMAL_ROOT_BITS)
     }

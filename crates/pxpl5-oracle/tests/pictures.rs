@@ -1,4 +1,4 @@
-//! The oracle against geometry and light that anybody can work out by hand.
+//! Tests of the ideal renderer against geometry and light that can be computed by hand.
 
 use glam::{Mat4, Vec3};
 use image::Rgb;
@@ -12,8 +12,8 @@ const RED: [u8; 3] = [200, 0, 0];
 const GREEN: [u8; 3] = [0, 200, 0];
 const BACKGROUND: [u8; 3] = [1, 2, 3];
 
-/// A list in which a unit is a pixel, x to the right and y up from the picture's lower border; it is seen along -z, from 0
-/// to 100.
+/// Returns a list in which a unit is a pixel, x to the right and y up from the picture's lower border, seen along -z,
+/// from 0 to 100.
 fn list() -> DisplayList {
     DisplayList {
         structures: vec![DisplayStructure {
@@ -107,7 +107,7 @@ fn a_tie_may_show_either_colour_and_no_other() {
     let mut list = list();
     square(&mut list, [0.0, 8.0], [0.0, 8.0], 10.0, RED);
     square(&mut list, [4.0, 12.0], [0.0, 8.0], 10.0, GREEN);
-    // Behind both: no tie.
+    // Behind both squares, so there is no tie.
     square(&mut list, [0.0, 12.0], [0.0, 8.0], 30.0, [9; 3]);
     let picture = drawn(&list);
     let ties: Vec<_> = picture.ties().map(|tie| [tie.x, tie.y]).collect();
@@ -132,7 +132,7 @@ fn a_sphere_is_a_disc_that_bulges_towards_the_eye() {
         colour: RED,
     });
     list.structures[0].spheres = 0..1;
-    // Cuts the sphere 18 units before its middle: a disc of radius 24 stands before it.
+    // Cuts the sphere 18 units before its middle: a disc of radius 24 is in front of the square.
     square(&mut list, [100.0, 300.0], [50.0, 150.0], 32.0, GREEN);
     let picture = drawn(&list);
     for (x, y, Rgb(colour)) in picture.image().enumerate_pixels() {
@@ -145,13 +145,14 @@ fn a_sphere_is_a_disc_that_bulges_towards_the_eye() {
     }
 }
 
-/// Light from the eye: full light on what faces it, and a highlight of 96 of 255; at 60 degrees half the light, and the
-/// 32nd power of the highlight's cosine is nothing.
+/// With light from the eye, a facing surface has full light and a highlight of 96 of 255. At 60 degrees it has half the
+/// light, and the 32nd power of the highlight's cosine is 0.
 #[test]
 fn phong_follows_the_cosine() {
     for (turn_deg, light, highlight) in [(0.0_f32, 1.0_f32, 96.0), (60.0, 0.5, 0.0)] {
         let mut list = DisplayList { ambient: 0.25, diffuse: 0.5, ..list() };
-        // Far enough from the origin to be seen from the front there too: two-sided light asks which side that is.
+        // Far enough from the origin to be seen from the front there too, since two-sided light depends on the visible
+        // side.
         square(&mut list, [0.0, 8.0], [0.0, 8.0], 90.0, [160, 80, 0]);
         let turn = turn_deg.to_radians();
         list.normals.fill(Vec3::new(turn.sin(), 0.0, turn.cos()));

@@ -1,7 +1,7 @@
-//! Speed of the pixel arrays: host time a command.
+//! Speed of the pixel arrays: host time per command.
 //!
-//! Every list has 64 commands, as a message has about 30, and the time is divided by criterion's throughput. Each list
-//! finds a cleared array, or a covered one, and each of its primitives is nearer than the one before: what is inside is
+//! Every list has 64 commands, about twice as many as a message, and criterion's throughput divides the time. Each list
+//! starts with a cleared or a covered array. Each primitive of a list is nearer than the one before, so its inside is
 //! stored.
 
 #![allow(missing_docs)] // Of what criterion's macros make.
@@ -18,19 +18,19 @@ use std::time::{Duration, Instant};
 
 const COMMANDS: u64 = 64;
 
-/// The edge from p to q in pixels, inside on its left.
+/// Returns the edge from p to q in pixels, with its inside on the left.
 fn edge(p: [i32; 2], q: [i32; 2]) -> Linear {
     let dx = 16 * (q[0] - p[0]);
     let dy = 16 * (q[1] - p[1]);
     Linear { a: -dy, b: dx, c: dy * p[0] - dx * p[1] }
 }
 
-/// A colour component that changes slowly over the region, from `level` (0 to 255) at its left top pixel.
+/// Returns a colour component that changes slowly over the region, from `level` (0 to 255) at its left top pixel.
 const fn component(level: i32) -> Linear {
     Linear { a: 311, b: -277, c: level << COLOUR_FRACTION_BITS }
 }
 
-/// Triangle `i` of some, nearer one by one.
+/// Returns triangle `i` of a series in which each is nearer than the one before.
 fn triangle(v: [[i32; 2]; 3], i: i32) -> TriangleCommand {
     TriangleCommand {
         edges: [edge(v[0], v[1]), edge(v[1], v[2]), edge(v[2], v[0])],
@@ -43,12 +43,12 @@ fn phong(t: TriangleCommand) -> PhongTriangleCommand {
     PhongTriangleCommand { edges: t.edges, depth: t.depth, normal: t.colour, colour: 0x80_c0_f0 }
 }
 
-/// The same shape at different places of the region.
+/// Returns the same shape at a place of the region that depends on `i`.
 fn moved(v: [[i32; 2]; 3], room: i32, i: i32) -> [[i32; 2]; 3] {
     v.map(|[x, y]| [x + i * 37 % room, y + i * 53 % room])
 }
 
-/// Legs of 14 pixels: 98 pixels.
+/// A triangle with legs of 14 pixels, which covers 98 pixels.
 const HUNDRED: [[i32; 2]; 3] = [[0, 0], [14, 0], [0, 14]];
 const TEN: [[i32; 2]; 3] = [[0, 0], [5, 0], [0, 4]];
 const SLIVER: [[i32; 2]; 3] = [[0, 0], [100, 93], [98, 93]];
@@ -74,7 +74,8 @@ fn clears() -> Vec<u32> {
     list((0..COMMANDS as u32).map(|i| Command::Clear(Clear { colour: i })))
 }
 
-/// Sphere `i` of some of `r` pixels around the middle, nearer one by one.
+/// Returns sphere `i` of a series with radius `r` pixels around the middle, in which each is nearer than the one
+/// before.
 fn body(r: i64, i: i32) -> SphereBody {
     let depth = Linear::constant((1 << 30) - i * 1000);
     SphereBody { silhouette: silhouette(r), root_shift: 8, depth, depth_shift: 10 }
@@ -110,7 +111,7 @@ fn shades() -> Vec<u32> {
     list((0..COMMANDS).map(|_| Command::Shade(shade)))
 }
 
-/// Times `words` on an array that has been cleared, or covered, before each time.
+/// Times `words` on an array that is cleared, or covered, before each run.
 fn timed(bencher: &mut Bencher<'_>, array: &mut impl PixelArray, words: &[u32], covered: bool) {
     let mut before = list(std::iter::once(Command::Clear(Clear { colour: 0 })));
     if covered {

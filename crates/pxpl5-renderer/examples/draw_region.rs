@@ -1,4 +1,4 @@
-//! Draws a few triangles and spheres on one region and writes PNG files, for a look at the pixels.
+//! Draws a few triangles and spheres on one region and writes PNG files.
 //!
 //! ```text
 //! cargo run --release -p pxpl5-renderer --example draw_region -- DIRECTORY
@@ -12,13 +12,13 @@ use pxpl5_wire::{Linear, Quadratic};
 use std::error::Error;
 use std::path::Path;
 
-/// Left top of the region on the screen.
+/// Screen position of the region's left border, in pixels.
 const LEFT: i32 = 256;
 const TOP: i32 = 128;
 
 type ScreenPoint = [f64; 2];
 
-/// The edge from p to q, positive on its left, in sixteenths of a pixel, at pixel centres.
+/// Returns the edge from p to q, positive on its left, in sixteenths of a pixel, at pixel centres.
 fn edge(p: ScreenPoint, q: ScreenPoint) -> Linear {
     let a = -(q[1] - p[1]) * 16.0;
     let b = (q[0] - p[0]) * 16.0;
@@ -26,7 +26,7 @@ fn edge(p: ScreenPoint, q: ScreenPoint) -> Linear {
     Linear { a: a.round() as i32, b: b.round() as i32, c: c.floor() as i32 }
 }
 
-/// The plane with these values at the vertices.
+/// Returns the plane with the given values at the vertices.
 fn plane(v: [ScreenPoint; 3], values: [f64; 3], scale: f64) -> Linear {
     let [x1, y1] = [v[1][0] - v[0][0], v[1][1] - v[0][1]];
     let [x2, y2] = [v[2][0] - v[0][0], v[2][1] - v[0][1]];
@@ -47,7 +47,7 @@ fn edges(v: [ScreenPoint; 3]) -> [Linear; 3] {
     [edge(v[0], v[1]), edge(v[1], v[2]), edge(v[2], v[0])]
 }
 
-/// Depths of 0 to 1 in 24 + 8 bits.
+/// Factor from a depth of 0 to 1 to the depth expression of 24 + 8 bits.
 const DEPTH: f64 = 2_147_483_647.0;
 
 fn triangle(v: [ScreenPoint; 3], depth: [f64; 3], colours: [[f64; 3]; 3]) -> Command {
@@ -62,7 +62,7 @@ fn phong_triangle(v: [ScreenPoint; 3], depth: [f64; 3], normals: [[f64; 3]; 3], 
     Command::PhongTriangle(PhongTriangleCommand { edges: edges(v), depth: plane(v, depth, DEPTH), normal, colour })
 }
 
-/// A sphere without perspective: silhouette and root in 2^-`fraction` of a square pixel, r < 64 pixels.
+/// A sphere without perspective of r < 64 pixels. Silhouette and root are in 2^-`fraction` of a square pixel.
 struct FlatSphere {
     centre: ScreenPoint,
     radius: f64,
@@ -72,7 +72,7 @@ struct FlatSphere {
 impl FlatSphere {
     fn body(&self) -> SphereBody {
         let [x, y] = [self.centre[0] + f64::from(LEFT) - 0.5, self.centre[1] + f64::from(TOP) - 0.5];
-        // The root of the middle is 4000: 4000^2 = r^2 scale / 2^shift.
+        // The root at the middle is 4000: 4000^2 = r^2 scale / 2^shift.
         let shift = 10_u8;
         let r = self.radius;
         let scale = 4000.0_f64.powi(2) * 1024.0 / (r * r);
@@ -88,7 +88,7 @@ impl FlatSphere {
         SphereBody { silhouette, root_shift: shift, depth, depth_shift: 14 }
     }
 
-    /// A coordinate of the normal, 1 at the rim, as a plane.
+    /// Returns a component of the normal, which is 1 at the rim, as a plane.
     fn across(&self, axis: usize, scale: f64) -> Linear {
         let origin = f64::from([LEFT, TOP][axis]);
         let step = scale / self.radius;
@@ -98,7 +98,7 @@ impl FlatSphere {
         Linear { a, b, c: c.round() as i32 }
     }
 
-    /// The linear part of a colour component `c` (0 to 255) under a light.
+    /// Returns the linear part of a colour component `c` (0 to 255) under a light.
     fn component(&self, c: f64, light: [f64; 3]) -> Linear {
         let x = self.across(0, light[0] * c * 4096.0);
         let y = self.across(1, light[1] * c * 4096.0);
@@ -128,7 +128,7 @@ const fn ball(x: f64, y: f64, radius: f64, depth: f64) -> FlatSphere {
 
 fn gouraud_picture() -> Vec<Command> {
     let light = [-0.5, -0.5, 0.7];
-    // Not quite 0 or 255: a component that rounds to the outside of a plane's range wraps.
+    // Colours avoid 0 and 255: a component that rounds beyond the range of a plane wraps.
     let corners = [[2.0, 2.0, 250.0], [250.0, 2.0, 2.0], [2.0, 250.0, 2.0]];
     vec![
         triangle([[10.0, 8.0], [120.0, 30.0], [30.0, 118.0]], [0.5, 0.5, 0.5], corners),

@@ -1,7 +1,8 @@
-//! `BitSerial`: the array as it was built, one bit of one instruction a clock. This is the definition.
+//! Bit-serial reference model of the pixel array: one bit of one instruction per clock, as in the hardware.
 //!
-//! It works in two ways. The literal one moves all planes of all pixels, always. The skipping one, [`runs`] above all,
-//! leaves out what cannot change anything, and is held to the literal one in every bit, clock and fault.
+//! The array works in two modes. The default mode moves all planes of all pixels and defines correct behaviour. The
+//! skipping mode (see [`runs`]) leaves out work that changes nothing. Tests compare both modes in every bit, clock and
+//! fault.
 
 mod arithmetic;
 mod collect;
@@ -23,33 +24,33 @@ use runs::InstructionRun;
 use std::sync::Arc;
 use tile::{EMPTY, FULL, HEIGHT, TILES, Tile, TilePlane, WIDTH};
 
-/// 208 bit planes, an Enable plane, and serial adders: what the hardware has, and nothing else.
+/// Pixel array of 208 bit planes, an Enable plane and serial adders, like the hardware.
 ///
-/// Clocks are counted as the planes move, so that [`crate::isa::timing`] is checked and not assumed here. It is the
-/// definition unless it is told to be [`Self::skipping`].
+/// Clocks are counted as the planes move, which tests [`crate::isa::timing`] independently. The array is the reference
+/// model unless [`Self::skipping`] was called.
 #[derive(Clone, Debug)]
 pub struct BitSerial {
     layout: Layout,
     vectors: PresentVectors,
     controller: Controller,
     tiles: Vec<Tile>,
-    /// The planes of a block, tile by tile.
+    /// Planes of each block of the backing store, tile by tile.
     backing: Vec<Option<Vec<TilePlane>>>,
     clock: u64,
     faults: u64,
     skipping: bool,
-    /// Kept for its memory.
+    /// Buffer that is reused to avoid allocations.
     run: InstructionRun,
 }
 
 impl BitSerial {
-    /// An array of zeros. The layout only says where [`PixelArray::read_colour`] finds the colour.
+    /// Creates an array of zeros. `layout` only tells [`PixelArray::read_colour`] where the colour is.
     #[must_use]
     pub fn new(layout: &Layout) -> Self {
         Self::with_vectors(layout, Vectors::best())
     }
 
-    /// The same on a chosen vector unit, or the portable one where the processor lacks it.
+    /// Creates an array of zeros that uses the given vector unit, or the portable one if the processor lacks that unit.
     #[must_use]
     pub fn with_vectors(layout: &Layout, vectors: Vectors) -> Self {
         Self {
@@ -65,11 +66,10 @@ impl BitSerial {
         }
     }
 
-    /// The same array, which leaves out work that cannot change anything: for pictures, where the definition itself
-    /// takes ten times as long.
+    /// Turns on the skipping mode, which leaves out work that changes nothing.
     ///
-    /// Pixels that are disabled move no planes, and signs that are known at the corners of a block of pixels need no
-    /// adders. Clocks, faults and every bit remain those of the definition.
+    /// Disabled pixels move no planes. A sign that is known at the corners of a tile needs no adders. Clocks, faults
+    /// and every bit stay the same. The default mode takes ten times as long.
     #[must_use]
     pub fn skipping(self) -> Self {
         Self { skipping: true, ..self }
@@ -94,6 +94,7 @@ impl BitSerial {
     }
 
     fn instruction(&mut self, instruction: &ArrayInstruction, executed: &mut Executed) -> Result<(), FaultKind> {
+        // Instructions that move no bits are handled here; the others by the functions for Enable and for fields.
         match *instruction {
             ArrayInstruction::Select { context_base, left, top } => {
                 self.controller.select(context_base, left, top);
@@ -112,11 +113,13 @@ impl BitSerial {
             }
             _ => return self.enable_instruction(instruction),
         }
+        // These instructions take constant time; the transfer of a block continues in the background.
         self.clock += u64::from(CONTROL_CLOCKS);
         Ok(())
     }
 
     fn enable_instruction(&mut self, instruction: &ArrayInstruction) -> Result<(), FaultKind> {
+        // A one-bit operand names one plane of pixel memory.
         match *instruction {
             ArrayInstruction::EnableAll { .. } => self.each_tile(|tile| tile.enable = FULL),
             ArrayInstruction::EnableNone => self.each_tile(|tile| tile.enable = EMPTY),
@@ -149,7 +152,7 @@ impl BitSerial {
             tile.clock = 0;
             tile.field_instruction(&self.controller, instruction)?;
         }
-        // All tiles work in step, so that each of them counts the clocks of all; one that is skipped counts none.
+        // All tiles work in step, so the clocks of one tile are the clocks of all. A skipped tile counts no clocks.
         self.clock += if self.skipping { instruction.bit_clocks().into() } else { self.tiles[0].clock };
         Ok(())
     }
@@ -164,7 +167,7 @@ impl BitSerial {
         Ok(())
     }
 
-    /// A field's values, row by row of the left top pixels.
+    /// Returns a field's values, row by row, of the left top pixels.
     fn colour(&self, field: FieldBits, width: u32, height: u32) -> Arc<[Word]> {
         let size = REGION_SIZE as usize;
         let mut values = vec![0; size * size];

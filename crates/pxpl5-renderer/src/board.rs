@@ -1,4 +1,4 @@
-//! The board: input FIFO and controller on one side, the port to the frame buffers on the other.
+//! The renderer board: input FIFO and controller on one side, the output port to the frame buffers on the other.
 
 use crate::command::CommandKind;
 use crate::contents::{MAX_CONTEXTS, changes_pixels, words_before_clear};
@@ -15,58 +15,59 @@ use pxpl5_wire::{
 use std::collections::VecDeque;
 use std::sync::{Arc, OnceLock};
 
-/// What can happen to the board.
+/// An event of a renderer board.
 #[derive(Clone, Debug)]
 pub enum RendererEvent {
     /// A message begins to arrive (phase `Arrive`).
     Announce {
-        /// Commands for the FIFO, or words that mean nothing here.
+        /// Commands for the FIFO. Other words are discarded and counted as illegal.
         message: Message,
-        /// Its first word is on the channel from here on.
+        /// Time at which the message's first word is on the channel.
         first_word_at: Time,
     },
     /// The controller starts the next copy command.
     CopyBegins,
-    /// The region's colours are in the backing store.
+    /// The copied region's colours are complete in the backing store.
     Stored,
     /// The ring has delivered the last pixel of the region being copied (phase `Arrive`).
     Sent,
 }
 
-/// What leaves the board.
+/// An output of a renderer board.
 #[derive(Debug)]
 pub enum RendererOutput {
-    /// The last word of the announced message enters the FIFO at this time.
+    /// Notice of the time at which the last word of the announced message enters the FIFO.
     Accept {
-        /// When the word is in the FIFO: a word time for each word, and the time for which there was no room.
+        /// Time at which the last word is in the FIFO: one word time per word, plus the time without room.
         last_word_at: Time,
     },
     /// A message for the ring.
     Send {
         /// Pixels of a region, or the acknowledgement of a copy.
         message: Message,
-        /// Whether [`RendererEvent::Sent`] shall come back.
+        /// True if the ring must report delivery by [`RendererEvent::Sent`].
         ticket: bool,
-        /// Whether the receiver's port stays reserved for the next message.
+        /// True if the receiver's port stays reserved for the next message.
         hold: bool,
     },
 }
 
-/// What the board has done.
+/// Counters of a renderer board.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct RendererStats {
-    /// Commands in all lists that were received, copies and unknown ones included.
+    /// Commands received in all lists, including copies and unknown commands.
     pub commands: u64,
-    /// Words that were received, without the overhead of their messages on the ring.
+    /// Words received, without the overhead of messages on the ring.
     pub words: u64,
     /// Regions whose last pixel a frame buffer has received.
     pub regions_copied: u64,
-    /// Commands with an operation code that no command has; they are skipped.
+    /// Commands with an unknown operation code, which are skipped.
     pub illegal_commands: u64,
 }
 
-/// One renderer board: its FIFO and controller in time, the pixels of its regions as jobs that are computed when somebody
-/// looks.
+/// One renderer board: FIFO and controller in simulated time, and the pixels of its regions as [`PixelJob`]s.
+///
+/// A [`PixelJob`] computes its pixels only when they are read.
 #[derive(Debug)]
 pub struct Renderer {
     node: NodeId,
@@ -74,53 +75,56 @@ pub struct Renderer {
     cycle: Span,
     fifo: InputFifo,
     pool: Arc<ArrayPool>,
-    /// Whether regions without primitives are kept, and what touches no pixel is left out.
+    /// True if regions without primitives are cached and commands that touch no pixel are left out.
     saves_regions: bool,
     logs: [ContextLog; MAX_CONTEXTS],
     copies: VecDeque<PendingCopy>,
-    /// The transfer to a frame buffer that is going on.
+    /// The transfer to a frame buffer in progress.
     copying: Option<CopyOrder>,
-    /// Copies through the backing store whose regions are in pixel memory; the first may be on its way.
+    /// Copies through the backing store whose regions are still in pixel memory. The first may be moving to the backing
+    /// store.
     unstored: VecDeque<PendingCopy>,
     storing: bool,
-    /// Copies whose regions are in the backing store and wait for the transfer before them, or for their release.
+    /// Copies whose regions are in the backing store and wait for an earlier transfer or for their release.
     stored: VecDeque<PendingCopy>,
-    /// When somebody watches: what was sent, to know what of it has been executed.
+    /// Lists received so far, kept only while the FIFO is watched.
     sent: Option<SentLists>,
     stats: RendererStats,
 }
 
-/// What was sent to a region context, as far as it can still be seen.
+/// Lists sent to a region context since it was cleared.
 #[derive(Clone, Debug, Default)]
 struct ContextLog {
     cleared: bool,
-    /// Shared with the pixels of regions that were copied.
+    /// Command lists, shared with the pixel jobs of copied regions.
     lists: Arc<Vec<CommandContent>>,
 }
 
 impl ContextLog {
-    /// What was sent before is seen no more, unless it was copied.
+    /// Drops the lists so far. Pixel jobs of copied regions keep their own reference.
     fn clear(&mut self) {
         self.cleared = true;
         match Arc::get_mut(&mut self.lists) {
             Some(lists) => lists.clear(),
-            // As much room: the next picture's region is much like this one's.
+            // Reserves as much room as before: the next picture's region has a similar number of lists.
             None => self.lists = Arc::new(Vec::with_capacity(self.lists.len())),
         }
     }
 }
 
-/// A copy command in the FIFO, with what its region holds when it executes.
+/// A copy command in the FIFO, and the content of its region at the time of execution.
 #[derive(Debug)]
 struct PendingCopy {
     order: CopyOrder,
     image: Arc<dyn PixelSource>,
-    /// Whether it may leave the backing store as soon as it is in it.
+    /// True if the region may leave the backing store as soon as it is stored there.
     is_released: bool,
 }
 
 impl Renderer {
-    /// A renderer at a port. `word` is the word time of a channel, `cycle` what a signal needs to leave the board.
+    /// Creates a renderer at ring port `node`.
+    ///
+    /// `word` is the word time of a channel. `cycle` is the time that a signal takes to leave the board.
     #[must_use]
     pub fn new(node: NodeId, timing: RendererTiming, word: Span, cycle: Span, pool: Arc<ArrayPool>) -> Self {
         let fifo = InputFifo::new(timing.fifo_words as u32, word);
@@ -144,7 +148,7 @@ impl Renderer {
         }
     }
 
-    /// Handles one event at `context.now()`; what follows from it is scheduled or put out through `context`.
+    /// Handles one event at `context.now()`. Follow-up events and outputs go to `context`.
     pub fn handle(&mut self, event: RendererEvent, context: &mut Context<RendererEvent, RendererOutput>) {
         match event {
             RendererEvent::Announce { message, first_word_at } => self.announce(message, first_word_at, context),
@@ -158,7 +162,7 @@ impl Renderer {
         self.note(&message, context.now());
         match message.body {
             Body::Commands(list) => self.take(list),
-            // Words of no known command still occupy the FIFO and are thrown away.
+            // Words of no known command still occupy the FIFO; the controller discards them.
             Body::Pixels(_) | Body::Words(_) => {
                 self.stats.illegal_commands += 1;
                 self.fifo.take(EqualCommands { words_each: message.words, count: 1, span_each: Some(Span::ZERO) });
@@ -168,7 +172,7 @@ impl Renderer {
         self.report(progress, context);
     }
 
-    /// Keeps what somebody who watches must know of a message.
+    /// Records a message for [`Self::array_at`] while the FIFO is watched.
     fn note(&mut self, message: &Message, now: Time) {
         let first_word = self.stats.words;
         self.stats.words += u64::from(message.words);
@@ -186,6 +190,7 @@ impl Renderer {
         if let Some(start) = progress.blocks {
             context.schedule(start, Phase::Work, RendererEvent::CopyBegins);
         }
+        // A clear hides everything that was sent before.
     }
 
     fn take(&mut self, list: CommandList) {
@@ -194,6 +199,7 @@ impl Renderer {
             log.clear();
         }
         if let Some(content) = list.content.filter(|_| changes_pixels(&list.runs)) {
+            // Keep the list only if it can change pixels.
             Arc::make_mut(&mut log.lists).push(content);
         }
         for order in &list.copies {
@@ -226,11 +232,13 @@ impl Renderer {
             return Arc::new(NoPixels { words: width * height * order.content.words() });
         }
         Arc::new(PixelJob {
+            // The pixels are computed later, from the lists of this moment.
             pool: Arc::clone(&self.pool),
             lists,
             cleared,
             saves: self.saves_regions,
             target: order.target,
+            // Copy commands execute in the order in which their lists arrived.
             content: order.content,
             done: OnceLock::new(),
         })
@@ -238,7 +246,7 @@ impl Renderer {
 
     fn copy(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
         let Some(copy) = self.copies.pop_front() else {
-            // A copy command without an order addresses no frame buffer; it ends at once.
+            // A copy command without an order addresses no frame buffer, so it ends at once.
             self.stats.illegal_commands += 1;
             let progress = self.fifo.resume(context.now());
             return self.report(progress, context);
@@ -253,7 +261,7 @@ impl Renderer {
         }
     }
 
-    /// Lets a kept region leave the backing store; a command for one that is not there is none.
+    /// Releases a region that is kept in the backing store. A command for an unknown region counts as illegal.
     fn release(&mut self, target: CopyTarget, context: &mut Context<RendererEvent, RendererOutput>) {
         let kept = self.stored.iter_mut().chain(&mut self.unstored);
         let found = kept.filter(|copy| !copy.is_released).find(|copy| copy.order.target == target);
@@ -266,10 +274,13 @@ impl Renderer {
         self.transfer_next(context);
     }
 
-    /// Moves a finished region's colours (and depths, a block of their own) to the backing store when there is a place for them; the
-    /// controller is free when they are there.
+    /// Moves a finished region's colours (and depths, as a second block) to the backing store when room is free.
+    ///
+    /// The controller continues when the move is complete.
     fn store_next(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
         let Some(blocks) = self.unstored.front().map(|copy| u64::from(copy.order.content.words())) else { return };
+        // Only one move at a time, and only into free blocks.
+        // A region whose transfer is in progress still occupies its blocks.
         let held: u64 = self
             .stored
             .iter()
@@ -313,10 +324,12 @@ impl Renderer {
         let [_, _, width, height] = order.target.grid.rectangle(order.target.region);
         let all = width * height * order.content.words();
         let parts = all.div_ceil(MAX_MESSAGE_WORDS);
+        // Reserve the frame buffer's port for all parts; only the last part asks for a ticket.
         for part in 0..parts {
             let words = MAX_MESSAGE_WORDS.min(all - part * MAX_MESSAGE_WORDS);
             let body = Body::Pixels(RegionPixels { target: order.target, image: Arc::clone(image), part, parts });
             let message = Message { source: self.node, destination: order.target.frame_buffer, words, body };
+            // Acknowledge the copy before the next transfer, if the order asks for it.
             let last = part + 1 == parts;
             let output = RendererOutput::Send { message, ticket: last, hold: !last };
             context.output(context.now() + self.cycle, output);
@@ -339,20 +352,21 @@ impl Renderer {
         self.store_next(context);
     }
 
-    /// What the board has done so far.
+    /// Returns the board's counters.
     #[must_use]
     pub const fn stats(&self) -> RendererStats {
         self.stats
     }
 
-    /// Time spent executing commands, without copies.
+    /// Returns the time spent executing commands, without copies.
     #[must_use]
     pub const fn busy(&self) -> Span {
         self.fifo.busy()
     }
 
-    /// Pixel memory with what has been sent to each region context since it was cleared; `None` where no context was sent pixels'
-    /// words, as where pixels are off.
+    /// Returns pixel memory after all lists that were sent to each region context since its last clear.
+    ///
+    /// Returns `None` if no context has received words of pixels, for example when pixels are off.
     #[must_use]
     pub fn pixel_memory(&self) -> Option<Lanes> {
         if self.logs.iter().all(|log| log.lists.is_empty()) {
@@ -368,18 +382,18 @@ impl Renderer {
         Some(array)
     }
 
-    /// Draws all that is sent to regions from now on, though it may touch none of their pixels, and keeps none.
+    /// Turns off two optimizations: from now on all lists of a region are drawn, and no region is cached.
     pub const fn draw_every_region(&mut self) {
         self.saves_regions = false;
     }
 
-    /// Keeps from now on when words come into the FIFO and leave it.
+    /// Starts to record when words enter and leave the FIFO.
     pub fn watch_fifo(&mut self) {
         self.fifo.watch();
         self.sent.get_or_insert_default();
     }
 
-    /// What the board does at an instant that is not before the last event. Looking changes nothing.
+    /// Returns a snapshot of the board at `now`, which must not be before the last event.
     #[must_use]
     pub fn look(&self, now: Time) -> RendererLook {
         let passed = self.fifo.passed(now);
@@ -393,21 +407,25 @@ impl Renderer {
         }
     }
 
-    /// The array as far as commands have started at an instant that is not before the last event: each counts as executed when it
-    /// starts. `None` where nobody [watches](Renderer::watch_fifo), and where no words of pixels were sent. Looking changes nothing.
+    /// Returns the array after all commands that have started by `now`, which must not be before the last event.
+    ///
+    /// A command counts as executed when it starts. Returns `None` if the FIFO is not [watched](Renderer::watch_fifo)
+    /// or no words of pixels were sent.
     #[must_use]
     pub fn array_at(&self, now: Time) -> Option<Lanes> {
         let started = self.fifo.passed(now)?.started;
         self.sent.as_ref()?.executed(started, self.pool.layout())
     }
 
-    /// When words of a whole command had come in (positive) and when a command started and its words left (negative)
-    /// since the last call, in no order. Times may lie ahead: they follow from what is known now.
+    /// Returns the changes of the FIFO's content since the last call, in no order.
+    ///
+    /// A positive number of words enters when a whole command has arrived. A negative number leaves when the command
+    /// starts. Times may lie in the future, as predicted from the known input.
     pub fn take_fifo_changes(&mut self) -> Vec<(Time, i64)> {
         self.fifo.take_changes()
     }
 
-    /// What the board waits for.
+    /// Returns what the board waits for, if it is blocked by a copy.
     #[must_use]
     pub fn blocked(&self, name: &str) -> Option<Blocked> {
         let order = self.copying.filter(|_| self.fifo.is_blocked())?;

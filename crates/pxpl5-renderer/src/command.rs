@@ -1,17 +1,17 @@
-//! Commands: fixed-length programs of instructions, which the graphics processors send.
+//! Commands: fixed-length programs of array instructions, which the graphics processors send.
 //!
-//! A command holds typed operands; its program follows from them and from the [`Layout`]. The first instruction of a
-//! command that draws is *enable all*, whose label is the command's kind. The array ignores the label; it lets a
-//! reader (and the fast pixel array) recognise the command.
+//! A command holds typed operands. Its program follows from the operands and the [`Layout`]. The first instruction of a
+//! drawing command is *enable all*, whose label is the command's kind. The array ignores the label. [`Command::decode`]
+//! and the fast pixel array recognize the command by the label.
 //!
 //! # Formats
 //!
-//! - Edge: a pixel is inside where the expression is `>= 0`; the tie rule is folded into `c` by the sender.
-//! - Depth: `(z >> Z_FRACTION_BITS) & (2^24 - 1)`, nearer is smaller; a pixel passes where the new depth is **strictly
-//!   less** than the stored one. A layout with a narrower Z stores and compares its upper bits.
-//! - Colour component: `(e >> COLOUR_FRACTION_BITS) & 255`. Outside of 0 to 255 it wraps, as bits do; senders keep
-//!   triangles inside. Spheres are limited to 0 .. 255.
-//! - Normal component: `(e >> NORMAL_FRACTION_BITS)` in 12 bits, two's complement, wraps.
+//! - Edge: a pixel is inside where the expression is `>= 0`. The sender folds the tie rule into `c`.
+//! - Depth: `(z >> Z_FRACTION_BITS) & (2^24 - 1)`, where nearer is smaller. A pixel passes if the new depth is
+//!   **strictly less** than the stored one. A layout with a narrower Z stores and compares the upper bits of the depth.
+//! - Colour component: `(e >> COLOUR_FRACTION_BITS) & 255`. Values outside 0 to 255 wrap, so senders keep triangles
+//!   inside this range. Spheres are limited to 0 .. 255.
+//! - Normal component: `(e >> NORMAL_FRACTION_BITS)` in 12 bits, two's complement, with wrap-around.
 //!
 //! # Words and clocks
 //!
@@ -25,7 +25,7 @@
 //! | clear | 5 | 62 (Slats 58) | |
 //! | select region | 2 | 6 | |
 //!
-//! These are the times of the transaction level too ([`crate::RendererTiming`]).
+//! The transaction level uses the same times ([`crate::RendererTiming`]).
 
 mod copy;
 mod draw;
@@ -44,36 +44,36 @@ use crate::isa::{ArrayInstruction, DecodeError, DecodeErrorKind, Operand};
 use crate::layout::Layout;
 use pxpl5_wire::Word;
 
-/// What a command does; the value is its opcode in [`pxpl5_wire::CommandRun`].
+/// The kind of a command. The numeric value is its opcode in [`pxpl5_wire::CommandRun`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]
 pub enum CommandKind {
-    /// Selects context and region: [`SelectRegion`].
+    /// Selects context and region: see [`SelectRegion`].
     SelectRegion = 1,
-    /// Clears colour and Z: [`Clear`].
+    /// Clears colour and Z: see [`Clear`].
     Clear = 2,
-    /// Triangle with interpolated colour: [`TriangleCommand`].
+    /// Draws a triangle with interpolated colour: see [`TriangleCommand`].
     Triangle = 3,
-    /// Triangle with normals: [`PhongTriangleCommand`].
+    /// Draws a triangle with normals: see [`PhongTriangleCommand`].
     PhongTriangle = 4,
-    /// Sphere with interpolated colour: [`SphereCommand`].
+    /// Draws a sphere with interpolated colour: see [`SphereCommand`].
     Sphere = 5,
-    /// Sphere with normals: [`PhongSphereCommand`].
+    /// Draws a sphere with normals: see [`PhongSphereCommand`].
     PhongSphere = 6,
-    /// Deferred shading of all pixels: [`Shade`].
+    /// Shades all pixels at the end of the frame: see [`Shade`].
     Shade = 7,
-    /// Copies the region to a frame buffer: [`CopyRegion`].
+    /// Copies the region to a frame buffer: see [`CopyRegion`].
     CopyRegion = 8,
-    /// Stores 32 bits in the backing store: [`StoreBacking`].
+    /// Stores 32 bits of every pixel in the backing store: see [`StoreBacking`].
     StoreBacking = 9,
-    /// Loads 32 bits from the backing store: [`LoadBacking`].
+    /// Loads 32 bits of every pixel from the backing store: see [`LoadBacking`].
     LoadBacking = 10,
     /// Waits until the backing store is idle.
     WaitBacking = 11,
 }
 
 impl CommandKind {
-    /// All kinds in the order of their opcodes.
+    /// All kinds, in the order of their opcodes.
     pub const ALL: [Self; 11] = [
         Self::SelectRegion,
         Self::Clear,
@@ -88,7 +88,7 @@ impl CommandKind {
         Self::WaitBacking,
     ];
 
-    /// The kind with this opcode.
+    /// Returns the kind with this opcode, or `None` if the opcode is unknown.
     #[must_use]
     pub const fn from_opcode(opcode: u8) -> Option<Self> {
         match opcode {
@@ -97,13 +97,13 @@ impl CommandKind {
         }
     }
 
-    /// The opcode in [`pxpl5_wire::CommandRun`].
+    /// Returns the opcode in [`pxpl5_wire::CommandRun`].
     #[must_use]
     pub const fn opcode(self) -> u8 {
         self as u8
     }
 
-    /// Length in words; the same in every layout.
+    /// Returns the command's length in words, which is the same in every layout.
     #[must_use]
     pub const fn words(self) -> u32 {
         match self {
@@ -119,16 +119,16 @@ impl CommandKind {
         }
     }
 
-    /// Clocks in which the array is busy, from the command's program.
+    /// Returns the number of clocks in which the command's program keeps the array busy.
     ///
     /// # Errors
-    /// [`Unsupported`] where the layout lacks a field that the program needs.
+    /// [`Unsupported`] if the layout lacks a field that the program needs.
     pub fn clocks(self, layout: &Layout) -> Result<u32, Unsupported> {
         let program = Command::blank(self).program(layout)?;
         Ok(program.iter().map(ArrayInstruction::clocks).sum())
     }
 
-    /// Clocks in which the backing store is busy afterwards, beside the array.
+    /// Returns the number of clocks in which the backing store is busy afterwards, in parallel with the array.
     #[must_use]
     pub const fn backing_clocks(self) -> u32 {
         match self {
@@ -138,15 +138,14 @@ impl CommandKind {
     }
 }
 
-/// A layout lacks a field that a command needs.
+/// The error for a command that needs a field which the layout lacks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{kind:?} needs {missing}, which layout {layout} lacks")]
 pub struct Unsupported {
-    /// The command that was to be encoded.
     pub kind: CommandKind,
-    /// `ContextPlan::name` of the layout.
+    /// Name of the layout, from `ContextPlan::name`.
     pub layout: &'static str,
-    /// The field, or the bits of scratch, that the layout would need.
+    /// The missing field or number of scratch bits.
     pub missing: &'static str,
 }
 
@@ -157,28 +156,27 @@ pub enum Command {
     SelectRegion(SelectRegion),
     /// Clears colour and Z.
     Clear(Clear),
-    /// Triangle with interpolated colour (Gouraud).
+    /// Draws a triangle with interpolated colour (Gouraud).
     Triangle(TriangleCommand),
-    /// Triangle whose pixels are shaded at the end of the frame.
+    /// Draws a triangle whose pixels are shaded at the end of the frame.
     PhongTriangle(PhongTriangleCommand),
-    /// Sphere with interpolated colour.
+    /// Draws a sphere with interpolated colour.
     Sphere(SphereCommand),
-    /// Sphere whose pixels are shaded at the end of the frame.
+    /// Draws a sphere whose pixels are shaded at the end of the frame.
     PhongSphere(PhongSphereCommand),
-    /// Deferred shading of all pixels.
+    /// Shades all pixels at the end of the frame.
     Shade(Shade),
-    /// Copies the region to a frame buffer.
     CopyRegion(CopyRegion),
-    /// Stores 32 bits in the backing store.
+    /// Stores 32 bits of every pixel in the backing store.
     StoreBacking(StoreBacking),
-    /// Loads 32 bits from the backing store.
+    /// Loads 32 bits of every pixel from the backing store.
     LoadBacking(LoadBacking),
     /// Waits until the backing store is idle.
     WaitBacking,
 }
 
 impl Command {
-    /// Which kind the command is, without its operands.
+    /// Returns the command's kind.
     #[must_use]
     pub const fn kind(&self) -> CommandKind {
         match self {
@@ -196,10 +194,10 @@ impl Command {
         }
     }
 
-    /// Its program of instructions.
+    /// Returns the command's program of array instructions.
     ///
     /// # Errors
-    /// [`Unsupported`] where the layout lacks a field that the program needs.
+    /// [`Unsupported`] if the layout lacks a field that the program needs.
     pub fn program(&self, layout: &Layout) -> Result<Vec<ArrayInstruction>, Unsupported> {
         let program = match self {
             Self::SelectRegion(command) => Ok(command.program(layout).to_vec()),
@@ -221,10 +219,10 @@ impl Command {
         Unsupported { kind: self.kind(), layout: layout.plan().name, missing }
     }
 
-    /// Appends the command's words: those of its [`Command::program`].
+    /// Appends the words of the command's [`program`](Command::program).
     ///
     /// # Errors
-    /// [`Unsupported`] where the layout lacks a field that the program needs.
+    /// [`Unsupported`] if the layout lacks a field that the program needs.
     pub fn encode(&self, layout: &Layout, out: &mut Vec<Word>) -> Result<(), Unsupported> {
         match self {
             Self::SelectRegion(command) => encode_all(&command.program(layout), out),
@@ -235,25 +233,27 @@ impl Command {
         Ok(())
     }
 
-    /// Reads the command that begins at `position`; returns it and its length in words.
+    /// Decodes the command that begins at `position`, and returns it with its length in words.
     ///
     /// # Errors
-    /// [`DecodeError`] where the words are no instructions, or not the program of a command in this layout.
+    /// [`DecodeError`] if the words are no instructions, or not the program of a command in this layout.
     pub fn decode(words: &[Word], position: usize, layout: &Layout) -> Result<(Self, usize), DecodeError> {
         let (first, _) = ArrayInstruction::decode(words, position)?;
+        // The first instruction names the kind, which fixes the number of words.
         let kind = kind_of(&first).ok_or_else(|| not_the_command(words, position, (words[position] >> 16) as u8))?;
         let length = kind.words() as usize;
         let end = words.len().min(position + length);
         let program = decode_range(&words[..end], position)?;
         let command = Self::from_program(kind, &program, layout)
             .ok_or_else(|| not_the_command(words, position, kind.opcode()))?;
+        // The operands alone do not prove that the rest of the program is the same, so compare all of it.
         match command.program(layout) {
             Ok(expected) if expected == program => Ok((command, length)),
             _ => Err(not_the_command(words, position, kind.opcode())),
         }
     }
 
-    /// A command of this kind whose operands are zero.
+    /// Returns a command of this kind whose operands are zero.
     pub(crate) fn blank(kind: CommandKind) -> Self {
         match kind {
             CommandKind::SelectRegion => Self::SelectRegion(SelectRegion::default()),
@@ -270,7 +270,7 @@ impl Command {
         }
     }
 
-    /// Picks the operands out of a program that may be another; the caller compares.
+    /// Extracts the operands of a program. The program may still differ elsewhere, so the caller must compare it.
     fn from_program(kind: CommandKind, program: &[ArrayInstruction], layout: &Layout) -> Option<Self> {
         Some(match kind {
             CommandKind::SelectRegion => Self::SelectRegion(SelectRegion::read(program, layout)?),
@@ -288,12 +288,12 @@ impl Command {
     }
 }
 
-/// The words at `position` are instructions, but not the command that `label` names.
+/// Returns the error for valid instructions that are not the command named by `label`.
 fn not_the_command(words: &[Word], position: usize, label: u8) -> DecodeError {
     DecodeError { position, word: words[position], kind: DecodeErrorKind::NotTheCommand(label) }
 }
 
-/// What a layout lacks.
+/// Name of a field that a layout lacks.
 pub(crate) struct MissingField(&'static str);
 
 fn encode_all(program: &[ArrayInstruction], out: &mut Vec<Word>) {
@@ -323,7 +323,7 @@ fn decode_range(words: &[Word], from: usize) -> Result<Vec<ArrayInstruction>, De
     Ok(out)
 }
 
-/// Component 0 (x), 1 (y) or 2 (z) of the layout's normal.
+/// Returns component 0 (x), 1 (y) or 2 (z) of the layout's normal.
 fn normal(layout: &Layout, component: u8) -> Result<Operand, MissingField> {
     layout.normal(component).ok_or(MissingField("a normal"))
 }

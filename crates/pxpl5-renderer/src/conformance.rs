@@ -1,7 +1,7 @@
-//! The suite that every pixel array has to pass: equality with another in every bit, after every list.
+//! Conformance suite for pixel arrays: an array must equal another one in every bit after every list.
 //!
-//! [`crate::BitSerial`] is the definition. A test of an array calls [`instructions`], [`commands`] and, for as long as
-//! it likes, [`random_round`] with numbers that it counts up; a failing round is repeated by its number alone.
+//! [`crate::BitSerial`] is the reference. A test of an array calls [`instructions`], [`commands`] and any number of
+//! times [`random_round`], with successive round numbers. The number alone reproduces a failing round.
 
 mod random;
 
@@ -13,13 +13,13 @@ use crate::layout::Layout;
 use pxpl5_wire::{Linear, Quadratic, Word};
 use std::fmt;
 
-/// Where two arrays that have executed the same list differ.
+/// A difference between two arrays that have executed the same list.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("after {after}: {difference}")]
 pub struct Mismatch {
-    /// The list that was executed last, as its caller describes it.
+    /// The last executed list, as described by the caller.
     pub after: String,
-    /// What differs, with the first pixel.
+    /// Description of the difference, with the first pixel that differs.
     pub difference: String,
 }
 
@@ -33,6 +33,7 @@ pub fn agree(
     words: &[Word],
     after: &dyn fmt::Debug,
 ) -> Result<(), Mismatch> {
+    // Compare the cheap results first, then all bits of all pixels.
     let expected = definition.execute(words);
     let found = subject.execute(words);
     let difference = if expected != found {
@@ -66,7 +67,7 @@ fn difference(what: &str, expected: &Plane, found: &Plane) -> Option<String> {
     Some(format!("{what} of pixel ({x}, {y}) is not {bit}; {pixels} pixels differ"))
 }
 
-/// Fills both arrays with the same noise, in which zeros and ones also come in long runs.
+/// Fills both arrays with the same noise, which includes planes of only zeros or only ones.
 pub fn scramble(random: &mut Random, a: &mut impl PixelArray, b: &mut impl PixelArray) {
     for bit in 0..MEMORY_BITS as usize {
         let plane = noise(random);
@@ -93,7 +94,7 @@ fn noise(random: &mut Random) -> Plane {
     plane
 }
 
-/// Runs every instruction with corner operands on noise.
+/// Tests every instruction with extreme operands on arrays of noise.
 ///
 /// # Errors
 /// The first [`Mismatch`].
@@ -110,7 +111,7 @@ pub fn instructions(definition: &mut impl PixelArray, subject: &mut impl PixelAr
     Ok(())
 }
 
-/// Runs each command of the layout, between lists of several, on noise.
+/// Tests random lists of the layout's commands on arrays of noise, in six rounds.
 ///
 /// # Errors
 /// The first [`Mismatch`].
@@ -125,7 +126,7 @@ pub fn commands(
     Ok(())
 }
 
-/// One round of the differential fuzzer: noise, then lists of commands, single instructions and wild words.
+/// Runs one round of the differential fuzzer: noise, then lists of commands, single instructions and invalid words.
 ///
 /// # Errors
 /// The first [`Mismatch`], which names the round.
@@ -154,6 +155,7 @@ fn corner_instructions() -> Vec<ArrayInstruction> {
         ArrayInstruction::Select { context_base: 52, left: u16::MAX, top: 384 },
         ArrayInstruction::Wait,
     ];
+    // Expressions, fields and constants have generators of their own.
     out.extend(corner_expressions());
     out.extend(corner_fields());
     out.extend(corner_constants());
@@ -190,7 +192,7 @@ fn corner_expressions() -> Vec<ArrayInstruction> {
     out
 }
 
-/// A coefficient whose upper bits do not fit a quadratic's 48, and whose lowest bit counts.
+/// Returns a coefficient whose upper bits exceed the 48 bits of a quadratic, and whose lowest bit is set.
 const fn beyond_48_bits(v: i32) -> i64 {
     (v as i64) << 17 | 1
 }
@@ -211,7 +213,7 @@ fn uses(expression: Expression) -> Vec<ArrayInstruction> {
     usages.into_iter().map(|usage| ArrayInstruction::Evaluate { expression, usage }).collect()
 }
 
-/// Widths of destination and operands: equal, narrower, wider, one bit, the most.
+/// Widths of destination and operands: equal, narrower, wider, one bit, the largest.
 const WIDTHS: [[u8; 3]; 7] = [[8, 8, 8], [5, 12, 9], [20, 7, 11], [1, 1, 1], [64, 64, 64], [64, 3, 33], [2, 40, 1]];
 
 fn corner_fields() -> Vec<ArrayInstruction> {
@@ -223,7 +225,7 @@ fn corner_fields() -> Vec<ArrayInstruction> {
             let b = Operand { signed: b_signed, ..Operand::absolute(128, wb) };
             out.extend(two_operands(destination, a, b));
             out.extend(one_operand(destination, a));
-            // Against the last bit of pixel memory, where the bits that a product loses have no place at all.
+            // Destination at the end of pixel memory: the lost upper bits of a product have no place there.
             let last = Operand { address: 208 - w, ..destination };
             let low_a = Operand { address: 0, ..a };
             let low_b = Operand { address: 64, ..b };
@@ -289,7 +291,7 @@ mod tests {
                 legal.insert(words[0] >> 24);
             }
         }
-        // Enable all begins every list of the suite; output is compared in `Executed` by the test beside this suite.
+        // Every list of the suite begins with "enable all". The test next to this suite compares outputs in `Executed`.
         let expected: BTreeSet<u32> = [0x02..=0x07, 0x10..=0x14, 0x20..=0x24, 0x30..=0x3c, 0x40..=0x43]
             .into_iter()
             .chain([0x48..=0x4b, 0x50..=0x51, 0x60..=0x62])

@@ -1,19 +1,20 @@
-//! What a list of commands does to pixel memory, told by the kinds of its commands.
+//! Effects of a list of commands on pixel memory, derived from the kinds of its commands.
 
 use crate::command::CommandKind;
 use pxpl5_wire::CommandRun;
 
-/// Region contexts that pixel memory can be divided into.
+/// Largest number of region contexts in pixel memory.
 pub const MAX_CONTEXTS: usize = 8;
 
-/// Whether a list changes pixels, and does not only select and copy.
+/// Returns true if a list changes pixels: it contains more than region selections and copies.
 pub(crate) fn changes_pixels(runs: &[CommandRun]) -> bool {
     let kinds = [CommandKind::SelectRegion, CommandKind::CopyRegion];
     runs.iter().any(|run| CommandKind::from_opcode(run.opcode).is_none_or(|kind| !kinds.contains(&kind)))
 }
 
-/// Words before the clear with which a list overwrites its whole context, so that nothing sent before can be seen once it has started;
-/// `None` of a list that begins otherwise.
+/// Returns the number of words before the clear, for a list that begins by clearing its context.
+///
+/// Once such a list has started, no earlier drawing is visible. Returns `None` for any other list.
 pub(crate) fn words_before_clear(runs: &[CommandRun]) -> Option<u64> {
     let mut words = 0;
     for run in runs {

@@ -1,10 +1,10 @@
-//! The controller in front of the array: selected region, held coefficients, checks of operands.
+//! The controller of the array: selected region, latched coefficients, and checks of operands.
 
 use crate::array::{ArrayFault, FaultKind};
 use crate::isa::{ArithmeticOp, ArrayInstruction, Expression, ExpressionUse, MEMORY_BITS, Operand, QUADRATIC_BITS};
 use pxpl5_wire::{Linear, Quadratic, Word};
 
-/// A field of pixel memory whose address is known.
+/// A field of pixel memory with its absolute address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct FieldBits {
     pub(crate) first: usize,
@@ -22,7 +22,6 @@ impl FieldBits {
     }
 }
 
-/// State of the controller.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Controller {
     pub(crate) base: u8,
@@ -32,7 +31,7 @@ pub(crate) struct Controller {
     quadratic: Quadratic,
 }
 
-/// An expression over the array's own columns and rows.
+/// An expression whose origin is the array's left top pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LocalExpression {
     Linear(Linear),
@@ -46,7 +45,7 @@ impl Controller {
         self.top = top;
     }
 
-    /// The instruction at a word, with operands that it allows, and how many words it has.
+    /// Decodes the instruction at `position` and checks its operands. Returns it with its length in words.
     pub(crate) fn fetch(&self, words: &[Word], position: usize) -> Result<(ArrayInstruction, usize), ArrayFault> {
         let (instruction, used) = ArrayInstruction::decode(words, position)
             .map_err(|error| ArrayFault { position, kind: FaultKind::Illegal(error.kind) })?;
@@ -54,7 +53,8 @@ impl Controller {
         Ok((instruction, used))
     }
 
-    /// Takes the coefficients over, or repeats those held, and applies the region's origin.
+    /// Latches the coefficients of an expression, or reuses the latched ones, and moves the origin to the region's
+    /// corner.
     pub(crate) fn latch(&mut self, expression: &Expression) -> LocalExpression {
         match expression {
             Expression::Linear(linear) => self.linear = *linear,
@@ -68,7 +68,7 @@ impl Controller {
         }
     }
 
-    /// Column and row of the picture that the array begins with.
+    /// Returns the screen column and row of the array's left top pixel.
     pub(crate) fn origin(&self) -> [i32; 2] {
         [self.left.into(), self.top.into()]
     }
@@ -79,17 +79,17 @@ impl Controller {
         Linear { c: e.at(i32::from(self.left), i32::from(self.top)), ..*e }
     }
 
-    /// Takes over the last linear coefficients of a command that is executed as a whole.
+    /// Latches the last linear coefficients of a command that is executed as a whole.
     pub(crate) fn hold(&mut self, linear: Linear) {
         self.linear = linear;
     }
 
-    /// The same for quadratic ones.
+    /// Latches the last quadratic coefficients of a command that is executed as a whole.
     pub(crate) fn hold_quadratic(&mut self, quadratic: Quadratic) {
         self.quadratic = quadratic;
     }
 
-    /// Moves the origin of the held quadratic expression to the array's left top pixel.
+    /// Moves the origin of the latched quadratic expression to the array's left top pixel.
     pub(crate) fn localise_quadratic(&self) -> Quadratic {
         let q = self.quadratic;
         let x = i64::from(self.left);
@@ -102,7 +102,10 @@ impl Controller {
         }
     }
 
-    /// The bits that an operand names in the selected context.
+    /// Returns the bits that an operand names in the selected context.
+    ///
+    /// # Errors
+    /// [`FaultKind::FieldOutOfRange`] if the field ends beyond pixel memory.
     pub(crate) fn bits(&self, operand: Operand) -> Result<FieldBits, FaultKind> {
         let base = if operand.relative { self.base } else { 0 };
         let bits = FieldBits {
@@ -119,6 +122,7 @@ impl Controller {
 
     /// Checks all operands of an instruction in the selected context.
     pub(crate) fn check(&self, instruction: &ArrayInstruction) -> Result<(), FaultKind> {
+        // Shifts may work in place; products and roots must not overlap their operands.
         match *instruction {
             ArrayInstruction::EnableLoad(bit)
             | ArrayInstruction::EnableStore(bit)
@@ -182,7 +186,7 @@ const fn overlap(destination: &FieldBits, operand: &FieldBits) -> FaultKind {
 }
 
 impl LocalExpression {
-    /// The value at a column and row, sign-extended from the bits in which it is evaluated.
+    /// Returns the value at a column and row, sign-extended from the 32 or 48 bits of the evaluation.
     pub(crate) fn at(&self, x: i32, y: i32) -> i64 {
         match self {
             Self::Linear(e) => i64::from(e.at(x, y)),

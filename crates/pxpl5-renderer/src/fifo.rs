@@ -1,33 +1,33 @@
-//! The input FIFO and the controller that empties it, in closed form per command.
+//! The input FIFO and the controller that empties it, computed in closed form for each command.
 //!
 //! Rules (assumed where the papers are silent):
 //!
-//! - a word is put on the channel once there is room for it, and needs one word time;
-//! - a command starts when all its words have arrived and the command before it has ended;
-//! - its words leave the FIFO when it starts;
-//! - a *blocking* command (copy of a region) ends when somebody says so; nothing behind it starts before.
+//! - A word is put on the channel once the FIFO has room for it, and needs one word time.
+//! - A command starts when all its words have arrived and the command before it has ended.
+//! - The words of a command leave the FIFO when the command starts.
+//! - A *blocking* command (copy of a region) ends when [`InputFifo::resume`] is called. No later command starts before.
 //!
-//! Since a SIMD array takes the same time whatever its data are, all starts and ends follow from the arrivals, and
-//! no event is needed for a command.
+//! A SIMD array takes the same time for any data. So all starts and ends follow from the arrivals, and a command needs
+//! no event.
 
 use pxpl5_sim::{Span, Time};
 use std::collections::VecDeque;
 
-/// Some equal commands in a row, as the FIFO sees them.
+/// Some equal commands in a row, as the FIFO counts them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct EqualCommands {
     pub(crate) words_each: u32,
     pub(crate) count: u32,
-    /// Execution time of one; `None` for a blocking command.
+    /// Execution time of one command; `None` for a blocking command.
     pub(crate) span_each: Option<Span>,
 }
 
-/// What an arrival, or the end of a copy, made known about times to come.
+/// Future times that follow from an arrival or from the end of a copy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Progress {
-    /// The last word of the message in transit enters at this time.
+    /// Time at which the last word of the message in transit enters the FIFO.
     pub(crate) accepted: Option<Time>,
-    /// A blocking command starts at this time.
+    /// Time at which a blocking command starts.
     pub(crate) blocks: Option<Time>,
 }
 
@@ -38,11 +38,12 @@ struct HeldCommand {
     complete: Time,
 }
 
-/// Commands of one length that started one after the other in equal steps; none of these is shorter than their words need on a
-/// channel.
+/// A run of equally long commands that started one after the other in equal steps.
+///
+/// No step is shorter than the time that a command's words take on a channel.
 #[derive(Clone, Copy, Debug)]
 struct Departure {
-    /// Number of the first word that found room when the first of them started.
+    /// Number of the first word that got room when the first command started.
     made_room_for: u64,
     left_at: Time,
     count: u64,
@@ -51,7 +52,9 @@ struct Departure {
 }
 
 impl Departure {
-    /// The last of these commands that made room for a word, or for one before it; `made_room_for` is not behind it.
+    /// Returns the last of these commands that made room for `word` or for an earlier word.
+    ///
+    /// `made_room_for` must not be greater than `word`.
     const fn last_for(&self, word: u64) -> u64 {
         if self.count == 1 {
             return 0;
@@ -60,7 +63,7 @@ impl Departure {
         if place < self.count { place } else { self.count - 1 }
     }
 
-    /// What is left without the first few commands.
+    /// Returns the run without its first `commands` commands.
     fn behind(self, commands: u64) -> Self {
         Self {
             made_room_for: self.made_room_for + commands * self.words_each,
@@ -71,15 +74,16 @@ impl Departure {
     }
 }
 
-/// When commands started, as far as arrivals still need it.
+/// Start times of commands, as far as future arrivals need them.
 #[derive(Debug, Default)]
 struct Departures(VecDeque<Departure>);
 
 impl Departures {
-    /// When the words from `first` to `last` have all entered, of which none comes in before `soonest`: each has waited for room, and
-    /// those behind it besides for their own time on the channel. `first` is not less than the last one asked for.
+    /// Returns the time at which the words from `first` to `last` have all entered, no earlier than `soonest`.
     ///
-    /// Of commands that made room in equal steps the last one decides, since the steps are not shorter than the words' time.
+    /// Each word waits for room. The words after it also wait for their own time on the channel. `first` must not
+    /// decrease from call to call. Of commands that made room in equal steps only the last one counts, since a step is
+    /// not shorter than the words' time.
     #[inline]
     fn entered(&mut self, first: u64, last: u64, soonest: Time, word: Span) -> Time {
         self.forget_before(first);
@@ -94,7 +98,7 @@ impl Departures {
         complete
     }
 
-    /// Gives up what only words before `first` waited for.
+    /// Drops entries that only words before `first` waited for.
     #[inline]
     fn forget_before(&mut self, first: u64) {
         while self.0.get(1).is_some_and(|next| next.made_room_for <= first) {
@@ -106,12 +110,12 @@ impl Departures {
     }
 }
 
-/// The FIFO and the controller behind it; depths in words, times of the simulation.
+/// The FIFO and its controller. Depths are in words, times are simulated.
 #[derive(Debug)]
 pub(crate) struct InputFifo {
     depth: u64,
     word: Span,
-    /// Words of the message in transit that have no arrival yet.
+    /// Commands of the message in transit whose words have no arrival time yet.
     in_transit: VecDeque<EqualCommands>,
     transit_known: bool,
     last_word_at: Time,
@@ -119,28 +123,28 @@ pub(crate) struct InputFifo {
     left: Departures,
     words_left: u64,
     waiting: VecDeque<HeldCommand>,
-    /// When the controller is free; `None` while a blocking command runs.
+    /// Time at which the controller is free; `None` while a blocking command runs.
     free_at: Option<Time>,
     busy: Span,
-    /// When somebody watches.
+    /// Record of arrivals and departures, kept only while the FIFO is watched.
     watched: Option<Watched>,
 }
 
-/// What somebody who watches the FIFO wants to know; times may lie ahead.
+/// Record of the words that entered and left a watched FIFO. Times may lie in the future.
 #[derive(Debug, Default)]
 struct Watched {
-    /// Times at which words of a whole command came in, and at which they left, since they were last asked for.
+    /// Changes since the last [`InputFifo::take_changes`]: time, and words that entered (positive) or left (negative).
     changes: Vec<(Time, i64)>,
     entered: Course,
     left: Course,
 }
 
-/// A sum that grows, as far back as somebody may still ask.
+/// A growing sum over time, from the last call of `forget_before` on.
 #[derive(Debug, Default)]
 struct Course {
-    /// What it is from each of some instants on, in order.
+    /// Value of the sum from each instant on, in order of time.
     steps: VecDeque<(Time, u64)>,
-    /// What it was before all of them, and what it will be after.
+    /// Value before the first step.
     before: u64,
     after: u64,
 }
@@ -163,12 +167,12 @@ impl Course {
     }
 }
 
-/// Words of commands in a FIFO, counted since the start.
+/// Number of words that have entered and left a FIFO since the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct WordsPassed {
-    /// Of commands that have come in whole.
+    /// Words of commands that have arrived completely.
     pub(crate) entered: u64,
-    /// Of commands that have started.
+    /// Words of commands that have started.
     pub(crate) started: u64,
 }
 
@@ -190,26 +194,27 @@ impl InputFifo {
         }
     }
 
-    /// Commands of the [message](Self::message) that is told next, in order.
+    /// Adds commands, in order, to the message that [`Self::message`] announces next.
     pub(crate) fn take(&mut self, work: EqualCommands) {
         self.in_transit.push_back(work);
     }
 
-    /// A message begins to arrive, with the commands that were [taken](Self::take) since the last: its first word is on the channel
-    /// from `begins` on.
+    /// Announces a message with the commands that were [taken](Self::take) since the last one.
+    ///
+    /// The message's first word is on the channel at `begins`.
     pub(crate) fn message(&mut self, begins: Time) -> Progress {
         self.last_word_at = self.last_word_at.max(begins);
         self.transit_known = false;
         self.advance()
     }
 
-    /// The blocking command ends.
+    /// Ends the blocking command.
     pub(crate) fn resume(&mut self, now: Time) -> Progress {
         self.free_at = Some(now);
         self.advance()
     }
 
-    /// Execution time so far, without blocking commands.
+    /// Returns the execution time so far, without blocking commands.
     pub(crate) const fn busy(&self) -> Span {
         self.busy
     }
@@ -218,13 +223,14 @@ impl InputFifo {
         self.watched.get_or_insert_default();
     }
 
-    /// What has passed at an instant that is not before the last event, where somebody watches.
+    /// Returns the words that have passed by `now`, which must not be before the last event. Returns `None` if the FIFO
+    /// is not watched.
     pub(crate) fn passed(&self, now: Time) -> Option<WordsPassed> {
         let watched = self.watched.as_ref()?;
         Some(WordsPassed { entered: watched.entered.at(now), started: watched.left.at(now) })
     }
 
-    /// Nobody will ask for anything before `now`.
+    /// Drops the record of all times before `now`.
     pub(crate) fn forget_before(&mut self, now: Time) {
         if let Some(Watched { entered, left, .. }) = &mut self.watched {
             entered.forget_before(now);
@@ -232,12 +238,12 @@ impl InputFifo {
         }
     }
 
-    /// What changed since the last time, in no order.
+    /// Returns the changes since the last call, in no order.
     pub(crate) fn take_changes(&mut self) -> Vec<(Time, i64)> {
         self.watched.as_mut().map(|watched| std::mem::take(&mut watched.changes)).unwrap_or_default()
     }
 
-    /// Whether the controller stands at a blocking command.
+    /// Returns true while a blocking command runs.
     pub(crate) const fn is_blocked(&self) -> bool {
         self.free_at.is_none()
     }
@@ -245,6 +251,7 @@ impl InputFifo {
     fn advance(&mut self) -> Progress {
         let mut progress = Progress { accepted: None, blocks: self.start_waiting() };
         while let Some(work) = self.in_transit.pop_front() {
+            // Without a blocking command or a watcher, all equal commands are computed at once.
             let words = work.words_each;
             let span = work.span_each;
             if let (Some(free_at), Some(span_each), None) = (self.free_at, span, &self.watched)
@@ -255,6 +262,7 @@ impl InputFifo {
                 self.run_freely(work, free_at, span_each);
                 continue;
             }
+            // Otherwise words may have to wait, so each command is computed alone.
             for entered in 0..work.count {
                 let Some(complete) = self.arrival(words) else {
                     self.in_transit.push_front(EqualCommands { count: work.count - entered, ..work });
@@ -277,16 +285,18 @@ impl InputFifo {
         progress
     }
 
-    /// Takes commands in closed form: what [`InputFifo::arrival`] and [`InputFifo::start`] say of each. Nobody watches, each fits and
-    /// takes as long as its words on the channel, and none blocks.
+    /// Computes equal commands in closed form, with the results of [`InputFifo::arrival`] and [`InputFifo::start`] for
+    /// each.
     ///
-    /// So each but the first starts when the one before it ends. By then its last word has come in: at the latest its first one found
-    /// room when the command before it started.
+    /// The FIFO is not watched. Each command fits in the FIFO, takes at least as long as its words on the channel, and
+    /// does not block. So each command after the first starts when the one before it ends. Its last word has arrived by
+    /// then: its first word got room at the latest when the command before it started.
     fn run_freely(&mut self, work: EqualCommands, free_at: Time, span: Span) {
         debug_assert!(
             self.waiting.is_empty() && self.words_left == self.words_in,
             "only behind a block does anything wait"
         );
+        // The first command may wait for its words; each further one starts when the previous one ends.
         let words = u64::from(work.words_each);
         let count = u64::from(work.count);
         let first = self.words_in;
@@ -296,6 +306,7 @@ impl InputFifo {
         let start = free_at.max(complete);
         let made_room_for = first + self.depth;
         self.left.0.push_back(Departure { made_room_for, left_at: start, count, words_each: words, step: span });
+        // The last word enters when the commands before it have made room.
         self.last_word_at = if count == 1 {
             complete
         } else {
@@ -307,7 +318,8 @@ impl InputFifo {
         self.busy += span * count;
     }
 
-    /// When the next `words` words have all entered; `None` while that depends on a blocking command.
+    /// Returns the time at which the next `words` words have all entered; `None` while the time depends on a blocking
+    /// command.
     fn arrival(&mut self, words: u32) -> Option<Time> {
         let first = self.words_in;
         let last = self.words_in + u64::from(words) - 1;
@@ -318,7 +330,8 @@ impl InputFifo {
         (last - self.depth < self.words_left).then(|| self.left.entered(first, last, complete, self.word))
     }
 
-    /// Starts what can start; the time at which a blocking command starts, if one does.
+    /// Starts waiting commands while the controller is free. Returns the start time of a blocking command, if one
+    /// starts.
     fn start_waiting(&mut self) -> Option<Time> {
         while let Some(free_at) = self.free_at {
             let command = self.waiting.pop_front()?;
@@ -330,7 +343,7 @@ impl InputFifo {
         None
     }
 
-    /// What has arrived last: only behind a blocking command does anything wait.
+    /// Starts the last arrived command, or queues it while a blocking command runs.
     fn start_or_wait(&mut self, command: HeldCommand) -> Option<Time> {
         match self.free_at {
             Some(free_at) => self.start(command, free_at),
@@ -341,7 +354,7 @@ impl InputFifo {
         }
     }
 
-    /// Starts a command when it is complete and the controller is free; gives the time if it blocks.
+    /// Starts a complete command when the controller is free. Returns the start time if the command blocks.
     fn start(&mut self, command: HeldCommand, free_at: Time) -> Option<Time> {
         let start = free_at.max(command.complete);
         let made_room_for = self.words_left + self.depth;
@@ -366,7 +379,7 @@ mod tests {
 
     const WORD: Span = Span(50_000);
 
-    /// The rules, one word at a time.
+    /// Reference model of the rules: one word at a time.
     struct LiteralFifo {
         depth: usize,
         held: VecDeque<Time>,
@@ -451,7 +464,7 @@ mod tests {
         // The copy's words left when it started, so three triangles (90 words) enter.
         let second = message(&mut fifo, Time(500_000), [EqualCommands { count: 3, ..triangle }]);
         assert_eq!(second.accepted, Some(Time(500_000 + 90 * 50_000)));
-        // Twenty words of the next have no room before the copy has ended.
+        // Twenty words of the next triangle have no room before the copy ends.
         assert_eq!(message(&mut fifo, Time(5_000_000), [triangle]).accepted, None);
         let resumed = fifo.resume(Time(80_000_000));
         assert_eq!(resumed.accepted, Some(Time(80_000_000 + 20 * 50_000)));
@@ -464,11 +477,11 @@ mod tests {
         let clump = EqualCommands { words_each: 30, count: 5, span_each: Some(Span::from_ns(6_675)) };
         message(&mut fifo, Time::ZERO, [copy]);
         assert_eq!(message(&mut fifo, Time(500_000), [clump]).accepted, None);
-        // Of 150 words 100 have room. The first triangle makes some for 30 more when the copy ends, the second 6.675 us later for the
-        // last 20.
+        // Of 150 words 100 have room. The first triangle makes room for 30 more when the copy ends, and the second for
+        // the last 20, 6.675 us later.
         let resumed = fifo.resume(Time(80_000_000));
         assert_eq!(resumed.accepted, Some(Time(80_000_000 + 6_675_000 + 20 * 50_000)));
-        // Behind the fifth.
+        // The controller is free after the fifth triangle.
         assert_eq!(fifo.free_at, Some(Time(80_000_000 + 5 * 6_675_000)));
     }
 

@@ -1,10 +1,10 @@
 //! The instruction set of the renderer's controller.
 //!
-//! No list of the machine's instructions survives in public. Published are the ingredients (F89, TR94, LK): bit-serial
-//! instructions that a ring message brings, an Enable register that masks pixels, a tree that evaluates linear and
-//! quadratic expressions for all pixels at once, 208 bits of pixel memory and a backing store that moves 32-bit
-//! blocks in the background. Mnemonics, encodings and operand rules below are **assumed**; they are the least that
-//! runs the published recipe of a triangle and shading at the end of a frame.
+//! No list of the machine's instructions is public. Published are the ingredients (F89, TR94, LK): bit-serial
+//! instructions that arrive in ring messages, an Enable register that masks pixels, a tree that evaluates linear and
+//! quadratic expressions for all pixels at once, 208 bits of pixel memory, and a backing store that moves 32-bit blocks
+//! in the background. Mnemonics, encodings and operand rules below are **assumed**. They are the smallest set that runs
+//! the published program of a triangle and the shading at the end of a frame.
 //!
 //! # Words
 //!
@@ -41,18 +41,18 @@
 //! | 62 | wait | 1 | 2 | until the backing store is idle |
 //! | 70 | output | 9 | 2, then in the background | the region's colour field goes to a frame buffer |
 //!
-//! *n* is 3 words for a linear expression, 12 for a quadratic (six coefficients of 64 bits, low word first) and 0 when
-//! bit 7 of the modifier says *again*: the evaluator repeats the coefficients that it holds. *s* stands in bits 5..0
-//! of the modifier. Every instruction takes [`timing::SET_UP_CLOCKS`] before its bit clocks.
+//! *n* is 3 words for a linear expression and 12 for a quadratic (six coefficients of 64 bits, low word first). *n* is
+//! 0 if bit 7 of the modifier says *again*: the evaluator repeats its latched coefficients. *s* is in bits 5..0 of the
+//! modifier. Every instruction takes [`timing::SET_UP_CLOCKS`] before its bit clocks.
 //!
 //! # Rules
 //!
-//! - Writes to pixel memory and backing-store sources are masked by Enable unless the table says *every*.
-//! - Results are taken modulo 2^w. An operand narrower than the result is extended: by its sign where its *signed* bit
-//!   is set, by zeros otherwise. A comparison, minimum or maximum needs operands of equal signedness.
+//! - Enable masks writes to pixel memory and sources of the backing store, unless the table says *every*.
+//! - Results are taken modulo 2^w. An operand narrower than the result is extended by its sign if its *signed* bit is
+//!   set, and by zeros otherwise. A comparison, minimum or maximum needs operands of equal signedness.
 //! - Linear expressions are evaluated modulo 2^32, quadratic ones modulo 2^48; both are two's complement.
-//! - Expressions hold absolute screen coordinates; the controller applies the region's origin.
-//! - An operand may overlap the destination only where both start at the same bit; multiply, divide, square root and load
+//! - Expressions hold absolute screen coordinates. The controller applies the region's origin.
+//! - An operand may overlap the destination only if both start at the same bit. Multiply, divide, square root and load
 //!   minus allow no overlap.
 //! - Divide: f := min(a / b, 2^w - 1), all ones for b = 0; a := a - f b. Operands are unsigned and w <= wa.
 //! - An illegal word or operand is a fault: the instruction and the rest of its list have no effect.
@@ -68,33 +68,33 @@ pub use operand::Operand;
 
 use pxpl5_wire::{CopyTarget, Linear, Quadratic};
 
-/// Bits of pixel memory (F89, TR94).
+/// Bits of memory of each pixel (F89, TR94).
 pub const MEMORY_BITS: u32 = 208;
 
-/// Bits in which a linear expression is evaluated; assumed: one word a coefficient.
+/// Bits of a linear expression's value. Assumed: one word per coefficient.
 pub const LINEAR_BITS: u32 = 32;
 
-/// Bits in which a quadratic expression is evaluated; assumed: 16 fraction bits and spheres up to 2^15 pixels.
+/// Bits of a quadratic expression's value. Assumed: 16 fraction bits and spheres up to 2^15 pixels.
 pub const QUADRATIC_BITS: u32 = 48;
 
-/// Blocks of 32 bits in the backing store: 4,096 bits a pixel (F89).
+/// Number of 32-bit blocks of each pixel in the backing store: 4,096 bits per pixel (F89).
 pub const BACKING_BLOCKS: u8 = 128;
 
-/// What the evaluator delivers.
+/// An expression that the evaluator delivers to all pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expression {
-    /// A linear expression whose coefficients follow.
+    /// A linear expression with its coefficients.
     Linear(Linear),
-    /// A quadratic expression whose coefficients follow.
+    /// A quadratic expression with its coefficients.
     Quadratic(Quadratic),
-    /// The last linear expression again.
+    /// The last linear expression, whose coefficients the evaluator has latched.
     LinearAgain,
-    /// The last quadratic expression again.
+    /// The last quadratic expression, whose coefficients the evaluator has latched.
     QuadraticAgain,
 }
 
 impl Expression {
-    /// Bits in which it is evaluated.
+    /// Returns the number of bits in which the expression is evaluated.
     #[must_use]
     pub const fn bits(&self) -> u32 {
         match self {
@@ -103,68 +103,68 @@ impl Expression {
         }
     }
 
-    /// True for a quadratic.
+    /// Returns true if the expression is quadratic.
     #[must_use]
     pub const fn is_quadratic(&self) -> bool {
         matches!(self, Self::Quadratic(_) | Self::QuadraticAgain)
     }
 }
 
-/// What happens with the bits of an expression.
+/// The use that pixels make of the bits of an expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExpressionUse {
-    /// Disable where the expression is negative.
+    /// Disables pixels where the expression is negative.
     DisableNegative,
-    /// Store bits `shift ..` of the expression.
+    /// Stores bits `shift ..` of the expression in a field.
     Load {
-        /// Field that takes the bits.
+        /// Field that receives the bits.
         field: Operand,
-        /// Low bits left out.
+        /// Number of low bits of the expression to leave out.
         shift: u8,
     },
-    /// Add bits `shift ..` of the expression.
+    /// Adds bits `shift ..` of the expression to a field.
     Add {
-        /// Field that takes the bits.
+        /// Field to which the bits are added.
         field: Operand,
-        /// Low bits left out.
+        /// Number of low bits of the expression to leave out.
         shift: u8,
     },
-    /// Disable unless bits `shift ..` of the expression are less than the field, unsigned.
+    /// Disables pixels unless bits `shift ..` of the expression are less than the field, unsigned.
     DisableNotLess {
-        /// What to compare with.
+        /// Field to compare with.
         field: Operand,
-        /// Low bits left out.
+        /// Number of low bits of the expression to leave out.
         shift: u8,
     },
-    /// Store bits `shift ..` of the expression minus `subtrahend << left_shift`.
+    /// Stores bits `shift ..` of the expression minus `subtrahend << left_shift` in a field.
     LoadMinus {
-        /// Field that takes the bits.
+        /// Field that receives the bits.
         field: Operand,
-        /// Low bits left out.
+        /// Number of low bits of the difference to leave out.
         shift: u8,
-        /// Field that is subtracted, extended by its signedness.
+        /// Field to subtract, extended by its sign if it is signed, otherwise by zeros.
         subtrahend: Operand,
-        /// By how much the subtrahend is shifted to the left first.
+        /// Left shift of the subtrahend before the subtraction, in bits.
         left_shift: u8,
     },
 }
 
-/// Operations on two fields.
+/// Operations on two fields a and b.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArithmeticOp {
     /// a + b, modulo 2^w.
     Add,
     /// a - b, modulo 2^w.
     Subtract,
-    /// a * b, modulo 2^w; no operand may overlap the result.
+    /// a * b, modulo 2^w. No operand may overlap the result.
     Multiply,
-    /// a / b; the remainder stays in a.
+    /// a / b. The remainder stays in a.
     Divide,
-    /// a and b, bit by bit.
+    /// Bitwise a AND b.
     And,
-    /// a or b, bit by bit.
+    /// Bitwise a OR b.
     Or,
-    /// a exclusive or b, bit by bit.
+    /// Bitwise a XOR b.
     Xor,
     /// The smaller of a and b, which are both signed or both unsigned.
     Minimum,
@@ -172,40 +172,40 @@ pub enum ArithmeticOp {
     Maximum,
 }
 
-/// Comparisons that disable a pixel where they do not hold.
+/// A comparison of a with b that disables the pixels for which it is false.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Test {
-    /// Holds where a < b.
+    /// True if a < b.
     Less,
-    /// Holds where a >= b.
+    /// True if a >= b.
     NotLess,
-    /// Holds where a = b.
+    /// True if a = b.
     Equal,
-    /// Holds where a and b differ.
+    /// True if a and b differ.
     NotEqual,
 }
 
-/// One instruction of the controller.
+/// One instruction of the controller. E is the Enable register of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArrayInstruction {
-    /// E := 1: enables every pixel.
+    /// Enables every pixel: E := 1.
     EnableAll {
-        /// Without effect; commands put their kind here.
+        /// A number that the array ignores. Commands put their kind here.
         label: u8,
     },
-    /// E := 0: disables every pixel.
+    /// Disables every pixel: E := 0.
     EnableNone,
-    /// E := not E, in every pixel.
+    /// Inverts Enable in every pixel: E := not E.
     EnableInvert,
-    /// E := bit of pixel memory, a field of one bit.
+    /// Loads Enable from a field of one bit.
     EnableLoad(Operand),
-    /// bit := E in every pixel.
+    /// Stores Enable in a field of one bit, in every pixel.
     EnableStore(Operand),
-    /// E := E and bit of pixel memory, a field of one bit.
+    /// Combines Enable with a field of one bit: E := E AND field.
     EnableAnd(Operand),
-    /// Selects the context and the region that the following instructions work on.
+    /// Selects the context and the region for the following instructions.
     Select {
-        /// Address added to relative operands.
+        /// Base address that is added to relative operands, in bits.
         context_base: u8,
         /// Screen x of the array's left column.
         left: u16,
@@ -214,100 +214,100 @@ pub enum ArrayInstruction {
     },
     /// Evaluates an expression in all pixels.
     Evaluate {
-        /// Coefficients, or those that the evaluator holds.
+        /// Expression to evaluate, with new or latched coefficients.
         expression: Expression,
-        /// What each pixel does with the bits as they come.
+        /// Use of the bits in each enabled pixel.
         usage: ExpressionUse,
     },
-    /// destination := source >> by (a copy for 0).
+    /// Computes destination := source >> by. A shift by 0 is a copy.
     ShiftRight {
-        /// Field that takes the result.
+        /// Field that receives the result.
         destination: Operand,
-        /// Field that is read, extended by its signedness.
+        /// Field to read, extended by its sign if it is signed, otherwise by zeros.
         source: Operand,
-        /// Bits by which the source is shifted, 0 to 63.
+        /// Number of bits to shift, 0 to 63.
         by: u8,
     },
-    /// destination := source << by.
+    /// Computes destination := source << by.
     ShiftLeft {
-        /// Field that takes the result.
+        /// Field that receives the result.
         destination: Operand,
-        /// Field that is read, extended by its signedness.
+        /// Field to read, extended by its sign if it is signed, otherwise by zeros.
         source: Operand,
-        /// Bits by which the source is shifted, 0 to 63.
+        /// Number of bits to shift, 0 to 63.
         by: u8,
     },
-    /// destination := source limited to what fits unsigned.
+    /// Computes destination := source limited to 0 .. 2^w - 1, for a destination of w bits.
     Saturate {
-        /// Field that takes the result.
+        /// Field that receives the result.
         destination: Operand,
-        /// Field that is read, extended by its signedness.
+        /// Field to read, extended by its sign if it is signed, otherwise by zeros.
         source: Operand,
     },
-    /// destination := floor of the square root; radicand := remainder.
+    /// Computes destination := floor(sqrt(radicand)), and leaves the remainder in the radicand.
     SquareRoot {
-        /// Field of the root, 1 to 32 bits.
+        /// Field that receives the root, 1 to 32 bits.
         destination: Operand,
-        /// Twice as wide as the root.
+        /// Field of the radicand, twice as wide as the root.
         radicand: Operand,
     },
-    /// destination := a op b.
+    /// Computes destination := a op b.
     Arithmetic {
-        /// What is done with a and b.
         op: ArithmeticOp,
-        /// Field that takes the result.
+        /// Field that receives the result.
         destination: Operand,
-        /// First operand, extended by its signedness.
+        /// First operand, extended by its sign if it is signed, otherwise by zeros.
         a: Operand,
-        /// Second operand, extended by its signedness.
+        /// Second operand, extended by its sign if it is signed, otherwise by zeros.
         b: Operand,
     },
-    /// Disable unless the test holds between two fields.
+    /// Disables pixels for which the test of two fields is false.
     Compare {
-        /// What must hold for a pixel to stay enabled.
+        /// Comparison that must be true for a pixel to stay enabled.
         test: Test,
-        /// First operand, extended by its signedness.
+        /// First operand, extended by its sign if it is signed, otherwise by zeros.
         a: Operand,
-        /// Second operand, extended by its signedness.
+        /// Second operand, extended by its sign if it is signed, otherwise by zeros.
         b: Operand,
     },
-    /// Disable unless the test holds between a field and a constant (of the field's width and signedness).
+    /// Disables pixels for which the test of a field and a constant is false. The constant has the field's width and
+    /// signedness.
     CompareConstant {
-        /// What must hold for a pixel to stay enabled.
+        /// Comparison that must be true for a pixel to stay enabled.
         test: Test,
-        /// Field that is compared.
         a: Operand,
-        /// Constant; low bits are used; wider fields extend it by the field's signedness.
+        /// Constant, of which a narrow field uses the low bits. For a field of more than 32 bits it is extended by the
+        /// field's signedness.
         value: u32,
     },
-    /// destination := value, extended by zeros (by the sign for a signed destination).
+    /// Computes destination := value, extended by zeros, or by the sign if the destination is signed.
     LoadConstant {
-        /// Field that takes the result.
+        /// Field that receives the constant.
         destination: Operand,
-        /// Constant that every enabled pixel gets.
+        /// Constant that every enabled pixel stores.
         value: u32,
     },
-    /// destination := source * factor.
+    /// Computes destination := source * factor.
     MultiplyConstant {
-        /// Field that takes the result.
+        /// Field that receives the product.
         destination: Operand,
-        /// Field that is multiplied, extended by its signedness.
+        /// Field to multiply, extended by its sign if it is signed, otherwise by zeros.
         source: Operand,
-        /// Constant, of which the low `factor_bits` count, two's complement.
+        /// Factor in two's complement; the low `factor_bits` bits are used.
         factor: i32,
-        /// Bits of the factor including its sign.
+        /// Number of bits of the factor, including its sign.
         factor_bits: u8,
     },
-    /// Backing store block := 32 bits, every pixel, in the background.
+    /// Stores 32 bits of every pixel in a block of the backing store, in the background.
     StoreBlock {
-        /// 32 bits of pixel memory.
+        /// Field of 32 bits of pixel memory.
         field: Operand,
         /// Block of the backing store, 0 to 127.
         block: u8,
     },
-    /// 32 bits := backing store block, every pixel, in the background.
+    /// Loads 32 bits of every pixel from a block of the backing store, in the background.
     LoadBlock {
-        /// 32 bits of pixel memory.
+        /// Field of 32 bits of pixel memory.
         field: Operand,
         /// Block of the backing store, 0 to 127.
         block: u8,
@@ -316,9 +316,9 @@ pub enum ArrayInstruction {
     Wait,
     /// Sends a field of 24 bits of the region's pixels to a frame buffer.
     Output {
-        /// 24 bits of colour.
+        /// Field of the colour, 24 bits.
         field: Operand,
-        /// Frame buffer, region and lines that the pixels are for.
+        /// Frame buffer, region and lines that receive the pixels.
         target: CopyTarget,
     },
 }

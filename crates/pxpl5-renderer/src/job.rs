@@ -1,4 +1,4 @@
-//! Pixels of one region, computed when somebody looks.
+//! Pixels of one region, computed only when they are read.
 
 use crate::{Command, Lanes, Layout, OutputRegion, PixelArray};
 use pxpl5_wire::format::Z_BITS;
@@ -8,31 +8,31 @@ use std::fmt;
 use std::slice::Iter;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-/// Pixel arrays that are not in use; a thread that computes pixels borrows one.
+/// A pool of unused pixel arrays. A thread that computes pixels borrows one.
 pub struct ArrayPool {
     layout: Layout,
     idle: Mutex<Vec<ArrayAndWords>>,
-    /// Regions without primitives, by their size and words.
+    /// Cached pixels of regions without primitives, by size and words.
     empty_regions: Mutex<HashMap<EmptyRegion, Arc<[Word]>>>,
 }
 
-/// What a thread needs to compute pixels.
+/// Working memory of a thread that computes pixels.
 struct ArrayAndWords {
     array: Lanes,
-    /// Room for the words of a list.
+    /// Reused buffer for the words of a list.
     words: Vec<Word>,
 }
 
-/// Everything on which the pixels of a region without primitives depend.
+/// Cache key of a region without primitives: everything that its pixels depend on.
 #[derive(Debug, PartialEq, Eq, Hash)]
 struct EmptyRegion {
-    /// All commands but those that say where the pixels go.
+    /// All commands except the copy commands.
     words: Vec<Word>,
     cleared: bool,
     size: [u32; 2],
 }
 
-/// Most regions without primitives that are kept: those of six stereo frames of 40 regions, 16 MB.
+/// Capacity of the cache of regions without primitives: six stereo frames of 40 regions, 16 MB.
 const EMPTY_REGIONS: usize = 256;
 
 impl fmt::Debug for ArrayPool {
@@ -42,7 +42,7 @@ impl fmt::Debug for ArrayPool {
 }
 
 impl ArrayPool {
-    /// A pool of arrays with this memory layout.
+    /// Creates a pool of arrays with this memory layout.
     #[must_use]
     pub fn new(layout: Layout) -> Arc<Self> {
         Arc::new(Self { layout, idle: Mutex::default(), empty_regions: Mutex::default() })
@@ -60,7 +60,7 @@ impl ArrayPool {
         result
     }
 
-    /// The pixels of a region without primitives, which are those of the last one alike.
+    /// Returns the pixels of a region without primitives, from the cache if the same region was drawn before.
     fn empty_region(&self, region: EmptyRegion, draw: impl FnOnce() -> Arc<[Word]>) -> Arc<[Word]> {
         if let Some(pixels) = self.kept_empty_regions().get(&region) {
             return Arc::clone(pixels);
@@ -79,18 +79,18 @@ impl ArrayPool {
     }
 }
 
-/// Everything that was sent to one region context since it was cleared.
+/// A pending computation of a region's pixels: all lists sent to a region context since it was cleared.
 #[derive(Debug)]
 pub(crate) struct PixelJob {
     pub(crate) pool: Arc<ArrayPool>,
     pub(crate) lists: Arc<Vec<CommandContent>>,
-    /// Whether the first list overwrites whatever the array held.
+    /// True if the first list overwrites the whole content of the array.
     pub(crate) cleared: bool,
-    /// Whether what touches no pixel is left out, and a region without primitives kept.
+    /// True if commands that touch no pixel are left out and regions without primitives are cached.
     pub(crate) saves: bool,
-    /// Where the pixels go.
+    /// Frame buffer and region that receive the pixels.
     pub(crate) target: CopyTarget,
-    /// What of each pixel is sent.
+    /// Parts of each pixel to send: colour, or colour and depth.
     pub(crate) content: CopyContent,
     pub(crate) done: OnceLock<Arc<[Word]>>,
 }
@@ -100,7 +100,7 @@ impl PixelJob {
         self.pool.with_idle_array(|ArrayAndWords { array, words }| {
             words.clear();
             let mut lists = self.lists.iter();
-            // Up to the first list that draws something.
+            // Collect words up to the first list that draws a primitive.
             if self.saves
                 && !lists.any(|list| list.append_touching(words))
                 && let Some(region) = self.as_empty_region(words)
@@ -111,7 +111,9 @@ impl PixelJob {
         })
     }
 
-    /// The region of these commands, none of which draws a primitive; `None` where something is no command, or depths are copied.
+    /// Returns the cache key for these commands, none of which draws a primitive.
+    ///
+    /// Returns `None` if some words are no command or if depths are copied.
     fn as_empty_region(&self, words: &[Word]) -> Option<EmptyRegion> {
         let mut kept = Vec::new();
         let mut at = 0;
@@ -126,18 +128,20 @@ impl PixelJob {
         (self.content == CopyContent::Colour).then_some(region)
     }
 
-    /// Columns and rows of the region, which may be less than the array's.
+    /// Returns the columns and rows of the region, which may be fewer than the array's.
     fn size(&self) -> [u32; 2] {
         let [_, _, width, height] = self.target.grid.rectangle(self.target.region);
         [width, height]
     }
 
-    /// Executes some words, and the lists behind them.
+    /// Executes `words` and then the remaining lists, and returns the region's pixels.
     fn draw(&self, array: &mut Lanes, words: &mut Vec<Word>, lists: Iter<'_, CommandContent>) -> Arc<[Word]> {
+        // Without a clear, the region shows black where nothing is drawn.
         if !self.cleared {
             array.reset();
         }
         let mut copied = self.execute(array, words);
+        // Only a copy in the last list counts.
         for list in lists {
             copied = if self.saves {
                 self.copied(array.draw(list, words))
@@ -147,12 +151,14 @@ impl PixelJob {
                 self.execute(array, words)
             };
         }
+        // Without a copy in the last list, read the colour directly.
         let [width, height] = self.size();
         let colours = copied.map_or_else(|| array.read_colour(width, height), |output| output.pixels);
         self.content.of(colours, || self.depths(array))
     }
 
-    /// What was copied to where these pixels go. A fault stops the list, as on the hardware; what was drawn before stays.
+    /// Executes words, and returns the last output to this job's target. A fault stops the list, as on the hardware;
+    /// earlier drawing stays.
     fn execute(&self, array: &mut Lanes, words: &[Word]) -> Option<OutputRegion> {
         self.copied(array.execute(words).map_or_else(|_| Vec::new(), |executed| executed.outputs))
     }
@@ -161,8 +167,9 @@ impl PixelJob {
         outputs.into_iter().rfind(|output| output.target == self.target)
     }
 
-    /// The depths of the region's pixels in 24 bits, 0 at the near plane; what a layout does not hold of them is 1 at the far plane
-    /// and 0 elsewhere.
+    /// Returns the depths of the region's pixels in 24 bits, 0 at the near plane.
+    ///
+    /// A layout with a narrower Z lacks low bits. They become 1 at the far plane and 0 elsewhere.
     fn depths(&self, array: &Lanes) -> Vec<Word> {
         let [width, height] = self.size();
         let missing = Z_BITS - u32::from(self.pool.layout.plan().z.width);
@@ -181,7 +188,7 @@ impl PixelSource for PixelJob {
 /// The farthest depth in 24 bits.
 const DEPTH_FARTHEST: Word = (1 << Z_BITS) - 1;
 
-/// A region that was copied while pixels were switched off.
+/// Source of a copied region's pixels while pixels are off: zeros only.
 #[derive(Debug)]
 pub(crate) struct NoPixels {
     pub(crate) words: u32,
@@ -214,7 +221,7 @@ mod tests {
         }
     }
 
-    /// A region cleared with a colour, for a picture.
+    /// Returns the pixels of a region that is cleared with a colour for a picture.
     fn cleared(pool: &Arc<ArrayPool>, colour: Word, picture: u64) -> Arc<[Word]> {
         let target = CopyTarget {
             frame_buffer: NodeId(9),

@@ -1,4 +1,4 @@
-//! `Lanes`: the array by values. Fast, and bit for bit what [`crate::BitSerial`] defines.
+//! Fast pixel array that holds values instead of bits. Its results equal [`crate::BitSerial`] bit for bit.
 
 mod bounds;
 mod columns;
@@ -28,10 +28,10 @@ use pxpl5_wire::{CommandContent, CommandSink, REGION_SIZE, TriangleBatch, Word};
 use std::sync::Arc;
 use template::Templates;
 
-/// The array by values: one word a pixel and field.
+/// Pixel array that keeps one word for each pixel and field.
 ///
-/// Commands of the layout that it was made for are recognised whole and touch only the pixels that they can change;
-/// any other instruction works on all pixels of one field after the other.
+/// The array recognizes whole commands of its layout and touches only the pixels that they can change. Any other
+/// instruction works on all pixels, field by field.
 #[derive(Clone, Debug)]
 pub struct Lanes {
     layout: Layout,
@@ -39,7 +39,7 @@ pub struct Lanes {
     templates: Templates,
     controller: Controller,
     columns: PixelColumns,
-    /// Of the context that was used last.
+    /// Columns of the context that was used last.
     selected: Option<ContextColumns>,
     enable: Enable,
     backing: Vec<Option<Box<[u64]>>>,
@@ -48,13 +48,13 @@ pub struct Lanes {
 }
 
 impl Lanes {
-    /// An array of zeros whose fast path serves the commands of `layout`.
+    /// Creates an array of zeros whose fast path serves the commands of `layout`.
     #[must_use]
     pub fn new(layout: &Layout) -> Self {
         Self::with_vectors(layout, Vectors::best())
     }
 
-    /// The same on a chosen vector unit, or the portable one where the processor lacks it.
+    /// Creates an array of zeros that uses the given vector unit, or the portable one if the processor lacks that unit.
     #[must_use]
     pub fn with_vectors(layout: &Layout, vectors: Vectors) -> Self {
         Self {
@@ -104,20 +104,21 @@ impl Lanes {
 }
 
 impl Lanes {
-    /// The depth of the selected context in as many bits as the layout has for it, row by row, of the left top `width` x `height`
-    /// pixels.
+    /// Returns the depth of the selected context, row by row, of the left top `width` x `height` pixels.
+    ///
+    /// The depth has as many bits as the layout's Z.
     pub(crate) fn read_depth(&self, width: u32, height: u32) -> Arc<[Word]> {
         let depth = self.controller.bits(self.layout.plan().z);
         depth.map_or_else(|_| Arc::default(), |field| self.colour(field, width, height))
     }
 }
 
-/// A list that is being drawn.
+/// State while a list is being drawn.
 struct Drawing<'a> {
     array: &'a mut Lanes,
-    /// Words that have not been executed.
+    /// Words that have not been executed yet.
     words: &'a mut Vec<Word>,
-    /// What was copied; nothing is drawn behind a fault.
+    /// Regions copied so far, or the fault after which no command is drawn.
     outputs: Result<Vec<OutputRegion>, ArrayFault>,
 }
 
@@ -141,12 +142,13 @@ impl CommandSink for Drawing<'_> {
     }
 
     fn triangles(&mut self, batch: &TriangleBatch<'_>) -> bool {
+        // Execute the pending words first, to keep the order of the commands.
         self.execute();
         self.outputs.is_err() || self.array.batch(batch).is_some()
     }
 }
 
-/// The left top `width` x `height` of all pixels.
+/// Returns the left top `width` x `height` pixels of all pixels.
 fn rectangle(pixels: &[Word], width: u32, height: u32) -> Arc<[Word]> {
     const WIDTH: usize = REGION_SIZE as usize;
     let width = WIDTH.min(width as usize);
@@ -246,7 +248,7 @@ mod tests {
         assert_eq!(executed.clocks, u64::from(clocks));
     }
 
-    /// Eight triangles with commands before and behind them.
+    /// Eight triangles of random coefficients, with commands before and after them.
     #[derive(Debug)]
     struct SomeTriangles {
         layout: Layout,
@@ -257,7 +259,7 @@ mod tests {
 
     impl SomeTriangles {
         fn random(layout: Layout, random: &mut Random, with_normals: bool) -> Self {
-            // Lines through the region, and values that wrap now and then.
+            // Lines through the region, and values that overflow now and then.
             let edge = |random: &mut Random| LinearLanes {
                 a: [(); LANES].map(|()| random.signed(9)),
                 b: [(); LANES].map(|()| random.signed(9)),
@@ -278,7 +280,8 @@ mod tests {
             }
         }
 
-        /// The same, with the edges of triangles of some columns and as many rows or more, over the region's borders too.
+        /// Creates triangles that are a few columns wide and as many or more rows high, also across the region's
+        /// borders.
         fn slim(layout: Layout, random: &mut Random, with_normals: bool) -> Self {
             let mut all = Self::random(layout, random, with_normals);
             for i in 0..LANES {
@@ -337,7 +340,8 @@ mod tests {
         }
     }
 
-    /// Draws such triangles with words and without, on all vector units; pixels that were covered.
+    /// Draws triangles both as words and as a batch on all vector units, compares them, and returns the number of
+    /// covered pixels.
     fn covered_alike(rounds: u32, some: fn(Layout, &mut Random, bool) -> SomeTriangles) -> usize {
         let mut random = Random::new(20);
         let mut covered = 0;

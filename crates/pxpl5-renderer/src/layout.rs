@@ -1,56 +1,56 @@
-//! How the 208 bits of pixel memory are divided, as data.
+//! Layouts: the division of the 208 bits of pixel memory into fields.
 
 use crate::isa::{MEMORY_BITS, Operand};
 use pxpl5_wire::format::{COLOUR_BITS, NORMAL_BITS, Z_BITS, Z_FRACTION_BITS};
 use std::fmt::Write as _;
 use std::ops::RangeInclusive;
 
-/// A division of pixel memory that nobody has checked yet.
+/// A division of pixel memory that has not been checked yet.
 ///
-/// Fields of a context are relative to its base; context `i` begins at bit `i * context_bits`. Scratch is absolute
-/// and shared by all contexts, which is right because a command leaves nothing there.
+/// Fields of a context are relative to its base; context `i` begins at bit `i * context_bits`. Scratch is absolute and
+/// shared by all contexts. Sharing is safe, since no command leaves data in the scratch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ContextPlan {
-    /// Name that error messages give the layout.
+    /// Name of the layout in error messages.
     pub name: &'static str,
-    /// Regions that share the array.
+    /// Number of regions that share the array.
     pub contexts: u8,
     /// Bits of pixel memory that each context takes.
     pub context_bits: u8,
-    /// Colour, 24 bits, 0xRRGGBB.
+    /// Field of the colour: 24 bits, 0xRRGGBB.
     pub colour: Operand,
-    /// Depth; nearer is smaller.
+    /// Field of the depth, 8 to 24 bits; nearer is smaller.
     pub z: Operand,
-    /// x, y and z of the normal, two's complement, one after the other; `None` without Phong shading.
+    /// Field of the normal: x, y and z of 12 bits each, two's complement, in this order. `None` without Phong shading.
     pub normal: Option<Operand>,
-    /// Temporaries of spheres and shading.
+    /// Field for temporary values of spheres and shading.
     pub scratch: Option<Operand>,
 }
 
-/// A division of pixel memory that fits.
+/// A checked division of pixel memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout(ContextPlan);
 
-/// Why a plan does not fit.
+/// Reason why a plan is not a valid layout.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LayoutError {
-    /// Fields lie outside of pixel memory or over each other; the text draws them.
+    /// Fields lie outside pixel memory or overlap. The error text draws them.
     #[error("layout {name} does not fit {} bits:\n{drawing}", MEMORY_BITS)]
     DoesNotFit {
-        /// [`ContextPlan::name`] of the plan.
+        /// Name of the plan, from [`ContextPlan::name`].
         name: &'static str,
-        /// One line a field.
+        /// Drawing of the fields, one line for each.
         drawing: String,
     },
-    /// A field has a width that the commands cannot use.
+    /// A field has a width that the commands do not support.
     #[error("{field} has {found} bits, expected {expected}")]
     Width {
         /// Name of the field in [`ContextPlan`].
         field: &'static str,
-        /// Bits that are allowed.
+        /// Allowed widths in bits, as text.
         expected: &'static str,
-        /// Bits that it has.
+        /// Actual width in bits.
         found: u8,
     },
 }
@@ -66,7 +66,7 @@ const RENDERING_CONTROL_PHONG: ContextPlan = ContextPlan {
     scratch: Some(Operand::absolute(84, 124)),
 };
 
-/// Slats: four regions of 24 colour + 20 Z, and 32 bits of scratch that they share.
+/// Slats: four regions of 24 colour + 20 Z, and 32 bits of common scratch.
 const SLATS: ContextPlan = ContextPlan {
     name: "Slats",
     contexts: 4,
@@ -77,7 +77,7 @@ const SLATS: ContextPlan = ContextPlan {
     scratch: Some(Operand::absolute(176, 32)),
 };
 
-/// Slats with its memory in equal parts: four regions of 24 colour + 24 Z + 4 flags, and no scratch.
+/// Slats with equal parts: four regions of 24 colour + 24 Z + 4 unused bits, and no scratch.
 const SLATS_QUARTERS: ContextPlan = ContextPlan {
     name: "Slats in quarters",
     contexts: 4,
@@ -89,31 +89,36 @@ const SLATS_QUARTERS: ContextPlan = ContextPlan {
 };
 
 impl Layout {
-    /// Rendering Control with Phong shading: one region, 24 bits of colour, 24 of Z, 36 of normal, 124 of scratch.
+    /// Returns the layout of Rendering Control with Phong shading: one region.
+    ///
+    /// It has 24 bits of colour, 24 of Z, 36 of normal and 124 of scratch.
     #[must_use]
     pub const fn rendering_control_phong() -> Self {
         Self(RENDERING_CONTROL_PHONG)
     }
 
-    /// Slats: four regions of 24 bits of colour and 20 of Z, and 32 bits of scratch that they share.
+    /// Returns the layout of Slats: four regions of 24 bits of colour and 20 of Z, and 32 bits of common scratch.
     ///
-    /// Four contexts in 208 bits are published (TR94). Four equal parts of 52 leave nothing for the temporaries of a
-    /// sphere (30 bits), which every context needs only while a command runs; so Z gives up 4 bits (assumed).
+    /// Four contexts in 208 bits are published (TR94). Four equal parts of 52 bits would leave no room for the scratch
+    /// of a sphere (30 bits). Every context needs the scratch only while a command runs, so Z is reduced by 4 bits
+    /// (assumed).
     #[must_use]
     pub const fn slats() -> Self {
         Self(SLATS)
     }
 
-    /// Slats in four equal parts of 52 bits: 24 colour + 24 Z + 4 flags; triangles only.
+    /// Returns the layout of Slats with four equal parts of 52 bits: 24 colour + 24 Z + 4 unused. It supports triangles
+    /// only.
     #[must_use]
     pub const fn slats_quarters() -> Self {
         Self(SLATS_QUARTERS)
     }
 
-    /// Checks a plan.
+    /// Creates a layout from a plan.
     ///
     /// # Errors
-    /// [`LayoutError::DoesNotFit`] draws the bit ranges; [`LayoutError::Width`] names a field of a wrong width.
+    /// [`LayoutError::DoesNotFit`] if fields overlap or exceed pixel memory; it draws the bit ranges.
+    /// [`LayoutError::Width`] if a field has a wrong width.
     pub fn new(plan: ContextPlan) -> Result<Self, LayoutError> {
         check_widths(&plan)?;
         let ranges = ranges(&plan);
@@ -124,38 +129,39 @@ impl Layout {
         Err(LayoutError::DoesNotFit { name: plan.name, drawing: draw(&ranges, &bad) })
     }
 
-    /// The fields of the layout, as they were checked.
+    /// Returns the fields of the layout.
     #[must_use]
     pub const fn plan(&self) -> &ContextPlan {
         &self.0
     }
 
-    /// First bit of a context.
+    /// Returns the first bit of a context in pixel memory.
     #[must_use]
     pub const fn context_base(&self, context: u8) -> u8 {
         context.wrapping_mul(self.0.context_bits)
     }
 
-    /// Colour component 0 (red), 1 (green) or 2 (blue).
+    /// Returns the field of colour component 0 (red), 1 (green) or 2 (blue).
     #[must_use]
     pub const fn component(&self, index: u8) -> Operand {
         self.0.colour.part((2 - index) * COLOUR_BITS as u8, COLOUR_BITS as u8)
     }
 
-    /// Low bits of a depth's expression that the layout does not store.
+    /// Returns the number of low bits of a depth expression that the layout does not store.
     #[must_use]
     pub const fn z_shift(&self) -> u8 {
         (Z_FRACTION_BITS + Z_BITS) as u8 - self.0.z.width
     }
 
-    /// Component 0 (x), 1 (y) or 2 (z) of the normal.
+    /// Returns the field of component 0 (x), 1 (y) or 2 (z) of the normal; `None` if the layout has no normals.
     #[must_use]
     pub fn normal(&self, index: u8) -> Option<Operand> {
         let all = self.0.normal?;
         Some(all.part(index * NORMAL_BITS as u8, NORMAL_BITS as u8).signed())
     }
 
-    /// Bits of a sphere's root: 12, or 10 where the scratch is smaller than 36 bits; `None` below 30.
+    /// Returns the bits of a sphere's root: 12, or 10 if the scratch has 30 to 35 bits. Returns `None` for less
+    /// scratch.
     #[must_use]
     pub fn root_bits(&self) -> Option<u8> {
         match self.0.scratch?.width {
@@ -165,7 +171,7 @@ impl Layout {
         }
     }
 
-    /// All fields with their first bit, bits and name, in order of the plan.
+    /// Returns the bit ranges of all fields, in order of the plan.
     #[must_use]
     pub fn ranges(&self) -> Vec<FieldRange> {
         ranges(&self.0)
@@ -177,9 +183,9 @@ impl Layout {
 pub struct FieldRange {
     /// Number of the context and name of the field, or *scratch*.
     pub name: String,
-    /// Address of the first bit in pixel memory, 0 to 207.
+    /// First bit in pixel memory, 0 to 207.
     pub first: u32,
-    /// Length in bits of pixel memory.
+    /// Length in bits.
     pub width: u32,
 }
 
@@ -195,7 +201,7 @@ fn check_widths(plan: &ContextPlan) -> Result<(), LayoutError> {
     plan.normal.map_or(Ok(()), |normal| check_width("normal", "36", 36..=36, normal))
 }
 
-/// `expected` says in words what `allowed` does.
+/// Checks a field's width; `expected` is the text of `allowed` for the error.
 fn check_width(
     field: &'static str,
     expected: &'static str,
@@ -211,6 +217,7 @@ fn check_width(
 fn ranges(plan: &ContextPlan) -> Vec<FieldRange> {
     let mut out = Vec::new();
     let fields = [("colour", Some(plan.colour)), ("z", Some(plan.z)), ("normal", plan.normal)];
+    // Fields of each context, at its base.
     for context in 0..u32::from(plan.contexts) {
         for (name, field) in fields {
             out.extend(field.map(|field| FieldRange {
@@ -228,7 +235,7 @@ fn ranges(plan: &ContextPlan) -> Vec<FieldRange> {
     out
 }
 
-/// For each range what is wrong with it, if anything.
+/// Returns the error text of each range, or `None` for a range without error.
 fn conflicts(plan: &ContextPlan, ranges: &[FieldRange]) -> Vec<Option<String>> {
     let mut out: Vec<_> = (0..ranges.len()).map(|i| conflict(&ranges[i], &ranges[..i])).collect();
     let whole = u32::from(plan.contexts) * u32::from(plan.context_bits);
@@ -239,7 +246,7 @@ fn conflicts(plan: &ContextPlan, ranges: &[FieldRange]) -> Vec<Option<String>> {
     out
 }
 
-/// What is wrong with a range behind those `before` it, if anything.
+/// Returns the error text of a range that overlaps an earlier range or ends beyond pixel memory.
 fn conflict(range: &FieldRange, before: &[FieldRange]) -> Option<String> {
     if range.end() > MEMORY_BITS {
         return Some(format!("ends beyond bit {}", MEMORY_BITS - 1));
@@ -252,7 +259,7 @@ const fn overlap(a: &FieldRange, b: &FieldRange) -> bool {
     a.first < b.end() && b.first < a.end()
 }
 
-/// One line a field: range, a bar of one mark per four bits, name, conflict.
+/// Draws one line for each field: range, a bar of one mark per four bits, name, conflict.
 fn draw(ranges: &[FieldRange], conflicts: &[Option<String>]) -> String {
     let mut out = String::new();
     for (range, conflict) in ranges.iter().zip(conflicts) {

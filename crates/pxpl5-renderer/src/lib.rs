@@ -11,34 +11,37 @@
 //!
 //! # Behaviour, in the order of the signal
 //!
-//! 1. Messages bring commands; time follows from the kinds of the commands alone ([`RendererTiming`], [`Renderer`]),
-//!    since the array is SIMD.
-//! 2. A command is a fixed-length program of instructions ([`Command`], [`CommandKind`]); the instructions, their words,
-//!    clocks and effects are those of [`isa`]. Where fields lie in pixel memory is a [`Layout`].
-//! 3. A triangle: enable all; three edges, each disabling where it is negative; Z, disabling where not nearer, stored;
-//!    then colours (Gouraud) or normals (Phong). A sphere: the silhouette is a quadratic, its square root gives depth,
-//!    normal and light. [`Shade`] turns normals into colour once, at the end of the frame.
-//! 4. Pixels are computed apart from time. [`BitSerial`] moves bit planes as the hardware did, and defines every bit;
-//!    [`BitSerial::skipping`] leaves out what cannot change anything; [`Lanes`] works on values, only where a command
-//!    can change something. The suite in [`conformance`] holds them to the same 208 bits of all pixels, Enable, clocks
-//!    and faults.
+//! 1. Messages bring commands. The array is SIMD, so simulated time depends only on the kinds of the commands
+//!    ([`RendererTiming`], [`Renderer`]).
+//! 2. A command is a fixed-length program of instructions ([`Command`], [`CommandKind`]). [`isa`] defines the
+//!    instructions, their words, clocks and effects. A [`Layout`] places the fields in pixel memory.
+//! 3. A triangle enables all pixels. Each of three edges disables the pixels where it is negative. Z disables the
+//!    pixels that are not nearer, and is stored in the others. Then follow colours (Gouraud) or normals (Phong). The
+//!    silhouette of a sphere is a quadratic, whose square root gives depth, normal and light. [`Shade`] turns normals
+//!    into colour once, at the end of the frame.
+//! 4. Pixels are computed separately from time. The reference model [`BitSerial`] moves bit planes like the hardware,
+//!    and defines every bit. [`BitSerial::skipping`] leaves out work that changes nothing. [`Lanes`] works on values,
+//!    only at the pixels that a command can change. The suite in [`conformance`] tests that all three agree in the 208
+//!    bits of all pixels, Enable, clocks and faults.
 //!
 //! # Numbers
 //!
-//! A triangle takes 258 clocks with interpolated colour, 292 with normals (published: 150,000 a second, TR94, which is
-//! 267), of which 220 and 250 are bits of the wire's formats; see [`isa::timing`], and [`command`] for the others.
+//! A triangle takes 258 clocks with interpolated colour and 292 with normals. Published are 150,000 a second (TR94),
+//! which is 267 clocks. Bits of the wire's formats take 220 and 250 of these clocks. [`isa::timing`] derives the
+//! numbers, and [`command`] lists the other commands.
 //!
 //! # Faults
 //!
-//! An illegal word or operand ends its list, without effect, and is counted ([`ArrayFault`], [`PixelArray::faults`]).
+//! An illegal word or operand has no effect, ends its list, and is counted ([`ArrayFault`], [`PixelArray::faults`]).
 //!
 //! # Not modelled
 //!
-//! - The real instruction set: none survives. Ours is the least that runs the published recipes, and is **assumed**.
+//! - The real instruction set, which is lost. The model's instruction set is the smallest one that runs the published
+//!   programs, and is **assumed**.
 //! - The split of the array into 64 chips, and the fill of the evaluator's pipeline beyond a constant for each
 //!   instruction.
-//! - What a program sees that touches a block of the backing store before its transfer has ended: the array moves the
-//!   block at once, only time passes later.
+//! - The state of a block of the backing store during its transfer. The array moves the block at once; only the time
+//!   passes later.
 //! - Antialiasing, texture, transparency.
 //!
 //! Sources: F89 (array, evaluator, memory, backing store), TR94 (recipe, rates, regions, Slats' four contexts), LK

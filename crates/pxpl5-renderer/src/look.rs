@@ -1,4 +1,4 @@
-//! What somebody who looks at a renderer while it works sees.
+//! Snapshots of a renderer while it works.
 
 use crate::contents::{MAX_CONTEXTS, changes_pixels, words_before_clear};
 use crate::{Lanes, Layout, PixelArray};
@@ -6,39 +6,40 @@ use pxpl5_sim::Span;
 use pxpl5_wire::{Body, CommandContent, CopyOrder, Message};
 use std::collections::VecDeque;
 
-/// What a renderer does at an instant.
+/// A snapshot of a renderer board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RendererLook {
-    /// Words of complete commands that wait in the input FIFO; `None` where nobody watches it.
+    /// Words of complete commands that wait in the input FIFO; `None` if the FIFO is not watched.
     pub fifo_words: Option<u32>,
-    /// Words that the FIFO holds.
+    /// Capacity of the FIFO in words.
     pub fifo_depth_words: u32,
-    /// Whether its controller stands at a copy command.
+    /// True while the controller executes a copy command.
     pub stands_at_copy: bool,
-    /// The region that is on its way to a display.
+    /// The region in transfer to a display.
     pub copying: Option<CopyOrder>,
-    /// Regions that are in the backing store, or on their way into it.
+    /// Number of regions in the backing store or on the way into it.
     pub stored_regions: usize,
-    /// Time spent executing commands since the start, without copies; commands that have been received count at once.
+    /// Time spent executing commands since the start, without copies. Received commands count immediately.
     pub busy: Span,
 }
 
-/// Lists of commands that can still be seen in pixel memory, or will be.
+/// Lists of commands whose effects are or will be visible in pixel memory.
 #[derive(Debug, Default)]
 pub(crate) struct SentLists(VecDeque<SentList>);
 
 #[derive(Debug)]
 struct SentList {
     context: usize,
-    /// Words that were sent before it, since the start.
+    /// Number of words that were sent before this list, since the start.
     first_word: u64,
-    /// The first word of the clear with which it begins, counted alike; `None` where it begins otherwise.
+    /// Position of the clear at the beginning of the list, in words since the start; `None` if the list begins
+    /// otherwise.
     clear: Option<u64>,
     content: CommandContent,
 }
 
 impl SentLists {
-    /// A message has come; the commands in the first `started` words of all have started.
+    /// Adds the list of a received message. `started` is the number of words whose commands have started.
     pub(crate) fn add(&mut self, message: &Message, first_word: u64, started: u64) {
         let Body::Commands(list) = &message.body else { return };
         let Some(content) = list.content.clone().filter(|_| changes_pixels(&list.runs)) else { return };
@@ -48,13 +49,13 @@ impl SentLists {
         self.0.push_back(SentList { context, first_word, clear, content });
     }
 
-    /// Gives up what a clear that has started has hidden.
+    /// Drops the lists whose drawing a started clear has erased.
     fn forget(&mut self, started: u64) {
         let cleared: [u64; MAX_CONTEXTS] = std::array::from_fn(|context| self.cleared_at(context, started));
         self.0.retain(|list| list.first_word >= cleared[list.context]);
     }
 
-    /// The first word of the last list whose clear of a context has started; 0 without any.
+    /// Returns the first word of the last list whose clear of a context has started; 0 if there is none.
     fn cleared_at(&self, context: usize, started: u64) -> u64 {
         let of_context = self.0.iter().filter(|list| list.context == context);
         of_context
@@ -64,7 +65,7 @@ impl SentLists {
             .unwrap_or(0)
     }
 
-    /// The array after the commands in the first `started` words; `None` where none of them changed a pixel.
+    /// Returns the array after the commands in the first `started` words; `None` if none of them changed a pixel.
     pub(crate) fn executed(&self, started: u64, layout: &Layout) -> Option<Lanes> {
         let mut lists = self.0.iter().filter(|list| list.first_word < started).peekable();
         lists.peek()?;

@@ -1,8 +1,8 @@
 //! Choice of the vector unit at run time.
 //!
-//! The only `unsafe` of this crate is here, in `simd/x86.rs` and in `simd/wasm.rs`: calling what is compiled for a vector unit, after
-//! asking the processor whether it has it (a module of WebAssembly is compiled for it as a whole or not). Measured to pay: see the bench
-//! groups `lanes/Portable` and `lanes/Avx2` of `cargo bench -p pxpl5-renderer`.
+//! All `unsafe` code of this crate is here, in `simd/x86.rs` and in `simd/wasm.rs`. It calls functions compiled for a
+//! vector unit after checking that the processor has the unit. WebAssembly chooses at compile time for a whole module.
+//! The gain is measured by the bench groups `lanes/Portable` and `lanes/Avx2` of `cargo bench -p pxpl5-renderer`.
 #![allow(unsafe_code)] // The compiler cannot know what the processor has.
 
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
@@ -13,48 +13,49 @@ mod x86;
 use pxpl5_wire::REGION_SIZE;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-/// Words from a pixel to the one below.
+/// Number of words from a pixel to the pixel below it.
 const ROW: usize = REGION_SIZE as usize;
 
-/// Pixels of a vector of fours that lie side by side; the next ones lie below.
+/// Group size of a vector of fours: four pixels lie side by side, the next four below them.
 pub(crate) const FOUR: usize = 4;
 
-/// The best unit that an array takes by itself, as its place in [`Vectors`].
+/// The best unit that arrays may choose, as its index in [`Vectors`].
 static MOST: AtomicU8 = AtomicU8::new(Vectors::Avx512 as u8);
 
 /// The vector units that a kernel is compiled for. All give the same bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Vectors {
-    /// What every processor of the target has.
+    /// Instructions that every processor of the target has.
     Portable,
-    /// WebAssembly with simd128: twice 4 numbers of 32 bits at a time.
+    /// WebAssembly with simd128: two vectors of four 32-bit numbers.
     Simd128,
-    /// x86-64 with AVX2: 8 numbers of 32 bits at a time.
+    /// x86-64 with AVX2: vectors of eight 32-bit numbers.
     Avx2,
-    /// x86-64 with AVX-512 (F, BW, DQ and VL): 16 numbers of 32 bits at a time.
+    /// x86-64 with AVX-512 (F, BW, DQ and VL): vectors of sixteen 32-bit numbers.
     Avx512,
 }
 
 impl Vectors {
-    /// The best last; each as its place.
+    /// All units, the best last. Each is at the index of its discriminant.
     const ALL: [Self; 4] = [Self::Portable, Self::Simd128, Self::Avx2, Self::Avx512];
 
-    /// All units that this processor has, the best last.
+    /// Returns all units that this processor has, the best last.
     #[must_use]
     pub fn available() -> Vec<Self> {
         Self::ALL.into_iter().filter(|vectors| vectors.present()).collect()
     }
 
-    /// The best unit that this processor has and that [`Vectors::at_most`] allows.
+    /// Returns the best unit that this processor has and that [`Vectors::at_most`] allows.
     #[must_use]
     pub fn best() -> Self {
         let most = MOST.load(Ordering::Relaxed) as usize;
         Self::ALL[..=most].iter().rev().copied().find(|vectors| vectors.present()).unwrap_or(Self::Portable)
     }
 
-    /// From now on no pixel array of this process takes a better unit by itself, so that whole experiments can be run on each:
-    /// `tests/hashes.rs`. Arrays that exist keep theirs.
+    /// Limits the units that new pixel arrays of this process choose by themselves.
+    ///
+    /// Tests run whole experiments on each unit this way (`tests/hashes.rs`). Existing arrays keep their unit.
     pub fn at_most(self) {
         MOST.store(self as u8, Ordering::Relaxed);
     }
@@ -81,24 +82,24 @@ impl Vectors {
     }
 }
 
-/// A vector unit that is known to be present.
+/// A vector unit that the processor is known to have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct PresentVectors(Vectors);
 
 impl PresentVectors {
-    /// `wanted`, or what every processor has where it is absent.
+    /// Returns `wanted` if the processor has it, otherwise the portable unit.
     pub(crate) fn or_portable(wanted: Vectors) -> Self {
         Self(if wanted.present() { wanted } else { Vectors::Portable })
     }
 
-    /// Runs the kernel compiled for this unit.
+    /// Runs the kernel that is compiled for this unit.
     #[inline]
     pub(crate) fn run<K: VectorKernel>(self, kernel: K) -> K::Output {
         match self.0 {
-            // SAFETY: a `PresentVectors` is made only where the processor says that it has these features.
+            // SAFETY: a `PresentVectors` exists only if the processor reports these features.
             #[cfg(target_arch = "x86_64")]
             Vectors::Avx512 => unsafe { avx512(kernel) },
-            // SAFETY: as above.
+            // SAFETY: as for AVX-512.
             #[cfg(target_arch = "x86_64")]
             Vectors::Avx2 => unsafe { avx2(kernel) },
             #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
@@ -108,7 +109,7 @@ impl PresentVectors {
     }
 }
 
-/// A loop worth vectorising. `run` must be `#[inline(always)]`, or it is compiled without the unit's features.
+/// A loop to vectorize. `run` must be `#[inline(always)]`, or it is compiled without the unit's features.
 pub(crate) trait VectorKernel {
     type Output;
     fn run<V: SimdVector>(self) -> Self::Output;
@@ -126,57 +127,57 @@ fn avx512<K: VectorKernel>(kernel: K) -> K::Output {
     kernel.run::<x86::Avx512>()
 }
 
-/// 32-bit integers side by side. Compilers find them in plain loops, but not in short ones.
+/// A vector of 32-bit integers. Compilers vectorize plain loops, but not short ones.
 pub(crate) trait SimdVector: Copy {
-    /// Integers in a vector; 128 is a multiple.
+    /// Number of integers in a vector; 128 is a multiple of it.
     const LANES: usize;
-    /// One truth a lane.
+    /// One truth value for each lane.
     type Mask: Copy;
 
     fn splat(value: i32) -> Self;
-    /// first, first + step, first + 2 step, ...; wraps.
+    /// Returns first, first + step, first + 2 step and so on, with wrap-around.
     fn ramp(first: i32, step: i32) -> Self;
-    /// The same in [fours](FOUR), each of which begins `down` further than the one before.
+    /// Returns a ramp in groups of [four](FOUR) lanes; each group begins `down` higher than the previous one.
     fn ramp_of_fours(first: i32, step: i32, down: i32) -> Self;
-    /// The first lanes of `from`, which has at least as many.
+    /// Loads the first lanes of `from`, which must be long enough.
     fn load(from: &[u32]) -> Self;
-    /// [Fours](FOUR) from the beginnings of rows of pixels.
+    /// Loads groups of [four](FOUR) pixels from the starts of consecutive rows of pixels.
     fn load_fours(from: &[u32]) -> Self;
-    /// As [`SimdVector::load`] from words of two lanes, the low half first.
+    /// Loads words of two lanes each, the low half first.
     fn load_words(from: &[u64]) -> Self;
-    /// Overwrites as many words as [`SimdVector::load_words`] reads.
+    /// Stores as many words as [`SimdVector::load_words`] reads.
     fn store_words(self, to: &mut [u64]);
-    /// All bits of lane i are bit i of `bits`.
+    /// Sets all bits of lane i to bit i of `bits`.
     fn spread(bits: u64) -> Self;
-    /// All bits of each lane are its bit `t`, 0 to 31.
+    /// Sets all bits of each lane to the lane's bit `t`, 0 to 31.
     fn bit(self, t: u32) -> Self;
-    /// Bit i is the sign of lane i.
+    /// Returns the signs: bit i is the sign of lane i.
     fn signs(self) -> u32;
     fn add(self, other: Self) -> Self;
     fn or(self, other: Self) -> Self;
     fn and(self, other: Self) -> Self;
     fn xor(self, other: Self) -> Self;
-    /// Shifts zeros in from the left; by 32 and more nothing is left but zeros.
+    /// Shifts each lane right and fills it with zeros. A shift by 32 or more gives 0.
     fn shift_right(self, by: u32) -> Self;
-    /// Shifts zeros in from the right; by 32 and more nothing is left but zeros.
+    /// Shifts each lane left and fills it with zeros. A shift by 32 or more gives 0.
     fn shift_left(self, by: u32) -> Self;
-    /// Where self >= 0 and `new` < `old`, signed.
+    /// Returns the lanes where self >= 0 and `new` < `old`, signed.
     fn passes(self, new: Self, old: Self) -> Self::Mask;
-    /// Whether one of the masks is true anywhere.
+    /// Returns true if any lane of either mask is true.
     fn any_of(a: Self::Mask, b: Self::Mask) -> bool;
-    /// Overwrites lanes of `to` where the mask is true; `old` is what they hold.
+    /// Overwrites the lanes of `to` where the mask is true; `old` is the content of `to`.
     fn store(self, mask: Self::Mask, old: Self, to: &mut [u32]);
-    /// The same of what [`SimdVector::load_fours`] reads.
+    /// Overwrites, where the mask is true, the pixels that [`SimdVector::load_fours`] reads; `old` is their content.
     fn store_fours(self, mask: Self::Mask, old: Self, to: &mut [u32]);
-    /// 255 where the mask is true, else 0.
+    /// Stores 255 where the mask is true, else 0.
     fn store_mask(mask: Self::Mask, to: &mut [u8]);
 }
 
-/// Eight numbers in an array, for processors without a unit that is known here.
+/// Eight numbers in an array, for processors without a supported vector unit.
 #[derive(Clone, Copy)]
 pub(crate) struct PortableVector([i32; 8]);
 
-/// Four lanes for each number of four bits, whose bits they are: processors without AVX2 have no shift a lane.
+/// For each number of four bits, the four lanes that hold its bits. Processors without AVX2 have no per-lane shifts.
 const FOUR_LANES: [[i32; 4]; 16] = {
     let mut out = [[0; 4]; 16];
     let mut bits = 0;
@@ -286,7 +287,7 @@ impl SimdVector for PortableVector {
 
     #[inline(always)]
     fn shift_right(self, by: u32) -> Self {
-        // A processor's own shift takes the count modulo 32, a vector unit's does not.
+        // The processor's own shift takes the count modulo 32; the shift of a vector unit does not.
         if by < 32 { self.map(|v| (v as u32 >> by) as i32) } else { Self::splat(0) }
     }
 
@@ -330,7 +331,7 @@ impl SimdVector for PortableVector {
 mod tests {
     use super::*;
 
-    /// Both shifts of as many numbers as the unit has lanes, or fewer.
+    /// A kernel that shifts all lanes of a vector in both directions.
     struct Shifts {
         values: [u32; 16],
         by: u32,
@@ -353,7 +354,7 @@ mod tests {
     #[test]
     fn every_unit_shifts_by_every_count_and_leaves_zeros_from_32_on() {
         let values: [u32; 16] = std::array::from_fn(|k| 0x9E37_79B9_u32.wrapping_mul(k as u32 * 2 + 1) | 0x8000_0001);
-        // All that a byte can say, and counts that are small in their lowest bits.
+        // All values of a byte, and larger counts whose lowest bits are small.
         for by in (0..=255).chain([256, 1 << 16, 1 << 31, (1 << 31) + 1, u32::MAX]) {
             let right = |value: u32| (u64::from(value) << 32).checked_shr(by).map_or(0, |wide| (wide >> 32) as u32);
             let left = |value: u32| u64::from(value).checked_shl(by).unwrap_or(0) as u32;
@@ -368,10 +369,10 @@ mod tests {
         }
     }
 
-    /// What a unit does, by name, and how many lanes it has.
+    /// Results of a unit's operations by name, and its number of lanes.
     type Done = Vec<(&'static str, Vec<u32>)>;
 
-    /// Numbers for as many lanes as any unit has, and rows of pixels.
+    /// A kernel that applies every operation to numbers for all lanes, and to rows of pixels.
     struct Everything {
         a: [u32; 16],
         b: [u32; 16],
@@ -397,7 +398,7 @@ mod tests {
             let [a, b, c] = [V::load(&self.a), V::load(&self.b), V::load(&self.c)];
             let words: [u64; 8] =
                 std::array::from_fn(|k| u64::from(self.b[2 * k + 1]) << 32 | u64::from(self.b[2 * k]));
-            // Pixel memory may end behind the last four.
+            // Pixel memory may end after the last group of four.
             let fours = ROW * (V::LANES / FOUR - 1) + FOUR;
             let [passes, nowhere] = [a.passes(b, c), V::splat(-1).passes(b, c)];
             let mut stored = self.b;
@@ -431,7 +432,7 @@ mod tests {
     }
 
     impl Everything {
-        /// The same number by number.
+        /// Computes the expected results number by number.
         fn by_numbers(&self, lanes: usize) -> Done {
             let Self { a, b, c, rows } = self;
             let each = |f: &dyn Fn(usize) -> i32| -> Vec<u32> { (0..lanes).map(|k| f(k) as u32).collect() };
@@ -479,7 +480,7 @@ mod tests {
     fn every_unit_does_what_numbers_do_one_by_one() {
         let mut random = crate::conformance::Random::new(40);
         for round in 0..200 {
-            // Some are the same, or are small.
+            // Some numbers are equal or small.
             let bits = [1, 4, 32][round % 3];
             let [a, b, c] = [(); 3].map(|()| [(); 16].map(|()| random.signed(bits) as u32));
             let rows = [(); 4 * ROW].map(|()| random.next() as u32);

@@ -1,5 +1,7 @@
-//! Every number of the board. Clocks of commands are those of their programs in the layout of Rendering Control
-//! ([`CommandKind::clocks`]; a test holds the two equal); they stand here so that experiments can change them.
+//! All numbers of the renderer board.
+//!
+//! Clocks of commands are the clocks of their programs in the layout of Rendering Control ([`CommandKind::clocks`]). A
+//! test checks that both are equal. The table lists them so that experiments can change them.
 
 use crate::command::CommandKind;
 use pxpl5_sim::{Clock, Cycles, Span};
@@ -7,41 +9,41 @@ use pxpl5_sim::{Clock, Cycles, Span};
 parameters::parameter_table! {
     /// Times and sizes of a renderer.
     pub struct RendererTiming {
-        /// Clock of the controller and the array.
+        /// Clock rate of the controller and the array.
         clock_hz: 40_000_000, "Hz", Published, 40000000..=40000000 in 1_000..=MAX, "F89, TR94";
-        /// A triangle, in every region that it is sent to.
+        /// Time of a triangle with interpolated colour, in each region that it is sent to.
         triangle_clocks: 258, "clocks", Derived, 250..=300 in 0..=MAX, "its program; 150,000 triangles/s (TR94) are 267";
-        /// A triangle with normals instead of colours.
+        /// Time of a triangle with normals instead of colours.
         phong_triangle_clocks: 292, "clocks", Derived, 250..=300 in 0..=MAX, "its program; 150,000 triangles/s (TR94) are 267, bit budget 262 to 292";
-        /// A sphere; in the layout of Slats its program takes 748.
+        /// Time of a sphere with interpolated colour. In the layout of Slats the program takes 748 clocks.
         sphere_clocks: 810, "clocks", Derived, 318..=810 in 0..=MAX, "its program, with an exact root; a paraboloid takes 318";
-        /// A sphere with normals.
+        /// Time of a sphere with normals.
         phong_sphere_clocks: 504, "clocks", Derived, 268..=504 in 0..=MAX, "its program, with an exact root; a paraboloid takes 268";
-        /// Choice of a region context and its origin.
+        /// Time to select a region context and its origin.
         select_clocks: 6, "clocks", Derived, 1..=64 in 0..=MAX, "its program: one instruction";
-        /// Background colour and farthest depth into all pixels.
+        /// Time to store the background colour and the farthest depth in all pixels.
         clear_clocks: 62, "clocks", Derived, 16..=256 in 0..=MAX, "its program: one clock a bit of colour and depth, and the fetches";
-        /// Deferred shading of a region at the end of the frame.
+        /// Time of the deferred shading of a region at the end of the frame.
         shade_clocks: 3_790, "clocks", Derived, 3_790..=8_000 in 0..=MAX, "its program, with one light: 95 us; assumed before: 100 to 200 us";
-        /// Transfer of one 32-bit block of all pixels to or from the backing store.
+        /// Time to move one 32-bit block of all pixels to or from the backing store.
         backing_block_clocks: 2_040, "clocks", Assumed, 1024..=4096 in 0..=MAX, "51 us";
-        /// Backing store of a pixel.
+        /// Backing store of each pixel, in bits.
         backing_bits: 4_096, "bits", Published, 4_096..=4_096 in 0..=MAX, "F89: video memory beside each pixel's 208 bits";
-        /// What a finished region needs of it until it is copied.
+        /// Bits per pixel of the backing store that a finished region occupies until it is copied.
         kept_bits: 32, "bits", Derived, 32..=256 in 1..=MAX, "its 24 bits of colour, moved in blocks of 32 (F89); 256 if all 208 bits of a pixel were kept";
-        /// Depth of the input FIFO.
+        /// Capacity of the input FIFO in words.
         fifo_words: 448, "words", Assumed, 256..=2048 in 128..=1_048_576, "no source gives it. Range: FIFO chips of 9 bits as sold from 1988 to 1990, four of them for a port of 32 bits, had 256, 512, 1,024 or 2,048 words (recollected). The value was once fitted to the 56.5 ms of a trivial scene (TR94) while renderers kept one region; it does not move that any more and is kept, since no source gives a better one";
     }
 }
 
 impl RendererTiming {
-    /// Time of one 32-bit block of all pixels to or from the backing store.
+    /// Returns the time to move one 32-bit block of all pixels to or from the backing store.
     #[must_use]
     pub fn backing_block(&self) -> Span {
         Clock::from_hz(self.clock_hz).map_or(Span::ZERO, |clock| clock.span(Cycles(self.backing_block_clocks)))
     }
 
-    /// Finished regions that the backing store has room for: 128.
+    /// Returns the number of finished regions that the backing store can hold (128 with the default values).
     #[must_use]
     pub const fn backing_regions(&self) -> u64 {
         match self.backing_bits.checked_div(self.kept_bits) {
@@ -50,7 +52,8 @@ impl RendererTiming {
         }
     }
 
-    /// Execution time of one command; `None` for the copy of a region, which ends when the frame buffer has it.
+    /// Returns the execution time of one command. Returns `None` for a region copy, which ends when the frame buffer
+    /// has the region.
     #[must_use]
     pub fn span(&self, kind: CommandKind) -> Option<Span> {
         let clocks = match kind {
@@ -61,7 +64,7 @@ impl RendererTiming {
             CommandKind::Sphere => self.sphere_clocks,
             CommandKind::PhongSphere => self.phong_sphere_clocks,
             CommandKind::Shade => self.shade_clocks,
-            // The transfer itself goes on beside the array.
+            // The transfer continues in parallel with the array.
             CommandKind::StoreBacking | CommandKind::LoadBacking => self.select_clocks,
             CommandKind::WaitBacking => self.backing_block_clocks,
             CommandKind::CopyRegion => return None,

@@ -1,4 +1,4 @@
-//! What arrays send, draw and keep between commands, on planes of noise.
+//! Tests of outputs, drawing, and state kept between commands, on arrays of noise.
 
 use pxpl5_renderer::conformance::{Random, scramble};
 use pxpl5_renderer::isa::{ArrayInstruction, Expression, ExpressionUse, MEMORY_BITS, Operand};
@@ -16,7 +16,8 @@ fn layouts() -> [Layout; 3] {
     [Layout::rendering_control_phong(), Layout::slats(), Layout::slats_quarters()]
 }
 
-/// 100 x 75 pixels in regions of 30 x 20; those at the right are 10 wide, those at the bottom 15 high.
+/// Returns a target in a picture of 100 x 75 pixels with regions of 30 x 20. Regions at the right are 10 wide, regions
+/// at the bottom 15 high.
 fn target(region: u16) -> CopyTarget {
     CopyTarget {
         frame_buffer: NodeId(9),
@@ -28,7 +29,7 @@ fn target(region: u16) -> CopyTarget {
     }
 }
 
-/// Bits `first ..` of the left top pixels, row by row.
+/// Returns bits `first ..` of the left top pixels, row by row.
 fn expected(planes: &[Plane], first: usize, bits: usize, [width, height]: [usize; 2]) -> Vec<Word> {
     let pixel = |x: usize, y: usize| {
         let bit = |i: usize| planes[first + i][2 * y + x / 64] >> (x % 64) & 1;
@@ -88,7 +89,7 @@ fn draws_what_it_executes(mut drawing: impl PixelArray, mut executing: impl Pixe
         }
         let expected = executing.execute(&words).map_or_else(|_| Vec::new(), |executed| executed.outputs);
         assert_eq!(expected.len(), usize::from(!fault));
-        // What was in the room does not count.
+        // Earlier content of the scratch memory must not matter.
         let outputs = drawing.draw(&CommandContent::new(Arc::new(Words(words)), 0), &mut vec![Word::MAX]);
         assert_eq!(outputs, expected);
         assert_eq!(drawing.faults(), executing.faults());
@@ -116,7 +117,7 @@ fn planes(i: i32) -> [Linear; 3] {
     [linear(i), linear(i + 10), linear(i + 20)]
 }
 
-/// A command of a kind, the linear coefficients that come last in it, and the quadratic ones.
+/// Returns a command of a kind, its last linear coefficients, and its last quadratic coefficients.
 fn command(kind: usize, i: i32) -> (Command, Linear, Quadratic) {
     let body = SphereBody { silhouette: SILHOUETTE, root_shift: 0, depth: linear(i), depth_shift: 3 };
     let [edges, depth, components] = [planes(i), planes(i + 30), planes(i + 60)];
@@ -140,7 +141,8 @@ fn command(kind: usize, i: i32) -> (Command, Linear, Quadratic) {
     }
 }
 
-/// Three of a kind, since an array may draw them in one go; then what the evaluator holds, in 32 bits of every pixel.
+/// Executes three commands of a kind, which an array may draw together, then stores the latched expression in 32 bits
+/// of every pixel.
 fn holds_the_last_coefficients(mut array: impl PixelArray, layout: &Layout, kind: usize) -> bool {
     let mut words = Vec::new();
     let [.., (_, linear, quadratic)] = [1, 2, 3].map(|i| {

@@ -1,4 +1,5 @@
-//! A renderer board alone: when commands start and what regions take on their way out, by the rules of its FIFO and its table of times.
+//! Tests of a single renderer board: start times of commands and the way of regions to the ring, by the rules of the
+//! FIFO and the table of times.
 
 mod support;
 
@@ -8,11 +9,11 @@ use pxpl5_wire::{Body, CommandRun, CopyContent, CopyWay};
 use support::{Bench, CYCLE, DISPLAY, HOST, NODE, WORD, list, order, run};
 
 const BEGIN: Time = Time(1_000_000_000);
-/// 258 clocks of 25 ns.
+/// Time of a triangle: 258 clocks of 25 ns.
 const TRIANGLE: Span = Span(258 * 25_000);
-/// A region's colours into the backing store: 2,040 clocks of 25 ns (F89's 51 us).
+/// Time to move a region's colours to the backing store: 2,040 clocks of 25 ns (F89's 51 us).
 const BLOCK: Span = Span(51_000_000);
-/// A copy command, which has nine words, has come in.
+/// Time for a copy command of nine words to enter the FIFO.
 const COPY_WORDS: Span = Span(9 * 50_000);
 
 #[test]
@@ -38,7 +39,7 @@ fn words_that_are_no_command_are_counted_and_take_no_clocks() {
 
 #[test]
 fn a_region_leaves_in_whole_messages_of_which_the_last_one_is_told_back() {
-    // 100 x 100 pixels.
+    // The region has 100 x 100 pixels.
     for (content, words, parts) in [(CopyContent::Colour, 10_000, 10), (CopyContent::ColourAndDepth, 20_000, 20)] {
         let mut bench = Bench::new();
         let order = order(1, CopyWay::FromPixelMemory, content);
@@ -101,7 +102,7 @@ fn what_stands_behind_a_copy_from_pixel_memory_waits_for_its_last_pixel() {
     assert_eq!(bench.device.blocked("renderer 3"), None);
 }
 
-/// Times at which the first pixels of each region were sent.
+/// Returns the times at which the first pixels of each region were sent.
 fn departures(bench: &Bench) -> Vec<Time> {
     let is_first = |sent: &support::Sent| matches!(&sent.message.body, Body::Pixels(pixels) if pixels.part == 0);
     bench.sent().into_iter().filter(is_first).map(|sent| sent.at).collect()
@@ -132,7 +133,7 @@ fn a_region_in_the_backing_store_leaves_beside_the_commands_that_follow() {
 #[test]
 fn where_the_backing_store_is_full_the_next_region_waits_until_one_has_left() {
     use CopyContent::{Colour, ColourAndDepth};
-    // A region takes a place, or with depths two; one of them may be on its way out.
+    // A region takes one place, or two with depths. One of the places may be in transfer.
     for (places, content, waits) in
         [(1, Colour, true), (2, Colour, false), (3, ColourAndDepth, true), (4, ColourAndDepth, false)]
     {
@@ -176,7 +177,8 @@ fn a_copy_command_without_an_order_ends_at_once() {
     assert!(bench.sent().is_empty());
 }
 
-/// Two triangles in one message, or in two, of which the second is told before the first has come in.
+/// Sends two triangles in one message, or in two messages, of which the second is announced before the first has
+/// arrived.
 #[test]
 fn whoever_watches_the_fifo_sees_words_between_their_last_one_and_the_start_of_their_command() {
     for messages in [1, 2] {
@@ -187,7 +189,8 @@ fn whoever_watches_the_fifo_sees_words_between_their_last_one_and_the_start_of_t
             bench.announce(BEGIN + Span(message.into()), list(&[triangles], &[]));
         }
         bench.run();
-        // The second one has come whole after 60 words, and starts when the first one, which started after 30, has ended.
+        // The second triangle is complete after 60 words. It starts when the first one, which started after 30 words,
+        // has ended.
         let [first, second, started] = [WORD * 30, WORD * 60, WORD * 30 + TRIANGLE].map(|span| BEGIN + span);
         let words = |at: Time| bench.device.look(at).fifo_words;
         assert_eq!([BEGIN, first, Time(second.0 - 1)].map(words), [Some(0); 3]);

@@ -1,4 +1,4 @@
-//! What a renderer board's regions hold: what was sent to their context until they were copied, and until somebody looks.
+//! Tests of the content of a renderer board's regions: the lists sent to their context until they are copied or read.
 
 mod support;
 
@@ -23,7 +23,7 @@ fn copy(target: CopyTarget) -> Command {
     Command::CopyRegion(pxpl5_renderer::CopyRegion { target })
 }
 
-/// A region of one colour that is copied.
+/// Returns a list that fills a region with one colour and copies it.
 fn painted(colour: Word, order: CopyOrder) -> CommandList {
     list_of(&[select(0), clear(colour), copy(order.target)], &[order])
 }
@@ -50,7 +50,7 @@ fn a_region_is_copied_as_it_was_when_its_copy_was_sent() {
         bench.delivered(BEGIN + Span::from_us(900));
         bench.run();
         let images = images(&bench);
-        // Of 100 x 100 pixels, and of 10 x 100.
+        // The regions have 100 x 100 and 10 x 100 pixels.
         assert_eq!(images.iter().map(|image| image.len()).collect::<Vec<_>>(), [10_000, 1_000]);
         for (image, colour) in images.iter().zip(colours) {
             assert!(image.iter().all(|pixel| *pixel == colour), "{colour:x}");
@@ -70,7 +70,7 @@ fn depths_that_are_copied_too_follow_the_colours_and_lie_at_the_far_plane_where_
     assert!(image[10_000..].iter().all(|depth| *depth == FARTHEST));
 }
 
-/// Slats' 20 bits of depth are the upper ones of 24, and of 32 on the way.
+/// Slats' 20 bits of depth are the upper bits of 24, which are the upper bits of 32 in the depth expression.
 #[test]
 fn depths_of_what_was_drawn_are_the_upper_bits_of_24() {
     let inside = Linear::constant(1);
@@ -83,7 +83,7 @@ fn depths_of_what_was_drawn_are_the_upper_bits_of_24() {
     assert!(images(&bench)[0][10_000..].iter().all(|depth| *depth == 0x12_3450));
 }
 
-/// What is drawn behind a copy in the same list is not in it, nor what is copied to somewhere else.
+/// Drawing after a copy in the same list must not appear in the copy, nor pixels that are copied to another target.
 #[test]
 fn what_comes_behind_a_copy_is_not_in_it() {
     for saves in [true, false] {
@@ -112,7 +112,7 @@ fn a_region_of_which_no_words_were_sent_is_black() {
     assert_eq!(images(&bench), [vec![0; 20_000].into()]);
 }
 
-/// The colour of the selected context at a pixel.
+/// Returns the colour of the selected context at a pixel.
 fn colour(array: &Lanes) -> Word {
     array.read_colour(1, 1)[0]
 }
@@ -131,8 +131,8 @@ fn pixel_memory_holds_what_was_sent_since_the_last_clear_and_no_list_that_draws_
     }
 }
 
-/// Commands count from their start on: select with two words, then clear with five. The picture before is seen until the clear starts,
-/// which comes behind five selects of six clocks the second time.
+/// Commands count from their start on: a select has two words, a clear five. The earlier picture is visible until the
+/// clear starts, the second time after five selects of six clocks.
 #[test]
 fn whoever_looks_into_the_array_sees_what_has_started() {
     let mut bench = Bench::new();
@@ -157,7 +157,7 @@ fn whoever_looks_into_the_array_sees_what_has_started() {
     assert_eq!(seen(&bench, third + WORD * 5), Some(0x70_80_90));
 }
 
-/// Arrays are used again, for whatever region comes.
+/// Arrays are reused for any region.
 #[test]
 fn a_region_that_was_never_cleared_is_black_whatever_its_array_held() {
     let mut bench = Bench::new();
@@ -172,7 +172,7 @@ fn a_region_that_was_never_cleared_is_black_whatever_its_array_held() {
     assert!(images[0].iter().all(|pixel| *pixel == 0x10_20_30) && images[1].iter().all(|pixel| *pixel == 0));
 }
 
-/// There are eight contexts, so that nine is one.
+/// There are eight contexts, so context 9 is the same as context 1.
 #[test]
 fn what_is_sent_to_another_context_changes_nothing_that_is_copied() {
     for (sent, copied) in [(1, 1), (1, 9), (9, 1)] {

@@ -1,4 +1,4 @@
-//! Both pixel arrays agree in every bit. `PXPL5_FUZZ_SECONDS` sets how long the random part runs.
+//! Tests that all pixel arrays agree in every bit. `PXPL5_FUZZ_SECONDS` sets the duration of the random part.
 
 use pxpl5_renderer::conformance::{self, Mismatch, Random};
 use pxpl5_renderer::isa::{ArrayInstruction, Expression, ExpressionUse, Operand};
@@ -12,10 +12,10 @@ use pxpl5_wire::{
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Rounds of each layout without the variable.
+/// Number of rounds for each layout if the variable is not set.
 const ROUNDS: u64 = 20;
 
-/// Lists of each vector unit.
+/// Number of lists for each vector unit.
 const CORNER_RUNS: u64 = 300;
 
 fn layouts() -> [Layout; 3] {
@@ -67,8 +67,8 @@ fn what_is_skipped_changes_nothing_on_any_vector_unit() {
     }
 }
 
-/// Triangles of the size that most of a scene have, where the array ends and where vectors begin. Rows and columns that
-/// a fast array adds or leaves out for the sake of its vectors show here.
+/// Tests triangles of common sizes at the borders of the array and of vectors. Errors in the rows and columns that a
+/// fast array adds or leaves out for its vectors appear here.
 #[test]
 fn small_triangles_agree_where_the_array_ends_on_every_vector_unit() {
     let mut random = Random::new(77);
@@ -87,7 +87,7 @@ fn small_triangles_agree_where_the_array_ends_on_every_vector_unit() {
     }
 }
 
-/// Its box is up to 20 pixels wide and 9 high and begins near a border or anywhere.
+/// Returns a triangle whose box is up to 20 pixels wide and 9 high, near a border or anywhere.
 fn small_triangle(random: &mut Random, layout: &Layout) -> Command {
     let width = 1 + below(random, 20);
     let height = 1 + below(random, 9);
@@ -107,12 +107,12 @@ fn small_triangle(random: &mut Random, layout: &Layout) -> Command {
     }
 }
 
-/// A number from 0 to `n` - 1.
+/// Returns a number from 0 to `n` - 1.
 fn below(random: &mut Random, n: i32) -> i32 {
     random.below(n as u64) as i32
 }
 
-/// First column (or row) of a box of `size` of them: across the first border, across the last one, or anywhere.
+/// Returns the first column (or row) of a box of `size`: across the first border, across the last border, or anywhere.
 fn small_box_begins(random: &mut Random, size: i32) -> i32 {
     match below(random, 4) {
         0 => -below(random, 3),
@@ -121,20 +121,20 @@ fn small_box_begins(random: &mut Random, size: i32) -> i32 {
     }
 }
 
-/// At least 0 on one side of the line from a to b.
+/// Returns an edge that is at least 0 on one side of the line from a to b.
 fn edge([ax, ay]: [i32; 2], [bx, by]: [i32; 2]) -> Linear {
     let dx = bx - ax;
     let dy = by - ay;
     Linear { a: -dy, b: dx, c: dy * ax - dx * ay }
 }
 
-/// A plane whose values use about `bits` bits over the array.
+/// Returns a plane whose values use about `bits` bits over the array.
 fn plane(random: &mut Random, bits: u32) -> Linear {
     Linear { a: random.signed(bits - 8), b: random.signed(bits - 8), c: random.signed(bits) }
 }
 
-/// Its radius is up to 40 pixels, its middle in the array or near it. The second one has other colours at the same depths, none of
-/// which is nearer.
+/// Returns a sphere of radius up to 40 pixels in or near the array, and the same sphere in other colours. No depth of
+/// the second one is nearer.
 fn sphere_twice(random: &mut Random, layout: &Layout) -> [Command; 2] {
     let [x, y] = [(); 2].map(|()| i64::from(below(random, 168) - 20));
     let r = i64::from(1 + below(random, 40));
@@ -178,7 +178,7 @@ fn spheres_agree_on_every_vector_unit() {
     }
 }
 
-/// Whoever reads Enable behind a command, before it is set again, finds what the command left there.
+/// Tests that a later read of Enable finds the value that a command left there.
 #[test]
 fn enable_is_read_behind_a_command() {
     for layout in [Layout::rendering_control_phong(), Layout::slats()] {
@@ -203,7 +203,7 @@ fn enable_is_read_behind_a_command() {
     }
 }
 
-/// Noise is shaded, whose depths are hardly anywhere those of the far plane, and some triangles on it.
+/// Shades noise, whose depths are almost never at the far plane, with some triangles on it.
 #[test]
 fn shading_agrees_on_every_vector_unit() {
     let layout = Layout::rendering_control_phong();
@@ -232,7 +232,8 @@ fn pick(random: &mut Random, from: &[i32]) -> i32 {
     from[random.below(from.len() as u64) as usize]
 }
 
-/// Instructions with an expression that turns its sign, or wraps, at a corner of a block of pixels or beside it.
+/// Returns instructions with an expression that changes its sign, or overflows, at or near a corner of a block of
+/// pixels.
 fn corner_run(random: &mut Random) -> Vec<ArrayInstruction> {
     let slopes = [0, 1, -1, 16, -16, 333, -70_001, 1 << 23, -(1 << 24), i32::MAX, i32::MIN];
     let mut out = Vec::new();
@@ -315,7 +316,7 @@ fn constants_of_a_command_agree_whatever_they_are() {
         let mut b = Lanes::new(&layout);
         let mut words = Vec::new();
         Command::Clear(Clear { colour: 0x12_3456 }).encode(&layout, &mut words).unwrap();
-        // The depth that a clear always sets to the far plane, with one bit flipped on the way.
+        // The depth that a clear always sets to the far plane, with one bit flipped.
         words[4] ^= 1 << 13;
         check(conformance::agree(&mut a, &mut b, &words, &"a clear to a nearer depth"));
     }
@@ -343,12 +344,12 @@ fn both_arrays_send_the_same_pixels_of_a_context_to_a_frame_buffer() {
     let outputs = b.execute(&words).unwrap().outputs;
     assert_eq!((outputs.len(), outputs[0].target), (1, target));
     assert_eq!(outputs[0].pixels, a.read_colour(128, 120));
-    // Pixel (70, 3) from its 24 planes.
+    // The expected colour of pixel (70, 3) from its 24 planes.
     let planes = (0..24).map(|i| (a.plane(88 + i)[2 * 3 + 1] >> 6 & 1) << i);
     assert_eq!(u64::from(outputs[0].pixels[3 * 128 + 70]), planes.sum::<u64>());
 }
 
-/// The definition, with one bit turned over behind every list.
+/// The reference model with one bit inverted after every list, which the suite must detect.
 struct Wrong(BitSerial);
 
 impl PixelArray for Wrong {
@@ -403,7 +404,7 @@ fn every_part_of_the_suite_finds_a_wrong_array() {
     assert_eq!(found.after, "\"round 7, step 0\"");
 }
 
-/// Of eight planes one has no bit set, one all of them, one a quarter, one three quarters and four the half.
+/// Of eight planes one has no bit set, one has all bits set, one a quarter, one three quarters and four the half.
 #[test]
 fn noise_is_the_same_in_both_arrays_and_has_long_runs_too() {
     let layout = Layout::slats();
@@ -414,20 +415,20 @@ fn noise_is_the_same_in_both_arrays_and_has_long_runs_too() {
         check(conformance::agree(&mut a, &mut b, &[], &"noise"));
         for bit in 0..208 {
             let ones: u32 = a.plane(bit).iter().map(|word| word.count_ones()).sum();
-            // In quarters of the pixels; their share varies by less than a fiftieth.
+            // Counts in quarters of the pixels, with a tolerance of less than a fiftieth.
             let kind = (0..5).find(|quarters| ones.abs_diff(quarters * 4096) < 320).expect("one of these");
             counts[kind as usize] += 1;
             assert!(kind > 0 && kind < 4 || ones == kind * 4096, "{ones}");
         }
     }
-    // 130 of each, but 520 of the half.
+    // About 130 planes of each kind, but 520 with half of the bits.
     for (kind, count) in counts.into_iter().enumerate() {
         let expected = if kind == 2 { 420..620 } else { 80..190 };
         assert!(expected.contains(&count), "{counts:?}");
     }
 }
 
-/// It says which bit of which pixel is first, what it is not, and in how many pixels the plane is wrong.
+/// Tests that the error names the first wrong pixel, its wrong bit, and the number of wrong pixels in the plane.
 #[test]
 fn a_mismatch_names_the_first_pixel_and_counts_them() {
     let layout = Layout::slats();

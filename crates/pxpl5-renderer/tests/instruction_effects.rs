@@ -1,5 +1,7 @@
-//! What each instruction does to a pixel, from the table at the head of `isa`: with whole numbers and one pixel at a time,
-//! which neither array has. All arrays are held to it, on random instructions of each opcode.
+//! Tests of each instruction's effect on a pixel, by an independent model of the table in `isa`.
+//!
+//! The model uses whole numbers and single pixels, unlike all arrays. The arrays are compared with it on random
+//! instructions of each opcode.
 
 use pxpl5_renderer::conformance::{Random, scramble};
 use pxpl5_renderer::isa::{ArithmeticOp, ArrayInstruction, Expression, ExpressionUse, Operand, Test};
@@ -7,10 +9,10 @@ use pxpl5_renderer::{BitSerial, Lanes, Layout, PixelArray, Plane, Vectors};
 use pxpl5_wire::{Linear, Quadratic, Word};
 use std::collections::HashMap;
 
-/// Instructions of each opcode.
+/// Number of instructions for each opcode.
 const ROUNDS: usize = 10;
 
-/// Pixels that are looked at: some corners of the array and of its parts, and some anywhere.
+/// Pixels to compare: some corners of the array and its parts, and some others.
 const PLACES: [[usize; 2]; 16] = [
     [0, 0],
     [127, 0],
@@ -38,7 +40,7 @@ struct Controller {
     quadratic: Quadratic,
 }
 
-/// One of the array's processors.
+/// Model of one of the array's processors.
 struct Pixel {
     place: [usize; 2],
     memory: [bool; 208],
@@ -46,12 +48,12 @@ struct Pixel {
     backing: HashMap<u8, i128>,
 }
 
-/// The low bits of a number.
+/// Returns the low bits of a number.
 fn low(value: i128, bits: u32) -> i128 {
     value & ((1 << bits) - 1)
 }
 
-/// The low bits of a number, with the last one for its sign.
+/// Returns the low bits of a number as a two's complement number.
 fn signed(value: i128, bits: u32) -> i128 {
     let value = low(value, bits);
     if value >> (bits - 1) == 1 { value - (1 << bits) } else { value }
@@ -205,8 +207,10 @@ fn first(controller: &Controller, field: Operand) -> usize {
     usize::from(field.address) + if field.relative { controller.base } else { 0 }
 }
 
-/// Whether fields may not lie as they do: all lie in pixel memory; an operand begins where the destination does or has no bit in
-/// common with it, which alone will do for what multiplies, divides, takes a root or subtracts from an expression.
+/// Returns true if an instruction must be rejected because of the positions of its fields.
+///
+/// All fields must be in pixel memory. An operand must begin at the same bit as the destination or have no common bit
+/// with it. Only the latter is valid for products, quotients, roots and differences from an expression.
 fn is_refused(controller: &Controller, instruction: &ArrayInstruction) -> bool {
     use ArrayInstruction as I;
     let bits = |field: Operand| first(controller, field)..first(controller, field) + usize::from(field.width);
@@ -264,28 +268,29 @@ impl Controller {
     }
 }
 
-/// A number of so many bits, which may be 0 or all ones too.
+/// Returns a number of random width, which may be 0 or all ones.
 fn word(random: &mut Random) -> Word {
     let any = random.next() as Word;
     [any, any, any >> random.below(32), !(any >> random.below(32)), 0, Word::MAX][random.below(6) as usize]
 }
 
-/// All but output, which changes nothing of a pixel.
+/// Returns all opcodes except output, which changes no pixel.
 fn opcodes() -> impl Iterator<Item = Word> {
     let groups =
         [0x01..=0x07, 0x10..=0x14, 0x20..=0x24, 0x30..=0x3c, 0x40..=0x43, 0x48..=0x4b, 0x50..=0x51, 0x60..=0x62];
     groups.into_iter().flatten()
 }
 
-/// An instruction of this opcode that can be read.
+/// Returns a valid random instruction of this opcode.
 fn any_of(opcode: Word, random: &mut Random) -> ArrayInstruction {
     loop {
-        // Half of the fields have eight bits at most, so that numbers are now and then the same; two blocks for the same reason.
+        // Half of the fields have at most eight bits, so that numbers are sometimes equal. There are only two blocks
+        // for the same reason.
         let fields = [Word::MAX, 0xC7FF_C7FF][random.below(2) as usize];
         let modifiers = if opcode >> 4 == 6 { 0x01 } else { [0, 0x1F, 0x3F, 0xFF][random.below(4) as usize] };
         let operand = if random.below(8) == 0 { 0 } else { fields & 0xFFFF };
         let mut words = vec![opcode << 24 | random.next() as Word & (modifiers << 16 | operand)];
-        // Two fields, one, one and a shift, or a number.
+        // The second word holds two fields, one field, one field and a shift, or a number.
         let second = [fields, fields & 0xFFFF_0000, fields & 0xFFFF_003F][random.below(3) as usize];
         words.push([random.next() as Word & second, word(random)][random.below(2) as usize]);
         words.extend((0..12).map(|_| word(random)));
@@ -302,7 +307,7 @@ fn pixels(array: &impl PixelArray) -> Vec<([bool; 208], bool)> {
     PLACES.iter().map(|place| (std::array::from_fn(|bit| at(&planes[bit], *place)), at(&enable, *place))).collect()
 }
 
-/// An array and the model that follows it.
+/// An array and the model that it is compared with.
 struct Followed<A> {
     array: A,
     controller: Controller,
@@ -312,7 +317,7 @@ struct Followed<A> {
 }
 
 impl<A: PixelArray> Followed<A> {
-    /// Both begin with the same noise.
+    /// Creates an array and a model with the same noise.
     fn new(mut array: A, random: &mut Random) -> Self {
         scramble(random, &mut array, &mut BitSerial::new(&Layout::slats()));
         let pixel = |((memory, enable), place)| Pixel { place, memory, enable, backing: HashMap::new() };
@@ -320,7 +325,7 @@ impl<A: PixelArray> Followed<A> {
         Self { array, controller: Controller::default(), model, executed: 0, faults: 0 }
     }
 
-    /// An instruction may be refused for where its fields lie; then it has no effect.
+    /// Runs an instruction on both. An instruction with invalid fields must have no effect.
     fn run(&mut self, instruction: &ArrayInstruction) {
         let mut words = Vec::new();
         instruction.encode(&mut words);
@@ -347,7 +352,7 @@ impl<A: PixelArray> Followed<A> {
     }
 }
 
-/// Runs instructions of every opcode; then resets the array, and runs some more.
+/// Runs instructions of every opcode, resets the array, and runs some more.
 fn follow(array: impl PixelArray, seed: u64) {
     let mut random = Random::new(seed);
     let mut followed = Followed::new(array, &mut random);
@@ -355,7 +360,7 @@ fn follow(array: impl PixelArray, seed: u64) {
         let instruction = any_of(opcode, &mut random);
         followed.run(&instruction);
         followed.check(&instruction);
-        // Some pixels work again, or others do.
+        // Enable pixels again, or invert Enable.
         let enable = [ArrayInstruction::EnableAll { label: 0 }, ArrayInstruction::EnableInvert];
         followed.run(&enable[random.below(2) as usize]);
     }
@@ -399,7 +404,7 @@ fn values_do_what_the_table_says() {
     }
 }
 
-/// At 0, and where an expression only just does not wrap in the array, so that signs are known at the corners of blocks.
+/// Tests signs at 0 and at values that barely fit in the array, where signs are known at the corners of blocks.
 fn follow_signs(array: impl PixelArray) {
     let mut followed = Followed::new(array, &mut Random::new(30));
     let mut expressions = vec![Expression::Linear(Linear::default()), Expression::Quadratic(Quadratic::default())];

@@ -1,4 +1,4 @@
-//! Words of instructions by hand, from the table at the head of `isa`, and the clocks that it says.
+//! Tests of instruction words, encoded by hand from the table in `isa`, and of their clocks.
 
 use pxpl5_renderer::isa::timing::{BACKING_CLOCKS, SET_UP_CLOCKS, divide_clocks, multiply_clocks, square_root_clocks};
 use pxpl5_renderer::isa::{ArithmeticOp, ArrayInstruction, DecodeErrorKind, Expression, ExpressionUse, Operand, Test};
@@ -10,7 +10,8 @@ const A: Operand = Operand::absolute(3, 8);
 const B: Operand = Operand::context(64, 16);
 const SIGNED: Operand = Operand::context(17, 12).signed();
 
-/// `A`: 8 bits at 3; `B`: 16 relative ones at 64; `SIGNED`: 12 relative ones with a sign at 17.
+/// Encoding of field `A`: 8 bits at 3. Field `B` has 16 relative bits at 64, field `SIGNED` 12 signed relative bits at
+/// 17.
 const A_BITS: Word = 7 << 8 | 3;
 const B_BITS: Word = 1 << 14 | 15 << 8 | 64;
 const SIGNED_BITS: Word = 1 << 15 | 1 << 14 | 11 << 8 | 17;
@@ -33,14 +34,14 @@ fn target_words(how: Word) -> [Word; 8] {
     [0x31 << 16 | 24, how << 8 | 1, 640, 480, 128, 96, 9, 2]
 }
 
-/// Each instruction, its words, and the clocks in which its bits move.
+/// Returns instructions, their words, and the clocks in which their bits move.
 fn instructions() -> Vec<(ArrayInstruction, Vec<Word>, u32)> {
     use ArrayInstruction as I;
     let evaluate = |expression, usage| I::Evaluate { expression, usage };
     let linear = Expression::Linear(LINEAR);
     let linear_words: [Word; 3] = [-2_i32 as Word, 3, 1 << 30];
     let all = Word::MAX;
-    // Low words first; -5 x 2^33 has 2^32 - 10 above zeros.
+    // Low words first. The high word of -5 x 2^33 is 2^32 - 10; its low word is 0.
     let quadratic_words = [all, all, 2, 0, 0, 3 << 8, 4, 0, 0, 0xFFFF_FFF6, 6, 0];
     let with = |head: Word, tail: &[Word]| [&[head], tail].concat();
     let load_minus = ExpressionUse::LoadMinus { field: A, shift: 5, subtrahend: SIGNED, left_shift: 33 };
@@ -90,14 +91,15 @@ fn instructions() -> Vec<(ArrayInstruction, Vec<Word>, u32)> {
         (
             I::MultiplyConstant { destination: B, source: A, factor: -3, factor_bits: 5 },
             vec![0x5104_0000 | B_BITS, A_BITS << 16, -3_i32 as Word],
-            // Five additions of eight bits with a carry, and three to fill.
+            // Five additions of eight bits with a carry, and three clocks to fill.
             5 * 9 + 3,
         ),
         (I::StoreBlock { field: Operand::absolute(0, 32), block: 127 }, vec![0x607F_0000 | 31 << 8], 2),
         (I::LoadBlock { field: Operand::absolute(0, 32), block: 1 }, vec![0x6101_0000 | 31 << 8], 2),
         (I::Wait, vec![0x6200_0000], 2),
     ];
-    // Bits of products and quotients are told in `isa::timing`; the others take their width, or the wider of two.
+    // Clocks of products and quotients are defined in `isa::timing`. The others take their width, or the larger of two
+    // widths.
     use ArithmeticOp::{Add, And, Divide, Maximum, Minimum, Multiply, Or, Subtract, Xor};
     let ops = [
         (Add, 0, 8),
@@ -155,7 +157,8 @@ fn a_list_is_read_instruction_by_instruction() {
     assert_eq!((error.position, error.kind), (1, DecodeErrorKind::UnknownOpcode));
 }
 
-/// Any part of an instruction says how many words it needs; a linear evaluation says so before its coefficients are there.
+/// Tests that a truncated instruction reports the words that it needs. A linear evaluation does so before its
+/// coefficients are read.
 #[test]
 fn a_part_of_an_instruction_is_told_from_a_whole_one() {
     for (instruction, words, _) in instructions() {
@@ -197,7 +200,7 @@ fn what_breaks_a_rule_of_the_table_is_refused_by_it() {
         (vec![0x3201_0000 | A_BITS, B_BITS << 16], K::ReservedBits),
         (vec![0x3300_0000 | A_BITS, A_BITS << 16], K::Width { field: A, expected: 16 }),
         (vec![0x3300_0000 | A_BITS, (B_BITS | 1 << 15) << 16], K::Signedness),
-        // A quotient of 16 bits of 8; one of a number with a sign, in either place.
+        // A quotient of 16 bits from 8 bits, and a quotient with a signed operand in either place.
         (vec![0x3700_0000 | B_BITS, A_BITS << 16 | A_BITS], K::Width { field: B, expected: 8 }),
         (vec![0x3700_0000 | A_BITS, SIGNED_BITS << 16 | A_BITS], K::Signedness),
         (vec![0x3700_0000 | A_BITS, A_BITS << 16 | SIGNED_BITS], K::Signedness),
@@ -214,7 +217,8 @@ fn what_breaks_a_rule_of_the_table_is_refused_by_it() {
         (vec![0x6200_0001], K::ReservedBits),
         (vec![0x6201_0001], K::ReservedBits),
         (changed(1, 3 << 8), K::BadTarget),
-        // Of 640 x 480 in pieces of 128 x 96 there are 25; a side is at least 1, of a picture at most 2^16, of a piece 128.
+        // A picture of 640 x 480 has 25 regions of 128 x 96. A side is at least 1, and at most 2^16 for a picture and
+        // 128 for a region.
         (changed(0, 0x31 << 16 | 25), K::BadTarget),
         (changed(2, 0), K::BadTarget),
         (changed(2, 65_537), K::BadTarget),
@@ -228,6 +232,6 @@ fn what_breaks_a_rule_of_the_table_is_refused_by_it() {
     for (words, kind) in cases {
         assert_eq!(ArrayInstruction::decode(&words, 0).map_err(|error| error.kind), Err(kind), "{words:x?}");
     }
-    // A quotient may be as wide as what is divided.
+    // A quotient may be as wide as the dividend.
     ArrayInstruction::decode(&[0x3700_0000 | B_BITS, B_BITS << 16 | A_BITS], 0).expect("as wide");
 }

@@ -1,4 +1,5 @@
-//! Words that come over the ring as instructions, whatever they are: read without a panic, and as the same again.
+//! Tests that any words from the ring can be decoded without a panic, and that decoded instructions encode to the same
+//! words.
 
 use proptest::prelude::*;
 use pxpl5_renderer::isa::ArrayInstruction;
@@ -8,7 +9,7 @@ fn layouts() -> [Layout; 3] {
     [Layout::rendering_control_phong(), Layout::slats(), Layout::slats_quarters()]
 }
 
-/// Operation codes are chosen evenly and modifiers are small, so that many words are instructions.
+/// Returns words that are often instructions: opcodes are chosen evenly, and modifiers are small.
 fn likely_word() -> impl Strategy<Value = u32> {
     let instruction =
         (0u32..64, 0u32..32, any::<u16>()).prop_map(|(op, modifier, low)| op << 24 | modifier << 16 | u32::from(low));

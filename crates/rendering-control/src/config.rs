@@ -1,41 +1,44 @@
-//! Who takes part.
+//! Configuration: the boards and the picture.
 
 use crate::rules::EyeDrawing;
 use pphigs::{Picture, Share};
 use pxpl5_geometry::Viewport;
 use pxpl5_wire::{CopyTarget, Lines, NodeId, PictureNumber, RegionGrid, RegionId, SurfaceId};
 
-/// The boards that take part, and the kind of picture that they make.
+/// The boards of the pipeline, and the kind of picture that they make.
 #[derive(Clone, Debug)]
 pub struct RenderingControlConfig {
     /// Node of the host interface, which sends views and edits.
     pub host: NodeId,
-    /// Node of the GP that begins every stage.
+    /// Node of the master GP, which begins every stage.
     pub master: NodeId,
     /// Nodes of the slave GPs, at least one.
     pub slaves: Vec<NodeId>,
     /// Nodes of the renderers, at least one.
     pub renderers: Vec<NodeId>,
-    /// Node of the one frame buffer of a mono picture, or of the left and the right eye's: the first port of each.
+    /// Node of the first port of each frame buffer: one for a mono picture, or the left and the right eye's.
     pub frame_buffers: Vec<NodeId>,
-    /// All ports of the frame buffers: the first one of each, then the second ones. Regions take those of their eye in turn.
+    /// Nodes of all ports of the frame buffers: the first port of each, then the second ports. Regions use the ports of
+    /// their eye in turn.
     pub frame_buffer_ports: Vec<NodeId>,
-    /// What is drawn of each eye.
+    /// Picture that is drawn for each eye.
     pub picture: Picture,
-    /// Finished regions that a renderer keeps in its backing store while their frame buffer is not available, and goes on with the
-    /// next region; 0 where it waits for the copy with the region in pixel memory. At most as many as there is room for
-    /// (`renderer.backing_bits / renderer.kept_bits`).
+    /// Largest number of finished regions that a renderer keeps in its backing store while their frame buffer is not
+    /// available.
+    ///
+    /// The renderer meanwhile continues with the next region. With 0 it waits for the copy with the region in pixel
+    /// memory. The backing store limits the number to `renderer.backing_bits / renderer.kept_bits`.
     pub regions_stored: usize,
 }
 
 impl RenderingControlConfig {
-    /// Eyes of a frame: 1 or 2.
+    /// Returns the number of eyes of a frame: 1 or 2.
     #[must_use]
     pub fn eyes(&self) -> u64 {
         self.frame_buffers.len() as u64
     }
 
-    /// The first eye's drawing of a frame.
+    /// Returns the drawing of a frame for its first eye.
     pub(crate) fn first_of(&self, frame: PictureNumber) -> EyeDrawing {
         EyeDrawing::first_of(frame, self.eyes())
     }
@@ -44,7 +47,7 @@ impl RenderingControlConfig {
         drawing.frame(self.eyes())
     }
 
-    /// The surface of a drawing: its eye's.
+    /// Returns the surface of a drawing, which is the picture of its eye.
     pub(crate) fn eye_of(&self, drawing: EyeDrawing) -> SurfaceId {
         SurfaceId(drawing.eye(self.eyes()) as u16)
     }
@@ -57,7 +60,8 @@ impl RenderingControlConfig {
         self.picture.viewport
     }
 
-    /// The half of the frame buffer that is not shown while this frame is drawn; buffer 0 is shown at the start.
+    /// Returns the half of the frame buffer that is not shown while this frame is drawn. Buffer 0 is shown at the
+    /// start.
     pub(crate) fn buffer_of(frame: PictureNumber) -> u8 {
         (frame.next().0 % 2) as u8
     }
@@ -74,20 +78,20 @@ impl RenderingControlConfig {
         }
     }
 
-    /// The port of an eye's frame buffer that takes a region.
+    /// Returns the port of an eye's frame buffer that receives a region.
     fn port(&self, eye: SurfaceId, region: RegionId) -> NodeId {
         let eyes = self.frame_buffers.len();
         let of_an_eye = (self.frame_buffer_ports.len() / eyes).max(1);
         self.frame_buffer_ports[usize::from(region.0) % of_an_eye * eyes + eye.index()]
     }
 
-    /// The eye whose frame buffer has a port; `None` for any other node.
+    /// Returns the eye whose frame buffer has a port; `None` for any other node.
     pub(crate) fn eye_at(&self, port: NodeId) -> Option<usize> {
         let place = self.frame_buffer_ports.iter().position(|node| *node == port)?;
         Some(place % self.frame_buffers.len())
     }
 
-    /// The primitives that slave `index` holds.
+    /// Returns the primitives that slave `index` holds.
     #[must_use]
     pub fn share(&self, list: &std::sync::Arc<pphigs::DisplayList>, index: usize) -> Share {
         Share::new(std::sync::Arc::clone(list), index, self.slaves.len())

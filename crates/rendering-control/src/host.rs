@@ -1,4 +1,4 @@
-//! The host: SEND.
+//! The host: performs SEND.
 
 use crate::config::RenderingControlConfig;
 use crate::protocol::StageOrder;
@@ -7,15 +7,16 @@ use pxpl5_gp::{Fault, Gp, HostTiming, Stage};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PictureNumber, ViewNumber};
 
-/// Sends frame after frame: reads the tracker, sends view and edits over the link to all GPs, and waits until the
-/// edits have been applied: SEND of a frame may not begin before EDIT of the one before has finished (TR94).
+/// Sends frame after frame: reads the tracker, sends view and edits over the link to all GPs, and waits for the edits.
 ///
-/// `start_of` says when the host begins a frame that it is ready for: at once, or on demand; `None` for never. `view_of`
-/// gives a view whose pose is sampled at a time.
+/// SEND of a frame may not begin before EDIT of the previous frame has finished (TR94).
+///
+/// `start_of` returns the time at which the host begins a frame that it is ready for: immediately, on demand, or `None`
+/// for never. `view_of` returns a view whose pose is sampled at a time.
 ///
 /// # Errors
 ///
-/// [`Fault::Protocol`] when something else than the master's answer arrives.
+/// [`Fault::Protocol`] if another message than the master's answer arrives.
 pub async fn host(
     gp: Gp,
     config: RenderingControlConfig,
@@ -25,16 +26,19 @@ pub async fn host(
 ) -> Result<(), Fault> {
     for frame in PictureNumber::FIRST.onwards() {
         let Some(start) = start_of(gp.now()) else { break };
+        // The sample and SEND begin together.
         gp.spend(start.since(gp.now())).await;
         gp.begin(Stage::Sample, frame, None);
         gp.begin(Stage::Send, frame, None);
         let (words, body) = StageOrder::Send(view_of(ViewNumber::taken_for(frame), gp.now())).message();
+        // The slow link to the machine comes before the ring.
         gp.spend(timing.link_span(words)).await;
         let receivers = config.slaves.iter().chain([&config.master]);
         let batch = receivers.map(|node| (*node, words, body.clone())).collect();
         let sent = gp.send_batch(batch).await;
         gp.accepted(sent).await;
         gp.end(Stage::Send, frame, None);
+        // The next SEND may not begin before these edits are applied.
         let received = gp.receive().await;
         if StageOrder::read(&received, gp.node())? != StageOrder::EditsDone(frame) {
             return Err(Fault::Protocol { node: gp.node(), found: format!("while frame {frame} is being edited") });

@@ -7,24 +7,24 @@
 //!   renderers, frame buffers:               COPY left, COPY right          swap at the retrace
 //! ```
 //!
-//! One GP is the [`master`](fn@master); it begins each stage when the [`rules`] of TR94 allow it. The others are
-//! slaves, with two programs each: EDIT and TRANSFORM in the foreground, and a background program that takes tokens
+//! One GP is the [`master`](fn@master); it begins each stage when the [`rules`] of TR94 permit it. The others are
+//! slaves, with two programs each: EDIT and TRANSFORM in the foreground, and an interrupt program that receives tokens
 //! and sends bins. The [`host`](fn@host) reads the tracker and sends view and edits.
 //!
-//! RENDER: the master gives the heaviest regions to the renderers first, and the token of each region to another
-//! slave. A slave with a token sends its bin of that region and passes the token on; the last one adds the
-//! end-of-frame commands, and the copy command if the frame buffer was available when the token was first sent.
-//! Otherwise the renderer holds the region until the master sends the copy command. RENDER ends when the last
+//! RENDER: the master assigns the heaviest regions to the renderers first, and gives the token of each region to
+//! another slave. A slave with a token sends its bin of the region and passes the token on. The last slave adds the
+//! end-of-frame commands. It also adds the copy command, if the frame buffer was available when the token was first
+//! sent. Otherwise the renderer keeps the region until the master sends the copy command. RENDER ends when the last
 //! commands are *accepted*.
 //!
-//! Latency (defined by the observer from the marks): from the start of TRANSFORM of an eye's picture to the end of
-//! its COPY, to the retrace at which it is swapped in, and to the light of its first line.
+//! Latency is defined by the observer from the marks. It starts with TRANSFORM of an eye's picture. It ends with its
+//! COPY, with the retrace at which the picture is swapped in, or with the light of its first line.
 //!
 //! **Not modelled:** attribute traversal beyond a cost per edit, loss of messages.
 //!
-//! Assumed: a finished region goes to the renderer's backing store (51 us) and from there to the frame buffer beside the
-//! next region's commands, one region at a time; a second finished region waits in pixel memory, and commands behind it
-//! in the input FIFO; one software cost covers a chain of messages given to the DMA at once.
+//! Assumed: a finished region goes to the renderer's backing store (51 us). From there it goes to the frame buffer in
+//! parallel with the next region's commands, one region at a time. A second finished region waits in pixel memory, and
+//! later commands wait in the input FIFO. One software cost covers a chain of messages given to the DMA at once.
 //!
 //! Sources: TR94, I3D95.
 

@@ -1,4 +1,4 @@
-//! The master GP: it synchronises host, slaves, renderers and frame buffers.
+//! The master GP: it synchronizes host, slaves, renderers and frame buffers.
 
 use crate::config::RenderingControlConfig;
 use crate::protocol::{RegionEnd, StageOrder, Token};
@@ -8,17 +8,17 @@ use pxpl5_gp::{Account, Fault, Gp, Received, Stage};
 use pxpl5_wire::{Body, CopyContent, CopyOrder, CopyWay, NodeId, PictureNumber, RegionId, SurfaceId, swap_request};
 use std::collections::VecDeque;
 
-/// What a renderer is doing, as far as the master knows.
+/// State of a renderer, as known to the master.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RendererUse {
     Idle,
-    /// A token for it is with the slaves.
+    /// The slaves hold a token for this renderer.
     Receiving,
-    /// It holds a finished region in pixel memory that waits for a frame buffer.
+    /// The renderer keeps a finished region in pixel memory until a frame buffer is available.
     Holding(EyeDrawing, RegionId),
 }
 
-/// A copy that the rules allow.
+/// A copy that the rules permit.
 #[derive(Clone, Copy, Debug)]
 struct Copying {
     renderer: usize,
@@ -27,17 +27,17 @@ struct Copying {
     way: CopyWay,
 }
 
-/// RENDER of one eye.
+/// State of RENDER of one eye.
 #[derive(Debug)]
 struct Rendering {
     drawing: EyeDrawing,
-    /// Regions without a renderer yet, heaviest first.
+    /// Regions that have no renderer yet, heaviest first.
     unassigned: VecDeque<RegionId>,
-    /// Tokens that are with the slaves.
+    /// Number of tokens that the slaves hold.
     tokens_out: u16,
 }
 
-/// What slaves have reported of a frame or drawing that not all have finished.
+/// Reports of the slaves for a frame or drawing that not all slaves have finished.
 #[derive(Debug, Default)]
 struct SlaveReports {
     slaves: usize,
@@ -48,31 +48,31 @@ struct RegionMaster {
     gp: Gp,
     config: RenderingControlConfig,
     completed: Completed,
-    /// The frame whose EDIT comes next.
+    /// The next frame for EDIT.
     next_edit: PictureNumber,
-    /// The first drawing whose TRANSFORM is not allowed yet.
+    /// The first drawing whose TRANSFORM is not permitted yet.
     next_transform: EyeDrawing,
-    /// The frame whose swap is asked for next.
+    /// The next frame for which a swap will be requested.
     next_swap: PictureNumber,
     edited: SlaveReports,
-    /// Of pictures `completed.transformed`, and the one after it.
+    /// Reports for drawing number `completed.transformed` and the drawings after it.
     transformed: VecDeque<SlaveReports>,
-    /// Weights of the regions of transformed pictures that are not rendered yet.
+    /// Weights of the regions, for transformed drawings that are not rendered yet.
     weights: VecDeque<Vec<u64>>,
     rendering: Option<Rendering>,
     renderers: Vec<RendererUse>,
-    /// Finished regions in the backing store of each renderer that wait for a frame buffer, the oldest first.
+    /// Finished regions in the backing store of each renderer that wait for a frame buffer, oldest first.
     stored: Vec<VecDeque<(EyeDrawing, RegionId)>>,
-    /// Regions that have arrived in each frame buffer.
+    /// Number of regions that have arrived in each frame buffer.
     copied_regions: Vec<u64>,
     next_slave: usize,
 }
 
-/// Runs the master.
+/// Runs the master's program.
 ///
 /// # Errors
 ///
-/// [`Fault::Protocol`] for a message that no board sends, [`Fault::Memory`] if the program does not fit.
+/// [`Fault::Protocol`] for an unknown message, [`Fault::Memory`] if the program does not fit.
 pub async fn master(gp: Gp, config: RenderingControlConfig) -> Result<(), Fault> {
     gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
     let mut master = RegionMaster::new(gp, config);
@@ -105,12 +105,13 @@ impl RegionMaster {
         }
     }
 
-    /// Waits for a message or for a frame buffer to swap.
+    /// Waits for a message or for a swap of the frame buffers.
     async fn wait(&self) -> Option<Received> {
         self.gp.until("a message or a swap", || self.message_or_swap()).await
     }
 
-    /// `Some(Some(message))`, or `Some(None)` when frame buffers have swapped since the last look.
+    /// Returns `Some(Some(message))`, or `Some(None)` if the frame buffers have swapped since the last call of
+    /// `begin_one`.
     fn message_or_swap(&self) -> Option<Option<Received>> {
         match self.gp.take_message() {
             Some(received) => Some(Some(received)),
@@ -122,10 +123,11 @@ impl RegionMaster {
         self.config.frame_buffers.iter().map(|node| self.gp.status(*node)).min().unwrap_or(0)
     }
 
-    /// Begins the most urgent thing that the rules allow; false when there is none.
+    /// Begins the most urgent action that the rules permit. Returns false if there is none.
     async fn begin_one(&mut self) -> bool {
         self.completed.swapped = self.swaps_shown();
         self.begin_render();
+        // In order of urgency: copies, tokens, the swap, EDIT, TRANSFORM of a later eye.
         if let Some(copying) = self.copy_that_may_begin() {
             self.copy(copying).await;
         } else if let Some((renderer, region)) = self.region_that_may_begin() {
@@ -165,7 +167,7 @@ impl RegionMaster {
         self.gp.send_batch(self.config.slaves.iter().map(|node| (*node, words, body.clone())).collect()).await;
     }
 
-    /// Sorts the regions of the next drawing, heaviest first.
+    /// Begins RENDER of the next drawing if the rules permit it, and sorts its regions, heaviest first.
     fn begin_render(&mut self) {
         let drawing = EyeDrawing(self.completed.rendered);
         if self.rendering.is_some() || !self.completed.may_render(drawing) {
@@ -187,11 +189,13 @@ impl RegionMaster {
 
     /// Gives the token of a region to the next slave in turn.
     async fn send_token(&mut self, renderer: usize, region: RegionId) {
+        // The renderer receives commands from all slaves in turn.
         let Some(rendering) = &mut self.rendering else { return };
         rendering.unassigned.pop_front();
         rendering.tokens_out += 1;
         let drawing = rendering.drawing;
         self.renderers[renderer] = RendererUse::Receiving;
+        // Another slave begins with each token, so that the slaves share the work.
         let slave = self.config.slaves[self.next_slave];
         self.next_slave = (self.next_slave + 1) % self.config.slaves.len();
         let token = Token {
@@ -205,7 +209,7 @@ impl RegionMaster {
         self.gp.send(slave, words, body).await;
     }
 
-    /// What becomes of a region when its last commands are executed.
+    /// Returns the destination of a region after its last commands.
     fn end_of(&self, renderer: usize, drawing: EyeDrawing) -> RegionEnd {
         if self.completed.may_copy(drawing) {
             RegionEnd::Copied
@@ -216,7 +220,8 @@ impl RegionMaster {
         }
     }
 
-    /// Of each renderer what has waited longest: what is in its backing store, then what is in its pixel memory.
+    /// Returns the first renderer's copy that the rules permit. A region in the backing store comes before one in pixel
+    /// memory.
     fn copy_that_may_begin(&self) -> Option<Copying> {
         (0..self.renderers.len()).find_map(|renderer| {
             let (drawing, region, way) = match (self.stored[renderer].front(), self.renderers[renderer]) {
@@ -228,7 +233,7 @@ impl RegionMaster {
         })
     }
 
-    /// Sends the copy command of a region whose COPY was not allowed yet when its token was sent.
+    /// Sends the copy command of a region whose COPY was not permitted yet when its token was sent.
     async fn copy(&mut self, Copying { renderer, drawing, region, way }: Copying) {
         match way {
             CopyWay::FromBacking => drop(self.stored[renderer].pop_front()),
@@ -268,6 +273,7 @@ impl RegionMaster {
         }
     }
 
+    // Slaves may report a later drawing before all slaves have reported the current one.
     fn note_transformed(&mut self, drawing: EyeDrawing, entries: &[u32]) {
         let place = (drawing.0 - self.completed.transformed) as usize;
         while self.transformed.len() <= place {
@@ -284,6 +290,7 @@ impl RegionMaster {
 
     fn note_accepted(&mut self, token: Token) {
         let renderer = usize::from(token.renderer);
+        // A held region blocks its renderer; the renderer of a stored or copied one is free.
         self.renderers[renderer] = match token.end {
             RegionEnd::Held => RendererUse::Holding(token.drawing, token.region),
             RegionEnd::Stored | RegionEnd::Copied => RendererUse::Idle,
@@ -291,6 +298,7 @@ impl RegionMaster {
         if token.end == RegionEnd::Stored {
             self.stored[renderer].push_back((token.drawing, token.region));
         }
+        // RENDER ends when every region is assigned and every token has returned.
         let Some(rendering) = &mut self.rendering else { return };
         rendering.tokens_out -= 1;
         if rendering.tokens_out == 0 && rendering.unassigned.is_empty() {
@@ -310,7 +318,8 @@ impl RegionMaster {
         }
     }
 
-    /// Regions reach a frame buffer drawing by drawing, so a count is enough.
+    /// Returns true if a drawing has been copied. Regions reach a frame buffer drawing by drawing, so their count is
+    /// enough.
     fn is_copied(&self, drawing: EyeDrawing) -> bool {
         let regions = u64::from(self.config.grid().regions());
         self.copied_regions[self.config.eye_of(drawing).index()] >= regions * self.config.frame_of(drawing).next().0

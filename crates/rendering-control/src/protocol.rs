@@ -1,4 +1,4 @@
-//! The messages between host, master and slaves, as words.
+//! The messages between host, master and slaves, encoded as words.
 
 use crate::rules::EyeDrawing;
 use pphigs::FrameView;
@@ -15,34 +15,34 @@ const TOKEN: Word = 6;
 const ACCEPTED: Word = 7;
 const EDITS_DONE: Word = 8;
 
-/// A token: who holds it may send commands of one region to one renderer.
+/// A token: the slave that holds it may send commands of one region to one renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Token {
     pub(crate) drawing: EyeDrawing,
     pub(crate) region: RegionId,
     /// Index of the renderer.
     pub(crate) renderer: u16,
-    /// Slaves that have not had it yet, this one included.
+    /// Number of slaves that still need the token, including its holder.
     pub(crate) slaves_left: u16,
-    /// The command that the last slave adds.
+    /// End of the region, for which the last slave adds a command.
     pub(crate) end: RegionEnd,
 }
 
-/// What becomes of a region when its last commands are executed.
+/// Destination of a region after its last commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum RegionEnd {
-    /// It stays in pixel memory, and the renderer waits.
+    /// The region stays in pixel memory, and the renderer waits.
     Held,
-    /// It goes into the backing store and stays there.
+    /// The region goes to the backing store and stays there.
     Stored,
-    /// It is copied to its frame buffer.
+    /// The region is copied to its frame buffer.
     Copied,
 }
 
 impl RegionEnd {
     const ALL: [Self; 3] = [Self::Held, Self::Stored, Self::Copied];
 
-    /// The way that a copy command says; `None` where there is no command.
+    /// Returns the way in the region's copy command; `None` if there is no command.
     pub(crate) const fn way(self) -> Option<CopyWay> {
         match self {
             Self::Held => None,
@@ -52,31 +52,31 @@ impl RegionEnd {
     }
 }
 
-/// Everything that host, master, slaves and renderers tell each other.
+/// A message between host, master, slaves and renderers.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum StageOrder {
-    /// Host to all: view and edits of a frame.
+    /// From host to all: view and edits of a frame.
     Send(FrameView),
-    /// Master to slaves: apply the edits of a frame.
+    /// From master to slaves: apply the edits of a frame.
     Edit(PictureNumber),
-    /// Slave to master: edits of a frame applied.
+    /// From slave to master: the edits of a frame are applied.
     Edited(PictureNumber),
-    /// Master to host: all edits of a frame applied.
+    /// From master to host: all slaves have applied the edits of a frame.
     EditsDone(PictureNumber),
-    /// Master to slaves: the drawing of an eye may be transformed.
+    /// From master to slaves: TRANSFORM of a drawing may begin.
     Transform(EyeDrawing),
-    /// Slave to master: transformed; entries of each region's bin.
+    /// From slave to master: a drawing is transformed. Contains the number of entries in each region's bin.
     Transformed(EyeDrawing, Vec<u32>),
-    /// A token on its way.
+    /// From master to slave or slave to slave: a token.
     Token(Token),
-    /// Last slave to master: a region's commands were accepted.
+    /// From last slave to master: a region's commands have been accepted.
     Accepted(Token),
-    /// Renderer to master: a region has arrived in a frame buffer (by its node).
+    /// From renderer to master: a region has arrived in the frame buffer with this node.
     Copied { frame_buffer: NodeId },
 }
 
 impl StageOrder {
-    /// Length in words and body.
+    /// Returns the length in words, and the body of a message.
     pub(crate) fn message(&self) -> (u32, Body) {
         let words = self.words();
         (words.len() as u32, Body::Words(words))
@@ -96,7 +96,7 @@ impl StageOrder {
         }
     }
 
-    /// Reads a received message.
+    /// Decodes a received message.
     pub(crate) fn read(received: &Received, at: NodeId) -> Result<Self, Fault> {
         let Body::Words(words) = &received.body else {
             return Err(Fault::Protocol { node: at, found: "of commands or pixels at a processor".to_owned() });
@@ -105,7 +105,7 @@ impl StageOrder {
             .ok_or_else(|| Fault::Protocol { node: at, found: format!("{words:x?} from node {}", received.source.0) })
     }
 
-    /// `None` for words that are no order.
+    /// Decodes words; `None` if they are no message of this protocol.
     fn from_words(words: &[Word]) -> Option<Self> {
         match words.first() {
             Some(&SEND) => FrameView::from_words(&words[1..]).ok().map(Self::Send),
@@ -122,12 +122,12 @@ impl StageOrder {
     }
 }
 
-/// A message of a tag and the number of a frame or drawing.
+/// Encodes a message of a tag and the number of a frame or drawing.
 fn numbered(tag: Word, number: u64) -> [Word; 3] {
     [tag, number as Word, (number >> 32) as Word]
 }
 
-/// The number of a [`numbered`] message.
+/// Decodes the number of a [`numbered`] message.
 fn number_of(words: &[Word]) -> Option<u64> {
     let low = *words.get(1)?;
     let high = *words.get(2)?;

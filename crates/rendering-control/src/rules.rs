@@ -1,105 +1,116 @@
-//! When a stage may begin: the rules of TR94, as functions of how far each stage has come.
+//! The rules of TR94 for the start of each stage, as functions of the progress of all stages.
 
 use pxpl5_wire::PictureNumber;
 
-/// One eye's half of a frame, or the whole of a mono frame: drawings are counted from 0, the left eye's of frame 0, over
-/// all frames in their order.
+/// Number of one eye's picture of a frame, or of the whole picture of a mono frame.
+///
+/// Drawings are counted over all frames in order, from 0, the left eye of frame 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct EyeDrawing(pub u64);
 
 impl EyeDrawing {
-    /// The drawing for the first eye of a frame of so many eyes.
+    /// Returns the drawing of a frame for its first eye; `eyes` is the number of eyes per frame.
     #[must_use]
     pub const fn first_of(frame: PictureNumber, eyes: u64) -> Self {
         Self(frame.0 * eyes)
     }
 
-    /// The frame of so many eyes that it belongs to.
+    /// Returns the frame of the drawing; `eyes` is the number of eyes per frame.
     #[must_use]
     pub const fn frame(self, eyes: u64) -> PictureNumber {
         PictureNumber(self.0 / eyes)
     }
 
-    /// Which of so many eyes it is for: 0 or 1.
+    /// Returns the eye of the drawing, 0 or 1; `eyes` is the number of eyes per frame.
     #[must_use]
     pub const fn eye(self, eyes: u64) -> u64 {
         self.0 % eyes
     }
 
-    /// The one that comes `count` later.
+    /// Returns the drawing that comes `count` drawings later.
     #[must_use]
     pub const fn after(self, count: u64) -> Self {
         Self(self.0 + count)
     }
 }
 
-/// How many drawings (an eye's, or a mono frame's) or frames have passed each stage. All stages work in order.
+/// Progress of the pipeline: the number of drawings or frames that have passed each stage.
+///
+/// A drawing is the picture of one eye, or of a mono frame. All stages work in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Completed {
-    /// Eyes of a frame: 1 or 2.
+    /// Number of eyes of a frame: 1 or 2.
     pub eyes: u64,
-    /// Frames sent by the host.
+    /// Number of frames sent by the host.
     pub sent: u64,
-    /// Frames whose edits all slaves have applied.
+    /// Number of frames whose edits all slaves have applied.
     pub edited: u64,
-    /// Drawings that all slaves have transformed.
+    /// Number of drawings that all slaves have transformed.
     pub transformed: u64,
-    /// Drawings whose last commands were accepted.
+    /// Number of drawings whose last commands were accepted.
     pub rendered: u64,
-    /// Drawings that are complete in a frame buffer.
+    /// Number of drawings that are complete in a frame buffer.
     pub copied: u64,
-    /// Frames that have been swapped in.
+    /// Number of frames that have been swapped in.
     pub swapped: u64,
 }
 
 impl Completed {
-    /// The state at switching on: no frame or drawing has passed any stage.
+    /// Returns the state at power-on: no frame or drawing has passed any stage.
     #[must_use]
     pub const fn none(eyes: u64) -> Self {
         Self { eyes, sent: 0, edited: 0, transformed: 0, rendered: 0, copied: 0, swapped: 0 }
     }
 
-    /// EDIT of a frame needs SEND of it, TRANSFORM of the previous frame, RENDER of the 2nd previous and COPY of the
-    /// 3rd previous eye (mono: frame).
+    /// Returns true if EDIT of a frame may begin.
+    ///
+    /// It needs SEND of the frame, TRANSFORM of the previous frame, and two free buffers: RENDER of the 2nd previous
+    /// and COPY of the 3rd previous eye (mono: frame).
     #[must_use]
     pub const fn may_edit(&self, frame: PictureNumber) -> bool {
         let first = EyeDrawing::first_of(frame, self.eyes);
         self.sent > frame.0 && self.transformed >= first.0 && self.buffers_free(first)
     }
 
-    /// TRANSFORM of an eye needs EDIT of its frame to have begun, RENDER of the 2nd previous and COPY of the 3rd
-    /// previous eye. (Each slave starts as soon as its own edits are done.)
+    /// Returns true if TRANSFORM of an eye may begin.
+    ///
+    /// TR94 requires that EDIT of its frame has begun; this function requires EDIT by all slaves. It also requires
+    /// RENDER of the 2nd previous eye and COPY of the 3rd previous eye. The function is not used for the first eye of a
+    /// frame, for which each slave starts as soon as its own edits are done.
     #[must_use]
     pub const fn may_transform(&self, drawing: EyeDrawing) -> bool {
         self.edited > drawing.frame(self.eyes).0 && self.buffers_free(drawing)
     }
 
-    /// Two bin contexts and two renderer contexts are free for a drawing.
+    /// Returns true if a bin context and a renderer context are free for a drawing. Each processor and renderer has two
+    /// contexts.
     const fn buffers_free(&self, drawing: EyeDrawing) -> bool {
         self.rendered + 1 >= drawing.0 && self.copied + 2 >= drawing.0
     }
 
-    /// RENDER of an eye needs its TRANSFORM by all slaves, and RENDER of the eye before.
+    /// Returns true if RENDER of an eye may begin. It needs TRANSFORM of the eye by all slaves, and RENDER of the
+    /// previous eye.
     #[must_use]
     pub const fn may_render(&self, drawing: EyeDrawing) -> bool {
         self.transformed > drawing.0 && self.rendered >= drawing.0
     }
 
-    /// A frame buffer is available when its back half holds a picture that is no longer shown: the frame before has
-    /// been swapped in.
+    /// Returns true if the back half of a frame buffer is free, which means that the previous frame has been swapped
+    /// in.
     #[must_use]
     pub const fn frame_buffer_available(&self, drawing: EyeDrawing) -> bool {
         self.swapped >= drawing.frame(self.eyes).0
     }
 
-    /// COPY of an eye needs its frame buffer and COPY of the eye before: each frame buffer has a ring port of its own, but
-    /// TR94 works on one eye after the other and copies to one frame buffer at a time.
+    /// Returns true if COPY of an eye may begin. It needs a free frame buffer and COPY of the previous eye.
+    ///
+    /// Each frame buffer has its own ring port, but TR94 copies one eye after the other, to one frame buffer at a time.
     #[must_use]
     pub const fn may_copy(&self, drawing: EyeDrawing) -> bool {
         self.frame_buffer_available(drawing) && self.copied >= drawing.0
     }
 
-    /// A frame may be swapped in when all its eyes are complete.
+    /// Returns true if a frame may be swapped in, which means that all its eyes are complete.
     #[must_use]
     pub const fn may_swap(&self, frame: PictureNumber) -> bool {
         self.copied >= EyeDrawing::first_of(frame.next(), self.eyes).0

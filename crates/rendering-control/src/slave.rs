@@ -1,4 +1,4 @@
-//! A slave GP: EDIT and TRANSFORM in the foreground, tokens in the background.
+//! A slave GP: EDIT and TRANSFORM in the foreground, tokens in the interrupt program.
 
 use crate::config::RenderingControlConfig;
 use crate::master::copy_order;
@@ -15,26 +15,26 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// What both programs of a slave share.
+/// State shared by both programs of a slave.
 #[derive(Debug, Default)]
 struct SlaveState {
     views: VecDeque<FrameView>,
-    /// The first frame whose EDIT may not begin yet, and the first drawing whose TRANSFORM may not.
+    /// The first frame whose EDIT is not permitted yet.
     next_edit: PictureNumber,
     next_transform: EyeDrawing,
-    /// The two bin contexts, and the regions of each that no token has been here for.
+    /// The bins of both contexts; `None` for an empty context.
     bins: [Option<Arc<Pass>>; 2],
     regions_left: [u32; 2],
 }
 
 impl SlaveState {
-    /// A context has the bins of a pass, and no token has been here for any of its regions.
+    /// Fills a context with the bins of a pass, which wait for a token of each region.
     fn fill(&mut self, context: usize, pass: Arc<Pass>, regions: u32) {
         self.bins[context] = Some(pass);
         self.regions_left[context] = regions;
     }
 
-    /// A token of a context has been here; whether it was the last, and the context is empty now.
+    /// Counts a token of a context. Returns true if it was the last one, so that the context is now empty.
     fn is_emptied(&mut self, context: usize) -> bool {
         self.regions_left[context] -= 1;
         let is_last = self.regions_left[context] == 0;
@@ -47,10 +47,10 @@ impl SlaveState {
 
 type SharedSlaveState = Rc<RefCell<SlaveState>>;
 
-/// The programs of slave number `index`, for both levels of its board.
+/// Returns the programs of slave number `index`, for both priorities of its board.
 ///
-/// Each fails with [`Fault::Memory`] when display list, commands or bins do not fit, and with [`Fault::Protocol`] for
-/// a message that no board sends.
+/// Each program fails with [`Fault::Memory`] if display list, commands or bins do not fit, and with [`Fault::Protocol`]
+/// for an unknown message.
 pub fn slave(
     gp: &Gp,
     config: &RenderingControlConfig,
@@ -79,11 +79,13 @@ async fn transform_program(
     share: Share,
     state: SharedSlaveState,
 ) -> Result<(), Fault> {
+    // Account for memory and load the display list before the first frame.
     gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
     gp.reserve(Account::DisplayList, share.bytes(), None)?;
     gp.install(|processor| share.install(processor))?;
     for frame in PictureNumber::FIRST.onwards() {
         let view = edit(&gp, &config, &state, frame).await?;
+        // Each eye waits for the master's permission.
         for eye in 0..config.eyes() {
             let drawing = config.first_of(frame).after(eye);
             gp.until("leave to TRANSFORM", || (state.borrow().next_transform > drawing).then_some(())).await;
@@ -93,7 +95,7 @@ async fn transform_program(
     Ok(())
 }
 
-/// EDIT: applies the edits of a frame and tells the master.
+/// Performs EDIT: applies the edits of a frame and reports to the master.
 async fn edit(
     gp: &Gp,
     config: &RenderingControlConfig,
@@ -109,10 +111,11 @@ async fn edit(
     Ok(view)
 }
 
-/// TRANSFORM: makes commands of all held primitives and puts them into bins, when there is room for them.
+/// Performs TRANSFORM: makes commands of all held primitives and puts them into bins.
 ///
-/// Where the bins of two drawings do not fit side by side, this waits until RENDER of the drawing before has freed its own. The
-/// emulated program knows how many entries there will be; a real one would go by the drawing before.
+/// If the bins of two drawings do not fit together, TRANSFORM waits until RENDER of the previous drawing has freed its
+/// bins. The emulated program knows the number of entries in advance; a real program would estimate it from the
+/// previous drawing.
 async fn transform(
     gp: &Gp,
     config: &RenderingControlConfig,
@@ -125,11 +128,13 @@ async fn transform(
     let eye = config.eye_of(drawing);
     let pass = share.transform(view, eye.index(), config.picture);
     let context = (drawing.0 % 2) as u8;
+    // Bins alternate between two contexts, one of which may still be in use by RENDER.
     wait_for_bins(gp, state, &pass, context).await;
     gp.begin(Stage::Transform, frame, Some(eye));
     reserve_bins(gp, &pass, context)?;
     let passes = std::slice::from_ref(&pass);
     gp.work(&Transforming { passes, context, begins: true }).await?;
+    // The master sorts regions by these numbers of entries.
     let regions = config.grid().regions() as u16;
     let entries = (0..regions).map(|region| pass.counts(RegionId(region)).total()).collect();
     state.borrow_mut().fill(usize::from(context), pass, config.grid().regions());
@@ -138,7 +143,7 @@ async fn transform(
     Ok(())
 }
 
-/// Until the bins of a pass fit, or the other context is empty.
+/// Waits until the bins of a pass fit, or the other context is empty.
 async fn wait_for_bins(gp: &Gp, state: &SharedSlaveState, pass: &Pass, context: u8) {
     let regions = (0..pass.picture().viewport.grid().regions() as u16).map(RegionId);
     let bytes = regions.map(|region| u64::from(pass.counts(region).total()) * BIN_ENTRY_BYTES).sum();
@@ -147,7 +152,7 @@ async fn wait_for_bins(gp: &Gp, state: &SharedSlaveState, pass: &Pass, context: 
     gp.until("room in the bins", || fits().then_some(())).await;
 }
 
-/// Accounts for commands and bins; an overflow names the region whose bin was being filled.
+/// Reserves memory for commands and bins. On overflow the error names the region whose bin was being filled.
 fn reserve_bins(gp: &Gp, pass: &Pass, context: u8) -> Result<(), Fault> {
     gp.reserve(Account::Commands(context), pass.command_bytes(), None)?;
     let mut bytes = 0;
@@ -158,7 +163,7 @@ fn reserve_bins(gp: &Gp, pass: &Pass, context: u8) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Keeps the views and the leave that arrive, and walks with every token.
+/// Interrupt program: stores arriving views and permissions, and handles tokens.
 async fn token_program(
     gp: Gp,
     config: RenderingControlConfig,
@@ -168,6 +173,7 @@ async fn token_program(
     loop {
         let received = gp.next_message().await;
         let order = StageOrder::read(&received, gp.node());
+        // The software cost of a token is paid in `walk`, that of other messages here.
         if let Ok(StageOrder::Token(token)) = order {
             walk(&gp, &config, index, &state, &received, token).await?;
             continue;
@@ -197,16 +203,18 @@ async fn walk(
 ) -> Result<(), Fault> {
     let renderer = config.renderers[usize::from(token.renderer)];
     let context = (token.drawing.0 % 2) as u8;
+    // The bins of this drawing's context.
     let pass = state.borrow().bins[usize::from(context)].clone();
     let envelope = envelope(config, token);
     let handing = pass.as_ref().map(|pass| Handing { pass, context, view: 0, region: token.region, envelope });
     let lists = pass.as_ref().map_or_else(Vec::new, |pass| region_messages(pass, token.region, 0, envelope));
     let messages = lists.into_iter().map(|list| (renderer, list.words(), Body::Commands(list)));
+    // Pay for the token, hand over the bin, and pass the token on in the background.
     gp.answer(received, handing.as_ref(), messages, passed_on(config, index, token)).await?;
     free_bins(gp, state, token.drawing)
 }
 
-/// What tells the next slave, or the master, of a token.
+/// Returns the message that passes a token to the next slave, or reports its end to the master.
 fn passed_on(config: &RenderingControlConfig, index: usize, token: Token) -> (NodeId, u32, Body) {
     let last = token.slaves_left == 1;
     let next = Token { slaves_left: token.slaves_left - 1, ..token };
@@ -219,7 +227,7 @@ fn passed_on(config: &RenderingControlConfig, index: usize, token: Token) -> (No
     (receiver, words, body)
 }
 
-/// Frees a drawing's commands and bins when the tokens of all its regions have been here.
+/// Frees a drawing's commands and bins after the tokens of all its regions.
 fn free_bins(gp: &Gp, state: &SharedSlaveState, drawing: EyeDrawing) -> Result<(), Fault> {
     let context = (drawing.0 % 2) as u8;
     if state.borrow_mut().is_emptied(usize::from(context)) {
@@ -229,7 +237,7 @@ fn free_bins(gp: &Gp, state: &SharedSlaveState, drawing: EyeDrawing) -> Result<(
     Ok(())
 }
 
-/// The first slave begins the region, the last one ends it.
+/// Returns the envelope of a token's region: the first slave begins the region, the last slave ends it.
 fn envelope(config: &RenderingControlConfig, token: Token) -> RegionEnvelope {
     let last = token.slaves_left == 1;
     RegionEnvelope {

@@ -1,24 +1,24 @@
-//! Which renderer keeps which region, in which context, and in which order regions are copied.
+//! Binding of regions to renderers and contexts, and the order in which regions are copied.
 
 use crate::error::SlatsConfigError;
 use crate::schedule::CopySchedule;
 use pxpl5_wire::{Eye, RegionGrid, RegionId};
 
-/// A region of one eye's field, and the renderer and context that keep it for the whole run.
+/// A region of one eye's field, with the renderer and context that keep the region for the whole run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BoundRegion {
-    /// The eye in whose picture the region lies.
+    /// Eye whose picture contains the region.
     pub eye: Eye,
     /// Number of the region in [`RegionGrid::FIELD`].
     pub region: RegionId,
     /// Index of the renderer in [`crate::SlatsConfig::renderers`].
     pub renderer: usize,
-    /// Context of its pixel memory that holds the region.
+    /// Context of the renderer's pixel memory that holds the region.
     pub context: u8,
 }
 
 impl BoundRegion {
-    /// Whether the region is in the upper half of the picture.
+    /// Returns true if the region is in the upper half of the picture.
     #[must_use]
     pub const fn is_top(&self) -> bool {
         (self.region.0 as u32) < RegionGrid::FIELD.columns()
@@ -34,12 +34,14 @@ pub struct Binding {
 }
 
 impl Binding {
-    /// Deals the regions to renderers: all of one kind (half and eye) before the next, so that each renderer gets as
-    /// equal a share of every kind as possible, and clumps that follow this order keep all renderers busy.
+    /// Distributes the regions round-robin to the renderers, one kind (half and eye) after the other.
+    ///
+    /// So each renderer gets nearly the same number of every kind. Clumps that follow this order keep all renderers
+    /// busy.
     ///
     /// # Errors
     ///
-    /// [`SlatsConfigError::TooFewRenderers`] when a renderer would need more than `contexts` contexts.
+    /// [`SlatsConfigError::TooFewRenderers`] if a renderer would need more than `contexts` contexts.
     pub fn new(renderers: usize, contexts: u8, copy: CopySchedule) -> Result<Self, SlatsConfigError> {
         let columns = RegionGrid::FIELD.columns() as u16;
         let kinds = [(0, Eye::Left), (0, Eye::Right), (1, Eye::Left), (1, Eye::Right)];
@@ -58,15 +60,16 @@ impl Binding {
         Ok(Self { regions: regions.collect(), renderers, copy })
     }
 
-    /// All regions in the order in which clumps are sent.
+    /// Returns all regions in the order in which clumps are sent.
     #[must_use]
     pub fn regions(&self) -> &[BoundRegion] {
         &self.regions
     }
 
-    /// The regions of a renderer in the order of copying, left and right eye alternately.
+    /// Returns the regions of a renderer in the order of copying, with alternating eyes.
     ///
-    /// Whole: all halves, beginning left. Split: those of one half (`top`), the odd renderers beginning right.
+    /// A whole copy includes both halves and begins with the left eye. A split copy includes one half (`top` or
+    /// bottom), and begins with the right eye on odd renderers.
     #[must_use]
     pub fn copies(&self, renderer: usize, top: bool) -> Vec<BoundRegion> {
         let of_renderer = self.regions.iter().filter(|b| b.renderer == renderer);
@@ -77,14 +80,15 @@ impl Binding {
         alternate(mine)
     }
 
-    /// Number of renderers that the regions are dealt to.
+    /// Returns the number of renderers.
     #[must_use]
     pub const fn renderers(&self) -> usize {
         self.renderers
     }
 }
 
-/// Reorders so that eyes alternate as long as both are left, beginning with the first one's.
+/// Reorders regions so that eyes alternate as long as both have regions left, beginning with the eye of the first
+/// region.
 fn alternate(regions: Vec<BoundRegion>) -> Vec<BoundRegion> {
     let Some(first) = regions.first().map(|b| b.eye) else { return regions };
     let (mut ours, mut others): (Vec<_>, Vec<_>) = regions.into_iter().partition(|b| b.eye == first);

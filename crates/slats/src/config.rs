@@ -1,4 +1,4 @@
-//! Who takes part, and which variant runs.
+//! Configuration: the boards, and the variant of Slats.
 
 use crate::bind::Binding;
 use crate::error::SlatsConfigError;
@@ -8,35 +8,36 @@ use pxpl5_geometry::Viewport;
 use pxpl5_renderer::Layout;
 use pxpl5_wire::{CopyTarget, FieldParity, Lines, NodeId, PeriodNumber, PictureNumber, RegionGrid};
 
-/// The boards that take part, and the variant of Slats that they run.
+/// The boards of the pipeline, and the variant of Slats.
 #[derive(Clone, Debug)]
 pub struct SlatsConfig {
     /// Node of the host interface, which sends the viewing transforms.
     pub host: NodeId,
-    /// Nodes of the GPs; the first one leads.
+    /// Nodes of the GPs; the first one is the leader.
     pub processors: Vec<NodeId>,
-    /// Nodes of the renderers, by the index that [`crate::BoundRegion`] uses.
+    /// Nodes of the renderers, at the indices that [`crate::BoundRegion`] uses.
     pub renderers: Vec<NodeId>,
     /// Nodes of the left and the right eye's frame buffer.
     pub frame_buffers: [NodeId; 2],
-    /// When the regions of a field are copied.
+    /// Schedule for copying the regions of a field.
     pub copy: CopySchedule,
-    /// Who gets the commands of a clump.
+    /// Binning mode: the regions that receive the commands of a clump.
     pub binning: RegionBinning,
-    /// Whether vertex colours are precomputed ([`Shading::Precomputed`]) or lit on the GPs ([`Shading::Gouraud`]).
+    /// Shading mode: precomputed vertex colours ([`Shading::Precomputed`]) or lighting on the GPs
+    /// ([`Shading::Gouraud`]).
     pub shading: Shading,
-    /// How the bits of pixel memory are divided among contexts.
+    /// Division of pixel memory among contexts.
     pub layout: Layout,
-    /// Whether somebody may want pixels: without it no command words are made, and all times stay the same.
+    /// True if pixels may be read. Without pixels no command words are made, and all times stay the same.
     pub pixels: bool,
 }
 
 impl SlatsConfig {
-    /// Checks the numbers of boards.
+    /// Checks the numbers of boards, and binds the regions to renderers.
     ///
     /// # Errors
     ///
-    /// [`SlatsConfigError`] when regions do not fit or no processor is there.
+    /// [`SlatsConfigError`] if regions do not fit or there is no graphics processor.
     pub fn check(&self) -> Result<Binding, SlatsConfigError> {
         if self.processors.is_empty() {
             return Err(SlatsConfigError::NoProcessor);
@@ -54,8 +55,10 @@ impl SlatsConfig {
         }
     }
 
-    /// A field is written into the lines that are not being scanned, so without a backup buffer 0 is enough: interlace
-    /// is the double buffer.
+    /// Returns the copy target of a region.
+    ///
+    /// A field is written into the lines that are not being scanned: interlace acts as the double buffer. So buffer 0
+    /// is enough without a backup buffer.
     pub(crate) fn target(&self, bound: &crate::BoundRegion, field: PeriodNumber, buffer: u8) -> CopyTarget {
         CopyTarget {
             frame_buffer: self.frame_buffers[bound.eye.index()],

@@ -1,8 +1,8 @@
-//! Why Slats refuses a machine.
+//! Errors of the Slats configuration.
 
 use thiserror::Error;
 
-/// A machine on which Slats cannot run.
+/// The error for a machine on which Slats cannot run.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum SlatsConfigError {
@@ -11,9 +11,9 @@ pub enum SlatsConfigError {
         "Slats binds 20 field regions statically: expected at least {expected} renderers of four contexts, found {found}"
     )]
     TooFewRenderers {
-        /// How many renderers the machine has.
+        /// Number of renderers of the machine.
         found: usize,
-        /// The fewest whose contexts hold the 20 regions of both eyes.
+        /// Smallest number of renderers whose contexts hold the 20 regions of both eyes.
         expected: usize,
     },
     /// There is no graphics processor.

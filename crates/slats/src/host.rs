@@ -1,4 +1,4 @@
-//! The host: SEND whenever the tracker has something new.
+//! The host: performs SEND for every new report of the tracker.
 
 use crate::config::SlatsConfig;
 use pphigs::{FrameView, send_as_tracked};
@@ -6,15 +6,17 @@ use pxpl5_gp::{Fault, Gp, HostTiming};
 use pxpl5_sim::Time;
 use pxpl5_wire::ViewNumber;
 
-/// Sends the viewing transforms of both eyes to the leading GP: once at the start, so that there is a first field, and then
-/// for every report of the tracker ([`send_as_tracked`]). The GP takes the newest that has come when it starts a field.
+/// Sends the viewing transforms of both eyes to the leading GP.
 ///
-/// `next_report` gives the arrival of the first report after an instant, and `view_of` a view whose pose is
+/// The first message goes at the start, so that there is a first field. Then a message follows for every report of the
+/// tracker ([`send_as_tracked`]). The GP uses the newest view when it starts a field.
+///
+/// `next_report` returns the arrival of the first report after an instant. `view_of` returns a view whose pose is
 /// sampled at a time.
 ///
 /// # Errors
 ///
-/// None of its own; the type is that of a program.
+/// The function itself returns no error; the type is that of a program.
 pub async fn host(
     gp: Gp,
     config: SlatsConfig,

@@ -1,4 +1,4 @@
-//! A graphics processor under Slats.
+//! The programs of a graphics processor under Slats.
 
 use crate::bind::{Binding, BoundRegion};
 use crate::config::SlatsConfig;
@@ -16,51 +16,51 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Primitives of a clump: what fits into one message (TR94).
+/// Number of primitives of a clump, which fits into one message (TR94).
 pub const CLUMP: usize = 30;
 
 /// First word of the message that tells the leading GP that a field's clumps have been accepted.
 const CLUMPS_ACCEPTED: Word = 0x000C_1A3D;
 
-/// First word of the message by which the leading GP begins a field on the others; number and view follow.
+/// First word of the message by which the leading GP begins a field on the other GPs. Number and view follow.
 const BEGIN: Word = 0x00BE_6123;
 
 #[derive(Debug, Default)]
 struct ProcessorState {
-    /// The newest view from the host, on the leading GP.
+    /// The newest view from the host (leading GP only).
     newest: Option<FrameView>,
-    /// Fields that the leading GP has begun, on the others.
+    /// Fields that the leading GP has begun (other GPs only).
     begun: VecDeque<(PeriodNumber, FrameView)>,
-    /// Renderers that have acknowledged the last region which they were told to copy, since they were told so.
+    /// Number of renderers that have acknowledged their last region since the last copy order.
     copied: usize,
-    /// The copies of the bottom regions, which wait for those of the top ones.
+    /// The copies of the bottom regions, which wait for the top regions.
     bottom: Option<Bottom>,
     /// Buffer that holds the last complete field of even and of odd lines.
     complete: [u8; 2],
-    /// How many other GPs have finished each of the fields being drawn: (field, GPs).
+    /// For each field being drawn, the number of other GPs that have finished it.
     finished: Vec<(PeriodNumber, usize)>,
 }
 
-/// The chain that has the bottom regions of a field copied, ready to be started.
+/// A prepared chain of messages that copies the bottom regions of a field.
 #[derive(Debug)]
 struct Bottom {
     chain: Chain,
-    /// The field that they belong to.
+    /// Field of the bottom regions.
     field: PeriodNumber,
-    /// The period that must have begun, if the beam scans the lines until then.
+    /// Earliest period in which the copy may start, since the beam scans the lines until then.
     not_before: PeriodNumber,
-    /// Renderers that copy top regions: all must have acknowledged them.
+    /// Number of renderers that copy top regions. All must have acknowledged them.
     copiers: usize,
-    /// True while the field is asked for, just before the chain is started.
+    /// True from the request to show the field until the chain is started.
     is_taken: bool,
 }
 
 type SharedState = Rc<RefCell<ProcessorState>>;
 
-/// The programs of GP number `index`, for both levels of its board.
+/// Returns the programs of GP number `index`, for both priorities of its board.
 ///
-/// Each fails with [`Fault::Memory`] when the display list does not fit, and with [`Fault::Protocol`] for a message
-/// that no board sends.
+/// Each program fails with [`Fault::Memory`] if the display list does not fit, and with [`Fault::Protocol`] for an
+/// unknown message.
 pub fn processor(
     gp: &Gp,
     config: &SlatsConfig,
@@ -71,6 +71,7 @@ pub fn processor(
     let state = SharedState::default();
     let is_shown = index == 0 && config.copy == CopySchedule::Backup;
     let backup = is_shown.then_some(Backup { frame_buffers: config.frame_buffers });
+    // Both programs share the state of the board.
     [Priority::Interrupt, Priority::Foreground].map(|level| {
         let gp = gp.at_priority(level);
         let config = config.clone();
@@ -89,23 +90,26 @@ pub fn processor(
     })
 }
 
-/// The frame buffers and the buffers of which they show the last complete fields, under [`CopySchedule::Backup`].
+/// The frame buffers of [`CopySchedule::Backup`], which are asked to show the last complete field.
 #[derive(Clone, Copy, Debug)]
 struct Backup {
     frame_buffers: [NodeId; 2],
 }
 
-/// What the interrupt program wakes up for.
+/// A wake-up event of the interrupt program.
 enum Event {
     Message(Received),
     Retrace(PeriodNumber),
 }
 
-/// Keeps the newest view, counts finished GPs, has the bottom regions copied after the top ones, and with a backup asks for the field that
-/// the next retrace begins with.
+/// Interrupt program: stores the newest view, counts finished GPs, and starts the copies of the bottom regions after
+/// the top ones.
+///
+/// With a backup it also requests, after every retrace, the field that the next period shows.
 async fn listen(gp: Gp, state: SharedState, backup: Option<Backup>) -> Result<(), Fault> {
     let mut present = gp.field();
     loop {
+        // With a backup the program also wakes at every retrace.
         let event = gp
             .until("a message", || {
                 let retrace = || Some(gp.field()).filter(|field| backup.is_some() && *field > present);
@@ -124,6 +128,7 @@ async fn listen(gp: Gp, state: SharedState, backup: Option<Backup>) -> Result<()
                 copy_bottom_when_due(&gp, &state, backup).await;
             }
             Event::Retrace(field) => {
+                // Request the field for the next period early; a later request replaces this one.
                 present = field;
                 if let Some(backup) = backup {
                     backup.ask(&gp, &state, field.next()).await;
@@ -134,8 +139,10 @@ async fn listen(gp: Gp, state: SharedState, backup: Option<Backup>) -> Result<()
 }
 
 impl Backup {
-    /// Notes that all top regions of a field are copied, and asks for it if the next retrace is its own. Its bottom regions follow, faster than
-    /// the beam.
+    /// Records that all top regions of a field are copied. If the next retrace belongs to the field, requests the
+    /// field.
+    ///
+    /// The bottom regions follow, faster than the beam.
     async fn show_next(self, gp: &Gp, state: &SharedState, field: PeriodNumber) {
         {
             let state = &mut *state.borrow_mut();
@@ -147,8 +154,9 @@ impl Backup {
         }
     }
 
-    /// Asks for the last complete field of the lines that a period scans, unless it has begun meanwhile. A later request takes the place of
-    /// an earlier one.
+    /// Requests the last complete field of the lines that a period scans, unless the period has begun meanwhile.
+    ///
+    /// A later request replaces an earlier one.
     async fn ask(self, gp: &Gp, state: &SharedState, period: PeriodNumber) {
         let buffer = state.borrow().complete[FieldParity::of_field(period) as usize];
         let requests = self.frame_buffers.map(|node| (node, 2, Body::Words(swap_request(buffer))));
@@ -159,9 +167,11 @@ impl Backup {
     }
 }
 
-/// Starts the copies of the bottom regions of a field when all its top regions are copied and the beam has left the lines. With a backup the
-/// field is asked for before: afterwards the ports of the frame buffers are taken by regions.
+/// Starts the copies of a field's bottom regions when all its top regions are copied and the beam has left the lines.
+///
+/// With a backup the field is requested first, since the copies will occupy the ports of the frame buffers.
 async fn copy_bottom_when_due(gp: &Gp, state: &SharedState, backup: Option<Backup>) {
+    // Decide within one borrow, and mark the chain as taken, since the steps below may suspend.
     let due = {
         let state = &mut *state.borrow_mut();
         let copied = state.copied;
@@ -226,7 +236,7 @@ impl SlatsProcessor {
         if self.index == 0 { self.lead().await } else { self.follow().await }
     }
 
-    /// Begins a field at every retrace at which the one before is done.
+    /// Leader's program: begins a field at every retrace at which the previous field is done.
     async fn lead(self) -> Result<(), Fault> {
         self.gp.until("the first view from the host", || self.state.borrow().newest.as_ref().map(|_| ())).await;
         let mut begin_at = self.gp.field().next();
@@ -237,12 +247,14 @@ impl SlatsProcessor {
             let field = self.next_field(now, last);
             last = Some(field);
             let view = self.gp.until("a view", || self.state.borrow().newest.clone()).await;
+            // Clear the regions before the other GPs may send clumps.
             if !self.is_alone() {
                 self.bottom_started().await;
                 self.clear(field, &view).await;
                 self.tell_others(field, &view).await;
             }
             self.field(field, &view).await?;
+            // COPY begins when the clumps of all GPs have been accepted.
             let others = self.config.processors.len() - 1;
             self.gp
                 .until("the clumps of the other processors", || {
@@ -255,9 +267,9 @@ impl SlatsProcessor {
             self.state.borrow_mut().copied = 0;
             self.gp.send_batch(copies).await;
             if self.config.copy.is_split() {
-                // The chain for the bottom regions is ready before it is due.
+                // Prepare the chain for the bottom regions before it is due.
                 let chain = self.gp.prepare(self.copies(field, false)).await;
-                // With a backup the beam is in the other buffer.
+                // With a backup the beam scans the other buffer, so the copy need not wait for the period.
                 let not_before = if self.config.copy == CopySchedule::Backup { PeriodNumber::FIRST } else { field };
                 let bottom = Bottom { chain, field, not_before, copiers, is_taken: false };
                 self.state.borrow_mut().bottom = Some(bottom);
@@ -267,45 +279,48 @@ impl SlatsProcessor {
         }
     }
 
-    /// Waits until the bottom regions of the field before are being copied: what is sent afterwards clears them.
+    /// Waits until the bottom regions of the previous field are being copied, since the next messages clear them.
     async fn bottom_started(&self) {
         self.gp.until("the copies of the top regions", || self.state.borrow().bottom.is_none().then_some(())).await;
     }
 
-    /// The period for which the next field is drawn: the coming one. With a backup it is one of the other lines than the last field's, so
-    /// that neither lines stay without a new field when fields are late.
+    /// Returns the period for which the next field is drawn: the coming one.
+    ///
+    /// With a backup the lines alternate even if fields are late, so that both kinds of lines get new fields.
     fn next_field(&self, now: PeriodNumber, last: Option<PeriodNumber>) -> PeriodNumber {
         let field = now.next();
         let same_lines = last.is_some_and(|last| FieldParity::of_field(last) == FieldParity::of_field(field));
         if self.config.copy == CopySchedule::Backup && same_lines { field.next() } else { field }
     }
 
-    /// Where a field is written.
+    /// Returns the buffer that a field is written to.
     fn buffer(&self, field: PeriodNumber) -> u8 {
         let complete = self.state.borrow().complete[FieldParity::of_field(field) as usize];
         if self.config.copy == CopySchedule::Backup { 1 - complete } else { 0 }
     }
 
-    /// Draws its share of every field that the leading GP begins.
+    /// Program of the other GPs: draws this GP's share of every field that the leading GP begins.
     async fn follow(self) -> Result<(), Fault> {
         loop {
             let (field, view) =
                 self.gp.until("the leading processor", || self.state.borrow_mut().begun.pop_front()).await;
             self.field(field, &view).await?;
-            // Queued behind the clumps, so it arrives when they have been accepted.
+            // The message is queued behind the clumps, so it arrives after they have been accepted.
             let [low, high] = field.to_words();
             let words = [CLUMPS_ACCEPTED, low, high];
             self.gp.send(self.config.processors[0], 3, Body::Words(words.into())).await;
         }
     }
 
-    /// Whether no other GP draws; then the regions are cleared by the first clump.
+    /// Returns true if no other GP draws. Then the first clump clears the regions.
     fn is_alone(&self) -> bool {
         self.config.processors.len() == 1
     }
 
-    /// Clears all regions by a chain of its own. A chain waits for the one before it, so whoever is told to begin after
-    /// this one cannot send a clump that is cleared away.
+    /// Clears all regions by a separate chain of messages.
+    ///
+    /// Chains are sent one after the other. So clumps of other GPs, which begin after this chain, cannot be cleared
+    /// away.
     async fn clear(&self, field: PeriodNumber, view: &FrameView) {
         let picture = self.config.picture(FieldParity::of_field(field));
         let nothing = self.share.nothing();
@@ -321,7 +336,7 @@ impl SlatsProcessor {
         self.gp.send_batch(messages.collect()).await;
     }
 
-    /// Draws this GP's share of what is shown from the retrace of `field` on.
+    /// Draws this GP's share of the field that is shown from the retrace of `field` on.
     async fn field(&self, field: PeriodNumber, view: &FrameView) -> Result<(), Fault> {
         let number = PictureNumber::drawn_for(field);
         self.gp.begin_view(Stage::Sample, number, view.number);
@@ -329,10 +344,11 @@ impl SlatsProcessor {
         let picture = self.config.picture(FieldParity::of_field(field));
         let mut clumps: Vec<_> = self.share.clumps(CLUMP).collect();
         if clumps.is_empty() {
-            // Without a primitive the regions must be cleared all the same.
+            // Regions must be cleared even if there is no primitive.
             clumps.push(self.share.clone());
         }
         let last = clumps.len() - 1;
+        // For each clump: TRANSFORM, then send it to its regions.
         for (i, clump) in clumps.iter().enumerate() {
             let passes = Eye::BOTH.map(|eye| clump.transform(view, eye.index(), picture));
             self.gp.work(&Transforming { passes: &passes, context: 0, begins: i == 0 }).await?;
@@ -342,7 +358,7 @@ impl SlatsProcessor {
                 self.gp.begin(Stage::Render, number, None);
             }
             let sent = self.send(&passes, i == 0 && self.is_alone()).await;
-            // There is no second buffer: the next clump is made in this one while it is emptied.
+            // There is no second buffer: the next clump is made in this buffer while it is being emptied.
             if let Some(ticket) = sent.filter(|_| i < last) {
                 self.gp.draining(ticket).await;
             }
@@ -366,7 +382,8 @@ impl SlatsProcessor {
         (self.config.renderers[renderer], list.words(), Body::Commands(list))
     }
 
-    /// The copy commands of the top regions and, of a whole copy, the bottom ones; or of the bottom regions.
+    /// Returns the copy commands of the bottom regions, or of the top regions (with the bottom regions for a whole
+    /// copy).
     fn copies(&self, field: PeriodNumber, top: bool) -> Vec<(NodeId, u32, Body)> {
         let batch = (0..self.binding.renderers()).filter_map(|renderer| {
             let regions = self.binding.copies(renderer, top);

@@ -1,21 +1,26 @@
-//! When finished regions leave the renderers.
+//! Schedules for copying finished regions.
 
-/// When the regions of a field are copied to the frame buffers.
+/// Time at which the regions of a field are copied to the frame buffers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CopySchedule {
-    /// All regions before the retrace.
+    /// Copies all regions before the retrace.
     Whole,
-    /// Top regions before the retrace, bottom regions right after it (the COPY optimisation).
+    /// Copies the top regions before the retrace and the bottom regions right after it (the COPY optimization).
     Split,
-    /// Top regions, then bottom regions, into the buffer that does not hold the last complete field of these lines. A field is shown at its
-    /// retrace if its top regions are there, else that one again, and the late field at the next retrace of its lines. (Beyond the
-    /// prototype: TR94 names a backup field as future work, filled by spare bandwidth of the frame buffers. Two buffers that take
-    /// turns need no copy, since the last complete field stays where it was written.)
+    /// Copies top regions, then bottom regions, into the buffer that does not hold the last complete field of these
+    /// lines.
+    ///
+    /// A field is shown at its retrace if its top regions are ready. Otherwise the last complete field is shown again,
+    /// and the late field appears at the next retrace of its lines.
+    ///
+    /// This schedule is not in the prototype. TR94 names a backup field, filled by spare bandwidth of the frame
+    /// buffers, as future work. Two alternating buffers need no such copy, since the last complete field stays in
+    /// place.
     Backup,
 }
 
 impl CopySchedule {
-    /// Returns true if bottom regions are copied after all top ones.
+    /// Returns true if bottom regions are copied after all top regions.
     #[must_use]
     pub const fn is_split(self) -> bool {
         matches!(self, Self::Split | Self::Backup)

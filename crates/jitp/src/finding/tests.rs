@@ -1,4 +1,4 @@
-//! What code finds in windows, and the messages that it lists, are those of the native firmware, whatever the scene and the windows.
+//! Tests that the primitives and messages found by code equal those of the native firmware, for any scene and windows.
 
 use crate::config::{Beam, BlockOrder, DrawingSchedule, Interpolation, JitpConfig, Viewpoint};
 use crate::drawing::{DrawnList, Ends, Window, interpolated};
@@ -26,7 +26,7 @@ const TANGENT: f32 = 0.5;
 struct Numbers(SplitMix64);
 
 impl Numbers {
-    /// -1 to 1.
+    /// Returns a number from -1 to 1.
     fn next(&mut self) -> f32 {
         2.0 * self.0.unit() - 1.0
     }
@@ -39,14 +39,16 @@ impl Numbers {
         Vec3::new(self.next(), self.next(), self.next()) * size
     }
 
-    /// A point seen at a place of the frame, 640 x 480 pixels.
+    /// Returns a point that is seen at a place of the frame, 640 x 480 pixels.
     fn seen_at([x, y]: [f32; 2], distance: f32) -> Vec3 {
         let across = (x / 320.0 - 1.0) * TANGENT * 4.0 / 3.0;
         Vec3::new(across, (1.0 - y / 240.0) * TANGENT, -1.0) * distance
     }
 
-    /// Three places: small triangles anywhere or where four regions of a picture meet, some of them between these, slivers, large ones, some beside the eye. No
-    /// sliver is so deep that its plane of depth is flattened, which kernels do of pieces alone.
+    /// Returns the corners of a triangle: small ones anywhere or at the meeting point of four regions, slivers, large
+    /// ones, some beside the eye.
+    ///
+    /// No sliver is so deep that its plane of depth is flattened, since kernels flatten only planes of clipped pieces.
     fn triangle(&mut self) -> [Vec3; 3] {
         let [x, y] = match self.below(4) {
             0 => [128.0 * (1 + self.below(4)) as f32, 120.0 * (1 + self.below(3)) as f32],
@@ -124,7 +126,7 @@ fn strips(strip_rows: u32) -> JitpConfig {
     config(DrawingSchedule::Beam { viewpoint: Viewpoint::Field, racing: false, strip_rows })
 }
 
-/// The view, and one that has turned by about as much in radians; a structure too.
+/// Returns a view and a second view turned by about `turn` radians, with a turned structure.
 fn two_views(numbers: &mut Numbers, turn: f32) -> [FrameView; 2] {
     [0.0, turn].map(|turn| {
         let mut view = view(numbers);
@@ -139,7 +141,7 @@ fn blocks(block: u32) -> JitpConfig {
     config(DrawingSchedule::Roam { block, batch: 16, order: BlockOrder::new(|step| RegionId(step as u16)) })
 }
 
-/// A board, a scene and a picture of it that is kept.
+/// A board, a scene, and a kept picture of it.
 struct Scene {
     processor: Processor,
     share: Share,
@@ -169,7 +171,7 @@ impl Scene {
         scene
     }
 
-    /// The same between two views, `turn` apart: the part `s` of the way.
+    /// Records the scene in two views, `turn` radians apart.
     fn between(&mut self, seed: u64, turn: f32, interpolation: Interpolation) -> Ends {
         let views = two_views(&mut Numbers(SplitMix64::new(seed)), turn).to_vec();
         self.keep(&views);
@@ -177,7 +179,7 @@ impl Scene {
         Ends::new(self.share.list(), views, self.viewport)
     }
 
-    /// Has a strip interpolated for the part `s` of the way, searched, and held to the native messages.
+    /// Interpolates a strip at position `s` between two views, searches it, and compares it with the native messages.
     fn search_between(&mut self, ends: &Ends, s: f64, strip: u32) -> SearchOutput {
         let interpolation = self.interpolation.expect("between two views");
         self.drawn = Arc::new(DrawnList::between(self.share.list(), ends, s, interpolation, self.viewport));
@@ -205,7 +207,7 @@ impl Scene {
         whole.by_code(&GpTiming::PAPERS, &mut self.processor).expect("it returns");
     }
 
-    /// What the code lists for some regions, held to the native messages.
+    /// Searches some regions and compares the listed messages with the native ones.
     fn search(&mut self, regions: &[RegionId]) -> SearchOutput {
         let windows = self.windows(regions);
         let (counts, _) = self.drawn.count(&windows);
@@ -238,7 +240,7 @@ impl Scene {
         output
     }
 
-    /// What encloses a region is not in memory; all else is word for word.
+    /// Compares all words except the envelope of a region, which is not in memory.
     fn assert_words(&self, pieces: &[[Word; 2]], native: &[Word], region: RegionId) {
         let mut native = native;
         for [address, length] in pieces {
@@ -276,7 +278,7 @@ fn what_code_finds_on_a_strip_is_what_the_native_firmware_draws() {
     }
 }
 
-/// Blocks of 24 pixels lie across regions of the picture.
+/// Blocks of 24 pixels cross the borders of the picture's regions.
 #[test]
 fn what_code_finds_in_blocks_is_what_the_native_firmware_draws() {
     for (seed, block) in [16, 24, 128].into_iter().enumerate() {
@@ -292,7 +294,7 @@ fn what_code_finds_in_blocks_is_what_the_native_firmware_draws() {
     }
 }
 
-/// More windows than the tables have room for, and a region of many messages.
+/// More windows than fit in the tables, and a region of many messages.
 #[test]
 fn many_windows_are_searched_for_in_several_passes_and_many_entries_make_several_messages() {
     let mut scene = Scene::new(&blocks(128), CodeVersion::Compiled, 5, [3_000, 100]);
@@ -315,7 +317,7 @@ fn a_list_of_nothing_or_of_one_kind_is_searched_too() {
     }
 }
 
-/// Small turns and large ones, in which the ways of corners on the screen are curved; parts before the first view too.
+/// Small and large turns, with curved paths of corners on the screen, including positions before the first view.
 #[test]
 fn what_code_makes_of_a_strip_between_two_views_is_what_the_native_firmware_draws() {
     for (seed, (rows, turn)) in (40..).zip([(1, 0.05), (8, 0.05), (7, 0.8), (1, 1.5)]) {
@@ -333,7 +335,8 @@ fn what_code_makes_of_a_strip_between_two_views_is_what_the_native_firmware_draw
     }
 }
 
-/// A structure and the view turn at once, so that ways on the screen are curved and leave what is taken to be near a strip.
+/// A structure and the view turn together, so that paths on the screen curve and leave the lines taken to be near a
+/// strip.
 #[test]
 fn what_is_counted_on_a_strip_between_two_views_is_what_is_drawn() {
     let config = strips(1);
@@ -353,7 +356,7 @@ fn what_is_counted_on_a_strip_between_two_views_is_what_is_drawn() {
     }
 }
 
-/// What a board pays for a strip between two views: its interpolation, and then the search.
+/// A board pays for a strip between two views: its interpolation, then the search.
 #[test]
 fn by_code_a_strip_between_two_views_takes_as_long_as_both_of_its_parts() {
     let spans = [false, true].map(|is_one_work| {
@@ -379,8 +382,8 @@ fn by_code_a_strip_between_two_views_takes_as_long_as_both_of_its_parts() {
     assert_eq!(spans[0], spans[1]);
 }
 
-/// Where the view and a structure turn at once ways on the screen are curved: at 20 degrees each, about the line of sight, by 7 pixels at the top and
-/// the bottom. What is left out for being far from a strip at both ends does not meet it between.
+/// If the view and a structure turn together, paths on the screen curve: by 7 pixels at the top and the bottom for 20
+/// degrees each about the line of sight. Triangles that are far from a strip at both ends must not meet it in between.
 #[test]
 fn nothing_that_meets_a_strip_between_two_views_is_left_out_for_being_far_at_both() {
     let config = strips(1);

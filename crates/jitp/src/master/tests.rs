@@ -1,4 +1,4 @@
-//! What the master orders, and when.
+//! Tests of the master's orders and their times.
 
 use super::*;
 use crate::config::Beam;
@@ -8,7 +8,7 @@ use pxpl5_gp::{CodeVersion, GpBoard};
 #[test]
 fn an_order_lasts_as_long_as_the_slaves_last_one_and_its_blocks_stand_for_a_pass() {
     let mut flight = Flight::new(2, 3);
-    // A pass is three orders; which slave takes which is said, and when.
+    // A pass has three orders. The pairs give the slave and the time of each order.
     let orders = [(0, 100), (1, 130), (1, 190), (0, 260), (0, 400), (1, 430)];
     let expected = [(0, 0), (0, 0), (60, 0), (160, 160), (140, 270), (240, 240)];
     for ((slave, now), (drawing, standing)) in orders.into_iter().zip(expected) {
@@ -23,7 +23,7 @@ fn nothing_is_before_time_begins() {
     assert_eq!(before(Time(3), Span(5)), Time::ZERO);
 }
 
-/// The board of a master that orders strips of 120 rows, racing the beam.
+/// Returns a board with a master that orders strips of 120 rows, racing the beam.
 fn master_of(viewpoint: Viewpoint, margin_ns: u64, code: Option<CodeVersion>, beam: Option<Beam>) -> Rig {
     let mut config = config(DrawingSchedule::Beam { viewpoint, racing: true, strip_rows: 120 });
     config.timing.margin_ns = margin_ns;
@@ -36,13 +36,14 @@ fn master_of(viewpoint: Viewpoint, margin_ns: u64, code: Option<CodeVersion>, be
     )
 }
 
-/// Orders to the slave, and when they were sent.
+/// Returns the orders to the slave, with the times at which they were sent.
 fn ordered(rig: &Rig) -> Vec<(Time, DrawingOrder)> {
     let sent = rig.sent_to(SLAVE).into_iter();
     sent.map(|(time, received)| (time, DrawingOrder::read(&received, SLAVE).expect("an order"))).collect()
 }
 
-/// Two strips of 120 rows; one slave has the time of one, and a margin; by code its field is ordered another field earlier.
+/// A field has two strips of 120 rows. One slave has the time of one strip and a margin. With code its field is ordered
+/// one more field earlier.
 #[test]
 fn by_code_a_field_is_ordered_a_field_before_its_first_strip_is() {
     const MARGIN_US: u64 = 400;
@@ -58,7 +59,7 @@ fn by_code_a_field_is_ordered_a_field_before_its_first_strip_is() {
     assert!(fields > 3, "{fields}");
 }
 
-/// Where the beam is at all strips at once and there is no margin, each would be ordered at the instant at which its beam is there.
+/// If the beam reaches all strips at the same time and there is no margin, each order would be due at its deadline.
 #[test]
 fn no_strip_is_ordered_when_its_beam_is_there() {
     let retrace = |field: PeriodNumber| us(field.0 * FIELD_US);

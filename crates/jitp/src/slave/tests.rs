@@ -1,4 +1,4 @@
-//! A slave on its board: what it keeps of fields, and which strips it draws.
+//! Tests of a slave on its board: the fields that it keeps and the strips that it draws.
 
 use super::*;
 use crate::config::Interpolation;
@@ -9,7 +9,7 @@ use pxpl5_sim::Span;
 const TRIANGLES: usize = 10;
 const DUAL: Viewpoint = Viewpoint::Dual(Interpolation::Screen);
 
-/// A slave, and what its two programs share.
+/// Returns a bench with a slave, and the state shared by its two programs.
 fn slave_of(viewpoint: Viewpoint) -> (Rig, SharedFields) {
     let config = config(DrawingSchedule::Beam { viewpoint, racing: false, strip_rows: 120 });
     let list = list(TRIANGLES);
@@ -46,14 +46,14 @@ fn order_of_strip(field: u64, deadline: Time, view: Option<FrameView>) -> Drawin
 
 const LATE: Time = us(1_000_000);
 
-/// Messages to the renderer after so much time.
+/// Returns the number of messages to the renderer after `us` microseconds.
 fn drawn_after(rig: &mut Rig, us: u64) -> usize {
     let before = rig.sent_to(RENDERER).len();
     rig.run_to(rig.us + us);
     rig.sent_to(RENDERER).len() - before
 }
 
-/// The strip of a field that is being transformed is drawn when it is.
+/// A strip of a field in transformation must be drawn when the field is ready.
 #[test]
 fn a_strip_waits_for_the_transforms_of_its_field() {
     let (mut rig, _) = slave_of(Viewpoint::Field);
@@ -78,8 +78,8 @@ fn the_last_three_fields_stay_transformed() {
     }
 }
 
-/// Each field has a part of the memory of its own, as long as it stays, and so has the one that comes next; where strips are between two
-/// views the last part is for these.
+/// Each kept field and the next one have their own parts of memory. If strips are between two views, the last part is
+/// for them.
 #[test]
 fn fields_that_stay_transformed_lie_apart() {
     assert_eq!(OF_STRIP, MemoryPart::of(4, 5));
@@ -97,7 +97,7 @@ fn fields_that_stay_transformed_lie_apart() {
     }
 }
 
-/// Whoever orders one view where strips are drawn between two gets that one.
+/// If strips are drawn between two views but only one view is ordered, that view must be used.
 #[test]
 fn a_field_of_one_view_is_drawn_from_it() {
     let messages = [Viewpoint::Field, DUAL].map(|viewpoint| {
@@ -109,7 +109,8 @@ fn a_field_of_one_view_is_drawn_from_it() {
     assert!(messages[0] > 0 && messages[0] == messages[1], "{messages:?}");
 }
 
-/// A message, a pass and its triangles: at that instant the strip is transformed, and drawn if its beam is not there yet.
+/// After a message, a pass and its triangles the strip is transformed. It must be drawn only if this instant is before
+/// its deadline.
 #[test]
 fn a_strip_that_is_transformed_when_its_beam_is_there_is_not_drawn() {
     let timing = GpTiming::PAPERS;

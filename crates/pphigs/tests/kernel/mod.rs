@@ -1,5 +1,6 @@
-//! Runs a triangle kernel on the processor model with 8 MB of memory, and says what native code makes of the same
-//! triangles. Shared by the test of the kernels and by the example that reports their clocks.
+//! A bench that runs a triangle kernel on the processor model with 8 MB of memory, and compares with native code.
+//!
+//! The test of the kernels and the example that reports their clocks share this module.
 
 #![allow(dead_code, reason = "the test and the example each use a part")]
 
@@ -22,11 +23,11 @@ const STACK: u32 = 0x1_1400;
 const TRIANGLES: u32 = 0x2_0000;
 const COMMANDS: u32 = 0x20_0000;
 const BINS: u32 = 0x60_0000;
-/// The right eye's parameter block and commands.
+/// Address of the right eye's parameter block.
 const RIGHT_PARAMETERS: u32 = 0x1_2500;
 const RIGHT_COMMANDS: u32 = 0x40_0000;
 
-/// Room for each bin: of an NTSC frame's 20 what the figures were measured with.
+/// Returns the room for each bin. The figures were measured with 20 bins of an NTSC frame.
 const fn bin_bytes(regions: u32) -> u32 {
     let share = (MEMORY as u32 - BINS) / regions / 32 * 32;
     if share < 0x1_8000 { share } else { 0x1_8000 }
@@ -34,7 +35,7 @@ const fn bin_bytes(regions: u32) -> u32 {
 
 const RETURN: u32 = 0x0800;
 
-/// The kernel of a schedule for Gouraud triangles in bins of a frame, which the report is about.
+/// Returns the kernel of a schedule for Gouraud triangles in the bins of a frame, as used in the report.
 pub(crate) const fn frame(schedule: Schedule) -> Kernel {
     let list = KernelList::Triangles;
     let picture = KernelPicture::Frame;
@@ -50,26 +51,26 @@ pub(crate) const fn frame(schedule: Schedule) -> Kernel {
     }
 }
 
-/// The kernel and its clipper, assembled.
+/// Returns the kernel and its clipper, assembled.
 pub(crate) fn program(kernel: Kernel) -> Program {
     let source = linear::schedule(&kernel.source()).unwrap_or_else(|e| panic!("{e}"));
     let sources = [("kernel", source.as_str()), ("clipper", &kernel.clipper_source())];
     link(CODE, &sources).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// A view over a frame of 640 x 480.
+/// Returns a view of a frame of 640 x 480.
 pub(crate) fn view() -> ViewTransform {
     let turn = Mat4::from_rotation_y(0.3) * Mat4::from_rotation_x(-0.2);
     let model_view = Mat4::from_translation(Vec3::new(0.25, -0.5, -6.0)) * turn;
     ViewTransform { model_view, projection: Mat4::perspective_rh(0.9, 4.0 / 3.0, 0.5, 40.0) }
 }
 
-/// A light from above and behind the eye.
+/// Returns a light from above and behind the eye.
 pub(crate) fn light() -> Light {
     Light { direction: [0.48, 0.6, 0.64], ambient: 0.2, diffuse: 0.7 }
 }
 
-/// Numbers in -1 to 1, the same on every host.
+/// A generator of numbers from -1 to 1 that are the same on every host.
 struct Numbers(SplitMix64);
 
 impl Numbers {
@@ -94,13 +95,13 @@ impl Numbers {
     }
 }
 
-/// Triangles of about `size` world units around the middle of the picture, each corner coloured at random.
+/// Returns triangles of about `size` world units around the middle of the picture, with random colours at the corners.
 pub(crate) fn triangles(count: usize, size: f32, seed: u64) -> Vec<Triangle> {
     let mut numbers = Numbers(SplitMix64::new(seed));
     (0..count).map(|_| numbers.triangle(size)).collect()
 }
 
-/// A strip: each vertex makes a triangle with the two before it.
+/// A strip: each vertex makes a triangle with the two vertices before it.
 pub(crate) struct Strip {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
@@ -108,7 +109,7 @@ pub(crate) struct Strip {
 }
 
 impl Strip {
-    /// Its triangles, each with corners of its own.
+    /// Returns the strip's triangles, each with its own corners.
     fn triangles(&self) -> impl Iterator<Item = Triangle> {
         let corners = |first: usize| [first, first + 1, first + 2];
         (2..self.positions.len()).map(move |last| Triangle {
@@ -124,14 +125,14 @@ impl Strip {
     }
 }
 
-/// Strips of so many triangles each, whose vertices zigzag with steps of about `size` world units from somewhere around the middle of
-/// the picture.
+/// Returns strips of the given numbers of triangles. Their vertices zigzag with steps of about `size` world units from
+/// a place near the middle of the picture.
 pub(crate) fn strips(lengths: &[usize], size: f32, seed: u64) -> Vec<Strip> {
     let mut numbers = Numbers(SplitMix64::new(seed));
     let strip = |length: &usize| {
         let mut along = numbers.vector(2.4);
         let mut vertex = |n: usize| {
-            // Turns round before it leaves the picture.
+            // Turn round before the strip leaves the picture.
             let way = along.abs().max_element() > 2.4;
             along = if way { along * 0.9 } else { along + numbers.vector(0.5 * size) };
             let side = Vec3::new(size, size, 0.0) * if n.is_multiple_of(2) { 0.5 } else { -0.5 };
@@ -145,21 +146,22 @@ pub(crate) fn strips(lengths: &[usize], size: f32, seed: u64) -> Vec<Strip> {
     lengths.iter().map(strip).collect()
 }
 
-/// All triangles of strips, each with corners of its own.
+/// Returns all triangles of strips, each with its own corners.
 pub(crate) fn triangles_of(strips: &[Strip]) -> Vec<Triangle> {
     strips.iter().flat_map(Strip::triangles).collect()
 }
 
-/// What a kernel left in memory.
+/// Result of a kernel in memory.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Output {
-    /// The words of each command, in the order of the triangles.
+    /// Words of each command, in the order of the triangles.
     pub(crate) commands: Vec<Vec<u32>>,
-    /// Regions of each command, by rising number.
+    /// Regions of each command, in ascending order.
     pub(crate) regions: Vec<Vec<u16>>,
 }
 
-/// What native code makes of the triangles in a view: the commands of all pieces and their regions; and its counts.
+/// Returns the results of native code for triangles in a view: the commands of all pieces, their regions, and the
+/// counts.
 pub(crate) fn native(
     kernel: Kernel,
     view: &ViewTransform,
@@ -207,7 +209,7 @@ fn words(command: &Command) -> Vec<u32> {
     words
 }
 
-/// The instruction heads of a triangle command, taken from a command of zeros.
+/// Returns the instruction heads of a triangle command, taken from a command of zeros.
 fn heads(surface: KernelSurface) -> Heads {
     let blank = match surface {
         KernelSurface::Gouraud | KernelSurface::Precomputed => {
@@ -220,14 +222,14 @@ fn heads(surface: KernelSurface) -> Heads {
 
 /// A processor with a kernel and triangles in its memory.
 pub(crate) struct Bench {
-    /// The processor with the kernel in its memory.
+    /// Processor with the kernel in its memory.
     pub(crate) cpu: Cpu,
     /// The kernel with its symbols.
     pub(crate) program: Program,
     ram: Ram,
-    /// Triangles or vertices of strips.
+    /// Number of triangles, or of the strips' vertices.
     count: u32,
-    /// Bytes of each.
+    /// Bytes of a triangle or vertex.
     step: u32,
     command_bytes: u32,
     regions: u32,
@@ -235,19 +237,19 @@ pub(crate) struct Bench {
 }
 
 impl Bench {
-    /// A processor with kernel, tables and triangles in its memory, ready to be called.
+    /// Creates a processor with kernel, tables and triangles in its memory, ready to be called.
     pub(crate) fn new(kernel: Kernel, viewport: Viewport, config: Config, triangles: &[Triangle]) -> Bench {
         let data: Vec<u32> = triangles.iter().flat_map(display_list_words).collect();
         Bench::over(kernel, &view(), viewport, config, &data, triangles.len())
     }
 
-    /// The same in another view than that of the reports.
+    /// Creates a bench for a view other than the one of the reports.
     pub(crate) fn in_view(kernel: Kernel, view: &ViewTransform, viewport: Viewport, triangles: &[Triangle]) -> Bench {
         let data: Vec<u32> = triangles.iter().flat_map(display_list_words).collect();
         Bench::over(kernel, view, viewport, Config::functional(), &data, triangles.len())
     }
 
-    /// The same for both eyes in one pass.
+    /// Creates a bench for both eyes in one pass.
     pub(crate) fn for_both_eyes(
         kernel: Kernel,
         views: &[ViewTransform; 2],
@@ -264,7 +266,7 @@ impl Bench {
         bench
     }
 
-    /// The commands of either eye; only after one run.
+    /// Returns the commands of each eye, after exactly one run.
     pub(crate) fn commands_of_both(&self) -> [Vec<Vec<u32>>; 2] {
         let ends = [self.cpu.state.r[18], self.cpu.state.r[19]];
         [(COMMANDS, ends[0]), (RIGHT_COMMANDS, ends[1])].map(|(begin, end)| self.words_of_commands(begin, end))
@@ -275,7 +277,7 @@ impl Bench {
         words.chunks(self.command_bytes as usize / 4).map(<[u32]>::to_vec).collect()
     }
 
-    /// The same for the kernel of strips.
+    /// Creates a bench for the kernel of strips.
     pub(crate) fn of_strips(kernel: Kernel, viewport: Viewport, config: Config, strips: &[Strip]) -> Bench {
         let data: Vec<u32> = strips.iter().flat_map(Strip::words).collect();
         Bench::over(kernel, &view(), viewport, config, &data, data.len() / 8)
@@ -333,7 +335,7 @@ impl Bench {
         self.call(TRIANGLES, self.count, COMMANDS);
     }
 
-    /// Runs the kernel over all triangles, with empty caches before each.
+    /// Runs the kernel over all triangles, with empty caches before each triangle.
     pub(crate) fn run_cold(&mut self) {
         let mut commands = COMMANDS;
         for n in 0..self.count {
@@ -343,12 +345,12 @@ impl Bench {
         }
     }
 
-    /// Profile of everything run so far.
+    /// Returns the profile of all runs so far.
     pub(crate) fn profile(&self) -> Profile {
         self.cpu.profile()
     }
 
-    /// Reads the output back; only after one run.
+    /// Reads the output from memory, after exactly one run.
     pub(crate) fn output(&self) -> Output {
         let end = self.cpu.state.r[18];
         let commands = self.words_of_commands(COMMANDS, end);

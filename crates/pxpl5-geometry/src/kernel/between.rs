@@ -1,17 +1,25 @@
-//! Code for triangles between two views: where they are in both, and their commands in between (kernels/ends.s, blend.s, between.s).
+//! Code for triangles between two views: it records their corners in both views and makes commands for views in
+//! between.
+//!
+//! The sources are kernels/ends.s, blend.s and between.s.
 
 use super::Kernel;
 
-/// Words of the record of a triangle between two views: whether it has a place on the screen in both, the least and the greatest y, free;
-/// its corners in the first view, then in the second.
+/// Number of words of the record of a triangle in two views.
+///
+/// The record holds: a flag that the triangle is on the screen in both views, least and greatest y, a free word, and
+/// the corners in the first and second view.
 pub const ENDS_WORDS: usize = 28;
 
-/// Words of it for the corners in one view.
+/// Number of words of the record for the corners in one view.
 pub const ENDS_VIEW_WORDS: usize = 12;
 
 impl Kernel {
-    /// As the compiled kernel, for triangles [between two views](Self::ends_source): their commands for a strip of lines, which are
-    /// kept with their boxes. The schedule does not matter. Its entry is the label `start`, its registers stand in kernels/between.s.
+    /// Returns the source that makes commands for triangles [between two views](Self::ends_source), for a strip of
+    /// lines.
+    ///
+    /// The code is like the compiled kernel for every schedule, and keeps each command with its box. Its entry is the
+    /// label `start`; kernels/between.s lists its registers.
     #[must_use]
     pub fn between_source(&self) -> String {
         let record = include_str!("../../kernels/ends_record.s");
@@ -23,7 +31,8 @@ impl Kernel {
         [common.as_slice(), &triangle, &[include_str!("../../kernels/box_kept.s")]].concat().join("\n")
     }
 
-    /// The source of what finds where triangles are in two views, and of what interpolates their matrices: the labels `keepends` and `blend`.
+    /// Returns the source that records triangles in two views (label `keepends`) and interpolates the views' matrices
+    /// (label `blend`).
     #[must_use]
     pub fn ends_source() -> String {
         [

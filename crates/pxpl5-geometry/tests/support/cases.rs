@@ -5,20 +5,21 @@ use super::{at_pixel, pixel_view};
 use glam::{Mat4, Quat, Vec3};
 use pxpl5_geometry::{Triangle, ViewTransform};
 
-/// Triangles under one view.
+/// A family of triangles with its view.
 #[derive(Clone, Debug)]
 pub struct Case {
     pub name: &'static str,
     pub view: ViewTransform,
     pub triangles: Vec<Triangle>,
-    /// The triangles tile a part of the screen: no two may share a pixel, and none may be missing between them.
+    /// True if the triangles tile a part of the screen: no two may share a pixel, and no pixel between them may be
+    /// missing.
     pub tiling: bool,
 }
 
 const NEAR: f32 = 1.0;
 const FAR: f32 = 16_384.0;
 
-/// Triangles with random colours.
+/// Returns a triangle with random colours.
 fn coloured(random: &mut Random, positions: [Vec3; 3]) -> Triangle {
     Triangle { positions, normals: [Vec3::Z; 3], colours: [random.colour(), random.colour(), random.colour()] }
 }
@@ -41,14 +42,14 @@ fn many(seed: u64, count: usize, make: impl Fn(&mut Random) -> [Vec3; 3]) -> Vec
         .collect()
 }
 
-/// Somewhere on the screen, at one of a few distances.
+/// Returns a random point on the screen, at one of a few distances.
 fn anywhere(random: &mut Random) -> Vec3 {
     let x = random.between(0.0, 640.0);
     let y = random.between(0.0, 480.0);
     at_pixel(x, y, random.between(0.5, 8.0))
 }
 
-/// Within `size` px of a place.
+/// Returns a random point within `size` px of a place.
 fn around(random: &mut Random, [x, y]: [f32; 2], size: f32) -> Vec3 {
     let dx = random.within(size);
     let dy = random.within(size);
@@ -69,7 +70,7 @@ fn large() -> Case {
     case("ordinary, as large as the screen", many(2, 12, |r| std::array::from_fn(|_| anywhere(r))))
 }
 
-/// 300 px long and `width` px wide, in any direction.
+/// Returns triangles 300 px long and `width` px wide, in any direction.
 fn slivers(name: &'static str, width: f32) -> Case {
     let triangles = many(3, 100, |r| {
         let [dx, dy] = r.direction();
@@ -84,14 +85,14 @@ fn slivers(name: &'static str, width: f32) -> Case {
     case(name, triangles)
 }
 
-/// Triangles around one corner, as a closed fan.
+/// Returns triangles around one corner, as a closed fan.
 fn fan() -> Case {
     let mut random = Random::new(4);
     let hub = at_pixel(320.3, 240.7, 1.0);
     let count = 48;
     let rim: Vec<Vec3> = (0..count)
         .map(|n| {
-            // A square's border, walked once, with a wavy depth.
+            // Walk the border of a square once, with varying depth.
             let t = n as f32 * 4.0 / count as f32;
             let (x, y) = match t as u32 {
                 0 => (t, 0.0),
@@ -110,7 +111,7 @@ fn fan() -> Case {
     tiling("fan of 48 around one corner", triangles.collect())
 }
 
-/// A jittered grid, of which neighbours share edges with opposite directions.
+/// Returns a jittered grid, in which neighbours share edges in opposite directions.
 fn grid(name: &'static str, step: f32, jitter: f32) -> Case {
     let mut random = Random::new(5);
     let columns = 40_usize;
@@ -182,7 +183,7 @@ fn off_screen() -> Case {
     case("10^6 px beyond the screen", triangles)
 }
 
-/// Within 10^6 px of the screen's middle.
+/// Returns a random point within 10^6 px of the screen's middle.
 fn far_off_screen(random: &mut Random) -> Vec3 {
     let x = 320.0 + random.within(1.0) * 1e6;
     let y = 240.0 + random.within(1.0) * 1e6;
@@ -202,7 +203,7 @@ fn depth_range() -> Case {
     Case { view: pixel_view(1e-3, 1e6), ..case("depth from 10^-3 to 10^6", triangles) }
 }
 
-/// A view like a user's, with a rotation, of a model of a given size somewhere.
+/// Returns a case with a rotated view of a model of a given size at a given place, like a user's view.
 fn placed(name: &'static str, seed: u64, size: f32, place: Vec3) -> Case {
     let random = &mut Random::new(seed);
     let triangles = (0..100)
@@ -240,7 +241,7 @@ fn degenerate() -> Case {
     case("degenerate and zero area", triangles)
 }
 
-/// A wall that runs away from the eye and is seen almost edge-on.
+/// Returns a wall that extends away from the eye and is seen almost edge-on.
 fn edge_on() -> Case {
     let triangles = many(13, 60, |r| {
         let x = r.between(100.0, 540.0);
@@ -254,7 +255,8 @@ fn edge_on() -> Case {
     case("walls seen edge-on, near to far", triangles)
 }
 
-/// 4,000 px long, half a subpixel thick, from far to near across that: slopes beyond any format.
+/// Returns triangles 4,000 px long and half a subpixel thick, from far to near across their thickness: slopes beyond
+/// any format.
 fn overflowing() -> Case {
     let mut random = Random::new(15);
     let triangles = (0..20)
@@ -268,7 +270,7 @@ fn overflowing() -> Case {
     Case { view: pixel_view(1.875, FAR), ..case("half a subpixel thick, near to far", triangles) }
 }
 
-/// All families of triangles: ordinary ones, then the hard ones.
+/// Returns all families of triangles: ordinary ones, then the hard ones.
 pub fn all() -> Vec<Case> {
     vec![
         ordinary(),

@@ -1,8 +1,8 @@
-//! Exact geometry: integers of any length, from the same 32-bit floating-point input as the pipeline's.
+//! Exact geometry in integers of any length, from the same 32-bit floating-point input as the pipeline.
 //!
-//! Every f32 is an integer times 2^-149, so with all clip coordinates of a triangle on one scale no division is
-//! needed: coverage, depth and colour at a pixel are ratios of integers that are linear in the pixel's coordinates
-//! (homogeneous rasterisation, Olano and Greer, *Triangle scan conversion using 2D homogeneous coordinates*, 1997).
+//! Every f32 is an integer times 2^-149, so no division is needed if all clip coordinates of a triangle have a common
+//! scale. Coverage, depth and colour at a pixel are ratios of integers that are linear in the pixel's coordinates
+//! (homogeneous rasterization, Olano and Greer, *Triangle scan conversion using 2D homogeneous coordinates*, 1997).
 
 use super::{HEIGHT, WIDTH};
 use glam::{Mat4, Vec3};
@@ -11,7 +11,7 @@ use num_integer::Integer;
 use num_traits::{Signed, ToPrimitive, Zero};
 use pxpl5_geometry::{Triangle, ViewTransform};
 
-/// `a x + b y + c` at pixel (x, y).
+/// The linear form `a x + b y + c` at pixel (x, y).
 #[derive(Clone, Debug)]
 pub struct Form {
     pub a: BigInt,
@@ -24,7 +24,7 @@ impl Form {
         &self.a * x + &self.b * y + &self.c
     }
 
-    /// The sum of `weights[i] * forms[i]`.
+    /// Returns the sum of `weights[i] * forms[i]`.
     fn sum(forms: &[Self; 3], weights: &[BigInt; 3]) -> Self {
         let [f, g, h] = forms;
         Self {
@@ -38,7 +38,7 @@ impl Form {
         Self { a: -self.a, b: -self.b, c: -self.c }
     }
 
-    /// Narrows a range of x to where the form at row y is at least `least`.
+    /// Narrows a range of x to the pixels at which the form at row y is at least `least`.
     fn narrow(&self, y: i32, least: i32, range: &mut [i32; 2]) {
         let needed: BigInt = BigInt::from(least) - &self.b * y - &self.c;
         if self.a.is_zero() {
@@ -52,7 +52,7 @@ impl Form {
         }
     }
 
-    /// 1 where a pixel centre on the line is outside: the tie rule gives it to top and left edges alone.
+    /// Returns 1 if a pixel centre on the line is outside, else 0. The tie rule includes only top and left edges.
     fn least(&self) -> i32 {
         let top_left = self.a.is_positive() || (self.a.is_zero() && self.b.is_positive());
         i32::from(!top_left)
@@ -63,18 +63,18 @@ fn weighted(values: [&BigInt; 3], weights: &[BigInt; 3]) -> BigInt {
     values.iter().zip(weights).map(|(value, weight)| *value * weight).sum()
 }
 
-/// A pixel's number; a number too large for one is beyond that side of the frame.
+/// Converts a number to a pixel coordinate. A large number becomes a coordinate beyond that side of the frame.
 fn pixel(number: &BigInt) -> i32 {
     number.to_i32().unwrap_or(if number.is_negative() { -1 } else { WIDTH })
 }
 
-/// A ratio as a floating-point number, right to some 40 bits below 1.
+/// Returns a ratio as a floating-point number, with an error of about 2^-40.
 pub fn ratio(numerator: &BigInt, denominator: &BigInt) -> f64 {
     let scaled = (numerator << 40_u32).div_floor(denominator);
     scaled.to_f64().unwrap_or(f64::MAX) / (1_u64 << 40) as f64
 }
 
-/// An f32 times 2^149; infinities and NaN do not occur in cases.
+/// Returns an f32 times 2^149. Infinities and NaN do not occur in cases.
 pub fn fixed(v: f32) -> BigInt {
     let bits = v.to_bits();
     let exponent = (bits >> 23) & 0xff;
@@ -92,7 +92,7 @@ fn times(matrix: &Mat4, v: &[BigInt; 4]) -> [BigInt; 4] {
     std::array::from_fn(|row| (0..4).map(|k| fixed(columns[k][row]) * &v[k]).sum())
 }
 
-/// Clip coordinates of a point, times 2^447.
+/// Returns the clip coordinates of a point, times 2^447.
 pub fn clip(view: &ViewTransform, point: Vec3) -> [BigInt; 4] {
     let world = [point.x, point.y, point.z, 1.0].map(fixed);
     times(&view.projection, &times(&view.model_view, &world))
@@ -102,18 +102,18 @@ pub fn clip(view: &ViewTransform, point: Vec3) -> [BigInt; 4] {
 #[derive(Clone, Debug)]
 pub struct ExactTriangle {
     edges: [Form; 3],
-    /// Depth is this over `scale`.
+    /// Numerator of the depth, whose denominator is `scale`.
     depth: Form,
     colour: [Form; 3],
     scale: BigInt,
-    /// Not cut by the near or far plane: colours are linear on the screen.
+    /// True if neither the near nor the far plane cuts the triangle, so that colours are linear on the screen.
     pub whole: bool,
-    /// Clip coordinates on one scale.
+    /// Clip coordinates on a common scale.
     pub corners: [[BigInt; 4]; 3],
 }
 
 impl ExactTriangle {
-    /// `None` if the triangle is seen edge-on or has no area: then it covers nothing.
+    /// Creates the exact triangle. Returns `None` if it is seen edge-on or has no area, so that it covers no pixel.
     pub fn new(view: &ViewTransform, triangle: &Triangle) -> Option<Self> {
         let corners = reduced(triangle.positions.map(|p| clip(view, p)));
         let screen: [[BigInt; 3]; 3] = std::array::from_fn(|i| {
@@ -141,7 +141,7 @@ impl ExactTriangle {
         Some(Self { edges, depth, colour, scale, whole, corners })
     }
 
-    /// First and last covered pixel of a row of the frame; empty if the first is greater.
+    /// Returns the first and last covered pixel of a row of the frame. The row is empty if the first is greater.
     pub fn span(&self, y: i32) -> [i32; 2] {
         let mut range = [0, WIDTH - 1];
         for edge in &self.edges {
@@ -153,23 +153,23 @@ impl ExactTriangle {
         range
     }
 
-    /// Depth from 0 to 1 at a pixel.
+    /// Returns the depth from 0 to 1 at a pixel.
     pub fn depth(&self, x: i32, y: i32) -> f64 {
         ratio(&self.depth.at(x, y), &self.scale)
     }
 
-    /// Whether this is nearer than another at a pixel.
+    /// Returns true if this triangle is nearer than another at a pixel.
     pub fn nearer_than(&self, other: &Self, x: i32, y: i32) -> bool {
         self.depth.at(x, y) * &other.scale < other.depth.at(x, y) * &self.scale
     }
 
-    /// Colour component from 0 to 255 at a pixel.
+    /// Returns a colour component from 0 to 255 at a pixel.
     pub fn colour(&self, component: usize, x: i32, y: i32) -> f64 {
         ratio(&self.colour[component].at(x, y), &self.scale)
     }
 }
 
-/// Drops the power of two that all coordinates share; it cancels everywhere.
+/// Removes the power of two that is common to all coordinates, since it cancels everywhere.
 fn reduced(corners: [[BigInt; 4]; 3]) -> [[BigInt; 4]; 3] {
     let shift = corners.iter().flatten().filter_map(BigInt::trailing_zeros).min().unwrap_or(0);
     corners.map(|c| c.map(|v| v >> shift))

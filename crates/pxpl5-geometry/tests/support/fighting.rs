@@ -1,4 +1,4 @@
-//! Z fighting: which of two nearly equal surfaces is seen.
+//! Z fighting: visibility of two nearly equal surfaces.
 
 use super::exact::ExactTriangle;
 use super::native::Piece;
@@ -6,13 +6,13 @@ use super::{HEIGHT, WIDTH, at_pixel, pixel_view};
 use glam::Vec3;
 use pxpl5_geometry::{Culling, Light, SetupStats, Transform, Triangle, ViewTransform, Viewport};
 
-/// Pixels where two surfaces overlap, and where the farther is seen.
+/// Counts of the pixels in which two surfaces overlap, and in which the farther one is visible.
 #[derive(Clone, Debug)]
 pub struct Fight {
     pub name: String,
     pub pixels: u64,
     pub wrong: u64,
-    /// Median distance of the two in units of pixel depth.
+    /// Median distance of the two surfaces, in units of pixel depth.
     pub apart: f64,
 }
 
@@ -20,7 +20,7 @@ fn view() -> ViewTransform {
     pixel_view(64.0, 16_384.0)
 }
 
-/// A triangle over most of the screen, its corners at three distances times `scale`.
+/// Returns a triangle over most of the screen, its corners at three distances times `scale`.
 fn surface(scale: [f32; 3]) -> Triangle {
     Triangle {
         positions: [at_pixel(10.3, 20.1, scale[0]), at_pixel(630.7, 90.4, scale[1]), at_pixel(200.9, 470.2, scale[2])],
@@ -48,7 +48,7 @@ fn fight(name: String, first: [f32; 3], second: [f32; 3]) -> Fight {
             if !pieces.iter().all(|p| p.inside_edges(x, y)) {
                 continue;
             }
-            // Drawn in order, strictly nearer wins.
+            // Drawn in order; a strictly nearer depth wins.
             let seen = pieces[1].depth(x, y) < pieces[0].depth(x, y);
             wrong += u64::from(seen != exact[1].nearer_than(&exact[0], x, y));
             let units = (exact[1].depth(x, y) - exact[0].depth(x, y)) * 16_777_216.0;
@@ -59,7 +59,7 @@ fn fight(name: String, first: [f32; 3], second: [f32; 3]) -> Fight {
     Fight { name, pixels: apart.len() as u64, wrong, apart: apart[apart.len() / 2] }
 }
 
-/// Parallel pairs at shrinking distances, then pairs that cross at shrinking angles.
+/// Measures parallel pairs at shrinking distances, then pairs that cross at shrinking angles.
 pub fn all() -> Vec<Fight> {
     let base = [1.0, 1.5, 2.0];
     let mut fights = Vec::new();

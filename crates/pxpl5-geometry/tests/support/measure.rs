@@ -1,4 +1,4 @@
-//! What the pipeline makes of a case, against the oracle.
+//! Comparison of the pipeline with exact geometry, for each case.
 
 use super::cases::Case;
 use super::exact::ExactTriangle;
@@ -8,42 +8,42 @@ use super::{HEIGHT, WIDTH};
 use pxpl5_geometry::{Culling, DEPTH_FAR, DEPTH_NEAR, Light, SetupStats, Transform, Viewport};
 use std::ops::RangeInclusive;
 
-/// Finer and coarser grids that the formats are tried with.
+/// Finer and coarser grids with which the formats are tested, in bits of subpixels.
 pub const SUBPIXEL_BITS: [u32; 6] = [0, 2, 4, 6, 8, 12];
 
 /// Measurements of one case.
 #[derive(Clone, Debug, Default)]
 pub struct Row {
     pub triangles: usize,
-    /// Pixels that the exact geometry covers, each triangle by itself.
+    /// Number of pixels that the exact geometry covers, summed over all triangles.
     pub exact: u64,
-    /// Pixels covered by only one of both.
+    /// Number of pixels that only the pipeline or only the exact geometry covers.
     pub wrong: u64,
-    /// Worst depth error in units of pixel depth: all together, and of the plane alone.
+    /// Largest depth error in units of pixel depth, of all steps together.
     pub depth: f64,
     pub depth_plane: f64,
-    /// Worst colour error in colour units, the same two.
+    /// Largest colour error in colour units, of all steps together.
     pub colour: f64,
     pub colour_plane: f64,
-    /// For tilings: pixels inside the exact tiling that nothing covers, and pixels covered twice.
+    /// For tilings: number of uncovered pixels inside the exact tiling.
     pub holes: Option<u64>,
     pub overlaps: Option<u64>,
     /// Wrong pixels of exact vertices on a grid of [`SUBPIXEL_BITS`], and the exact pixels of those triangles.
     pub grids: [u64; SUBPIXEL_BITS.len()],
     pub grid_exact: u64,
-    /// Bits, with sign, of the greatest coefficients: edges a and b, edges c, depth slopes, colour slopes.
+    /// Bits, including the sign, of the largest coefficients: edges a and b, edges c, depth slopes, colour slopes.
     pub bits: [u32; 4],
     pub stats: SetupStats,
 }
 
 impl Row {
-    /// Wrong pixels per million of those that are right or wrong.
+    /// Returns wrong pixels per million of all exact or wrong pixels.
     pub fn per_million(wrong: u64, exact: u64) -> f64 {
         if wrong == 0 { 0.0 } else { wrong as f64 * 1e6 / exact.max(wrong) as f64 }
     }
 }
 
-/// One count a pixel of the frame.
+/// A counter for each pixel of the frame.
 struct Counts(Vec<u8>);
 
 impl Counts {
@@ -64,13 +64,13 @@ impl Counts {
         self.0[(y * WIDTH + x) as usize]
     }
 
-    /// Whether the pixel and all its neighbours are covered.
+    /// Returns true if the pixel and all its neighbours are covered.
     fn is_interior(&self, x: i32, y: i32) -> bool {
         neighbours(y, HEIGHT).all(|y| neighbours(x, WIDTH).all(|x| self.get(x, y) > 0))
     }
 }
 
-/// The pixel and those beside it along one axis.
+/// Returns the pixel and its neighbours along one axis.
 fn neighbours(pixel: i32, size: i32) -> RangeInclusive<i32> {
     (pixel - 1).max(0)..=(pixel + 1).min(size - 1)
 }
@@ -79,7 +79,7 @@ fn pixels() -> impl Iterator<Item = (i32, i32)> {
     (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (x, y)))
 }
 
-/// Draws a case by the pipeline and by the exact oracle, and counts where they differ.
+/// Draws a case by the pipeline and by exact geometry, and counts the differences.
 pub fn measure(case: &Case) -> Row {
     let transform = Transform::new(&case.view, Viewport::FRAME, Culling::None).expect("finite views");
     let mut row = Row { triangles: case.triangles.len(), ..Row::default() };
@@ -98,7 +98,7 @@ pub fn measure(case: &Case) -> Row {
 }
 
 impl Row {
-    /// `own` is empty before and after.
+    /// Compares one triangle. The counter `own` is zero before and after.
     fn compare(&mut self, pieces: &[Piece], exact: Option<&ExactTriangle>, counts: [&mut Counts; 3]) {
         let [drawn, wanted, own] = counts;
         let spans: Vec<[i32; 2]> = (0..HEIGHT).map(|y| exact.map_or([0, -1], |e| e.span(y))).collect();
@@ -127,7 +127,7 @@ impl Row {
                     self.exact += 1;
                     wanted.add(x, y);
                 }
-                // A pixel drawn twice by pieces of one triangle is wrong too.
+                // A pixel drawn twice by pieces of one triangle is also wrong.
                 self.wrong += u64::from(own.get(x, y) != u8::from(inside));
                 own.clear(x, y);
             }
@@ -137,7 +137,7 @@ impl Row {
         }
     }
 
-    /// The planes against exact planes through the same snapped corners.
+    /// Compares the planes with exact planes through the same snapped corners.
     fn plane_errors(&mut self, piece: &Piece, x: i32, y: i32) {
         let depth = piece.plane_value(piece.depth_corners(), x, y) / 256.0;
         self.depth_plane = self.depth_plane.max((f64::from(piece.depth(x, y)) + 0.5 - depth).abs());
@@ -147,7 +147,7 @@ impl Row {
         }
     }
 
-    /// The pixel against exact geometry, where that covers the pixel too.
+    /// Compares a pixel with exact geometry, if exact geometry covers it too.
     fn errors(&mut self, piece: &Piece, exact: Option<&ExactTriangle>, [first, last]: [i32; 2], x: i32, y: i32) {
         let Some(exact) = exact else { return };
         if !(first..=last).contains(&x) {
@@ -191,7 +191,7 @@ impl Row {
         }
     }
 
-    /// Bits of the slopes of the plane through three values at the corners.
+    /// Records the bits of the slopes of the plane through three values at the corners.
     fn slope_bits(&mut self, place: usize, piece: &Piece, corners: [i128; 3]) {
         let (origin, area) = piece.exact_plane(corners, 0, 0);
         for (x, y) in [(1, 0), (0, 1)] {
@@ -199,7 +199,7 @@ impl Row {
         }
     }
 
-    /// Keeps the greater of the bits found so far and those of `value`, with sign.
+    /// Keeps the larger of the recorded bits and the bits of `value`, including the sign.
     fn keep_bits(&mut self, place: usize, value: i128) {
         self.bits[place] = self.bits[place].max(129 - value.unsigned_abs().leading_zeros());
     }

@@ -1,6 +1,6 @@
-//! An exact oracle for geometry, hard cases, and what the pipeline makes of them.
+//! Exact geometry, hard cases, and measurements of the pipeline on them.
 //!
-//! Shared by the tests and by the example that writes docs/numerics.md, each of which uses a part.
+//! The tests and the example that writes docs/numerics.md share this module; each uses a part.
 #![allow(dead_code, unreachable_pub, missing_docs)]
 
 pub mod cases;
@@ -21,7 +21,7 @@ pub const WIDTH: i32 = 640;
 /// Height of the frame in pixels.
 pub const HEIGHT: i32 = 480;
 
-/// A view whose screen coordinates are exact: the point that [`at_pixel`] gives is at that pixel without rounding.
+/// Returns a view with exact screen coordinates: the point of [`at_pixel`] is at its pixel without rounding.
 pub fn pixel_view(near: f32, far: f32) -> ViewTransform {
     let range = near - far;
     ViewTransform {
@@ -35,7 +35,8 @@ pub fn pixel_view(near: f32, far: f32) -> ViewTransform {
     }
 }
 
-/// The point at (x, y) px, at distance `960 * scale`; exact if `scale` is a power of two and x, y short fractions.
+/// Returns the point at (x, y) px, at distance `960 * scale`. It is exact if `scale` is a power of two and x, y are
+/// short fractions.
 pub fn at_pixel(x: f32, y: f32, scale: f32) -> Vec3 {
     Vec3::new((x - 320.0) * 3.0, (240.0 - y) * 4.0, -960.0) * scale
 }

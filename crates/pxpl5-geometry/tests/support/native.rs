@@ -1,11 +1,11 @@
-//! Evaluates the pipeline's expressions at pixels, as the renderer's formats define.
+//! Evaluation of the pipeline's expressions at pixels, by the renderer's formats.
 
 use super::{HEIGHT, WIDTH};
 use pxpl5_geometry::{GouraudTriangle, LitColours, RegionMask, ScreenTriangle, SetupStats, Viewport};
 use pxpl5_wire::{RegionGrid, RegionId, format};
 use std::ops::Range;
 
-/// Number of the region of a frame's pixel.
+/// Returns the number of the region that contains a pixel of the frame.
 pub fn region_of(x: i32, y: i32) -> RegionId {
     let grid = RegionGrid::FRAME;
     let column = x as u32 / grid.region_width;
@@ -46,25 +46,26 @@ impl Piece {
         }
     }
 
-    /// Every how-many-th covered pixel errors are measured at: all of small triangles, some 2,000 of large ones.
+    /// Returns the stride between covered pixels at which errors are measured: all pixels of small triangles, some
+    /// 2,000 of large ones.
     pub fn stride(&self) -> u64 {
-        // Twice the area in 1/256 square px, of which some part may be off the screen.
+        // Twice the area in 1/256 square px. A part of it may be off the screen.
         let (_, twice_area) = self.exact_plane([0; 3], 0, 0);
         let pixels = (twice_area / 512).min(i128::from(WIDTH * HEIGHT));
         1 + pixels as u64 / 2000
     }
 
-    /// The depth that the renderer stores.
+    /// Returns the depth that the renderer stores.
     pub fn depth(&self, x: i32, y: i32) -> u32 {
         self.planes.z.at(x, y) as u32 >> format::Z_FRACTION_BITS
     }
 
-    /// The colour component that the renderer stores.
+    /// Returns the colour component that the renderer stores.
     pub fn colour(&self, component: usize, x: i32, y: i32) -> u8 {
         (self.planes.rgb[component].at(x, y) >> format::COLOUR_FRACTION_BITS) as u8
     }
 
-    /// The value at a pixel of the plane through three values at the snapped corners, exactly: numerator, denominator.
+    /// Returns the exact value, as numerator and denominator, of the plane through three values at the snapped corners.
     pub fn exact_plane(&self, corners: [i128; 3], x: i32, y: i32) -> (i128, i128) {
         let outline = &self.screen.outline;
         let pixel = [16 * i128::from(x) + 8, 16 * i128::from(y) + 8];
@@ -74,7 +75,7 @@ impl Piece {
         (sum, twice_area(p, q, r))
     }
 
-    /// The same as a floating-point number.
+    /// Returns the value of [`Self::exact_plane`] as a floating-point number.
     pub fn plane_value(&self, corners: [i128; 3], x: i32, y: i32) -> f64 {
         let (sum, area) = self.exact_plane(corners, x, y);
         sum as f64 / area as f64
@@ -89,7 +90,8 @@ impl Piece {
     }
 }
 
-/// The pixels of a picture that a box around three corners, given in subpixels, can hold along one axis.
+/// Returns the pixels of a picture that a box around three corners can contain along one axis. Corners are in
+/// subpixels.
 fn pixels_between(corners: &[i32; 3], size: i32) -> Range<i32> {
     let first = corners.iter().min().map_or(0, |v| v >> 4);
     let last = corners.iter().max().map_or(0, |v| (v >> 4) + 1);

@@ -2,7 +2,7 @@
 
 use pxpl5_sim::SplitMix64;
 
-/// Random numbers, and what geometry makes of them.
+/// A generator of random numbers and random geometry.
 #[derive(Clone, Debug)]
 pub struct Random(SplitMix64);
 
@@ -15,17 +15,17 @@ impl Random {
         self.0.bits()
     }
 
-    /// From `low` to `high`, in 2^24 steps.
+    /// Returns a number from `low` to `high`, in 2^24 steps.
     pub fn between(&mut self, low: f32, high: f32) -> f32 {
         low + (high - low) * self.0.unit()
     }
 
-    /// From `-spread` to `spread`.
+    /// Returns a number from `-spread` to `spread`.
     pub fn within(&mut self, spread: f32) -> f32 {
         self.between(-spread, spread)
     }
 
-    /// An integer from `low` to `high`, both included.
+    /// Returns an integer from `low` to `high`, both included.
     pub fn integer(&mut self, low: i32, high: i32) -> i32 {
         low + (self.0.below((high - low + 1) as u64)) as i32
     }
@@ -35,7 +35,7 @@ impl Random {
         [bits as u8, (bits >> 8) as u8, (bits >> 16) as u8]
     }
 
-    /// A direction in the plane, of length 1 within rounding.
+    /// Returns a direction in the plane, of length 1 within rounding.
     pub fn direction(&mut self) -> [f32; 2] {
         loop {
             let x = self.between(-1.0, 1.0);

@@ -10,7 +10,7 @@ use std::fmt::Write;
 const HEAD: &str = include_str!("numerics_head.md");
 const FORMATS: &str = include_str!("numerics_formats.md");
 
-/// A number short enough for a table.
+/// Formats a number for a table.
 fn short(v: f64) -> String {
     match v {
         0.0 => "0".into(),
@@ -29,7 +29,7 @@ fn optional(v: Option<u64>) -> String {
     v.map_or("-".into(), grouped)
 }
 
-/// What was not drawn straight, in words.
+/// Describes the counts of dropped, clipped and flattened primitives.
 fn counted(s: &SetupStats) -> String {
     let counts = [
         (s.clipped, "clipped"),
@@ -101,7 +101,7 @@ fn heading(out: &mut String, title: &str, columns: &[&str]) {
     let _ = write!(out, "\n## {title}\n\n| {} |\n| {rule} |\n", columns.join(" | "));
 }
 
-/// All cases with what was measured.
+/// Measurements of all cases.
 pub struct Measured {
     pub triangles: Vec<(Case, Row)>,
     pub spheres: Vec<(SphereCase, SphereRow)>,
@@ -118,7 +118,7 @@ impl Measured {
     }
 }
 
-/// The whole of docs/numerics.md.
+/// Returns the whole text of docs/numerics.md.
 pub fn text(measured: &Measured) -> String {
     let rows = &measured.triangles;
     let mut out = HEAD.to_string();

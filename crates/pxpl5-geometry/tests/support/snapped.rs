@@ -14,15 +14,16 @@ pub struct Snapped {
     bits: u32,
 }
 
-/// The nearest place on the grid, ties up, of half a numerator over w; `None` where it is far away.
+/// Returns the nearest grid position, ties up, of half a numerator over w; `None` if it is far away.
 fn snap(numerator: BigInt, w: &BigInt, bits: u32) -> Option<i128> {
-    // floor(n / 2w + 1/2) on the finer grid.
+    // Computes floor(n / 2w + 1/2) on the finer grid.
     let twice: BigInt = (numerator << bits) + w;
     twice.div_floor(&(w * 2)).to_i128().filter(|v| v.abs() < 1 << 50)
 }
 
 impl Snapped {
-    /// `None` if a corner lies behind the near plane, or so far away that products would overflow.
+    /// Creates the snapped corners. Returns `None` if a corner is behind the near plane, or so far away that products
+    /// would overflow.
     pub fn new(triangle: &ExactTriangle, bits: u32) -> Option<Self> {
         if !triangle.whole {
             return None;
@@ -35,7 +36,7 @@ impl Snapped {
         Some(corners)
     }
 
-    /// The area of (from, to, pixel centre), made positive inside, less 1 where ties are outside.
+    /// Returns the area of (from, to, pixel centre), positive inside, minus 1 if ties are outside.
     fn edge(&self, from: usize, to: usize, turn: i128, [x, y]: [i32; 2]) -> i128 {
         let dx = (self.x[to] - self.x[from]) * turn;
         let dy = (self.y[to] - self.y[from]) * turn;
@@ -56,17 +57,17 @@ impl Snapped {
         turn != 0 && edges.iter().all(|&(from, to)| self.edge(from, to, turn, pixel) >= 0)
     }
 
-    /// First and last row that can be covered.
+    /// Returns the first and last row that can be covered.
     pub fn rows(&self) -> [i32; 2] {
         self.pixels_between(&self.y, HEIGHT)
     }
 
-    /// First and last column that can be covered.
+    /// Returns the first and last column that can be covered.
     pub fn columns(&self) -> [i32; 2] {
         self.pixels_between(&self.x, WIDTH)
     }
 
-    /// First and last pixel that the corners' box can hold along one axis of a picture.
+    /// Returns the first and last pixel that the corners' box can contain along one axis of a picture.
     fn pixels_between(&self, corners: &[i128; 3], size: i32) -> [i32; 2] {
         let low = *corners.iter().min().unwrap_or(&0) - (1 << self.bits);
         let high = *corners.iter().max().unwrap_or(&0);

@@ -1,4 +1,4 @@
-//! Spheres against exact integers.
+//! Comparison of spheres with exact integers.
 
 use super::exact::{cross, fixed};
 use super::native::region_of;
@@ -15,7 +15,7 @@ use pxpl5_wire::format;
 const NEAR: f32 = 1.0;
 const FAR: f32 = 16_384.0;
 
-/// Spheres of one family.
+/// A family of spheres.
 #[derive(Clone, Debug)]
 pub struct SphereCase {
     pub name: &'static str,
@@ -28,16 +28,16 @@ pub struct SphereRow {
     pub spheres: usize,
     pub exact: u64,
     pub wrong: u64,
-    /// Worst depth error in units of pixel depth.
+    /// Largest depth error in units of pixel depth.
     pub depth: f64,
-    /// The same as a part of how far the sphere's middle stands before its silhouette.
+    /// Largest depth error as a share of the distance from the sphere's middle to its silhouette.
     pub depth_of_bulge: f64,
-    /// Bits of the silhouette's greatest value in the touched regions, with sign.
+    /// Bits of the silhouette's largest value in the touched regions, including the sign.
     pub bits: u32,
     pub stats: SetupStats,
 }
 
-/// The view of all cases.
+/// Returns the view of all cases.
 pub fn transform() -> Transform {
     Transform::new(&pixel_view(NEAR, FAR), Viewport::FRAME, Culling::None).expect("a finite view")
 }
@@ -55,7 +55,7 @@ impl ExactSphere {
         let r = fixed(sphere.radius);
         let values = [[0, 0], [1, 0], [0, 1], [2, 0], [0, 2], [1, 1]];
         let [one, right, down, right_2, down_2, diagonal] = values.map(|[x, y]| bulge(&c, &r, x, y));
-        // From six values by differences; twice the squares' coefficients are even.
+        // The coefficients follow from six values by differences. Twice the coefficients of the squares are even.
         let e = right - &one;
         let f = down - &one;
         let xx: BigInt = (right_2 - &one - &e * 2) / 2;
@@ -79,7 +79,7 @@ impl ExactSphere {
         !self.value(x, y).is_negative()
     }
 
-    /// Depth in units of pixel depth, where the pixel is covered.
+    /// Returns the depth in units of pixel depth, at a covered pixel.
     pub fn depth(&self, x: i32, y: i32) -> f64 {
         let d = ray(x, y).map(|v| f64::from(v) / 1920.0);
         let q = self.value(x, y).to_f64().unwrap_or(f64::MAX) / (1920.0 * 1920.0) * 2_f64.powi(-298);
@@ -88,12 +88,12 @@ impl ExactSphere {
     }
 }
 
-/// The direction of the ray through a pixel's centre, times 1920.
+/// Returns the direction of the ray through a pixel's centre, times 1920.
 fn ray(x: i32, y: i32) -> [i32; 3] {
     [6 * x - 1917, 1916 - 8 * y, -1920]
 }
 
-/// `r^2 d.d - |d x c|^2` for the ray d of a pixel, and a sphere's centre c and radius r.
+/// Returns `r^2 d.d - |d x c|^2` for the ray d of a pixel, and a sphere's centre c and radius r.
 fn bulge(c: &[BigInt; 3], r: &BigInt, x: i32, y: i32) -> BigInt {
     let d = ray(x, y).map(BigInt::from);
     let dd: BigInt = d.iter().map(|v| v * v).sum();
@@ -105,14 +105,14 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Pixel depth at inverse distance `u`.
+/// Returns the pixel depth at inverse distance `u`.
 fn pixel_depth(u: f64) -> f64 {
     let projection = pixel_view(NEAR, FAR).projection.to_cols_array_2d();
     let depth = -f64::from(projection[2][2]) + f64::from(projection[3][2]) * u;
     (f64::from(DEPTH_NEAR) + depth * f64::from(DEPTH_FAR - DEPTH_NEAR)) / 256.0
 }
 
-/// Whether the renderer draws a pixel, and its depth there.
+/// Returns the depth at a pixel that the renderer draws, or `None` at other pixels.
 pub fn native(setup: &SphereSetup, x: i32, y: i32) -> Option<u32> {
     let value = setup.silhouette.at(x, y);
     (value >= 0).then(|| {
@@ -149,7 +149,7 @@ fn beside_the_eye() -> SphereCase {
     SphereCase { name: "beside the eye, long ellipses", spheres: spheres.collect() }
 }
 
-/// A sphere with its centre on the eye's axis.
+/// Returns a sphere with its centre on the eye's axis.
 fn on_axis(z: f32, radius: f32) -> WorldSphere {
     WorldSphere { centre: Vec3::new(0.0, 0.0, z), radius, colour: [255; 3] }
 }
@@ -170,7 +170,7 @@ fn not_drawn() -> SphereCase {
     }
 }
 
-/// All families of spheres, by growing size; then those that are hard or not drawn.
+/// Returns all families of spheres, by growing size; then those that are hard or not drawn.
 pub fn all() -> Vec<SphereCase> {
     vec![
         family("1/1000 px, on pixel centres", 20, 0.001, 100, true),
@@ -185,7 +185,7 @@ pub fn all() -> Vec<SphereCase> {
     ]
 }
 
-/// Holds each sphere of a family against exact integers, pixel by pixel.
+/// Compares each sphere of a family with exact integers, pixel by pixel.
 pub fn measure(case: &SphereCase) -> SphereRow {
     let transform = transform();
     let mut row = SphereRow { spheres: case.spheres.len(), ..SphereRow::default() };
@@ -206,8 +206,8 @@ impl SphereRow {
         for y in 0..HEIGHT {
             for x in 0..WIDTH {
                 let touched = screen.regions.contains(region_of(x, y));
-                // Away from the touched regions of small spheres there is nothing, which the exact quadratic of a
-                // few pixels shows; the tests look everywhere.
+                // Outside the touched regions of small spheres no pixel is covered, as the exact quadratic of a few
+                // pixels shows. The tests check all pixels.
                 if !touched && small {
                     continue;
                 }
@@ -228,7 +228,7 @@ impl SphereRow {
         }
     }
 
-    /// From the front to the silhouette on the axis, in units of pixel depth.
+    /// Returns the distance from the front to the silhouette on the axis, in units of pixel depth.
     fn bulge(sphere: &WorldSphere) -> f64 {
         let t = f64::from(-sphere.centre.z);
         let r = f64::from(sphere.radius);

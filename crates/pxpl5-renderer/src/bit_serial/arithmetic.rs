@@ -1,4 +1,4 @@
-//! Instructions on fields of pixel memory, bit by bit.
+//! Bit-serial execution of instructions on fields of pixel memory.
 
 use super::planes;
 use super::tile::{EMPTY, FULL, Tile, TilePlane};
@@ -6,8 +6,9 @@ use crate::array::FaultKind;
 use crate::controller::{Controller, FieldBits};
 use crate::isa::{ArithmeticOp, ArrayInstruction, Test};
 
-/// An operand that is read least significant bit first and then extended. The sign is latched at the start, since the
-/// result may overwrite it.
+/// An operand that is read from its least significant bit up and then extended by zeros or by its sign.
+///
+/// The sign is latched at the start, since the result may overwrite the operand.
 pub(super) struct SerialOperand {
     bits: FieldBits,
     extension: TilePlane,
@@ -35,6 +36,7 @@ impl Tile {
         controller: &Controller,
         instruction: &ArrayInstruction,
     ) -> Result<(), FaultKind> {
+        // The controller resolves each operand to absolute bits before the adders run.
         match *instruction {
             ArrayInstruction::ShiftRight { destination, source, by } => {
                 self.shift_right(controller.bits(destination)?, controller.bits(source)?, by.into());
@@ -85,12 +87,12 @@ impl Tile {
         SerialOperand { bits, extension }
     }
 
-    /// Stores one bit where enabled.
+    /// Stores one bit in the enabled pixels.
     fn store(&mut self, bit: usize, new: &TilePlane) {
         planes::store(&mut self.memory[bit], new, &self.enable);
     }
 
-    /// field := the bits that `f` gives, least significant first, one a clock.
+    /// Stores the bits that `f` returns in a field, least significant bit first, one bit per clock.
     fn each_bit(&mut self, field: FieldBits, mut f: impl FnMut(&[TilePlane], usize) -> TilePlane) {
         for i in 0..field.width {
             let new = f(&self.memory, i);
@@ -104,7 +106,7 @@ impl Tile {
         self.each_bit(destination, |memory, i| source.bit(memory, i + by));
     }
 
-    /// Most significant bit first, so that a field can be shifted in its place.
+    /// Shifts a field left, most significant bit first, so that source and destination may be the same field.
     fn shift_left(&mut self, destination: FieldBits, source: FieldBits, by: usize) {
         let source = self.source(source);
         for i in (0..destination.width).rev() {
@@ -119,7 +121,7 @@ impl Tile {
         let wa = source.width;
         let source = self.source(source);
         let mut over = EMPTY;
-        // A sign counts as well, and then as nothing: where it is set the result is 0.
+        // A set sign bit also sets `over`; the second step below turns negative values into 0.
         for i in w..wa {
             planes::or(&mut over, &source.bit(&self.memory, i));
         }
@@ -146,6 +148,7 @@ impl Tile {
             ArithmeticOp::Multiply => self.multiply(destination, a, &Factor::Field(&y), b.width, b.signed),
             ArithmeticOp::Divide => self.divide(destination, a, b),
             ArithmeticOp::Minimum | ArithmeticOp::Maximum => {
+                // The comparison comes first; then each bit is selected by its result.
                 let mut less = self.less(a, a.width.max(b.width), |memory, i| y.bit(memory, i));
                 if op == ArithmeticOp::Maximum {
                     planes::invert(&mut less);
@@ -160,12 +163,12 @@ impl Tile {
         }
     }
 
-    /// field := f(a, b), bit by bit.
+    /// Computes `field := f(a, b)` bit by bit.
     fn combine_bits(&mut self, field: FieldBits, a: &SerialOperand, b: &SerialOperand, f: fn(u64, u64) -> u64) {
         self.each_bit(field, |memory, i| planes::combine(&a.bit(memory, i), &b.bit(memory, i), f));
     }
 
-    /// Where a < b, from the borrow of their difference over `clocks` bits.
+    /// Returns the pixels where a < b, from the borrow of a - b over `clocks` bits.
     fn less(&mut self, a: FieldBits, clocks: usize, b: impl Fn(&[TilePlane], usize) -> TilePlane) -> TilePlane {
         let x = self.source(a);
         let mut borrow = EMPTY;
@@ -174,7 +177,7 @@ impl Tile {
         }
         self.clock += clocks as u64;
         if a.signed {
-            // Of two's complement numbers with different signs the negative one is less: the borrow turns around.
+            // For two's complement numbers of different signs the negative one is less, so the borrow is inverted.
             let last = clocks - 1;
             let signs = planes::combine(&x.bit(&self.memory, last), &b(&self.memory, last), |a, b| a ^ b);
             borrow = planes::combine(&borrow, &signs, |borrow, signs| borrow ^ signs);
@@ -183,6 +186,7 @@ impl Tile {
     }
 
     fn compare(&mut self, test: Test, a: FieldBits, clocks: usize, b: impl Fn(&[TilePlane], usize) -> TilePlane) {
+        // Find the pixels with a < b, or the pixels in which a and b differ.
         let holds = match test {
             Test::Less | Test::NotLess => self.less(a, clocks, b),
             Test::Equal | Test::NotEqual => {
@@ -196,16 +200,20 @@ impl Tile {
                 differ
             }
         };
+        // Enable stays only where the test is true.
         match test {
             Test::Less | Test::NotEqual => planes::and(&mut self.enable, &holds),
             Test::NotLess | Test::Equal => planes::and_not(&mut self.enable, &holds),
         }
     }
 
-    /// destination := a * b: for each bit of b, a is added to the bits from there on, with one clock for the carry; a
-    /// negative last bit subtracts. Bits above the product repeat its sign.
+    /// Computes `destination := a * b` by adding `a`, shifted, for each set bit of `b`.
+    ///
+    /// Each addition takes one more clock for the carry. The sign bit of a signed `b` subtracts. Bits above the product
+    /// repeat its sign.
     fn multiply(&mut self, destination: FieldBits, a: FieldBits, b: &Factor<'_>, b_width: usize, b_signed: bool) {
         let x = self.source(a);
+        // Add one shifted copy of `a` for each bit of `b`.
         for j in 0..b_width.min(destination.width) {
             let gate = match b {
                 Factor::Field(field) => field.bit(&self.memory, j),
@@ -214,6 +222,7 @@ impl Tile {
             };
             self.add_product(destination, &x, j, &gate, b_signed && j + 1 == b_width);
         }
+        // Fill the bits above the product.
         let sign_at = a.width + b_width - 1;
         for i in sign_at + 1..destination.width {
             let signed = a.signed || b_signed;
@@ -223,10 +232,10 @@ impl Tile {
         }
     }
 
-    /// Adds `x << j` where `gate` is set, or subtracts it.
+    /// Adds `x << j` in the pixels where `gate` is set, or subtracts it if `negative`.
     fn add_product(&mut self, destination: FieldBits, x: &SerialOperand, j: usize, gate: &TilePlane, negative: bool) {
         let top = j + x.bits.width;
-        // The sign of what the product has so far, if a clock at `top` is left to add to it.
+        // The partial product is extended by its sign if the destination has a bit at `top`.
         let extends = x.bits.signed && top < destination.width;
         let extension = if extends { self.memory[destination.first + top - 1] } else { EMPTY };
         let mut carry = EMPTY;
@@ -243,7 +252,8 @@ impl Tile {
         }
     }
 
-    /// For each digit from the top: compare the rest with the divisor, then subtract it where it is not larger.
+    /// Divides digit by digit, from the highest: compares the remainder with the divisor, then subtracts the divisor if
+    /// it is not larger.
     fn divide(&mut self, destination: FieldBits, a: FieldBits, b: FieldBits) {
         let divisor = self.source(b);
         for j in (0..destination.width).rev() {
@@ -265,7 +275,10 @@ impl Tile {
         });
     }
 
-    /// For each digit from the top: the trial is the root so far, then 01, over the bits that the rest can occupy.
+    /// Computes a square root digit by digit, from the highest.
+    ///
+    /// The trial value of each step is the root so far followed by the bits 01, over the bits that the remainder can
+    /// occupy.
     fn square_root(&mut self, destination: FieldBits, radicand: FieldBits) {
         let n = destination.width;
         for i in (0..n).rev() {
@@ -281,7 +294,7 @@ impl Tile {
     }
 }
 
-/// Bit `k` of the digits of a root so far, then 01.
+/// Returns bit `k` of the trial value of a square root: the digits so far, followed by 01.
 fn trial_bit(root: FieldBits, memory: &[TilePlane], k: usize) -> TilePlane {
     match k {
         0 => FULL,

@@ -1,4 +1,4 @@
-//! Collects the instructions of a run from a list, and executes it.
+//! Collects consecutive instructions of a list into a run, and executes the run.
 
 use super::BitSerial;
 use super::delivery::{Delivery, ExpressionEffect};
@@ -10,7 +10,7 @@ use crate::isa::{ArrayInstruction, Expression, LINEAR_BITS, opcode};
 use pxpl5_wire::Word;
 
 impl BitSerial {
-    /// Executes the run that begins at a word; returns how many words it has, 0 where none begins.
+    /// Executes the run that begins at word `position`, and returns its length in words; 0 if no run begins there.
     pub(super) fn execute_run(&mut self, words: &[Word], position: usize, executed: &mut Executed) -> usize {
         let mut run = std::mem::take(&mut self.run);
         run.clear();
@@ -26,7 +26,7 @@ impl BitSerial {
         used
     }
 
-    /// Adds the next instruction, unless it does not belong to the run or is a fault.
+    /// Adds the next instruction to the run. Returns false if it is a fault or does not belong to the run.
     fn extend(&mut self, run: &mut InstructionRun, words: &[Word], position: usize) -> bool {
         let position = position + run.words;
         let Some(head) = words.get(position) else { return false };
@@ -44,6 +44,7 @@ impl BitSerial {
         match *instruction {
             ArrayInstruction::Evaluate { expression, usage } => {
                 let delivery = self.delivery(&usage, LINEAR_BITS).ok()?;
+                // A repeated expression reuses the trees of the last one, unless the run has none yet.
                 if expression != Expression::LinearAgain || run.expressions.is_empty() {
                     if run.expressions.len() == EXPRESSIONS {
                         return None;

@@ -1,4 +1,4 @@
-//! What the pixels of a tile do with the bits of an expression as they come.
+//! Effects of an expression's bits on the pixels of a tile.
 
 use super::arithmetic::SerialOperand;
 use super::evaluator::{Evaluator, VectorPlace, full_add};
@@ -7,24 +7,26 @@ use crate::controller::FieldBits;
 use crate::simd::SimdVector;
 use std::ops::Range;
 
-/// Where the bits of an expression go.
+/// A consumer of the bits of an expression.
 trait BitSink {
-    /// Takes bit `t` of the expression in the pixels of a tile from word `at` of a plane on; `carry` begins with zeros.
+    /// Takes bit `t` of the expression for one vector of pixels of a tile.
+    ///
+    /// `at` is the vector's first word in a plane. `carry` is zero at the first bit.
     fn take<V: SimdVector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, carry: &mut V);
 
-    /// Takes the carry behind the last bit.
+    /// Takes the carry after the last bit.
     fn end<V: SimdVector>(&self, _: &mut Tile, _at: usize, _carry: V) {}
 }
 
-/// What pixels do with an expression.
+/// The use of an expression by the pixels: which bits they take, and what they do with them.
 #[derive(Clone, Debug)]
 pub(super) struct Delivery {
-    /// Clocks whose bits they take.
+    /// Range of clocks in which the pixels take the delivered bits.
     pub(super) taken: Range<usize>,
     pub(super) effect: ExpressionEffect,
 }
 
-/// Where the bits go; fields by their first bit.
+/// The operation on the delivered bits. Fields are named by their first bit in pixel memory.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum ExpressionEffect {
     DisableNegative,
@@ -35,7 +37,7 @@ pub(super) enum ExpressionEffect {
 }
 
 impl Delivery {
-    /// Runs all clocks in one vector of pixels.
+    /// Runs all clocks of an expression in one vector of pixels.
     #[inline(always)]
     pub(super) fn run_pixels<V: SimdVector, E: Evaluator>(&self, evaluator: &E, tile: &mut Tile, place: VectorPlace) {
         let shift = self.taken.start;
@@ -66,6 +68,7 @@ impl Delivery {
         let at = place.at;
         let mut carries = E::start::<V>();
         let mut carry = V::splat(0);
+        // The first bits are left out, but their carries matter.
         for t in 0..self.taken.start {
             evaluator.bit(t, place, &mut carries);
         }
@@ -77,7 +80,7 @@ impl Delivery {
     }
 }
 
-/// Overwrites one bit where enabled.
+/// Overwrites one bit of the enabled pixels.
 #[inline(always)]
 fn store<V: SimdVector>(plane: &mut TilePlane, at: usize, new: V, enable: &TilePlane) {
     let old = V::load_words(&plane[at..]);
@@ -85,7 +88,7 @@ fn store<V: SimdVector>(plane: &mut TilePlane, at: usize, new: V, enable: &TileP
     old.xor(changed).store_words(&mut plane[at..]);
 }
 
-/// E := 0 where the bit is set.
+/// Sink that clears Enable where the bit is set.
 struct ClearEnable;
 
 impl BitSink for ClearEnable {
@@ -96,7 +99,7 @@ impl BitSink for ClearEnable {
     }
 }
 
-/// field := bits from `shift` on.
+/// Sink that stores the bits from `shift` on in a field.
 struct StoreBits {
     first: usize,
     shift: usize,
@@ -109,7 +112,7 @@ impl BitSink for StoreBits {
     }
 }
 
-/// field := field + bits from `shift` on.
+/// Sink that adds the bits from `shift` on to a field.
 struct AddBits {
     first: usize,
     shift: usize,
@@ -124,7 +127,7 @@ impl BitSink for AddBits {
     }
 }
 
-/// E := 0 unless bits from `shift` on are less than the field.
+/// Sink that clears Enable unless the bits from `shift` on are less than the field.
 struct CompareBits {
     first: usize,
     shift: usize,
@@ -143,7 +146,7 @@ impl BitSink for CompareBits {
     }
 }
 
-/// field := bits from `shift` on of the difference from a source.
+/// Sink that stores the difference between the expression and a source, from bit `shift` on.
 struct StoreDifference {
     first: usize,
     shift: usize,
@@ -165,7 +168,7 @@ impl BitSink for StoreDifference {
     }
 }
 
-/// One clock of a serial subtracter in each pixel of a vector: a - b = not (not a + b).
+/// Runs one clock of a serial subtracter in each pixel of a vector: a - b = not (not a + b).
 #[inline(always)]
 fn subtract<V: SimdVector>(a: V, b: V, borrow: &mut V) -> V {
     let ones = V::splat(-1);

@@ -1,4 +1,4 @@
-//! Instructions with an expression: the evaluator's bits go to Enable or to pixel memory as they come.
+//! Instructions with an expression: the evaluator's bits go to Enable or to pixel memory as they arrive.
 
 use super::BitSerial;
 use super::delivery::{Delivery, ExpressionEffect};
@@ -10,7 +10,7 @@ use crate::isa::{Expression, ExpressionUse, Operand};
 use crate::simd::{SimdVector, VectorKernel};
 use std::ops::Range;
 
-/// The bits of an expression on their way to all pixels.
+/// A kernel that delivers an expression's bits to all tiles of the array.
 struct DeliverToTiles<'a, E: WholeTrees> {
     coefficients: &'a E::Coefficients,
     delivery: &'a Delivery,
@@ -28,7 +28,7 @@ impl<E: WholeTrees> VectorKernel for DeliverToTiles<'_, E> {
         }
         let evaluator = E::run_trees::<V>(self.coefficients, self.delivery.taken.end);
         for (number, tile) in self.tiles.iter_mut().enumerate().filter(|(_, tile)| tile.has_work(self.skipping)) {
-            // A lane is a row.
+            // Each vector lane is one row of the tile.
             for row in (0..HEIGHT).step_by(V::LANES) {
                 self.delivery.run_pixels::<V, E>(&evaluator, tile, VectorPlace::in_array(number, row));
             }
@@ -37,13 +37,16 @@ impl<E: WholeTrees> VectorKernel for DeliverToTiles<'_, E> {
 }
 
 impl BitSerial {
-    /// Runs the evaluator: a linear expression until the last bit is taken, a quadratic one always to its end.
+    /// Evaluates an expression in all pixels.
+    ///
+    /// A linear expression ends with the last bit that is taken. A quadratic expression always runs to its end.
     pub(super) fn evaluate(&mut self, expression: &Expression, usage: &ExpressionUse) -> Result<(), FaultKind> {
         let delivery = &self.delivery(usage, expression.bits())?;
         let local = self.controller.latch(expression);
         let vectors = self.vectors;
         let skipping = self.skipping;
         let tiles = &mut self.tiles[..];
+        // A linear expression may end early; a quadratic one keeps the trees busy to the end.
         match &local {
             LocalExpression::Linear(coefficients) => {
                 self.clock += delivery.taken.end as u64;
@@ -57,8 +60,9 @@ impl BitSerial {
         Ok(())
     }
 
-    /// How an expression of so many bits is used in the selected context.
+    /// Returns the bits to take from an expression of `bits` bits, and the operation on them, in the selected context.
     pub(super) fn delivery(&self, usage: &ExpressionUse, bits: u32) -> Result<Delivery, FaultKind> {
+        // A test of the sign takes only the last bit; a difference needs all bits for its borrow.
         let (taken, effect) = match *usage {
             ExpressionUse::DisableNegative => (bits as usize - 1..bits as usize, ExpressionEffect::DisableNegative),
             ExpressionUse::Load { field, shift } => {
@@ -83,7 +87,8 @@ impl BitSerial {
         Ok(Delivery { taken, effect })
     }
 
-    /// Clocks whose bits a field takes where the first `shift` are left out, and the field's first bit.
+    /// Returns the range of clocks in which a field takes bits, after the first `shift` bits, and the field's first
+    /// bit.
     fn taken_by(&self, field: Operand, shift: u8) -> Result<(Range<usize>, usize), FaultKind> {
         let field = self.controller.bits(field)?;
         let shift = usize::from(shift);

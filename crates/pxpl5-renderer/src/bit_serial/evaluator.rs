@@ -1,20 +1,22 @@
-//! The expression evaluator: trees of serial adders that deliver one bit of the expression a clock to every pixel.
+//! Expression evaluator: trees of serial adders that deliver one bit of the expression per clock to every pixel.
 //!
-//! A tree multiplies a coefficient by the number of each column (or row): level `l` adds the coefficient, `l` clocks
-//! late, to the leaves whose number has bit `l`. Coefficients enter least significant bit first. For a linear
-//! expression every pixel adds its column's stream to its row's. For a quadratic one, wider trees multiply by the
-//! squares of the numbers, each row gets its own coefficient of x, and each pixel multiplies that by its column
-//! (assumed; F89 publishes the expression, not the circuit).
+//! A tree multiplies a coefficient by the number of each column (or row). Level `l` delays the coefficient by `l`
+//! clocks and adds it to the leaves whose number has bit `l`. Coefficients enter least significant bit first.
 //!
-//! Nothing flows back from the pixels, so the trees run all their clocks first; then each vector of pixels runs all of
-//! its own, with its carries in registers. A lane of the trees is 32 columns or rows, a lane of pixels a row of a tile.
+//! For a linear expression every pixel adds its column's stream to its row's stream. For a quadratic expression, wider
+//! trees multiply by the squares of the numbers. Each row also gets its own coefficient of x, and each pixel multiplies
+//! that coefficient by its column. This circuit is assumed: F89 publishes only the expression.
+//!
+//! No data flows back from the pixels, so the trees first run all their clocks. Then each vector of pixels runs all of
+//! its clocks, with its carries in registers. A lane of the trees is 32 columns or rows. A lane of pixels is a row of a
+//! tile.
 
 use super::tile::{self, WIDTH};
 use crate::isa::{LINEAR_BITS, QUADRATIC_BITS};
 use crate::simd::SimdVector;
 use pxpl5_wire::{Linear, Quadratic};
 
-/// Bits of a column's number.
+/// Bits of a column's number (0 to 127).
 const NUMBER_BITS: usize = 7;
 /// Bits of the square of a column's number.
 const SQUARE_BITS: usize = 14;
@@ -22,9 +24,9 @@ const SQUARE_BITS: usize = 14;
 /// One bit for each of 128 columns or rows.
 type Leaves = [u64; 2];
 
-/// Leaves whose number has bit `l`.
+/// For each bit `l`, the columns (or rows) whose number has this bit.
 const NUMBERS: [Leaves; NUMBER_BITS] = leaves(1);
-/// Leaves the square of whose number has bit `l`.
+/// For each bit `l`, the columns (or rows) whose squared number has this bit.
 const SQUARES: [Leaves; SQUARE_BITS] = leaves(2);
 
 const fn leaves<const N: usize>(power: u32) -> [Leaves; N] {
@@ -43,17 +45,17 @@ const fn leaves<const N: usize>(power: u32) -> [Leaves; N] {
     out
 }
 
-/// What trees side by side deliver in one clock: the lanes of a vector, two a word.
+/// Output of adjacent trees in one clock: the lanes of a vector, two lanes in a word.
 type Streams = [u64; 8];
 
-/// Serial adders of trees side by side that add a coefficient times a number to the stream of each leaf. A leaf is a bit
-/// of a vector.
+/// Adjacent trees of serial adders. Each adds a coefficient times a number to the stream of each leaf. A leaf is one
+/// bit of a vector.
 pub(super) struct Trees<V, const LEVELS: usize> {
-    /// Low and high half of the coefficient that enters the tree of each lane.
+    /// Low and high halves of the coefficient that enters the tree of each lane.
     coefficients: [V; 2],
-    /// For each level the leaves whose number has its bit.
+    /// For each level, the leaves whose number has that level's bit.
     leaves: [V; LEVELS],
-    /// The last bits of the coefficients, for the late levels.
+    /// Recent bits of the coefficients, one for each level; level `l` uses the bit of `l` clocks ago.
     late: [V; LEVELS],
     carries: [V; LEVELS],
 }
@@ -65,7 +67,7 @@ impl<V: SimdVector, const LEVELS: usize> Trees<V, LEVELS> {
         Self { coefficients, leaves, late: zeros, carries: zeros }
     }
 
-    /// Two trees of 128 leaves each, in the first eight lanes; what other lanes hold counts for nothing.
+    /// Creates two trees of 128 leaves each in the first eight lanes. The other lanes are not used.
     #[inline(always)]
     fn of_pair(coefficients: [i64; 2], leaves: &[Leaves; LEVELS]) -> Self {
         let mut vectors = [V::splat(0); LEVELS];
@@ -75,7 +77,7 @@ impl<V: SimdVector, const LEVELS: usize> Trees<V, LEVELS> {
         Self::new(in_lanes(coefficients), vectors)
     }
 
-    /// Bit `t` of the sums; `t` counts up from 0.
+    /// Returns bit `t` of the sums. Callers must pass `t` = 0, 1, 2 and so on.
     #[inline(always)]
     pub(super) fn add(&mut self, mut stream: V, t: usize) -> V {
         for l in (1..LEVELS).rev() {
@@ -89,26 +91,26 @@ impl<V: SimdVector, const LEVELS: usize> Trees<V, LEVELS> {
     }
 }
 
-/// Low and high halves of two numbers in the lanes of their trees.
+/// Returns the low and high halves of two numbers, in the lanes of their trees.
 #[inline(always)]
 fn in_lanes<V: SimdVector>([first, second]: [i64; 2]) -> [V; 2] {
     [low_halves_in_lanes([first, second]), low_halves_in_lanes([first >> 32, second >> 32])]
 }
 
-/// The low halves of two numbers, each in the four lanes of its tree.
+/// Returns the low halves of two numbers, each repeated in the four lanes of its tree.
 #[inline(always)]
 fn low_halves_in_lanes<V: SimdVector>(numbers: [i64; 2]) -> V {
     let [first, second] = numbers.map(|number| (number as u32 as u64) << 32 | number as u32 as u64);
     V::load_words(&[first, first, second, second, 0, 0, 0, 0])
 }
 
-/// Bit `t` of the number whose halves a lane holds.
+/// Returns bit `t` of the 64-bit number whose halves a lane holds.
 #[inline(always)]
 fn bit_of<V: SimdVector>([low, high]: [V; 2], t: usize) -> V {
     if t < 32 { low.bit(t as u32) } else { high.bit(t as u32 - 32) }
 }
 
-/// The lanes of a vector, and zeros behind them.
+/// Returns the lanes of a vector, followed by zeros.
 #[inline(always)]
 fn streams<V: SimdVector>(stream: V) -> Streams {
     let mut words = [0; 8];
@@ -116,16 +118,16 @@ fn streams<V: SimdVector>(stream: V) -> Streams {
     words
 }
 
-/// A vector of pixels in a tile, and which streams meet there.
+/// Position of a vector of pixels in a tile, and of the column and row streams for it.
 #[derive(Clone, Copy)]
 pub(super) struct VectorPlace {
-    /// Word of a tile's plane.
+    /// Index of the vector's first word in a tile's plane.
     pub(super) at: usize,
     columns: StreamStart,
     rows: StreamStart,
 }
 
-/// Where a stream's bits for a vector of pixels begin.
+/// Position in [`Streams`] of the first bit for a vector of pixels.
 #[derive(Clone, Copy)]
 struct StreamStart {
     word: usize,
@@ -133,7 +135,7 @@ struct StreamStart {
 }
 
 impl VectorPlace {
-    /// A tile of the whole array and a row of the tile, for a pair of trees over the array.
+    /// Returns the place of a row of a tile, for a pair of trees that span the whole array.
     #[inline(always)]
     pub(super) const fn in_array(tile: usize, row: usize) -> Self {
         let [left, top] = tile::origin(tile);
@@ -142,19 +144,20 @@ impl VectorPlace {
         Self { at: row / 2, columns, rows: StreamStart { word: 2 + y / 64, bit: y % 64 } }
     }
 
-    /// A row of a tile, for a pair of trees over the tile: columns in the low half of a word, rows in the high one.
+    /// Returns the place of a row of a tile, for a pair of trees that span one tile. Columns are in the low half of a
+    /// word, rows in the high half.
     #[inline(always)]
     pub(super) const fn in_tile(word: usize, row: usize) -> Self {
         Self { at: row / 2, columns: StreamStart { word, bit: 0 }, rows: StreamStart { word, bit: WIDTH + row } }
     }
 
-    /// The bits of the columns, in all rows.
+    /// Returns the bits of the columns, repeated in all rows.
     #[inline(always)]
     fn columns<V: SimdVector>(&self, streams: &Streams) -> V {
         V::splat(self.columns.bits_in(streams) as i32)
     }
 
-    /// The bits of the rows, each in all pixels of its row.
+    /// Returns the bits of the rows, each repeated in all pixels of its row.
     #[inline(always)]
     fn rows<V: SimdVector>(&self, streams: &Streams) -> V {
         V::spread(self.rows.bits_in(streams))
@@ -168,45 +171,45 @@ impl StreamStart {
     }
 }
 
-/// What pixels do with the streams of the trees.
+/// Serial adders of the pixels that combine the streams of the trees.
 pub(super) trait Evaluator {
-    /// What the adders of a vector of pixels hold from clock to clock.
+    /// State of the adders of a vector of pixels between two clocks.
     type Carries<V: SimdVector>;
 
-    /// Carries before the first bit: all zeros.
+    /// Returns the carries before the first bit, which are zero.
     fn start<V: SimdVector>() -> Self::Carries<V>;
 
-    /// Bit `t` of the expression in a vector of pixels; `t` counts up from 0.
+    /// Returns bit `t` of the expression in a vector of pixels. Callers must pass `t` = 0, 1, 2 and so on.
     fn bit<V: SimdVector>(&self, t: usize, place: VectorPlace, carries: &mut Self::Carries<V>) -> V;
 }
 
-/// An evaluator whose trees reach over the whole array.
+/// An evaluator whose trees span the whole array.
 pub(super) trait WholeTrees: Evaluator {
-    /// What the trees multiply by the numbers of columns and rows: linear or quadratic coefficients.
+    /// Linear or quadratic coefficients, which the trees multiply by the numbers of columns and rows.
     type Coefficients;
 
-    /// Runs the trees for the first `bits` of the expression.
+    /// Runs the trees for the first `bits` bits of the expression.
     fn run_trees<V: SimdVector>(coefficients: &Self::Coefficients, bits: usize) -> Self;
 }
 
-/// A linear expression: what its columns and rows deliver, clock by clock.
+/// Column and row streams of a linear expression, one entry for each clock.
 pub(super) struct LinearStreams(pub(super) [Streams; LINEAR_BITS as usize]);
 
-/// A quadratic expression: what its trees deliver, clock by clock.
+/// Tree outputs of a quadratic expression, one entry for each clock.
 pub(super) struct QuadraticStreams([QuadraticBits; QUADRATIC_BITS as usize]);
 
-/// What the trees of a quadratic deliver in one clock.
+/// Output of the trees of a quadratic expression in one clock.
 #[derive(Clone, Copy, Default)]
 struct QuadraticBits {
-    /// xx x^2 of each column; one + y y + yy y^2 of each row.
+    /// Sum xx x^2 of each column, and sum one + y y + yy y^2 of each row.
     sums: Streams,
-    /// Where the rows stand in the sums, x + xy y of each: its coefficient of x.
+    /// Coefficient of x of each row, x + xy y, in the lanes that hold the rows in `sums`.
     coefficients: Streams,
 }
 
-/// Carries of a quadratic in some pixels.
+/// Adder state of a vector of pixels for a quadratic expression.
 pub(super) struct QuadraticCarries<V> {
-    /// The last bits of the coefficient, for the late levels of the product.
+    /// Recent bits of the coefficient of x, one for each level of the product.
     late: [V; NUMBER_BITS],
     product: [V; NUMBER_BITS],
     rows_and_columns: V,
@@ -250,7 +253,7 @@ impl WholeTrees for QuadraticStreams {
         let mut squares = Trees::<V, _>::of_pair([q.xx, q.yy], &SQUARES);
         let mut numbers = Trees::<V, _>::of_pair([q.xy, q.y], &NUMBERS);
         let constants = in_lanes([q.x, q.one]);
-        // The second trees belong together; the first of the numbers stands beside them.
+        // The second trees (of the rows) are added up. The first tree of the numbers gives the coefficients of x.
         let second = V::spread(0xf0);
         let mut out = [QuadraticBits::default(); QUADRATIC_BITS as usize];
         for (t, out) in out[..bits].iter_mut().enumerate() {
@@ -288,7 +291,7 @@ impl Evaluator for QuadraticStreams {
     }
 }
 
-/// One clock of a serial adder in each pixel of a vector.
+/// Runs one clock of a serial adder in each pixel of a vector.
 #[inline(always)]
 pub(super) fn full_add<V: SimdVector>(a: V, b: V, carry: &mut V) -> V {
     let half = a.xor(b);
@@ -308,7 +311,7 @@ mod tests {
         let mut carries = E::start();
         let tile = y / HEIGHT * ACROSS + x / WIDTH;
         let place = VectorPlace::in_array(tile, y % HEIGHT / PortableVector::LANES * PortableVector::LANES);
-        // A lane is a row, a word two of them.
+        // Each vector lane is one row; each word holds two rows.
         let lane = y % PortableVector::LANES;
         let column = x % WIDTH;
         let value = (0..bits as usize).fold(0, |value, t| {

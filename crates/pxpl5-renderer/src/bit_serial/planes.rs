@@ -1,8 +1,8 @@
-//! Operations of the one-bit processors of a tile at once.
+//! Operations of the one-bit processors of a tile, on all pixels at once.
 
 use super::tile::{EMPTY, TilePlane};
 
-/// a := not a, in all pixels of the tile.
+/// Computes `a := not a` in all pixels of the tile.
 #[inline(always)]
 pub(super) fn invert(a: &mut TilePlane) {
     for a in a {
@@ -10,7 +10,7 @@ pub(super) fn invert(a: &mut TilePlane) {
     }
 }
 
-/// a := a and b, in all pixels of the tile.
+/// Computes `a := a and b` in all pixels of the tile.
 #[inline(always)]
 pub(super) fn and(a: &mut TilePlane, b: &TilePlane) {
     for (a, b) in a.iter_mut().zip(b) {
@@ -18,7 +18,7 @@ pub(super) fn and(a: &mut TilePlane, b: &TilePlane) {
     }
 }
 
-/// a := a and not b, in all pixels of the tile.
+/// Computes `a := a and not b` in all pixels of the tile.
 #[inline(always)]
 pub(super) fn and_not(a: &mut TilePlane, b: &TilePlane) {
     for (a, b) in a.iter_mut().zip(b) {
@@ -26,7 +26,7 @@ pub(super) fn and_not(a: &mut TilePlane, b: &TilePlane) {
     }
 }
 
-/// a := a or b, in all pixels of the tile.
+/// Computes `a := a or b` in all pixels of the tile.
 #[inline(always)]
 pub(super) fn or(a: &mut TilePlane, b: &TilePlane) {
     for (a, b) in a.iter_mut().zip(b) {
@@ -34,7 +34,7 @@ pub(super) fn or(a: &mut TilePlane, b: &TilePlane) {
     }
 }
 
-/// old := new where enabled.
+/// Computes `old := new` in the enabled pixels.
 #[inline(always)]
 pub(super) fn store(old: &mut TilePlane, new: &TilePlane, enable: &TilePlane) {
     for ((old, new), enable) in old.iter_mut().zip(new).zip(enable) {
@@ -42,7 +42,7 @@ pub(super) fn store(old: &mut TilePlane, new: &TilePlane, enable: &TilePlane) {
     }
 }
 
-/// a := sum bit of a + b + carry; carry := the next carry.
+/// Sets `a` to the sum bit of a + b + carry, and `carry` to the next carry.
 #[inline(always)]
 pub(super) fn add(a: &mut TilePlane, b: &TilePlane, carry: &mut TilePlane) {
     for ((a, b), c) in a.iter_mut().zip(b).zip(carry) {
@@ -53,7 +53,7 @@ pub(super) fn add(a: &mut TilePlane, b: &TilePlane, carry: &mut TilePlane) {
     }
 }
 
-/// a := difference bit of a - b - borrow; borrow := the next borrow.
+/// Sets `a` to the difference bit of a - b - borrow, and `borrow` to the next borrow.
 #[inline(always)]
 pub(super) fn subtract(a: &mut TilePlane, b: &TilePlane, borrow: &mut TilePlane) {
     for ((a, b), c) in a.iter_mut().zip(b).zip(borrow) {
@@ -64,13 +64,13 @@ pub(super) fn subtract(a: &mut TilePlane, b: &TilePlane, borrow: &mut TilePlane)
     }
 }
 
-/// One clock of an adder, or of a subtracter.
+/// Runs one clock of a serial adder, or of a serial subtracter if `subtracts`.
 #[inline(always)]
 pub(super) fn step(subtracts: bool, a: &mut TilePlane, b: &TilePlane, carry: &mut TilePlane) {
     if subtracts { subtract(a, b, carry) } else { add(a, b, carry) }
 }
 
-/// borrow := the next borrow of a - b.
+/// Sets `borrow` to the next borrow of a - b.
 #[inline(always)]
 pub(super) fn borrow(a: &TilePlane, b: &TilePlane, borrow: &mut TilePlane) {
     for ((a, b), c) in a.iter().zip(b).zip(borrow) {
@@ -78,7 +78,7 @@ pub(super) fn borrow(a: &TilePlane, b: &TilePlane, borrow: &mut TilePlane) {
     }
 }
 
-/// A combination of two planes, word by word.
+/// Returns `f` of two planes, word by word.
 #[inline(always)]
 pub(super) fn combine(a: &TilePlane, b: &TilePlane, f: impl Fn(u64, u64) -> u64) -> TilePlane {
     let mut out = EMPTY;

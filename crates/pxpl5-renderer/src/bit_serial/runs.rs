@@ -1,14 +1,14 @@
-//! Linear expressions and constants that follow each other in a list, without the work that cannot change anything.
+//! Skipping mode for runs of linear expressions and constants: leaves out work that changes nothing.
 //!
-//! Nothing flows from pixel to pixel, so a tile may do all instructions of a run before the next tile begins:
+//! No data flows from pixel to pixel, so a tile may execute all instructions of a run before the next tile begins:
 //!
-//! - A tile whose pixels are all disabled does nothing: an expression never enables.
-//! - An expression that is negative at all corners of a tile disables it without adders; one that is negative at none
-//!   disables nothing. Both hold only where the expression does not wrap in the array.
-//! - A tile is a smaller array: its origin is applied to the coefficients as that of a region is, which leaves trees of
-//!   five levels, and the trees of several expressions work side by side in a vector.
+//! - A tile whose pixels are all disabled does nothing, since an expression never enables pixels.
+//! - An expression that is negative at all corners of a tile disables the tile without adders. An expression that is
+//!   negative at no corner disables no pixel. Both need an expression that does not overflow 32 bits in the array.
+//! - A tile is a smaller array. Its origin is added to the constant coefficient, as the origin of a region is. The
+//!   trees then have five levels, and the trees of several expressions fit side by side in a vector.
 //!
-//! What is left is done as the definition does it, bit by bit.
+//! The remaining work is done bit by bit, as in the reference mode.
 
 use super::arithmetic::constant_bit;
 use super::delivery::{Delivery, ExpressionEffect};
@@ -18,21 +18,21 @@ use crate::isa::LINEAR_BITS;
 use crate::simd::{SimdVector, VectorKernel};
 use pxpl5_wire::Linear;
 
-/// Most expressions of a run: as many as have their trees in the widest vector.
+/// Largest number of expressions in a run: the trees of all of them fit in the widest vector.
 pub(super) const EXPRESSIONS: usize = 8;
 
-/// Bits of a column's number in its tile.
+/// Bits of a column's number within its tile (0 to 31).
 const LEVELS: usize = 5;
-/// Columns of a tile, and rows, whose number has bit `l`.
+/// For each bit `l`, the columns (and rows) of a tile whose number has this bit.
 const NUMBERS: [u32; LEVELS] = [0xaaaa_aaaa, 0xcccc_cccc, 0xf0f0_f0f0, 0xff00_ff00, 0xffff_0000];
 
-/// Instructions that follow each other.
+/// Consecutive instructions that each tile executes together.
 #[derive(Clone, Debug, Default)]
 pub(super) struct InstructionRun {
     pub(super) steps: Vec<RunStep>,
-    /// Over the array's own columns and rows.
+    /// Expressions over the columns and rows of the whole array.
     pub(super) expressions: Vec<Linear>,
-    /// Words of the list.
+    /// Length of the run in words of the list.
     pub(super) words: usize,
 }
 
@@ -43,16 +43,16 @@ pub(super) struct RunStep {
     pub(super) delivery: Delivery,
 }
 
-/// Where bits come from.
+/// Origin of the bits that an instruction delivers.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum BitOrigin {
-    /// An expression of the run.
+    /// Index of an expression of the run.
     Expression(usize),
     Constant(ConstantBits),
 }
 
 impl RunStep {
-    /// The expression of the run whose sign disables, where that is what the instruction does.
+    /// Returns the index of the expression whose sign disables pixels, if the instruction does that.
     #[inline(always)]
     const fn disables_by_sign_of(&self) -> Option<usize> {
         match (self.input, self.delivery.effect) {
@@ -62,7 +62,7 @@ impl RunStep {
     }
 }
 
-/// A run in all tiles.
+/// Execution of a run in all tiles.
 pub(super) struct RunTiles<'a> {
     pub(super) run: &'a InstructionRun,
     pub(super) tiles: &'a mut [Tile],
@@ -94,7 +94,7 @@ impl InstructionRun {
         self.words = 0;
     }
 
-    /// Of the expressions whose sign matters.
+    /// Returns the known signs of the expressions whose sign disables pixels.
     #[inline(always)]
     fn signs<V: SimdVector>(&self) -> [Signs; EXPRESSIONS] {
         let mut signs = [Signs::default(); EXPRESSIONS];
@@ -106,7 +106,7 @@ impl InstructionRun {
         signs
     }
 
-    /// Tiles, one a bit, that the run disables before it does anything else.
+    /// Returns the tiles, one per bit, that the first instructions of the run disable completely.
     #[inline(always)]
     fn disabled_at_once(&self, signs: &[Signs; EXPRESSIONS]) -> u32 {
         let mut disabled = 0;
@@ -129,6 +129,7 @@ impl InstructionRun {
             match step.input {
                 BitOrigin::Constant(constant) => step.delivery.in_tile::<V, _>(&constant, 0, tile),
                 BitOrigin::Expression(i) => {
+                    // A known sign decides the whole tile without adders.
                     if matches!(step.delivery.effect, ExpressionEffect::DisableNegative) {
                         if signs[i].negative >> number & 1 == 1 {
                             tile.enable = EMPTY;
@@ -138,6 +139,7 @@ impl InstructionRun {
                             continue;
                         }
                     }
+                    // Run the trees only when a tile first needs them.
                     while streams.ready <= i {
                         streams.run_trees::<V>(self, number);
                     }
@@ -152,7 +154,7 @@ impl InstructionRun {
 }
 
 impl Delivery {
-    /// In those vectors of a tile that have enabled pixels; the trees' streams stand in a word.
+    /// Delivers bits to the vectors of a tile that have enabled pixels. `word` is the word of the trees' streams.
     #[inline(always)]
     fn in_tile<V: SimdVector, E: Evaluator>(&self, evaluator: &E, word: usize, tile: &mut Tile) {
         for row in (0..HEIGHT).step_by(V::LANES) {
@@ -163,27 +165,30 @@ impl Delivery {
     }
 }
 
-/// Where the sign of an expression is known without serial arithmetic.
+/// Tiles in which the sign of an expression is known without serial arithmetic.
 #[derive(Clone, Copy, Debug, Default)]
 struct Signs {
-    /// Tiles, one a bit, in which it is negative everywhere.
+    /// Tiles, one per bit, in which the expression is negative everywhere.
     negative: u32,
-    /// Tiles in which it is negative nowhere.
+    /// Tiles, one per bit, in which the expression is negative nowhere.
     positive: u32,
 }
 
 impl Signs {
-    /// From the values at the corners of each tile; unknown where the expression wraps anywhere in the array.
+    /// Derives the signs from the values at the corners of each tile. They stay unknown if the expression overflows in
+    /// the array.
     #[inline(always)]
     fn from_corners<V: SimdVector>(e: &Linear) -> Self {
         if wraps(e) {
             return Self::default();
         }
+        // Values at the left top pixel of each tile.
         let mut corners = [0; TILES];
         for (number, corner) in corners.iter_mut().enumerate() {
             let [left, top] = tile::origin(number);
             *corner = e.at(left as i32, top as i32) as u32;
         }
+        // The value changes by at most these amounts within a tile.
         let across = e.a * (WIDTH as i32 - 1);
         let down = e.b * (HEIGHT as i32 - 1);
         let largest = V::splat(across.max(0) + down.max(0));
@@ -202,7 +207,7 @@ const fn lanes<V: SimdVector>() -> u32 {
     u32::MAX >> (32 - V::LANES)
 }
 
-/// Whether an expression leaves 32 bits anywhere in the array.
+/// Returns true if an expression exceeds 32 bits anywhere in the array.
 #[inline(always)]
 fn wraps(e: &Linear) -> bool {
     let last = (ACROSS * WIDTH - 1) as i64;
@@ -213,15 +218,15 @@ fn wraps(e: &Linear) -> bool {
     corners.iter().any(|corner| i32::try_from(*corner).is_err())
 }
 
-/// What the trees of a tile deliver for the expressions of a run, each in its word.
+/// Tree outputs of a tile for the expressions of a run, one word for each expression.
 struct TileStreams {
     streams: LinearStreams,
-    /// Expressions whose trees have run.
+    /// Number of expressions whose trees have run.
     ready: usize,
 }
 
 impl TileStreams {
-    /// Runs the trees of as many expressions as a vector holds.
+    /// Runs the trees of the next expressions, as many as a vector holds.
     #[inline(always)]
     fn run_trees<V: SimdVector>(&mut self, run: &InstructionRun, number: usize) {
         let [left, top] = tile::origin(number);
@@ -241,7 +246,7 @@ impl TileStreams {
     }
 }
 
-/// A constant, as though an expression were it.
+/// A constant that is delivered bit by bit, like an expression.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ConstantBits {
     pub(super) value: u32,

@@ -1,18 +1,18 @@
-//! Commands around drawing: region, clearing, copying, backing store.
+//! Commands for region selection, clearing, copying and the backing store.
 
 use super::{CommandKind, enable};
 use crate::isa::{ArrayInstruction, Operand};
 use crate::layout::Layout;
 use pxpl5_wire::{CopyTarget, Lines, NodeId, PictureNumber, RegionGrid, RegionId};
 
-/// Selects the context and the screen position of the region that the following commands work on.
+/// Selects the context and the screen position of the region for the following commands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SelectRegion {
-    /// Context of pixel memory, below the layout's number of contexts.
+    /// Context of pixel memory, less than the layout's number of contexts.
     pub context: u8,
     /// Screen x of the region's left column, in pixels.
     pub left: u16,
-    /// Screen y of the region's top row, in the lines that are drawn.
+    /// Screen y of the region's top row, counted in drawn lines (one field has every second line).
     pub top: u16,
 }
 
@@ -29,10 +29,10 @@ impl SelectRegion {
     }
 }
 
-/// Sets colour to the background and Z to the far plane, in the whole array.
+/// Sets colour to the background and Z to the far plane in the whole array.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Clear {
-    /// Colour of the background, 0x00RRGGBB.
+    /// Background colour, 0x00RRGGBB.
     pub colour: u32,
 }
 
@@ -56,7 +56,7 @@ impl Clear {
 /// Copies the region's colour to a frame buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CopyRegion {
-    /// Frame buffer and buffer, region of which grid, lines and picture.
+    /// Destination: frame buffer, buffer, region and its grid, lines, and picture.
     pub target: CopyTarget,
 }
 
@@ -88,9 +88,9 @@ impl CopyRegion {
 /// Stores 32 bits of every pixel in a block of the backing store.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StoreBacking {
-    /// Block, 0 to 127.
+    /// Block of the backing store, 0 to 127.
     pub block: u8,
-    /// First bit of pixel memory, absolute, 0 to 176.
+    /// First bit in pixel memory, as an absolute address from 0 to 176.
     pub address: u8,
 }
 
@@ -110,9 +110,9 @@ impl StoreBacking {
 /// Loads 32 bits of every pixel from a block of the backing store.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LoadBacking {
-    /// Block, 0 to 127.
+    /// Block of the backing store, 0 to 127.
     pub block: u8,
-    /// First bit of pixel memory, absolute, 0 to 176.
+    /// First bit in pixel memory, as an absolute address from 0 to 176.
     pub address: u8,
 }
 

@@ -1,4 +1,4 @@
-//! Triangles.
+//! Triangle commands.
 
 use super::{Command, CommandKind, MissingField, Unsupported, enable, normal};
 use crate::isa::{ArrayInstruction, Expression, ExpressionUse, Operand};
@@ -9,22 +9,22 @@ use pxpl5_wire::{Linear, Word};
 /// A triangle with interpolated colour (Gouraud).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TriangleCommand {
-    /// Inside where all are `>= 0`.
+    /// Edge expressions; a pixel is inside where all three are `>= 0`.
     pub edges: [Linear; 3],
-    /// Depth at a pixel, nearer is smaller, with [`pxpl5_wire::format::Z_FRACTION_BITS`].
+    /// Depth expression with [`pxpl5_wire::format::Z_FRACTION_BITS`]; nearer is smaller.
     pub depth: Linear,
-    /// Red, green, blue with [`COLOUR_FRACTION_BITS`].
+    /// Red, green and blue expressions with [`COLOUR_FRACTION_BITS`].
     pub colour: [Linear; 3],
 }
 
-/// A triangle whose normals are interpolated and shaded at the end of the frame (Phong).
+/// A triangle with interpolated normals, which is shaded at the end of the frame (Phong).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PhongTriangleCommand {
-    /// Inside where all are `>= 0`.
+    /// Edge expressions; a pixel is inside where all three are `>= 0`.
     pub edges: [Linear; 3],
-    /// Depth at a pixel, nearer is smaller, with [`pxpl5_wire::format::Z_FRACTION_BITS`].
+    /// Depth expression with [`pxpl5_wire::format::Z_FRACTION_BITS`]; nearer is smaller.
     pub depth: Linear,
-    /// x, y and z of the normal with [`NORMAL_FRACTION_BITS`]; any length up to the format's.
+    /// Expressions for x, y and z of the normal with [`NORMAL_FRACTION_BITS`]. The normal need not have unit length.
     pub normal: [Linear; 3],
     /// Colour of the object, 0x00RRGGBB.
     pub colour: u32,
@@ -75,7 +75,7 @@ pub(super) const fn evaluate(expression: Expression, usage: ExpressionUse) -> Ar
     ArrayInstruction::Evaluate { expression, usage }
 }
 
-/// Three edges, then Z: compare, disable where not nearer, store.
+/// Appends the instructions for three edges and Z: test the edges, keep only nearer pixels, store their Z.
 fn coverage(edges: &[Linear; 3], depth: Linear, layout: &Layout, out: &mut Vec<ArrayInstruction>) {
     out.extend(edges.map(|edge| evaluate(Expression::Linear(edge), ExpressionUse::DisableNegative)));
     let field = layout.plan().z;
@@ -87,32 +87,32 @@ fn coverage(edges: &[Linear; 3], depth: Linear, layout: &Layout, out: &mut Vec<A
 pub(crate) const TRIANGLE_WORDS: usize = CommandKind::Triangle.words() as usize;
 pub(crate) const PHONG_WORDS: usize = CommandKind::PhongTriangle.words() as usize;
 
-/// Where the coefficients of the edges, of the depth and of the components stand: behind enable all and their heads, the
-/// components also behind the depth again, which has none.
+/// Word offsets of the coefficients of the three edges in an encoded triangle command.
 pub(crate) const EDGES_AT: [usize; 3] = [2, 6, 10];
 pub(crate) const DEPTH_AT: usize = 14;
 pub(crate) const COMPONENTS_AT: [usize; 3] = [19, 23, 27];
-/// Where the colour of a Phong triangle stands.
+/// Word offset of the colour of a Phong triangle.
 pub(crate) const COLOUR_AT: usize = PHONG_WORDS - 1;
 
-/// Makes the words of triangles without their programs: a scene sends a hundred thousand of them a frame.
+/// A fast encoder for triangle commands. It skips the program, since a scene sends 100,000 triangles a frame.
 ///
-/// All triangles of a layout are alike but for their operands, which are put into the words of a blank one.
+/// The words of all triangles of a layout differ only in their operands. The encoder copies a blank triangle and
+/// overwrites the operands.
 #[derive(Clone, Debug)]
 pub struct TriangleEncoder([Word; TRIANGLE_WORDS]);
 
-/// As [`TriangleEncoder`] for triangles with normals.
+/// A fast encoder for Phong triangle commands, like [`TriangleEncoder`].
 #[derive(Clone, Debug)]
 pub struct PhongTriangleEncoder([Word; PHONG_WORDS]);
 
 impl TriangleEncoder {
-    /// For the commands of a layout.
+    /// Creates an encoder for the commands of a layout.
     #[must_use]
     pub fn new(layout: &Layout) -> Self {
         Self(blank(&TriangleCommand::default().program(layout)))
     }
 
-    /// Appends the words of [`Command::program`](super::Command::program).
+    /// Appends the same words as [`Command::program`](super::Command::program) encodes to.
     #[inline(always)]
     pub fn encode(&self, triangle: &TriangleCommand, out: &mut Vec<Word>) {
         operands(&self.0, &triangle.edges, &triangle.depth, &triangle.colour, out);
@@ -120,10 +120,10 @@ impl TriangleEncoder {
 }
 
 impl PhongTriangleEncoder {
-    /// For the commands of a layout.
+    /// Creates an encoder for the commands of a layout.
     ///
     /// # Errors
-    /// [`Unsupported`] where the layout has no normals.
+    /// [`Unsupported`] if the layout has no normals.
     pub fn new(layout: &Layout) -> Result<Self, Unsupported> {
         let blank_one = PhongTriangleCommand::default();
         let program = blank_one
@@ -132,21 +132,21 @@ impl PhongTriangleEncoder {
         Ok(Self(blank(&program)))
     }
 
-    /// Appends the words of [`Command::program`](super::Command::program).
+    /// Appends the same words as [`Command::program`](super::Command::program) encodes to.
     #[inline(always)]
     pub fn encode(&self, triangle: &PhongTriangleCommand, out: &mut Vec<Word>) {
         operands(&self.0, &triangle.edges, &triangle.depth, &triangle.normal, out)[COLOUR_AT] = triangle.colour;
     }
 }
 
-/// The words of a program that has as many.
+/// Returns the words of a program, which must have exactly `N` words.
 fn blank<const N: usize>(program: &[ArrayInstruction]) -> [Word; N] {
     let mut words = Vec::with_capacity(N);
     program.iter().for_each(|instruction| instruction.encode(&mut words));
     words.try_into().expect("every program of the kind has the kind's words")
 }
 
-/// Appends the words of a blank triangle with operands.
+/// Appends a blank triangle with the given operands, and returns the appended words.
 #[inline(always)]
 fn operands<'a, const N: usize>(
     blank: &[Word; N],

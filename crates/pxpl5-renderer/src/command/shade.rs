@@ -4,12 +4,12 @@ use super::{CommandKind, MissingField, enable, normal};
 use crate::isa::{ArithmeticOp, ArrayInstruction, Operand, Test};
 use crate::layout::Layout;
 
-/// How often the cosine of the highlight is squared: a power of 2^5 = 32 (assumed).
+/// Number of times the cosine of the highlight is squared: 5, for a power of 2^5 = 32 (assumed).
 pub const SPECULAR_SQUARINGS: u32 = 5;
 
-/// Shades every pixel that a command has covered (Z nearer than the far plane); the others keep the background.
+/// Shades every pixel that a command has covered (Z nearer than the far plane). Other pixels keep the background.
 ///
-/// With the normal N, the object's colour C and a light and an eye at infinity:
+/// Inputs are the normal N, the object's colour C, and a light and an eye at infinity:
 ///
 /// ```text
 /// d = limit(N . light / |N|)        10 bits, 1.0 = 1024
@@ -18,35 +18,37 @@ pub const SPECULAR_SQUARINGS: u32 = 5;
 /// C := limit((C i >> 8) + (s specular >> 10))
 /// ```
 ///
-/// |N| is a bit-serial square root of 12 bits, the quotients are bit-serial divisions, and the power is five squarings
-/// that keep 10 bits. The limits are 0 and all ones. A normal of zero counts as turned to the light.
+/// |N| is a bit-serial square root of 12 bits. The quotients are bit-serial divisions. The power is five squarings that
+/// keep 10 bits. The limits are 0 and all ones. A zero normal is shaded as if it faced the light.
 ///
-/// 3,790 clocks, of which the root takes 206, each quotient 374 and the power 570. The 100 to 200 us that are assumed for
-/// the machine leave room for a second light (a cosine takes 938) or a material in each pixel, which are not modelled.
+/// The command takes 3,790 clocks: the root takes 206, each quotient 374 and the power 570. The time assumed for the
+/// machine is 100 to 200 us. The model leaves out a second light (a cosine takes 938 clocks) and a material per pixel,
+/// which would also fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Shade {
-    /// Unit vector towards the light, 1.0 = 1024, each component in 12 bits two's complement; at most 2.0 long.
+    /// Unit vector towards the light, 1.0 = 1024. Each component has 12 bits, two's complement; the length is at most
+    /// 2.0.
     pub light: [i16; 3],
-    /// Unit vector half way between light and eye, in the same format.
+    /// Unit vector half way between light and eye, in the same format as `light`.
     pub half: [i16; 3],
-    /// Share of the object's colour without light, 1.0 = 256.
+    /// Share of the object's colour that is visible without light, 1.0 = 256.
     pub ambient: u8,
-    /// Share of the object's colour in full light, 1.0 = 256.
+    /// Share of the object's colour that full light adds, 1.0 = 256.
     pub diffuse: u8,
-    /// White of the highlight, 255 is full.
+    /// Intensity of the white highlight; 255 is full.
     pub specular: u8,
 }
 
-/// Bits of a component of the constant vectors.
+/// Bits of each component of the light and half vectors.
 const VECTOR_BITS: u8 = 12;
 const COSINE_BITS: u8 = 10;
 
-/// Bits of scratch that the program takes.
+/// Bits of scratch memory that the shading program needs.
 pub(super) const SHADE_BITS: u8 = 104;
-/// Where in the scratch the root is.
+/// First bit of the square root in the scratch memory.
 pub(super) const SHADE_ROOT: u8 = 72;
 
-/// Fields of the program.
+/// Pixel memory fields of the shading program.
 pub(crate) struct ShadeFields {
     normal: [Operand; 3],
     colour: [Operand; 3],
@@ -85,6 +87,7 @@ impl Shade {
             enable(CommandKind::Shade),
             ArrayInstruction::CompareConstant { test: Test::NotEqual, a: f.z, value: u32::MAX },
         ];
+        // |N| first, since both cosines divide by it.
         length(&f, &mut out);
         cosine(&f, self.light, f.diffuse, &mut out);
         cosine(&f, self.half, f.specular, &mut out);
@@ -96,7 +99,8 @@ impl Shade {
         Ok(out)
     }
 
-    /// b's low 8 bits := light on the object's colour; c's bits 10 .. 18 := highlight.
+    /// Computes the light on the object's colour (in the low 8 bits of `f.diffuse`) and the highlight (in bits 10 to 18
+    /// of `f.c`).
     fn intensities(&self, f: &ShadeFields, highlight: Operand, out: &mut Vec<ArrayInstruction>) {
         let sum = f.b.part(0, 19);
         let ambient = u32::from(self.ambient) << COSINE_BITS;
@@ -133,7 +137,7 @@ const fn multiply_constant(destination: Operand, source: Operand, factor: i32, f
     ArrayInstruction::MultiplyConstant { destination, source, factor, factor_bits }
 }
 
-/// root := |N|, from the sum of the squares of the normal in a; leaves the remainder there.
+/// Computes |N| in `f.root` from the sum of squares in `f.a`. `f.a` keeps the remainder of the root.
 fn length(f: &ShadeFields, out: &mut Vec<ArrayInstruction>) {
     let [x, y, z] = f.normal;
     out.push(arithmetic(ArithmeticOp::Multiply, f.a, x, x));
@@ -144,7 +148,7 @@ fn length(f: &ShadeFields, out: &mut Vec<ArrayInstruction>) {
     out.push(ArrayInstruction::SquareRoot { destination: f.root, radicand: f.a });
 }
 
-/// cosine := limit(N . vector / |N|).
+/// Computes `cosine := limit(N . vector / |N|)`.
 fn cosine(f: &ShadeFields, vector: [i16; 3], cosine: Operand, out: &mut Vec<ArrayInstruction>) {
     let [x, y, z] = vector.map(|v| i32::from(v << 4 >> 4));
     out.push(multiply_constant(f.c, f.normal[0], x, VECTOR_BITS));
@@ -157,7 +161,8 @@ fn cosine(f: &ShadeFields, vector: [i16; 3], cosine: Operand, out: &mut Vec<Arra
     out.push(arithmetic(ArithmeticOp::Divide, cosine, positive, f.root));
 }
 
-/// Squares the cosine of the highlight, to and fro between a and b; returns where the power is.
+/// Raises the cosine of the highlight to the power 32 and returns the field of the result. Squares alternate between
+/// `f.a` and `f.b`.
 fn power(f: &ShadeFields, out: &mut Vec<ArrayInstruction>) -> Operand {
     let mut base = f.specular;
     for i in 0..SPECULAR_SQUARINGS {
@@ -168,7 +173,7 @@ fn power(f: &ShadeFields, out: &mut Vec<ArrayInstruction>) -> Operand {
     base
 }
 
-/// component := limit((component * light >> 8) + highlight).
+/// Returns the instructions for `component := limit((component * light >> 8) + highlight)`.
 fn combine(f: &ShadeFields, component: Operand) -> [ArrayInstruction; 3] {
     let product = f.a.part(0, 16);
     let sum = f.b.part(0, 9);
@@ -187,7 +192,7 @@ fn read_factor(program: &[ArrayInstruction], index: usize) -> Option<i32> {
 }
 
 fn read_vector(program: &[ArrayInstruction], first: usize) -> Option<[i16; 3]> {
-    // The first sum comes between the products of y and z.
+    // The addition of x and y comes between the products of y and z.
     let indices = [first, first + 1, first + 3];
     let [x, y, z] = indices.map(|index| read_factor(program, index).and_then(|factor| i16::try_from(factor).ok()));
     Some([x?, y?, z?])

@@ -1,4 +1,4 @@
-//! Spheres, exact in silhouette, with their depth from a square root.
+//! Sphere commands with exact silhouettes; the depth comes from a square root.
 
 use super::draw::{evaluate, load, read_linear};
 use super::shade::{SHADE_BITS, SHADE_ROOT};
@@ -8,80 +8,81 @@ use crate::layout::Layout;
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_FRACTION_BITS};
 use pxpl5_wire::{Linear, Quadratic};
 
-/// What all spheres share: silhouette and depth.
+/// Silhouette and depth of a sphere, common to both sphere commands.
 ///
-/// Under perspective the inverse depth along a pixel's ray is `linear + k sqrt(Q)`, where Q is the quadratic that is
-/// zero on the silhouette. The sender scales Q so that its root needs no factor:
+/// Under perspective the inverse depth along a pixel's ray is `linear + k sqrt(Q)`. Q is a quadratic that is zero on
+/// the silhouette. The sender scales Q so that the root needs no factor:
 ///
 /// ```text
 /// root  = floor(sqrt((silhouette >> root_shift) & (2^24 - 1)))        12 bits; r = root at the middle < 4096
 /// depth = (depth - (root << depth_shift)) >> Z_FRACTION_BITS          24 bits, as for a triangle
 /// ```
 ///
-/// So `silhouette = 2^root_shift (bulge / 2^depth_shift)^2` at the middle, where *bulge* is how far the middle stands
-/// before the plane `depth`, in units of the depth expression. To keep 11 bits or more of the root, choose
-/// `depth_shift` such that `bulge >> depth_shift` is in 2048 .. 4096. The silhouette must stay within 48 bits on the
-/// whole region. A layout with 10 root bits uses the upper bits of the same operands.
+/// At the middle, `silhouette = 2^root_shift (bulge / 2^depth_shift)^2`. *Bulge* is the distance of the middle in front
+/// of the plane `depth`, in units of the depth expression. To keep 11 bits or more of the root, choose `depth_shift` so
+/// that `bulge >> depth_shift` is in 2048 .. 4096. The silhouette must stay within 48 bits on the whole region. A
+/// layout with 10 root bits uses the upper bits of the same operands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SphereBody {
-    /// Inside where it is `>= 0`; 48 bits.
+    /// Silhouette expression of 48 bits; a pixel is inside where it is `>= 0`.
     pub silhouette: Quadratic,
-    /// Low bits of the silhouette that are left out of the root, 0 to 24.
+    /// Number of low bits of the silhouette that the root ignores, 0 to 24.
     pub root_shift: u8,
     /// Depth of the plane of the silhouette, with [`pxpl5_wire::format::Z_FRACTION_BITS`].
     pub depth: Linear,
-    /// Left shift of the root before it is subtracted from the depth, 0 to 20.
+    /// Left shift of the root before its subtraction from the depth, 0 to 20.
     pub depth_shift: u8,
 }
 
 /// A sphere with interpolated colour.
 ///
-/// Cost beyond a triangle: a quadratic is 12 words and 48 clocks and is needed twice (sign, radicand); the root takes
-/// 202 bit clocks and the depth, which now depends on a stored root, three passes instead of two. A sphere with
-/// interpolated colour further needs a product and a limit for each component (134 clocks each).
+/// A sphere costs more than a triangle for three reasons. A quadratic takes 12 words and 48 clocks, and is needed twice
+/// (sign, radicand). The root takes 202 bit clocks, and the depth needs three passes instead of two, since it depends
+/// on the stored root. Interpolated colour also takes a product and a limit for each component (134 clocks each).
 ///
-/// "A little dearer than a triangle" (assumed) is what a paraboloid costs, whose depth is the quadratic itself: 318 clocks
-/// with a quadratic for each colour, 268 with normals. Its depth is exact nowhere but at the silhouette and the middle, and
-/// spheres that meet would meet in the wrong places, so the root is paid for.
+/// The assumed cost "a little dearer than a triangle" fits a paraboloid, whose depth is the quadratic itself. It takes
+/// 318 clocks with a quadratic for each colour, or 268 with normals. Its depth is exact only at the silhouette and the
+/// middle, so intersecting spheres would meet in wrong places. The model therefore takes the root.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SphereCommand {
-    /// Which pixels are inside, and how near they are.
+    /// Silhouette and depth.
     pub body: SphereBody,
     /// Linear part of red, green and blue with [`COLOUR_FRACTION_BITS`].
     pub colour: [Linear; 3],
-    /// What the root contributes, -512 to 511: component = limit(linear + ((root >> 4) * factor >> 8)), where the sum
-    /// must fit -512 to 511 (it wraps) and the limit is 0 to 255.
+    /// Factor of the root for each component, -512 to 511: component = limit(linear + ((root >> 4) * factor >> 8)).
+    ///
+    /// The sum must fit -512 to 511, or it wraps. The limit is 0 to 255.
     pub root_factor: [i16; 3],
 }
 
 /// A sphere that is shaded at the end of the frame (Phong).
 ///
-/// The z of its normal is `root >> 2`, so that the middle of the sphere has `r / 4`; the sender scales x and y alike
-/// (shading normalises). Under perspective the normal's x and y are taken as linear.
+/// The z of its normal is `root >> 2`, so that the middle of the sphere has `r / 4`. The sender scales x and y alike,
+/// since shading normalizes the normal. Under perspective the normal's x and y are approximated as linear.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PhongSphereCommand {
-    /// Which pixels are inside, and how near they are.
+    /// Silhouette and depth.
     pub body: SphereBody,
-    /// x and y of the normal with [`NORMAL_FRACTION_BITS`].
+    /// Expressions for x and y of the normal with [`NORMAL_FRACTION_BITS`].
     pub normal: [Linear; 2],
     /// Colour of the object, 0x00RRGGBB.
     pub colour: u32,
 }
 
-/// Root bits for which the operands are defined.
+/// Bits of the root for which the operands of [`SphereBody`] are defined.
 const ROOT_BITS: u8 = 12;
-/// Upper bits of the root that a colour's factor multiplies.
+/// Number of upper bits of the root that a colour's factor multiplies.
 const COLOUR_ROOT_BITS: u8 = 8;
 const FACTOR_BITS: u8 = 10;
 
-/// Temporaries of a sphere's program.
+/// Scratch fields of a sphere's program.
 #[derive(Clone, Copy)]
 pub(crate) struct SphereScratch {
     radicand: Operand,
     pub(crate) root: Operand,
-    /// In the place of the radicand, which the root has used up.
+    /// New depth. It shares bits with the radicand, which is not needed after the root.
     pub(crate) z: Operand,
-    /// In the same place; 8 + 10 bits.
+    /// Product of root and factor, 8 + 10 bits. It shares bits with the radicand.
     product: Operand,
 }
 
@@ -96,7 +97,7 @@ impl SphereScratch {
         if low + bits > all.width {
             return Err(MISSING);
         }
-        // In the place that shading uses for its root, where there is one.
+        // Use the same bits as the root of the shading program, if the layout has them.
         let root = if all.width >= SHADE_BITS { SHADE_ROOT } else { low };
         Ok(Self {
             radicand: all.part(0, radicand_bits),
@@ -106,7 +107,7 @@ impl SphereScratch {
         })
     }
 
-    /// Bits that the root lacks.
+    /// Returns the number of bits by which the layout's root is narrower than 12 bits.
     pub(crate) const fn short(&self) -> u8 {
         ROOT_BITS - self.root.width
     }
@@ -116,9 +117,10 @@ impl SphereScratch {
     }
 }
 
-/// Silhouette, root, depth: compare, disable where not nearer, store.
+/// Appends the instructions for silhouette, root and depth: test, keep only nearer pixels, store Z.
 fn coverage(body: &SphereBody, layout: &Layout, scratch: &SphereScratch, out: &mut Vec<ArrayInstruction>) {
     let z = layout.plan().z;
+    // Sign of the silhouette, then the same quadratic again as radicand.
     out.extend([
         evaluate(Expression::Quadratic(body.silhouette), ExpressionUse::DisableNegative),
         evaluate(
@@ -186,7 +188,9 @@ impl SphereCommand {
     }
 }
 
-/// component := limit(linear + (upper root * factor >> 8)), in the upper 10 bits of the product.
+/// Returns the instructions for `component := limit(linear + (upper root * factor >> 8))`.
+///
+/// The sum is in the upper 10 bits of the product.
 fn shade_component(linear: Linear, factor: i16, component: Operand, scratch: &SphereScratch) -> [ArrayInstruction; 3] {
     let sum = scratch.product.part(8, 10).signed();
     [

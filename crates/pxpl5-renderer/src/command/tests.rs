@@ -178,12 +178,13 @@ proptest! {
 
 #[test]
 fn the_published_rate_lies_between_the_two_kinds_of_triangle_and_both_keep_the_bit_budget() {
-    // 150,000 triangles a second at 40 MHz (TR94).
+    // The published rate is 150,000 triangles a second at 40 MHz (TR94).
     let published = 40_000_000_u32.div_ceil(150_000);
     let gouraud = clocks(CommandKind::Triangle);
     let phong = clocks(CommandKind::PhongTriangle);
     assert!(gouraud <= published && published <= phong);
-    // Enable, edges, Z compared and stored, colours, fetches; with normals 6 more, or 36 with the object's colour.
+    // Enable, edges, Z comparison and store, colours, fetches. With normals 6 more clocks, or 36 with the object's
+    // colour.
     let budget = 2 + 3 * 24 + 28 + 28 + 3 * 18 + 9 * 8;
     assert!((budget..=published).contains(&gouraud));
     assert!((budget + 6..=budget + 36).contains(&phong));
@@ -226,20 +227,20 @@ fn clocks(kind: CommandKind) -> u32 {
 
 #[test]
 fn a_phong_triangle_pays_for_its_normals_and_the_objects_colour() {
-    // Three normals of 10 + 12 bits, and a constant of 24 bits, instead of three colours of 12 + 8.
+    // Three normals of 10 + 12 bits and a constant of 24 bits replace three colours of 12 + 8 bits.
     let expected = clocks(CommandKind::Triangle) - 3 * 20 + 3 * 22 + SET_UP_CLOCKS + 24;
     assert_eq!(clocks(CommandKind::PhongTriangle), expected);
     assert_eq!(expected, 292);
 }
 
-/// Clocks of a sphere until its depth is stored: enable; sign; radicand; root; depth; compare; store.
+/// Returns the clocks of a sphere until its depth is stored: enable, sign, radicand, root, depth, compare, store.
 const fn sphere_coverage_clocks(root: u32, z: u32) -> u32 {
     2 + 48 + 48 + root + 32 + 2 * z + 7 * SET_UP_CLOCKS
 }
 
 #[test]
 fn a_sphere_pays_for_two_quadratics_a_root_and_three_products() {
-    // Product of 8 by 10 bits; 12 + 10 bits of the linear part; limit.
+    // Product of 8 by 10 bits, then 12 + 10 bits of the linear part, then the limit.
     let component = 10 * 9 + 22 + 10 + 3 * SET_UP_CLOCKS;
     assert_eq!(clocks(CommandKind::Sphere), sphere_coverage_clocks(202, 24) + 3 * component);
     assert_eq!(clocks(CommandKind::Sphere), 810);
@@ -257,7 +258,8 @@ fn quadratic_clocks(usage: ExpressionUse) -> u32 {
 
 #[test]
 fn a_paraboloid_is_a_little_dearer_than_a_triangle() {
-    // What `SphereCommand` says of it: sign, compare and store of a quadratic, then three colours, or normals and a colour.
+    // The steps that `SphereCommand` documents: sign, comparison and store of a quadratic, then three colours, or
+    // normals and a colour.
     let field = phong().plan().z;
     let load = ExpressionUse::Load { field, shift: 0 };
     let depth = quadratic_clocks(ExpressionUse::DisableNegative)
@@ -312,7 +314,8 @@ fn a_label_of_no_command_is_named() {
     assert_eq!((error.position, error.kind), (0, DecodeErrorKind::NotTheCommand(0xEE)));
 }
 
-/// A root has 12 bits, or 10 in 30 bits of scratch; beside it depth lies, or the square of the root.
+/// A root has 12 bits, or 10 bits in a scratch of 30 bits. The scratch also holds the wider of the depth and the square
+/// of the root.
 #[test]
 fn spheres_need_room_for_a_root_and_the_wider_of_depth_and_square() {
     for z in 8..=24 {
@@ -328,7 +331,8 @@ fn spheres_need_room_for_a_root_and_the_wider_of_depth_and_square() {
     }
 }
 
-/// Operands are those of a root of 12 bits. One of 10 is a quarter of it, of a sixteenth of the square.
+/// Operands are defined for a root of 12 bits. A root of 10 bits is a quarter of it, computed from a sixteenth of the
+/// square.
 #[test]
 fn shifts_of_a_sphere_make_up_for_a_shorter_root() {
     let body = SphereBody { root_shift: 3, depth_shift: 5, ..SphereBody::default() };
@@ -352,7 +356,7 @@ fn shifts_of_a_sphere_make_up_for_a_shorter_root() {
     }
 }
 
-/// 16,384 pixels of 32 bits, over 64 chips with 4 bits a clock each.
+/// A block has 16,384 pixels of 32 bits, over 64 chips with 4 bits a clock each.
 #[test]
 fn the_backing_store_is_busy_with_blocks_alone() {
     for kind in CommandKind::ALL {

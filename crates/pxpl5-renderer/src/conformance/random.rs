@@ -1,4 +1,4 @@
-//! Random lists of words, the same for the same number on every host.
+//! Random lists of words; a seed gives the same list on every host.
 
 use crate::command::{
     Clear, Command, LoadBacking, PhongSphereCommand, PhongTriangleCommand, SelectRegion, Shade, SphereBody,
@@ -9,39 +9,39 @@ use crate::layout::Layout;
 use pxpl5_sim::SplitMix64;
 use pxpl5_wire::{Linear, Quadratic, Word};
 
-/// Random numbers, and lists of words made with them.
+/// A generator of random numbers and of random lists of words.
 #[derive(Clone, Copy, Debug)]
 pub struct Random(SplitMix64);
 
 impl Random {
-    /// Each seed gives another sequence.
+    /// Creates a generator; each seed gives a different sequence.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self(SplitMix64::new(seed.wrapping_mul(0xd129_0d3b_3f4b_7ec5)))
     }
 
-    /// The next 64 bits.
+    /// Returns the next 64 random bits.
     #[allow(clippy::should_implement_trait)] // An iterator that never ends would make every caller unwrap.
     pub const fn next(&mut self) -> u64 {
         self.0.bits()
     }
 
-    /// A number from 0 to `n` - 1.
+    /// Returns a number from 0 to `n` - 1.
     pub const fn below(&mut self, n: u64) -> u64 {
         self.0.below(n)
     }
 
-    /// A two's complement number of `bits` bits, 1 to 32.
+    /// Returns a two's complement number of `bits` bits, 1 to 32.
     pub const fn signed(&mut self, bits: u32) -> i32 {
         (self.next() as i32) >> (32 - bits)
     }
 
-    /// A number from `low` to `high` - 1.
+    /// Returns a number from `low` to `high` - 1.
     pub(crate) const fn between(&mut self, low: i64, high: i64) -> i64 {
         low + self.below((high - low) as u64) as i64
     }
 
-    /// A list: mostly commands of the layout, some single instructions, some words that mean nothing.
+    /// Returns a list of mostly commands of the layout, with some single instructions and rare invalid words.
     pub fn list(&mut self, layout: &Layout) -> Vec<Word> {
         let mut words = Vec::new();
         let mut last = self.command(layout);
@@ -53,6 +53,7 @@ impl Random {
             }
             last.encode(layout, &mut words).unwrap_or(());
         }
+        // Flip one bit of every 16th list, so that some lists are invalid.
         if self.below(16) == 0 && !words.is_empty() {
             let at = self.below(words.len() as u64) as usize;
             words[at] ^= 1 << self.below(32);
@@ -60,7 +61,7 @@ impl Random {
         words
     }
 
-    /// Legal instructions with random operands.
+    /// Appends one to six legal instructions with random operands.
     fn instructions(&mut self, words: &mut Vec<Word>) {
         let mut wanted = 1 + self.below(6);
         while wanted > 0 {
@@ -143,12 +144,13 @@ impl Random {
         Shade { light, half, ambient, diffuse, specular }
     }
 
-    /// About a unit vector, in the format of [`Shade::light`].
+    /// Returns a vector of roughly unit length, in the format of [`Shade::light`].
     fn vector(&mut self) -> [i16; 3] {
         std::array::from_fn(|_| self.between(-1500, 1500) as i16)
     }
 
-    /// Edges of a triangle around a random pixel, of all sizes; sometimes degenerate, sometimes wild.
+    /// Returns the edges of a triangle of any size around a random pixel. One in ten results is three arbitrary
+    /// expressions.
     fn edges(&mut self) -> [Linear; 3] {
         if self.below(10) == 0 {
             return std::array::from_fn(|_| self.wild());
@@ -171,17 +173,18 @@ impl Random {
         }
     }
 
-    /// A plane whose values use about `bits` bits over a screen.
+    /// Returns a plane whose values use about `bits` bits over a screen.
     fn plane(&mut self, bits: u32) -> Linear {
         Linear { a: self.signed(bits - 9), b: self.signed(bits - 9), c: self.signed(bits) }
     }
 
-    /// An ellipse around a random pixel, or anything.
+    /// Returns an ellipse around a random pixel, or in one of eight cases an arbitrary quadratic.
     fn silhouette(&mut self) -> Quadratic {
         if self.below(8) == 0 {
             let [xx, xy, yy, x, y, one] = std::array::from_fn(|_| (self.next() as i64) >> 20);
             return Quadratic { xx, xy, yy, x, y, one };
         }
+        // An ellipse with its middle at (x, y), where its value is scale * r^2.
         let radius = [2, 10, 60, 500][self.below(4) as usize];
         let x = self.between(-20, 660);
         let y = self.between(-20, 500);
@@ -199,7 +202,7 @@ impl Random {
     }
 }
 
-/// The same shape in other colours: all depths are equal, so that none is nearer.
+/// Returns the same shape in other colours. Its depths equal the old ones, so no pixel of it is nearer.
 fn repainted(command: Command) -> Command {
     match command {
         Command::Triangle(mut t) => {
@@ -216,7 +219,8 @@ fn repainted(command: Command) -> Command {
     }
 }
 
-/// The edge from p to q, in sixteenths of a pixel, inside on its left; cut to 32 bits.
+/// Returns the edge from p to q, in sixteenths of a pixel, with its inside on the left. Coefficients are truncated to
+/// 32 bits.
 fn edge(p: [i64; 2], q: [i64; 2]) -> Linear {
     let dx = q[0] - p[0];
     let dy = q[1] - p[1];
@@ -229,7 +233,7 @@ mod tests {
     use super::*;
     use std::collections::{BTreeMap, BTreeSet};
 
-    /// Some of everything, so that a test of an array meets it.
+    /// Tests that every kind of command occurs often enough.
     #[test]
     fn commands_come_in_the_shares_that_are_meant() {
         let layout = Layout::rendering_control_phong();
@@ -267,7 +271,8 @@ mod tests {
             wrong += u32::from(ArrayInstruction::decode_all(&words).is_err());
             commands += words.iter().filter(|word| **word >> 24 == 1).count();
         }
-        // Up to one list of 16, in which most words are numbers; one to four commands each, of which Slats lacks a third.
+        // At most one list in 16 is invalid, and a flipped bit often hits a number. A list has one to four commands;
+        // Slats lacks a third of them.
         assert!((5..63).contains(&wrong), "{wrong}");
         assert!((1000..3000).contains(&commands), "{commands}");
         let lengths: BTreeSet<usize> = (0..300)
@@ -309,14 +314,14 @@ mod tests {
             let [p, q] = [(); 2].map(|()| [random.between(-900, 900), random.between(-900, 900)]);
             let e = edge(p, q);
             let at = |[x, y]: [i64; 2]| i64::from(e.a) * x + i64::from(e.b) * y + 16 * i64::from(e.c);
-            // The constant is cut to whole pixels.
+            // The constant is truncated to whole pixels.
             assert!((-15..=0).contains(&at(p)) && (-15..=0).contains(&at(q)), "{p:?} {q:?} {e:?}");
             let left = [p[0] - 40 * (q[1] - p[1]).signum(), p[1] + 40 * (q[0] - p[0]).signum()];
             assert!(p == q || at(left) > 0, "{p:?} {q:?} {e:?}");
         }
     }
 
-    /// Edges of a triangle add up to none.
+    /// Uses the fact that the edges of a triangle add up to a constant.
     #[test]
     fn most_edges_are_those_of_a_triangle_of_any_size() {
         let mut random = Random::new(5);
@@ -330,12 +335,13 @@ mod tests {
             let longest = edges.iter().map(|e| e.a.unsigned_abs().max(e.b.unsigned_abs())).max();
             *sizes.entry(longest.and_then(u32::checked_ilog10)).or_insert(0) += 1;
         }
-        // Nine of ten. In sixteenths of pixels, from less than one to thousands of them.
+        // Nine of ten results are triangles, from less than one pixel to thousands of pixels.
         assert!((3500..3700).contains(&sizes.values().sum::<u32>()), "{sizes:?}");
         assert!((1..=5).all(|digits| sizes.get(&Some(digits)).copied().unwrap_or(0) > 30), "{sizes:?}");
     }
 
-    /// Where both slopes are 0 an ellipse has its middle, a pixel around the screen, and there its scale times its radius squared.
+    /// Computes the middle of each ellipse, where both slopes are 0. The value there is the scale times the radius
+    /// squared.
     #[test]
     fn most_silhouettes_are_ellipses_around_a_pixel() {
         let mut random = Random::new(6);
@@ -360,7 +366,8 @@ mod tests {
             assert!((1..500).contains(&radius), "{q:?} {radius}");
             radii[(radius >= 2) as usize + (radius >= 10) as usize + (radius >= 60) as usize] += 1;
         }
-        // Seven of eight, in four sizes of up to 2, 10, 60 and 500, each from 1 on.
+        // Seven of eight results are ellipses, in four size classes of up to 2, 10, 60 and 500 pixels, each from 1
+        // pixel on.
         assert!(radii.iter().sum::<i32>() > 3300 && radii.iter().all(|count| *count > 400), "{radii:?}");
         assert!(tilted > 2500, "{tilted}");
     }
@@ -388,7 +395,7 @@ mod tests {
         assert_eq!((places.len(), blocks.len()), (4 * 5 * 4, 3));
         let vectors: BTreeSet<i16> = (0..500).flat_map(|_| random.vector()).collect();
         assert!(vectors.len() > 900 && vectors.iter().all(|v| (-1500..1500).contains(v)));
-        // A plane uses some nine bits less for what it grows by.
+        // The slopes of a plane use about nine bits less than its values.
         let planes: Vec<Linear> = (0..500).map(|_| random.plane(32)).collect();
         assert!(planes.iter().all(|p| p.a.unsigned_abs() <= 1 << 22 && p.b.unsigned_abs() <= 1 << 22));
         assert!(planes.iter().any(|p| p.a.abs() > 1 << 21) && planes.iter().any(|p| p.c.abs() > 1 << 30));

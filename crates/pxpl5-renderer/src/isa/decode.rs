@@ -1,4 +1,4 @@
-//! From words to instructions.
+//! Decoder: from words to instructions.
 
 use super::encode::{AGAIN, opcode};
 use super::{ArithmeticOp, ArrayInstruction, BACKING_BLOCKS, Expression, ExpressionUse, MEMORY_BITS, Operand, Test};
@@ -6,73 +6,71 @@ use pxpl5_wire::{
     CopyTarget, FieldParity, Linear, Lines, NodeId, PictureNumber, Quadratic, RegionGrid, RegionId, Word,
 };
 
-/// A word that is no instruction, and where it stands.
+/// The error for words that are no instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("word {position} ({word:#010x}): {kind}")]
 pub struct DecodeError {
     /// Index of the instruction's first word in the list.
     pub position: usize,
-    /// The instruction's first word.
+    /// The first word of the undecodable instruction.
     pub word: Word,
-    /// Why the words are no instruction.
     pub kind: DecodeErrorKind,
 }
 
-/// What is wrong with an instruction.
+/// Reason why words are no instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DecodeErrorKind {
-    /// No instruction has this opcode.
+    /// The opcode is not defined.
     #[error("no instruction has this opcode")]
     UnknownOpcode,
     /// The list ends inside the instruction.
     #[error("the instruction needs {expected} words, the list has {found} left")]
     Truncated {
-        /// Words that the instruction needs.
         expected: usize,
-        /// Words that are left.
+        /// Words left in the list.
         found: usize,
     },
     /// Bits that must be zero are set.
     #[error("bits are set that must be zero")]
     ReservedBits,
-    /// A field reaches beyond pixel memory.
+    /// A field ends beyond pixel memory.
     #[error("{} bits at address {} reach beyond the {} bits of pixel memory", .0.width, .0.address, MEMORY_BITS)]
     FieldOutOfRange(Operand),
-    /// A field has a width that this instruction cannot use.
+    /// A field has a width that this instruction does not allow.
     #[error("the field at address {} has {} bits, expected {expected}", .field.address, .field.width)]
     Width {
         /// The field as the instruction names it.
         field: Operand,
-        /// Bits that it must have (at most, for shifts).
+        /// Required width in bits; for expressions and quotients the largest allowed width.
         expected: u32,
     },
-    /// Operands are signed where they must not be, or differ in signedness.
+    /// Operands are signed but must not be, or differ in signedness.
     #[error("signedness of the operands does not fit")]
     Signedness,
-    /// No backing-store block has this number.
+    /// No block of the backing store has this number.
     #[error("backing store block {0}, expected less than {max}", max = BACKING_BLOCKS)]
     UnknownBlock(u8),
-    /// An output's frame, lines or region make no sense.
+    /// The lines, grid or region of an output are invalid.
     #[error("the copy's target is no region of a frame")]
     BadTarget,
-    /// The words are instructions, but not those of the command that their label names.
+    /// The words are instructions, but not the program of the command that their label names.
     #[error("labelled as command {0}, but not its program in this layout")]
     NotTheCommand(u8),
 }
 
 impl ArrayInstruction {
-    /// Reads the instruction at `position`.
+    /// Decodes the instruction at `position`, and returns it with its length in words.
     ///
     /// # Errors
-    /// [`DecodeError`] names the position and what is wrong there. Never panics.
+    /// [`DecodeError`] with the position and the reason. Never panics.
     pub fn decode(words: &[Word], position: usize) -> Result<(Self, usize), DecodeError> {
         let rest = words.get(position..).unwrap_or(&[]);
         let word = rest.first().copied().unwrap_or(0);
         decode(rest).map_err(|kind| DecodeError { position, word, kind })
     }
 
-    /// Reads all instructions of a list.
+    /// Decodes all instructions of a list.
     ///
     /// # Errors
     /// The first [`DecodeError`].
@@ -88,7 +86,7 @@ impl ArrayInstruction {
     }
 }
 
-/// The parts of an instruction's first word, and the words behind it.
+/// The parts of an instruction's first word, and the words after it.
 struct EncodedInstruction<'a> {
     opcode: u8,
     modifier: u8,
@@ -108,12 +106,12 @@ impl EncodedInstruction<'_> {
         checked_field(self.operand)
     }
 
-    /// The field that the first word names, which must have one bit.
+    /// Returns the field that the first word names, which must have one bit.
     fn bit(&self) -> Result<Operand, DecodeErrorKind> {
         width(self.field()?, 1)
     }
 
-    /// The field in the upper half of the second word; the lower half must be zero.
+    /// Returns the field in the upper half of the second word. The lower half must be zero.
     fn source(&self) -> Result<Operand, DecodeErrorKind> {
         let [word] = self.tail()?;
         must_be_zero(word & 0xffff)?;
@@ -156,6 +154,7 @@ fn decode(words: &[Word]) -> Result<(ArrayInstruction, usize), DecodeErrorKind> 
     let Some((&first, tail)) = words.split_first() else {
         return Err(DecodeErrorKind::Truncated { expected: 1, found: 0 });
     };
+    // Split the first word; each group of opcodes then checks its own fields.
     let encoded = EncodedInstruction {
         opcode: (first >> 24) as u8,
         modifier: (first >> 16) as u8,
@@ -176,6 +175,7 @@ fn decode(words: &[Word]) -> Result<(ArrayInstruction, usize), DecodeErrorKind> 
 }
 
 fn control(encoded: &EncodedInstruction<'_>) -> Result<(ArrayInstruction, usize), DecodeErrorKind> {
+    // Only labels and context bases use the modifier; only fields use the operand.
     if matches!(encoded.opcode, opcode::ENABLE_ALL | opcode::SELECT) {
         must_be_zero(encoded.operand)?;
     } else {
@@ -204,6 +204,7 @@ fn evaluate(encoded: &EncodedInstruction<'_>) -> Result<(ArrayInstruction, usize
     let quadratic = encoded.opcode >= opcode::QUADRATIC;
     let use_code = encoded.opcode & 15;
     let (usage, used) = expression_use(encoded, use_code)?;
+    // Coefficients follow, unless the evaluator repeats its latched ones.
     let rest = EncodedInstruction { tail: encoded.tail.get(used - 1..).unwrap_or(&[]), ..*encoded };
     let truncated =
         DecodeErrorKind::Truncated { expected: used + if quadratic { 12 } else { 3 }, found: encoded.tail.len() + 1 };
@@ -268,7 +269,7 @@ fn quadratic_of(words: [Word; 12]) -> Quadratic {
     }
 }
 
-/// Coefficient `i` of 64 bits, whose low word comes first.
+/// Returns coefficient `i` of 64 bits, whose low word comes first.
 fn long_coefficient(words: &[Word; 12], i: usize) -> i64 {
     (u64::from(words[2 * i + 1]) << 32 | u64::from(words[2 * i])) as i64
 }
@@ -383,7 +384,7 @@ fn target(words: [Word; 8]) -> Result<CopyTarget, DecodeErrorKind> {
     if sensible(&target) { Ok(target) } else { Err(DecodeErrorKind::BadTarget) }
 }
 
-/// The region exists, and fits the array and the 16-bit coordinates.
+/// Returns true if the region exists and fits the array and the 16-bit coordinates.
 fn sensible(target: &CopyTarget) -> bool {
     let grid = &target.grid;
     let picture = 1..=1 << 16;

@@ -1,4 +1,4 @@
-//! From instructions to words.
+//! Encoder: from instructions to words.
 
 use super::{ArithmeticOp, ArrayInstruction, Expression, ExpressionUse, Operand, Test};
 use pxpl5_wire::{CopyTarget, FieldParity, Lines, Word};
@@ -28,7 +28,7 @@ pub(crate) mod opcode {
     pub(crate) const OUTPUT: u8 = 0x70;
 }
 
-/// Bit 7 of the modifier: the evaluator repeats the coefficients that it holds.
+/// Bit 7 of the modifier: the evaluator repeats its latched coefficients.
 pub(super) const AGAIN: u8 = 0x80;
 
 pub(crate) const fn head(opcode: u8, modifier: u8, operand: u32) -> Word {
@@ -40,8 +40,9 @@ const fn pair(a: Operand, b: Operand) -> Word {
 }
 
 impl ArrayInstruction {
-    /// Appends the instruction's words.
+    /// Appends the instruction's words to `out`.
     pub fn encode(&self, out: &mut Vec<Word>) {
+        // Operations and tests have consecutive opcodes, in the order of their enums.
         match *self {
             Self::EnableAll { label } => out.push(head(opcode::ENABLE_ALL, label, 0)),
             Self::EnableNone => out.push(head(opcode::ENABLE_NONE, 0, 0)),
@@ -95,7 +96,7 @@ impl ArrayInstruction {
         }
     }
 
-    /// The instruction's length in words.
+    /// Returns the instruction's length in words.
     #[must_use]
     pub fn words(&self) -> u32 {
         let mut words = Vec::with_capacity(14);
@@ -108,7 +109,7 @@ const fn two(opcode: u8, modifier: u8, destination: Operand, source: Operand) ->
     [head(opcode, modifier, destination.to_bits()), source.to_bits() << 16]
 }
 
-/// First word of an evaluation.
+/// Returns the first word of an instruction that evaluates an expression.
 #[inline(always)]
 const fn evaluate_head(quadratic: bool, again: bool, usage: &ExpressionUse) -> Word {
     let family = if quadratic { opcode::QUADRATIC } else { opcode::LINEAR };

@@ -1,15 +1,15 @@
-//! Operands: fields of pixel memory.
+//! Operands of instructions: fields of pixel memory.
 
 /// A field of pixel memory as an instruction names it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Operand {
-    /// Address of the least significant bit.
+    /// Address of the least significant bit: absolute, or relative to the selected context's base.
     pub address: u8,
-    /// Bits, 1 to 64.
+    /// Width in bits, 1 to 64.
     pub width: u8,
-    /// The address counts from the selected context's base.
+    /// True if the address is relative to the selected context's base.
     pub relative: bool,
-    /// Whether it is read as two's complement, and extended by its sign.
+    /// True if the field is two's complement, so that it is extended by its sign.
     pub signed: bool,
 }
 
@@ -17,38 +17,38 @@ const SIGNED: u32 = 1 << 15;
 const RELATIVE: u32 = 1 << 14;
 
 impl Operand {
-    /// An unsigned field in the selected context.
+    /// Returns an unsigned field in the selected context.
     #[must_use]
     pub const fn context(address: u8, width: u8) -> Self {
         Self { address, width, relative: true, signed: false }
     }
 
-    /// An unsigned field at an absolute address.
+    /// Returns an unsigned field at an absolute address.
     #[must_use]
     pub const fn absolute(address: u8, width: u8) -> Self {
         Self { address, width, relative: false, signed: false }
     }
 
-    /// The same field, two's complement.
+    /// Returns the same field, read as two's complement.
     #[must_use]
     pub const fn signed(self) -> Self {
         Self { signed: true, ..self }
     }
 
-    /// `width` bits of this field from its bit `low` upwards; signedness is kept.
+    /// Returns `width` bits of this field from its bit `low` upwards. The signedness is kept.
     #[must_use]
     pub const fn part(self, low: u8, width: u8) -> Self {
         Self { address: self.address + low, width, ..self }
     }
 
-    /// The 16 bits that stand in an instruction word.
+    /// Returns the 16-bit encoding of the operand in an instruction word.
     #[must_use]
     pub const fn to_bits(self) -> u32 {
         let flags = (self.signed as u32) << 15 | (self.relative as u32) << 14;
         flags | ((self.width as u32 - 1) & 63) << 8 | self.address as u32
     }
 
-    /// Reads 16 bits of an instruction word.
+    /// Decodes the operand from 16 bits of an instruction word.
     #[must_use]
     pub const fn from_bits(bits: u32) -> Self {
         Self {

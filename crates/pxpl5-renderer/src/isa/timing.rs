@@ -1,71 +1,80 @@
-//! Clocks of instructions. The array is SIMD: nothing here depends on data.
+//! Clocks of instructions. The array is SIMD, so no time depends on data.
 //!
 //! | number | unit | value | standing |
 //! |---|---|---|---|
 //! | [`CLOCK_HZ`] | Hz | 40,000,000 | published (F89, TR94) |
-//! | [`SET_UP_CLOCKS`] | clocks an instruction | 4 | derived, see there |
+//! | [`SET_UP_CLOCKS`] | clocks an instruction | 4 | derived, see the constant |
 //! | [`CONTROL_CLOCKS`] | clocks | 2 | assumed (1 to 4) |
 //! | [`BACKING_CLOCKS`] | clocks a block | 2,048 = 51.2 us | assumed: 64 chips x 4 bits a clock |
 //!
-//! One bit of one field takes one clock (assumed: one full adder a pixel, whose operands and result move in the same
-//! clock). An expression arrives least significant bit first, so a field of `w` bits above `s` bits that are left out
-//! takes `s + w` clocks.
+//! One bit of one field takes one clock. Assumed: one full adder per pixel, whose operands and result move in the same
+//! clock. An expression arrives least significant bit first, so a field of `w` bits above `s` unused bits takes `s + w`
+//! clocks.
 
 use super::{ArithmeticOp, ArrayInstruction, Expression, ExpressionUse, LINEAR_BITS, QUADRATIC_BITS};
 
-/// Clock of the array in Hz. Published: 40 MHz (F89, TR94).
+/// Clock rate of the array in Hz. Published: 40 MHz (F89, TR94).
 pub const CLOCK_HZ: u64 = 40_000_000;
 
 /// Clocks to fetch an instruction and to fill the evaluator's pipeline.
 ///
-/// Derived: the only whole number with which both kinds of triangle keep the bit budget of the published recipe, 256 to
-/// 267 clocks (Gouraud) and 262 to 292 (Phong). The formats of the wire ask for 2 (enable) + 3 x 32 (edges) + 32 (compare
-/// Z) + 32 (store Z) + 3 x 20 (colour) = 222 clocks in 9 instructions, or for 2 + 160 + 3 x 22 (normals) + 24 (the
-/// object's colour) = 252 in 10. So 222 + 9 n >= 256 and 252 + 10 n <= 292. The published rate, 150,000 a second = 267
-/// clocks (TR94) without the kind of shading, then lies between the two: 258 and 292. Range 2 (Phong takes 272) to 5
-/// (Gouraud takes 267).
+/// Derived: 4 is the only whole number that keeps both kinds of triangle within the bit budget of the published recipe:
+/// 256 to 267 clocks (Gouraud) and 262 to 292 (Phong).
+///
+/// The formats on the wire need 2 (enable) + 3 x 32 (edges) + 32 (compare Z) + 32 (store Z) + 3 x 20 (colour) = 222
+/// clocks in 9 instructions. With normals they need 2 + 160 + 3 x 22 (normals) + 24 (object's colour) = 252 clocks in
+/// 10. So 222 + 9 n >= 256 and 252 + 10 n <= 292.
+///
+/// The published rate of 150,000 triangles a second = 267 clocks (TR94, no kind of shading stated) lies between the
+/// results 258 and 292. Range 2 (Phong takes 272) to 5 (Gouraud takes 267).
 pub const SET_UP_CLOCKS: u32 = 4;
 
-/// Clocks of an instruction that moves no field. Assumed: the 2 of "enable all" in the bit budget; range 1 to 4.
+/// Clocks of an instruction that moves no field. Assumed: 2, as for "enable all" in the bit budget; range 1 to 4.
 pub const CONTROL_CLOCKS: u32 = 2;
 
-/// Clocks in which one 32-bit block of all pixels moves to or from the backing store, in the background.
+/// Clocks to move one 32-bit block of all pixels to or from the backing store, in the background.
 ///
-/// Assumed: 51 us; 16,384 pixels x 32 bits over 64 chips with 4 bits a clock each are 2,048 clocks = 51.2 us.
+/// Assumed: 16,384 pixels x 32 bits over 64 chips with 4 bits a clock each are 2,048 clocks = 51.2 us.
 pub const BACKING_CLOCKS: u32 = 2048;
 
-/// Clocks of a square root with `n` bits: per digit a trial comparison and a subtraction over the bits that the
-/// remainder can occupy, 2 for the first digit and `j + 3` for digit `j`.
+/// Returns the clocks of a square root of `n` bits.
+///
+/// Each digit takes a trial comparison and a subtraction over the bits that the remainder can occupy. The remainder has
+/// 2 bits for the first digit and `j + 3` for digit `j`.
 #[must_use]
 pub const fn square_root_clocks(n: u32) -> u32 {
-    // 2 (2 + sum of j + 3 for j = 1 .. n - 1)
+    // Sum of all digits: 2 (2 + sum of j + 3 for j = 1 .. n - 1).
     match n {
         0 => 0,
         _ => 2 * (2 + (n - 1) * (n + 6) / 2),
     }
 }
 
-/// Clocks of a product of `a` by `b` bits in `w` bits: per bit of b one addition of a with its carry, then the fill.
+/// Returns the clocks of a product of `a` by `b` bits in `w` bits.
+///
+/// Each bit of b takes one addition of a with its carry. Then the bits above the product are filled.
 #[must_use]
 pub fn multiply_clocks(w: u32, a: u32, b: u32) -> u32 {
     let additions: u32 = (0..b.min(w)).map(|j| (a + 1).min(w - j)).sum();
     additions + w.saturating_sub(a + b)
 }
 
-/// Clocks of a quotient of `w` bits: per digit a comparison over the divisor and a subtraction over the remainder.
+/// Returns the clocks of a quotient of `w` bits.
+///
+/// Each digit takes a comparison over the divisor and a subtraction over the remainder.
 #[must_use]
 pub fn divide_clocks(w: u32, a: u32, b: u32) -> u32 {
     (0..w).map(|j| (a - j).max(b) + (a - j)).sum()
 }
 
 impl ArrayInstruction {
-    /// Clocks in which the array and its controller are busy.
+    /// Returns the clocks in which the array and its controller are busy.
     #[must_use]
     pub fn clocks(&self) -> u32 {
         SET_UP_CLOCKS + self.bit_clocks()
     }
 
-    /// Clocks in which the backing store is busy afterwards, beside the array.
+    /// Returns the clocks in which the backing store is busy afterwards, in parallel with the array.
     #[must_use]
     pub const fn backing_clocks(&self) -> u32 {
         match self {
@@ -74,7 +83,7 @@ impl ArrayInstruction {
         }
     }
 
-    /// Clocks in which bits move: all but the [`SET_UP_CLOCKS`] of its fetch.
+    /// Returns the clocks in which bits move, which are all but the [`SET_UP_CLOCKS`].
     #[must_use]
     pub fn bit_clocks(&self) -> u32 {
         match *self {

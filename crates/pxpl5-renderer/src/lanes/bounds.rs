@@ -1,16 +1,17 @@
-//! Which pixels a triangle can touch: a box, and spans of rows in wide boxes.
+//! Bounds of the pixels that a triangle can touch: a box, and spans of columns for the rows of wide boxes.
 //!
-//! Floating point decides only which pixels are looked at, with a margin; the edges themselves decide in integers.
+//! Floating-point numbers, with a margin, only select the pixels to test. Integer arithmetic on the edges decides each
+//! pixel.
 
 use pxpl5_wire::{LANES, Linear, LinearLanes};
 
-/// Columns and rows of the array, and the last one.
+/// Columns of the array, which has as many rows.
 const WIDTH: i32 = 128;
 const LAST: i64 = 127;
-/// More than the error of a quotient, less than what costs pixels.
+/// Margin in pixels: greater than the rounding error of a quotient, but small enough to add few pixels.
 const MARGIN: f64 = 1e-3;
 
-/// Pixels `left .. right` of the rows `top .. bottom`.
+/// The pixels `left .. right` of the rows `top .. bottom`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Area {
     pub(super) left: usize,
@@ -21,15 +22,15 @@ pub(super) struct Area {
 
 const WHOLE: Area = Area { left: 0, right: 128, top: 0, bottom: 128 };
 
-/// The pixels outside of which one of the edges is negative.
+/// Bounds of a triangle: outside them at least one edge is negative.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
     pub(super) area: Area,
-    /// Edges that limit a row from the left (`a > 0`) or from the right.
+    /// Limits that the edges set to the columns of a row, for wide triangles only.
     limits: Option<[RowLimit; 3]>,
 }
 
-/// x >= or <= (b y + c) * scale, all exact but for the scale.
+/// The limit of a row by an edge: x >= or <= (b y + c) * scale. All numbers except the scale are exact.
 #[derive(Clone, Copy, Debug)]
 struct RowLimit {
     b: f64,
@@ -38,7 +39,7 @@ struct RowLimit {
     from_left: bool,
 }
 
-/// First and one past the last column of some rows; the first may be beyond the last.
+/// First column, and one past the last column, of some consecutive rows. An empty row has `left >= right`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spans {
     pub(super) left: [i32; LANES],
@@ -46,13 +47,14 @@ pub(super) struct Spans {
 }
 
 impl Bounds {
-    /// The columns of the rows from `top` on.
+    /// Returns the spans of the rows from `top` on.
     #[inline(always)]
     pub(super) fn spans(&self, top: usize) -> Spans {
         let mut spans = Spans { left: [self.area.left as i32; LANES], right: [self.area.right as i32; LANES] };
         let Some(limits) = &self.limits else { return spans };
         let mut first = [self.area.left as f64; LANES];
         let mut last = [self.area.right as f64 - 1.0; LANES];
+        // Each edge limits every row from one side.
         for limit in limits {
             let mut at = [0.0; LANES];
             for (i, at) in at.iter_mut().enumerate() {
@@ -68,6 +70,7 @@ impl Bounds {
                 }
             }
         }
+        // Round inwards to whole pixels; the margin is already included.
         for i in 0..LANES {
             spans.left[i] = small(first[i].ceil().min(f64::from(WIDTH)));
             spans.right[i] = small((last[i] + 1.0).floor().max(0.0));
@@ -80,16 +83,16 @@ impl RowLimit {
     #[inline(always)]
     fn from_edge(e: &Linear) -> Self {
         let a = f64::from(e.a);
-        // A horizontal edge limits no row; the box has taken it into account.
+        // A horizontal edge limits no row. The box already accounts for it.
         let scale = if e.a == 0 { 0.0 } else { -1.0 / a };
         Self { b: f64::from(e.b), c: f64::from(e.c), scale, from_left: e.a >= 0 }
     }
 }
 
-/// A number of each of some triangles.
+/// One value for each triangle of a batch.
 pub(super) type PerTriangle<T> = [T; LANES];
 
-/// The edges of some triangles over the array's own columns and rows.
+/// The edges of the triangles of a batch, with the array's left top pixel as origin.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Edges(pub(super) [LinearLanes; 3]);
 
@@ -104,7 +107,7 @@ impl Edges {
         }
     }
 
-    /// Takes all to an array that begins with this column and row of the picture.
+    /// Moves the origin of all edges to the array's left top pixel, which has this column and row of the picture.
     #[inline(always)]
     pub(super) fn localise(&mut self, [left, top]: [i32; 2]) {
         for e in &mut self.0 {
@@ -115,27 +118,29 @@ impl Edges {
         }
     }
 
-    /// The edges of triangle `i`.
+    /// Returns the edges of triangle `i`.
     #[inline(always)]
     pub(super) const fn get(&self, i: usize) -> [Linear; 3] {
         [self.0[0].get(i), self.0[1].get(i), self.0[2].get(i)]
     }
 }
 
-/// Boxes of some triangles.
+/// Bounding boxes of the triangles of a batch.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Boxes {
-    /// First column and row that the corners leave, 0 to 128; the last ones, -1 to 127.
+    /// First column (0 to 128) and last column (-1 to 127) inside the array.
     pub(super) x: [PerTriangle<i32>; 2],
     pub(super) y: [PerTriangle<i32>; 2],
-    /// The edges enclose a triangle: normals that turn the same way at all corners leave no way out to infinity.
+    /// True if the edges enclose a finite triangle: their normals turn in the same direction at all corners.
     pub(super) closed: PerTriangle<bool>,
-    /// No value in the array needs more than 32 bits, so the edges are straight lines.
+    /// True if no value in the array exceeds 32 bits, so that the edges are straight lines.
     straight: PerTriangle<bool>,
 }
 
-/// Pixels by which an edge may be followed from the array's first one: then no coefficient has more than 22 bits, nor the
-/// constant more than 31, and their products are exact in 53.
+/// Distance in pixels from the array's first pixel in which edge values must fit 32 bits.
+///
+/// Coefficients then have at most 22 bits and the constant 31, so that their products are exact in the 53 bits of an
+/// `f64`.
 const REACH: f64 = 512.0;
 
 impl Boxes {
@@ -145,7 +150,7 @@ impl Boxes {
         let a = [doubles(&p.a), doubles(&q.a), doubles(&r.a)];
         let b = [doubles(&p.b), doubles(&q.b), doubles(&r.b)];
         let c = [doubles(&p.c), doubles(&q.c), doubles(&r.c)];
-        // Truths are numbers until the end: vectors of them side by side cost least.
+        // Truth values stay numbers until the end, since vectors of numbers are fastest.
         let mut reach = [0.0_f64; LANES];
         let mut least = [f64::INFINITY; LANES];
         let mut greatest = [f64::NEG_INFINITY; LANES];
@@ -155,7 +160,8 @@ impl Boxes {
             let f = (e + 1) % 3;
             for i in 0..LANES {
                 reach[i] = reach[i].max(REACH * (a[e][i].abs() + b[e][i].abs()) + c[e][i].abs());
-                // Times this, the corner is where edges e and f are zero.
+                // The corner is where edges e and f are zero. Its coordinates are the products below times 1 /
+                // determinant.
                 let determinant = a[e][i] * b[f][i] - a[f][i] * b[e][i];
                 least[i] = least[i].min(determinant);
                 greatest[i] = greatest[i].max(determinant);
@@ -170,6 +176,7 @@ impl Boxes {
         }
         let mut straight = [false; LANES];
         let mut closed = [false; LANES];
+        // Conversions to bool in loops of their own keep the loop above vectorized.
         for i in 0..LANES {
             straight[i] = reach[i] <= f64::from(i32::MAX);
             closed[i] = (least[i] > 0.0) | (greatest[i] < 0.0);
@@ -180,7 +187,7 @@ impl Boxes {
         Self { x: pixels(&low[0], &high[0]), y: pixels(&low[1], &high[1]), closed, straight }
     }
 
-    /// The bounds of triangle `i`, which has these edges; `None` where no pixel is inside.
+    /// Returns the bounds of triangle `i`, which has these edges; `None` if no pixel is inside.
     #[inline(always)]
     pub(super) fn bounds(&self, i: usize, edges: &[Linear; 3]) -> Option<Bounds> {
         let area = if self.closed[i] {
@@ -215,7 +222,7 @@ fn doubles(v: &PerTriangle<i32>) -> PerTriangle<f64> {
     out
 }
 
-/// First and last pixel of some intervals.
+/// Returns the first and last pixel of some intervals.
 #[inline(always)]
 fn pixels(low: &PerTriangle<f64>, high: &PerTriangle<f64>) -> [PerTriangle<i32>; 2] {
     const BEYOND: f64 = (LAST + 1) as f64;
@@ -227,15 +234,17 @@ fn pixels(low: &PerTriangle<f64>, high: &PerTriangle<f64>) -> [PerTriangle<i32>;
     out
 }
 
-/// A small whole number, anything for NaN. As a cast would do it, which is none of one instruction in vector units.
+/// Converts a small number to an integer; NaN gives an arbitrary result.
+///
+/// A cast with `as` would not compile to a single vector instruction.
 #[inline(always)]
 fn small(value: f64) -> i32 {
-    /// 1.5 * 2^52: with it added, an integer stands in the low bits.
+    /// 1.5 * 2^52: after this number is added, the low bits of the sum hold the integer.
     const UNIT: f64 = 6_755_399_441_055_744.0;
     (value + UNIT).to_bits() as i32
 }
 
-/// The largest value in the array.
+/// Returns the largest value of an expression in the array.
 #[inline(always)]
 fn largest(e: &Linear) -> i64 {
     let [a, b, c] = [e.a, e.b, e.c].map(i64::from);
@@ -247,7 +256,7 @@ mod tests {
     use super::*;
     use crate::conformance::Random;
 
-    /// The bounds of one triangle among others.
+    /// Returns the bounds of one triangle of a batch.
     fn bounds(edges: &[Linear; 3]) -> Option<Bounds> {
         let mut all = Edges::default();
         all.set(5, *edges);
@@ -263,7 +272,8 @@ mod tests {
         Linear { a: random.signed(12), b: random.signed(12), c: random.signed(20) }
     }
 
-    /// Coefficients of any size or none, constants near their ends too, so that many edges wrap in the array.
+    /// Returns an edge with coefficients of any size or zero. Constants may be extreme, so that many edges overflow in
+    /// the array.
     fn any_edge(random: &mut Random) -> Linear {
         let [a, b, c] = [(); 3].map(|()| {
             let bits = 1 + random.below(32) as u32;
@@ -272,7 +282,7 @@ mod tests {
         Linear { a, b, c: [c, c ^ i32::MAX][random.below(2) as usize] }
     }
 
-    /// Pixels of such triangles.
+    /// Checks that all inside pixels of random triangles are within the bounds, and returns their number.
     fn pixels_lie_within(triangles: u32, edge: fn(&mut Random) -> Linear) -> usize {
         let mut random = Random::new(5);
         let mut inside = 0;
@@ -285,7 +295,7 @@ mod tests {
                 continue;
             };
             for (x, y) in pixels {
-                // As one row of several.
+                // The row is one of several whose spans are computed together.
                 let place = y % LANES;
                 let spans = bounds.spans(y - place);
                 let [left, right] = [spans.left[place], spans.right[place]].map(|x| x as usize);
@@ -308,7 +318,7 @@ mod tests {
         assert!(inside > 100_000, "{inside}");
     }
 
-    /// Counted round so that its edges are positive inside; none where its corners lie on a line.
+    /// Returns a random triangle with edges that are positive inside, or `None` if its corners lie on a line.
     fn triangle(random: &mut Random) -> Option<([[i32; 2]; 3], [Linear; 3])> {
         let mut corners = [(); 3].map(|()| [random.between(-70, 200) as i32, random.between(-70, 200) as i32]);
         let [[ax, ay], [bx, by], [cx, cy]] = corners;
@@ -325,7 +335,7 @@ mod tests {
         (area != 0).then(|| (corners, [edge(p, q), edge(q, r), edge(r, p)]))
     }
 
-    /// Corners and slopes of whole numbers leave nothing to the margin: no row begins or ends within it beside a pixel.
+    /// Uses integer corners and slopes, so that no row ends within the margin of a pixel.
     #[test]
     fn bounds_end_where_the_triangle_does() {
         let mut random = Random::new(6);

@@ -1,4 +1,4 @@
-//! Pixel memory by values: every field of the layout is a column of one 32-bit word a pixel.
+//! Pixel memory by values: every field of the layout is a column of 32-bit words, one for each pixel.
 
 use crate::array::{PIXELS, Plane};
 use crate::command::{ShadeFields, SphereScratch};
@@ -6,7 +6,7 @@ use crate::controller::FieldBits;
 use crate::isa::{MEMORY_BITS, Operand};
 use crate::layout::Layout;
 
-/// One word a pixel, aligned to cache lines for the sake of wide vectors.
+/// One word for each pixel, aligned to cache lines for fast vector access.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(super) struct Values(pub(super) [u32; PIXELS]);
@@ -19,15 +19,15 @@ struct FieldColumn {
     values: Box<Values>,
 }
 
-/// All 208 bits of pixel memory, cut into columns where the fields of a layout begin.
+/// All 208 bits of pixel memory, divided into columns at the borders of the layout's fields.
 #[derive(Clone, Debug)]
 pub(super) struct PixelColumns {
     columns: Vec<FieldColumn>,
-    /// For each bit the column that holds it.
+    /// Index of the column that holds each bit of pixel memory.
     column_of: [u8; MEMORY_BITS as usize],
 }
 
-/// Where a piece of a field lies: bits `low ..` of a column are bits `at ..` of the field.
+/// A part of a field that lies in one column: bits `low ..` of the column are bits `at ..` of the field.
 #[derive(Clone, Copy, Debug)]
 struct FieldPiece {
     column: usize,
@@ -46,7 +46,7 @@ impl PixelColumns {
         Self { columns, column_of }
     }
 
-    /// The column that holds exactly the field, if one does.
+    /// Returns the column that holds exactly the given field, if there is one.
     pub(super) fn find(&self, first: usize, width: usize) -> Option<usize> {
         let index = usize::from(*self.column_of.get(first)?);
         let column = &self.columns[index];
@@ -61,7 +61,7 @@ impl PixelColumns {
         &mut self.columns[index].values
     }
 
-    /// Several different columns at once.
+    /// Returns several different columns at once.
     pub(super) fn many_mut<const N: usize>(&mut self, indices: [usize; N]) -> Option<[&mut Values; N]> {
         let columns = self.columns.get_disjoint_mut(indices).ok()?;
         Some(columns.map(|column| &mut *column.values))
@@ -88,7 +88,7 @@ impl PixelColumns {
         }
     }
 
-    /// The field of all pixels, extended to 64 bits by its signedness.
+    /// Reads a field of all pixels, extended to 64 bits by its signedness.
     pub(super) fn gather(&self, field: FieldBits, out: &mut [u64]) {
         out.fill(0);
         for piece in self.pieces(field) {
@@ -104,7 +104,7 @@ impl PixelColumns {
         }
     }
 
-    /// Stores the low bits of `values` where `mask` has all bits set; elsewhere the mask is zero.
+    /// Stores the low bits of `values` in the pixels whose `mask` is 255. The other pixels have mask 0.
     pub(super) fn scatter(&mut self, field: FieldBits, values: &[u64], mask: &[u8]) {
         for piece in self.pieces(field) {
             let bits = (ones(piece.width) << piece.low) as u32;
@@ -132,7 +132,7 @@ impl PixelColumns {
     }
 }
 
-/// Bit `low` of 64 pixels, the first of them lowest.
+/// Returns bit `low` of 64 pixels; the first pixel is the lowest bit of the result.
 fn plane_word(pixels: &[u32], low: usize) -> u64 {
     pixels.iter().enumerate().fold(0, |word, (x, value)| word | u64::from(value >> low & 1) << x)
 }
@@ -145,18 +145,22 @@ fn column(first: usize, end: usize) -> FieldColumn {
     FieldColumn { first, width: end - first, values: Box::new(Values([0; PIXELS])) }
 }
 
-/// Where columns begin: at the borders of the layout's fields, and so that none has more than 32 bits.
+/// Returns the first bits of all columns: the borders of the layout's fields, with further cuts so that no column
+/// exceeds 32 bits.
 fn cuts(layout: &Layout) -> Vec<usize> {
     let mut cuts = vec![0, MEMORY_BITS as usize];
+    // Borders of the layout's fields.
     for range in layout.ranges() {
         cuts.extend([range.first as usize, (range.first + range.width) as usize]);
     }
+    // x, y and z of a normal are read separately.
     for context in 0..layout.plan().contexts {
         let base = usize::from(layout.context_base(context));
         for normal in (0..3).filter_map(|i| layout.normal(i)) {
             cuts.push(base + usize::from(normal.address));
         }
     }
+    // Borders of the scratch fields.
     cuts.extend(temporaries(layout).iter().flat_map(|field| {
         let first = usize::from(field.address);
         [first, first + usize::from(field.width)]
@@ -166,7 +170,7 @@ fn cuts(layout: &Layout) -> Vec<usize> {
     split_wide(&cuts)
 }
 
-/// Fields that the commands' programs use in the scratch, which is absolute.
+/// Returns the scratch fields of the commands' programs, which have absolute addresses.
 fn temporaries(layout: &Layout) -> Vec<Operand> {
     let sphere = SphereScratch::in_layout(layout).map(|s| vec![s.z, s.root]);
     let shade = ShadeFields::in_layout(layout).map(|f| vec![f.a, f.b, f.c, f.root, f.diffuse, f.specular]);

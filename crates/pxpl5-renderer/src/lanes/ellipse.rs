@@ -1,19 +1,19 @@
-//! Which pixels a sphere can touch.
+//! Bounds of the pixels that a sphere can touch.
 //!
-//! As for triangles, floating point only decides which pixels are looked at, with a margin.
+//! As for triangles, floating-point numbers, with a margin, only select the pixels to test.
 
 use pxpl5_wire::Quadratic;
 use std::ops::Range;
 
 const SIZE: usize = 128;
 const MARGIN: f64 = 1e-3;
-/// Share of the terms of a discriminant that covers their rounding.
+/// Share of a discriminant's terms that exceeds their rounding errors.
 const ROUNDING: f64 = 1e-9;
 
-/// Where a quadratic over the array's own columns and rows can be positive.
+/// The pixels at which a quadratic, with the array's left top pixel as origin, can be positive.
 pub(super) struct Ellipse {
     rows: Range<usize>,
-    /// `None` where rows are not limited.
+    /// The quadratic that limits the columns of each row; `None` if rows are not limited.
     quadratic: Option<Quadratic>,
 }
 
@@ -23,7 +23,7 @@ impl Ellipse {
             return Self { rows: 0..SIZE, quadratic: None };
         }
         let [xx, xy, yy, x, y, one] = [q.xx, q.xy, q.yy, q.x, q.y, q.one].map(|c| c as f64);
-        // A row is cut where the discriminant in x is positive, which is quadratic in y.
+        // A row has pixels inside if the discriminant in x is positive. The discriminant is quadratic in y.
         let rows = positive(xy * xy - 4.0 * xx * yy, 2.0 * xy * x - 4.0 * xx * y, x * x - 4.0 * xx * one);
         Self { rows, quadratic: Some(*q) }
     }
@@ -32,7 +32,7 @@ impl Ellipse {
         self.rows.clone()
     }
 
-    /// Columns of row `row` that can be inside.
+    /// Returns the columns of a row that can be inside.
     #[inline(always)]
     pub(super) fn columns(&self, row: usize) -> Range<usize> {
         let Some(q) = &self.quadratic else { return 0..SIZE };
@@ -41,7 +41,7 @@ impl Ellipse {
     }
 }
 
-/// Coefficients of x and one in a row; those of x squared are the same in all.
+/// Returns the coefficients of x and of one in a row. The coefficient of x squared is the same in all rows.
 #[inline(always)]
 pub(super) const fn along_row(q: &Quadratic, row: usize) -> (i64, i64) {
     let y = row as i64;
@@ -56,7 +56,8 @@ fn stays_in_48_bits(q: &Quadratic) -> bool {
     (xx + xy + yy) * last * last + (x + y) * last + one < (1_u64 << 46) as f64
 }
 
-/// Integers of the array between the zeros of `a t^2 + b t + c`, with a margin; all unless `a < 0`.
+/// Returns the integers of the array between the zeros of `a t^2 + b t + c`, with a margin; all integers unless `a <
+/// 0`.
 #[inline(always)]
 fn positive(a: f64, b: f64, c: f64) -> Range<usize> {
     if a >= 0.0 {
@@ -114,7 +115,7 @@ mod tests {
         assert!(inside > 100_000, "{inside}");
     }
 
-    /// Coefficients of any size, so that many leave 48 bits in the array: then they are two's complement numbers of 48.
+    /// Uses coefficients of any size, so that many values exceed 48 bits in the array and wrap.
     #[test]
     fn quadratics_that_wrap_leave_no_pixel_out() {
         let mut random = Random::new(12);
@@ -138,8 +139,8 @@ mod tests {
         assert!(inside > 100_000, "{inside}");
     }
 
-    /// Squares of such coefficients are not whole any more, and of a single pixel, or of the row where a circle ends, nothing is
-    /// left of their difference.
+    /// Uses coefficients whose squares are rounded. Then rounding can cancel the difference that remains for a single
+    /// pixel or for the last row of a circle.
     #[test]
     fn small_circles_reach_their_last_row_however_numbers_round() {
         let mut random = Random::new(13);
@@ -157,7 +158,7 @@ mod tests {
         }
     }
 
-    /// Small whole numbers leave nothing to the margin: no row begins or ends within it beside a pixel.
+    /// Uses small integers, so that no row ends within the margin of a pixel.
     #[test]
     fn columns_end_where_the_ellipse_does() {
         let mut random = Random::new(10);

@@ -5,13 +5,13 @@ use std::ops::Range;
 
 const WIDTH: usize = 128;
 
-/// 255 where the pixel is enabled, else 0.
+/// One byte for each pixel: 255 if the pixel is enabled, else 0.
 ///
-/// It remembers which rows may hold anything, so that emptying it after a small primitive costs little.
+/// The register tracks which rows may be non-zero, so that clearing it after a small primitive is cheap.
 #[derive(Clone, Debug)]
 pub(super) struct Enable {
     pixels: Box<[u8; PIXELS]>,
-    /// All other rows are zero.
+    /// Rows that may be non-zero.
     used: Range<usize>,
 }
 
@@ -24,20 +24,20 @@ impl Enable {
         &self.pixels
     }
 
-    /// For a change anywhere.
+    /// Returns all pixels for a change anywhere.
     pub(super) fn pixels_mut(&mut self) -> &mut [u8; PIXELS] {
         self.used = 0..WIDTH;
         &mut self.pixels
     }
 
-    /// Disables all pixels, and hands them out for changes in some rows.
+    /// Disables all pixels, and returns them for changes in the given rows.
     pub(super) fn emptied(&mut self, rows: Range<usize>) -> &mut [u8; PIXELS] {
         self.pixels[WIDTH * self.used.start..WIDTH * self.used.end].fill(0);
         self.used = rows;
         &mut self.pixels
     }
 
-    /// For changes in the rows that [`Self::emptied`] was called for.
+    /// Returns the pixels for changes in the rows of the last call of [`Self::emptied`].
     #[inline(always)]
     pub(super) fn rows_in_use(&mut self) -> &mut [u8; PIXELS] {
         &mut self.pixels

@@ -1,4 +1,4 @@
-//! Any instruction on all pixels, one field after the other.
+//! The general path: any instruction, on all pixels, one field after the other.
 
 use super::{Lanes, values};
 use crate::array::{Executed, FaultKind, OutputRegion, PIXELS};
@@ -13,6 +13,7 @@ impl Lanes {
         instruction: &ArrayInstruction,
         executed: &mut Executed,
     ) -> Result<(), FaultKind> {
+        // Instructions that change no field are handled here; the others by the functions for Enable and for fields.
         match *instruction {
             ArrayInstruction::Select { context_base, left, top } => {
                 self.controller.select(context_base, left, top);
@@ -40,6 +41,7 @@ impl Lanes {
             ArrayInstruction::EnableNone => self.enable.fill(false),
             ArrayInstruction::EnableInvert => self.enable.pixels_mut().iter_mut().for_each(|e| *e = !*e),
             ArrayInstruction::EnableLoad(bit) => {
+                // Enable all pixels, then keep those whose bit is set.
                 self.enable.fill(true);
                 self.disable_unless(bit, |v| v & 1 == 1)?;
             }
@@ -59,6 +61,7 @@ impl Lanes {
     }
 
     fn field_instruction(&mut self, instruction: &ArrayInstruction) -> Result<(), FaultKind> {
+        // Every operation reads its operands into buffers, computes 64-bit values, and stores their low bits.
         match *instruction {
             ArrayInstruction::ShiftRight { destination, source, by } => {
                 self.map(destination, source, |v| values::shift_right(v, by, source.signed))
@@ -94,7 +97,7 @@ impl Lanes {
         Ok(())
     }
 
-    /// Stores the first operand buffer under Enable.
+    /// Stores the first operand buffer in the enabled pixels.
     fn store(&mut self, destination: Operand) -> Result<(), FaultKind> {
         let field = self.controller.bits(destination)?;
         self.columns.scatter(field, &self.operands[0], self.enable.pixels());
@@ -117,7 +120,8 @@ impl Lanes {
         self.store(destination)
     }
 
-    /// destination := the first result, source := the second, of the source and the second buffer.
+    /// Computes two results from `source` and the second operand buffer. The first goes to `destination`, the second to
+    /// `source`.
     fn two_results(
         &mut self,
         destination: Operand,
@@ -156,6 +160,7 @@ impl Lanes {
     fn evaluate(&mut self, local: &LocalExpression, usage: &ExpressionUse) -> Result<(), FaultKind> {
         match *usage {
             ExpressionUse::DisableNegative => {
+                // The sign-extended value is negative exactly if the expression's last bit is set.
                 self.expression(local, 0, |e, _, _| e);
                 for (enable, v) in self.enable.pixels_mut().iter_mut().zip(&self.operands[0]) {
                     *enable &= if (*v as i64) < 0 { 0 } else { 255 };
@@ -189,7 +194,7 @@ impl Lanes {
         }
     }
 
-    /// First buffer := f(expression, shift, second buffer).
+    /// Computes first buffer := f(expression, shift, second buffer) in all pixels.
     fn expression(&mut self, local: &LocalExpression, shift: u8, f: impl Fn(u64, u8, u64) -> u64) {
         let [first, second] = &mut self.operands;
         for (pixel, (out, old)) in first.iter_mut().zip(second.iter()).enumerate() {

@@ -1,4 +1,4 @@
-//! Spheres and shading as whole commands: long enough to decode their words with care.
+//! Spheres and shading as whole commands, which are long enough to decode their words completely.
 
 use super::Lanes;
 use super::columns::ContextColumns;
@@ -20,7 +20,7 @@ struct SpherePlace {
 }
 
 impl Lanes {
-    /// Executes a sphere or shading at the start of `words`, if it is one of this layout; returns its words.
+    /// Executes a sphere or shading command of this layout at the start of `words`, and returns its length in words.
     pub(super) fn large_command(
         &mut self,
         kind: CommandKind,
@@ -29,6 +29,7 @@ impl Lanes {
         executed: &mut Executed,
     ) -> Option<usize> {
         let (command, used) = Command::decode(words, 0, &self.layout).ok()?;
+        // Enable must be computed only if a later command can read it.
         let keep = !starts_anew(words.get(used));
         match command {
             Command::Sphere(sphere) => self.sphere(&sphere, columns, keep)?,
@@ -42,7 +43,9 @@ impl Lanes {
         Some(used)
     }
 
-    /// `None` where depth and radicand do not have the same bits, so that they leave a mixture.
+    /// Returns the columns of a sphere, or `None` if depth and radicand have different widths.
+    ///
+    /// With different widths the program would leave a mixture of both in the scratch.
     fn sphere_place(&self) -> Option<SpherePlace> {
         let scratch = SphereScratch::in_layout(&self.layout).ok()?;
         let root_bits = scratch.root.width;
@@ -60,7 +63,9 @@ impl Lanes {
         let place = self.sphere_place()?;
         let body = self.sphere_body(sphere.body, &place);
         let components = [0, 1, 2].map(|i| self.controller.localise(&sphere.colour[i]));
+        // A later instruction may reuse the last linear coefficients.
         self.controller.hold(sphere.colour[2]);
+        // The kernel needs all columns at once.
         let indices = [columns.z, columns.colour, place.root, place.temporary];
         let [z, colour, root, temporary] = self.columns.many_mut(indices)?;
         let factors = sphere.root_factor;
@@ -82,6 +87,7 @@ impl Lanes {
         let normals = columns.normal?;
         let body = self.sphere_body(sphere.body, &place);
         let components = [0, 1].map(|i| self.controller.localise(&sphere.normal[i]));
+        // A later instruction may reuse the last linear coefficients.
         self.controller.hold(sphere.normal[1]);
         let [nx, ny, nz] = normals;
         let indices = [columns.z, columns.colour, place.root, place.temporary, nx, ny, nz];
@@ -101,7 +107,7 @@ impl Lanes {
         Some(())
     }
 
-    /// Holds the coefficients and moves the sphere to the region, with the shifts of this layout.
+    /// Latches the coefficients, moves the sphere to the region, and applies the shifts of this layout.
     fn sphere_body(&mut self, body: SphereBody, place: &SpherePlace) -> SphereBody {
         self.controller.hold_quadratic(body.silhouette);
         SphereBody {
@@ -115,6 +121,7 @@ impl Lanes {
     fn shade(&mut self, shade: &Shade, columns: ContextColumns, keep: bool) -> Option<()> {
         let f = ShadeFields::in_layout(&self.layout).ok()?;
         let [nx, ny, nz] = columns.normal?;
+        // Columns of the inputs, then of the results in the order of `ShadeAll::results`.
         let mut indices = [columns.z, nx, ny, nz, columns.colour, 0, 0, 0, 0, 0, 0];
         let temporaries = [f.a, f.b, f.c, f.root, f.diffuse, f.specular];
         for (index, field) in indices[5..].iter_mut().zip(temporaries) {

@@ -1,4 +1,4 @@
-//! What drawing a triangle comes down to, whatever its shape: expressions at the pixels of a vector, the depth test, and what is stored.
+//! Steps common to triangles of any shape: expressions at the pixels of a vector, the depth test, and the stores.
 
 use super::columns::Values;
 use super::enable::Enable;
@@ -6,7 +6,7 @@ use super::shape::Shape;
 use crate::simd::SimdVector;
 use pxpl5_wire::{Linear, Word};
 
-/// A linear expression at some pixels in a row.
+/// The values of a linear expression at the pixels of a vector, and the step to the next vector in the row.
 #[derive(Clone, Copy)]
 pub(super) struct Walk<V> {
     pub(super) value: V,
@@ -19,13 +19,16 @@ impl<V: SimdVector> Walk<V> {
         Self { value: V::ramp(e.at(x, y), e.a), step: V::splat(e.a.wrapping_mul(V::LANES as i32)) }
     }
 
-    /// At the pixels of a vector of [fours](crate::simd::FOUR), the first of which has this value. It is not walked along a row.
+    /// Returns the values at the pixels of a vector of [fours](crate::simd::FOUR), whose first pixel has the value
+    /// `first`.
+    ///
+    /// The step is 0, since such vectors do not advance along a row.
     #[inline(always)]
     pub(super) fn fours(first: i32, a: i32, b: i32) -> Self {
         Self { value: V::ramp_of_fours(first, a, b), step: V::splat(0) }
     }
 
-    /// Some rows below, in all of which together the expression grows by `b`.
+    /// Returns the values some rows below, which differ by `b`.
     #[inline(always)]
     pub(super) fn below(&self, b: i32) -> Self {
         Self { value: self.value.add(V::splat(b)), step: self.step }
@@ -37,17 +40,17 @@ impl<V: SimdVector> Walk<V> {
     }
 }
 
-/// What triangles store in the pixels that pass.
+/// The values that triangles store in the pixels that pass the depth test.
 pub(super) trait PaintTriangle {
-    /// Takes the colour of the triangle that comes, where it has one.
+    /// Sets the colour of the next triangle, if triangles have one.
     fn begin(&mut self, colour: Word);
-    /// Stores pixels from index `at` where the mask is true.
+    /// Stores the pixels from index `at` on where the mask is true.
     fn store<V: SimdVector, S: Shape>(&mut self, walks: &[Walk<V>; 3], at: usize, mask: V::Mask);
 }
 
 /// Draws triangles into a region.
 pub(super) struct TrianglePainter<'a, P> {
-    /// Column and row of the picture that the array begins with.
+    /// Column and row of the picture at the array's left top pixel.
     pub(super) origin: [i32; 2],
     pub(super) z_shift: u8,
     pub(super) z: &'a mut Values,
@@ -55,7 +58,7 @@ pub(super) struct TrianglePainter<'a, P> {
     pub(super) enable: &'a mut Enable,
 }
 
-/// The depth test of a vector of pixels.
+/// The result of the depth test of a vector of pixels.
 pub(super) struct Tested<V: SimdVector> {
     pub(super) old: V,
     pub(super) new: V,
@@ -63,7 +66,7 @@ pub(super) struct Tested<V: SimdVector> {
 }
 
 impl<P: PaintTriangle> TrianglePainter<'_, P> {
-    /// Where no edge is negative and the depth is nearer.
+    /// Tests the pixels of a vector: passes if no edge is negative and the new depth is nearer.
     #[inline(always)]
     pub(super) fn test<V: SimdVector, S: Shape>(
         &self,

@@ -1,23 +1,25 @@
-//! Integer roots and quotients by way of correctly rounded floating point, corrected to the exact integer.
+//! Integer square roots and quotients from floating-point results, corrected to the exact integer.
 //!
-//! IEEE 754 rounds square roots and quotients correctly, so they are the same on every host; all operands here are
-//! exact in 24 bits.
+//! IEEE 754 requires correctly rounded square roots and quotients, so the results are the same on every host. All
+//! operands are exact in 24 bits.
 
-/// The integer nearest to a number from 0 to 2^22. A conversion with `as` would check for overflow, lane by lane.
+/// Returns the integer nearest to a number from 0 to 2^22. A conversion with `as` would check each lane for overflow.
 #[inline(always)]
 fn nearest(v: f32) -> u32 {
-    // Adding 2^23 leaves no fraction bits: the integer stands in the mantissa.
+    // Adding 2^23 leaves no fraction bits, so the mantissa holds the integer.
     (v + 8_388_608.0).to_bits() & 0x7f_ffff
 }
 
-/// Floor of the square root of a number of 24 bits.
+/// Returns the floor of the square root of a 24-bit number.
 #[inline(always)]
 pub(super) fn square_root_24(v: u32) -> u32 {
     let root = nearest((v as i32 as f32).sqrt());
     root - u32::from(root * root > v)
 }
 
-/// Quotient of at most 10 bits, and the remainder: a of 23 bits, b of 12; the quotient by 0 is all ones.
+/// Returns the quotient, of at most 10 bits, and the remainder of `a` (23 bits) by `b` (12 bits).
+///
+/// The quotient is limited to 1023, which is also the result of a division by 0.
 #[inline(always)]
 pub(super) fn divide_10(a: u32, b: u32) -> (u32, u32) {
     let ratio = a as i32 as f32 / b.max(1) as i32 as f32;

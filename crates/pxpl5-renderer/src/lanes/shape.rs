@@ -1,16 +1,16 @@
-//! How the pixels of a vector lie in the array.
+//! Arrangements of a vector's pixels in the array.
 
 use super::columns::Values;
 use crate::simd::SimdVector;
 
-/// An arrangement of a vector's pixels from a first one on.
+/// An arrangement of a vector's pixels, relative to the first pixel.
 pub(super) trait Shape {
     fn load<V: SimdVector>(column: &Values, at: usize) -> V;
-    /// Overwrites where the mask is true; `old` is what pixels hold.
+    /// Overwrites the pixels where the mask is true; `old` is their current content.
     fn store<V: SimdVector>(new: V, mask: V::Mask, old: V, column: &mut Values, at: usize);
 }
 
-/// In one row.
+/// Pixels of a vector side by side in one row.
 pub(super) struct InRow;
 
 impl Shape for InRow {
@@ -25,7 +25,7 @@ impl Shape for InRow {
     }
 }
 
-/// Four in a row, the next ones below.
+/// Pixels of a vector in groups of four: each group lies below the previous one.
 pub(super) struct InFours;
 
 impl Shape for InFours {

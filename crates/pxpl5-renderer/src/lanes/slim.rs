@@ -1,5 +1,7 @@
-//! Triangles of at most four columns, which are most of a dense scene's: as many rows at a time as a vector has fours, so that one vector
-//! holds nearly all of them. What their expressions are at their first pixel is computed side by side.
+//! Triangles of at most four columns, which are most triangles of a dense scene.
+//!
+//! A vector covers four columns of several rows, so that one vector holds nearly all such triangles. The values at
+//! their first pixels are computed for all triangles at once.
 
 use super::bounds::{Boxes, Edges, PerTriangle};
 use super::painter::{PaintTriangle, TrianglePainter, Walk};
@@ -10,21 +12,23 @@ use pxpl5_wire::{LANES, LinearLanes, TriangleBatch};
 
 const WIDTH: i32 = 128;
 
-/// The slim ones of some triangles.
+/// The slim triangles of a batch.
 pub(super) struct SlimTriangles {
-    /// First column and row, so that all vectors lie in the array.
+    /// First column, moved left if needed so that all vectors lie in the array.
     x: PerTriangle<i32>,
     y: PerTriangle<i32>,
-    /// Vectors below each other: none for a triangle without pixels, less than none for one that is not slim.
+    /// Number of vectors below each other: 0 for a triangle without pixels, -1 for a triangle that is not slim.
     vectors: PerTriangle<i32>,
-    /// Values at the first column and row.
+    /// Values of the edges at the first column and row.
     edges: [PerTriangle<i32>; 3],
     planes: [PerTriangle<i32>; 4],
 }
 
 impl SlimTriangles {
-    /// Of triangles with these boxes and edges over the array's own columns and rows; planes are over those of the picture, with which
-    /// the array begins.
+    /// Finds the slim triangles of a batch.
+    ///
+    /// The edges have the array's left top pixel as origin. The planes have the picture's origin; `left` and `top` are
+    /// the picture position of the array.
     #[inline(always)]
     pub(super) fn among<V: SimdVector>(
         boxes: &Boxes,
@@ -53,24 +57,26 @@ impl SlimTriangles {
             let columns = boxes.x[1][i] - boxes.x[0][i] + 1;
             let rows = (boxes.y[1][i] - boxes.y[0][i] + 1).max(0);
             let vectors = (rows + tall - 1) / tall;
+            // Move the vectors left and up where they would end outside the array.
             all.x[i] = boxes.x[0][i].min(WIDTH - FOUR as i32);
             all.y[i] = boxes.y[0][i].min(WIDTH - tall * vectors);
             let held = if columns > 0 { vectors } else { 0 };
             all.vectors[i] = if columns <= FOUR as i32 { held } else { -1 };
         }
+        // A separate loop, so that both are vectorized.
         for i in 0..LANES {
             all.vectors[i] = if boxes.closed[i] { all.vectors[i] } else { -1 };
         }
         all
     }
 
-    /// Whether triangle `i` is one.
+    /// Returns true if triangle `i` is slim.
     #[inline(always)]
     pub(super) const fn has(&self, i: usize) -> bool {
         self.vectors[i] >= 0
     }
 
-    /// Draws triangle `i`, which is one.
+    /// Draws triangle `i`, which must be slim.
     #[inline(always)]
     pub(super) fn draw<V: SimdVector, P: PaintTriangle>(
         &self,
@@ -85,6 +91,7 @@ impl SlimTriangles {
         let [p, q, r] = &edges.0;
         let [depth, ..] = batch.planes;
         let tall = V::LANES / FOUR;
+        // Each vector covers `tall` rows of four columns.
         for down in (0..self.vectors[i] as usize).map(|vector| vector * tall) {
             let at = (self.y[i] as usize + down) * WIDTH as usize + self.x[i] as usize;
             let first = walk::<V>(p, self.edges[0][i], i, down);
@@ -107,7 +114,7 @@ impl SlimTriangles {
     }
 }
 
-/// Each triangle's expression at its pixel. An array of its own, or compilers would not see that nothing else changes.
+/// Returns each triangle's expression at its pixel. A separate array tells the compiler that nothing else changes.
 #[inline(always)]
 fn values(e: &LinearLanes, [x, y]: [&PerTriangle<i32>; 2]) -> PerTriangle<i32> {
     let mut all = [0; LANES];
@@ -126,7 +133,7 @@ fn moved(places: &PerTriangle<i32>, by: i32) -> PerTriangle<i32> {
     all
 }
 
-/// Triangle `i`'s expression some rows below the pixel where it has its first value.
+/// Returns triangle `i`'s expression `down` rows below its first pixel.
 #[inline(always)]
 fn walk<V: SimdVector>(e: &LinearLanes, first: i32, i: usize, down: usize) -> Walk<V> {
     Walk::fours(first.wrapping_add(e.b[i].wrapping_mul(down as i32)), e.a[i], e.b[i])

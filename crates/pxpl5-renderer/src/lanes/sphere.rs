@@ -12,25 +12,26 @@ use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_BITS, NORMAL_FRACTION_BITS
 
 const WIDTH: usize = 128;
 
-/// A sphere over the array's own columns and rows.
+/// A sphere to draw, with the array's left top pixel as origin.
 pub(super) struct DrawSphere<'a, P> {
-    /// Its shifts are those for the layout's root.
+    /// Silhouette and depth, with shifts for the layout's root width.
     pub(super) body: SphereBody,
     pub(super) root_bits: u8,
     pub(super) z_shift: u8,
     pub(super) z: &'a mut Values,
-    /// Temporaries of the program, which keep what it leaves there.
+    /// Scratch fields of the program, which must end with the program's values.
     pub(super) root: &'a mut Values,
     pub(super) temporary: &'a mut Values,
     pub(super) paint: P,
-    /// Where somebody looks at Enable afterwards; all zero on entry.
+    /// Enable register to write, if a later instruction reads it; all zero on entry.
     pub(super) enable: Option<&'a mut [u8; PIXELS]>,
 }
 
-/// What a sphere stores in the pixels that pass.
+/// The values that a sphere stores in the pixels that pass the depth test.
 pub(super) trait PaintSphere {
-    /// Stores columns `left ..` of row `y` where `pass` is all ones. `temporary` holds the new depths and takes what the
-    /// program leaves in their place.
+    /// Stores the pixels from column `left` of row `y` where `pass` is all ones.
+    ///
+    /// `temporary` holds the new depths, and receives the values that the program leaves in their place.
     fn store(&mut self, left: usize, y: usize, roots: &[u32], pass: &[u32], temporary: &mut [u32]);
 }
 
@@ -58,6 +59,7 @@ impl<P: PaintSphere> DrawSphere<'_, P> {
         let at = y * WIDTH + left;
         let new = &mut [0; WIDTH][..n];
         let pass = &mut [0; WIDTH][..n];
+        // Depth test, with the depth of the plane minus the root.
         let first = self.body.depth.at(left as i32, y as i32);
         let z = &mut self.z.0[at..at + n];
         for i in 0..n {
@@ -76,7 +78,7 @@ impl<P: PaintSphere> DrawSphere<'_, P> {
         }
     }
 
-    /// Where the silhouette is positive, and the root of its useful bits.
+    /// Computes a mask of the pixels inside the silhouette, and the square roots of its used bits.
     #[inline(always)]
     fn roots(&self, y: usize, left: usize, inside: &mut [u32], roots: &mut [u32]) {
         let (x, one) = along_row(&self.body.silhouette, y);
@@ -102,7 +104,7 @@ fn blend(old: &mut [u32], new: &[u32], mask: &[u32]) {
     }
 }
 
-/// Colour from a plane and the root.
+/// Interpolated colour: the sum of a plane and a multiple of the root.
 pub(super) struct PaintGouraudSphere<'a> {
     pub(super) components: [Linear; 3],
     pub(super) factors: [i16; 3],
@@ -119,6 +121,7 @@ impl PaintSphere for PaintGouraudSphere<'_> {
         for (linear, factor) in self.components.iter().zip(self.factors) {
             let first = linear.at(left as i32, y as i32);
             for i in 0..n {
+                // The product of the upper root bits and the factor, as the program's multiplication leaves it.
                 let upper = (roots[i] >> (self.root_bits - 8)) as i32;
                 let low = upper * i32::from(factor);
                 let plane = first.wrapping_add(linear.a.wrapping_mul(i as i32)) >> COLOUR_FRACTION_BITS;
@@ -128,6 +131,7 @@ impl PaintSphere for PaintGouraudSphere<'_> {
             }
         }
         let at = y * WIDTH + left;
+        // Store colours, then the product that replaces the low bits of the new depth in the scratch.
         blend(&mut self.colour.0[at..at + n], &rgb[..n], pass);
         for i in 0..n {
             let after = temporary[i] & !0x3_ffff | product[i];
@@ -136,7 +140,7 @@ impl PaintSphere for PaintGouraudSphere<'_> {
     }
 }
 
-/// Normals from two planes and the root, and the object's colour.
+/// Interpolated normals from two planes and the root, and the object's colour.
 pub(super) struct PaintPhongSphere<'a> {
     pub(super) components: [Linear; 2],
     pub(super) root_bits: u8,
@@ -150,6 +154,7 @@ impl PaintSphere for PaintPhongSphere<'_> {
     fn store(&mut self, left: usize, y: usize, roots: &[u32], pass: &[u32], _: &mut [u32]) {
         let at = y * WIDTH + left;
         let n = pass.len();
+        // x and y are linear on the screen.
         for (linear, column) in self.components.iter().zip(self.normal.iter_mut()) {
             let first = linear.at(left as i32, y as i32);
             let old = &mut column.0[at..at + n];
@@ -161,6 +166,7 @@ impl PaintSphere for PaintPhongSphere<'_> {
         }
         let z = &mut self.normal[2].0[at..at + n];
         let colour = &mut self.colour.0[at..at + n];
+        // z is the upper part of the root.
         for i in 0..n {
             z[i] = select(pass[i], roots[i] >> (self.root_bits - 10), z[i]);
         }

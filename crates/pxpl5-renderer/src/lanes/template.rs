@@ -1,21 +1,21 @@
-//! What commands look like to who recognises them in the word stream.
+//! Templates that recognize commands in the word stream.
 
 use crate::command::{Command, CommandKind, PHONG_WORDS, TRIANGLE_WORDS};
 use crate::isa::{head, opcode};
 use crate::layout::Layout;
 use pxpl5_wire::Word;
 
-/// What identifies a command of `N` words whose operands are whole words: its other words.
+/// A template of a command of `N` words whose operands are whole words: it compares the other words.
 #[derive(Clone, Debug)]
 pub(super) struct Template<const N: usize> {
     words: [Word; N],
-    /// All ones where a word is no operand, else zero.
+    /// Comparison mask: all ones for a word that is no operand, else zero.
     fixed: [Word; N],
     pub(super) cost: CommandCost,
 }
 
 impl<const N: usize> Template<N> {
-    /// `None` where the layout cannot hold the command.
+    /// Creates the template of a command; `None` if the layout cannot hold the command.
     fn for_command(kind: CommandKind, layout: &Layout) -> Option<Self> {
         let program = Command::blank(kind).program(layout).ok()?;
         let mut words = Vec::new();
@@ -27,13 +27,13 @@ impl<const N: usize> Template<N> {
         Some(Self { words: words.try_into().ok()?, fixed, cost: CommandCost::for_command(kind, layout)? })
     }
 
-    /// The command at the start of `words`, if it is of this kind, and the words behind it.
+    /// Returns the command at the start of `words`, if it matches, and the words after it.
     #[inline(always)]
     pub(super) fn split<'a>(&self, words: &'a [Word]) -> Option<(&'a [Word; N], &'a [Word])> {
         words.split_first_chunk::<N>().filter(|(command, _)| self.fits(command))
     }
 
-    /// Whether this is such a command.
+    /// Returns true if the words match the template.
     #[inline(always)]
     pub(super) fn fits(&self, command: &[Word; N]) -> bool {
         let mut different = 0;
@@ -44,7 +44,7 @@ impl<const N: usize> Template<N> {
     }
 }
 
-/// The commands that are recognised by a template.
+/// Templates and costs of all commands that are executed as a whole.
 #[derive(Clone, Debug)]
 pub(super) struct Templates {
     pub(super) clear: Option<Template<CLEAR_WORDS>>,
@@ -55,7 +55,7 @@ pub(super) struct Templates {
 
 const CLEAR_WORDS: usize = CommandKind::Clear.words() as usize;
 
-/// What a command adds to [`crate::Executed`].
+/// Instructions and clocks that a command adds to [`crate::Executed`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CommandCost {
     pub(super) instructions: u32,
@@ -88,7 +88,7 @@ impl Templates {
     }
 }
 
-/// The next instruction overwrites Enable before anybody reads it: it is *enable all*, whatever its label.
+/// Returns true if the next instruction is *enable all*, with any label. Then the current Enable is never read.
 pub(super) fn starts_anew(next: Option<&Word>) -> bool {
     const LABEL: Word = 0xff << 16;
     next.is_some_and(|word| word & !LABEL == head(opcode::ENABLE_ALL, 0, 0))

@@ -1,4 +1,4 @@
-//! Triangles by values: a vector of pixels at a time, masks instead of branches.
+//! Triangles by values: a vector of pixels at a time, with masks instead of branches.
 
 use super::bounds::{Area, Boxes, Edges, Spans};
 use super::columns::Values;
@@ -14,10 +14,10 @@ use std::ops::Range;
 
 const WIDTH: usize = 128;
 
-/// A linear expression over the array's columns and rows, ready to be walked along from anywhere.
+/// A linear expression that can start at any pixel of the array.
 #[derive(Clone, Copy)]
 struct Slope<V> {
-    /// At the array's first pixels.
+    /// Values at the array's first pixels.
     begin: V,
     step: V,
     a: i32,
@@ -25,7 +25,7 @@ struct Slope<V> {
 }
 
 impl<V: SimdVector> Slope<V> {
-    /// An expression over columns and rows of which the array begins with these.
+    /// Prepares an expression. `left` and `top` are its coordinates of the array's first pixel.
     #[inline(always)]
     fn over(e: &Linear, [left, top]: [i32; 2]) -> Self {
         let Walk { value: begin, step } = Walk::start(e, left, top);
@@ -39,31 +39,32 @@ impl<V: SimdVector> Slope<V> {
     }
 }
 
-/// A triangle of which each row begins elsewhere.
+/// A triangle whose rows begin at different columns.
 struct WideTriangle<V> {
     edges: [Slope<V>; 3],
     depth: Slope<V>,
     components: [Slope<V>; 3],
 }
 
-/// All triangles of one kind at the start of `words`, as many as follow each other. Gives their number.
+/// All consecutive triangles of one kind at the start of `words`. The result is their number.
 pub(super) struct DrawTriangles<'a, const N: usize, P> {
     pub(super) words: &'a [Word],
     pub(super) template: &'a Template<N>,
     pub(super) painter: TrianglePainter<'a, P>,
 }
 
-/// Triangles without words. Enable stays as it was: nobody reads it before a command sets it.
+/// A batch of triangles without command words. Enable keeps its value, since the next command sets it before any read.
 pub(super) struct DrawBatch<'a, P> {
     pub(super) batch: &'a TriangleBatch<'a>,
     pub(super) painter: TrianglePainter<'a, P>,
 }
 
-/// Where what a triangle has besides its edges is read, when it is needed. Expressions are over the picture's columns and rows.
+/// Access to the depth, components and colour of a triangle, which are read only if needed. Expressions have the
+/// picture's origin.
 trait Surface {
     fn depth(&self) -> Linear;
     fn components(&self) -> [Linear; 3];
-    /// Of no meaning where a triangle has none.
+    /// Returns the object's colour; meaningless for triangles without one.
     fn colour(&self) -> Word;
 }
 
@@ -79,14 +80,14 @@ impl<const N: usize> Surface for &[Word; N] {
         [coefficients(self, p), coefficients(self, q), coefficients(self, r)]
     }
 
-    /// Commands that have a colour end with it.
+    /// Returns the last word, which is the colour in commands that have one.
     #[inline(always)]
     fn colour(&self) -> Word {
         self[N - 1]
     }
 }
 
-/// One of a batch.
+/// The surface of triangle `i` of a batch.
 struct OfBatch<'a> {
     batch: &'a TriangleBatch<'a>,
     i: usize,
@@ -112,10 +113,10 @@ impl Surface for OfBatch<'_> {
 
 /// A triangle being drawn.
 struct CurrentTriangle<S> {
-    /// Over the array's own columns and rows.
+    /// Edges with the array's left top pixel as origin.
     edges: [Linear; 3],
     surface: S,
-    /// Somebody looks at Enable afterwards.
+    /// True if a later command reads Enable.
     keep: bool,
 }
 
@@ -126,7 +127,7 @@ impl<const N: usize, P: PaintTriangle> VectorKernel for DrawTriangles<'_, N, P> 
     fn run<V: SimdVector>(mut self) -> usize {
         let (commands, _) = self.words.as_chunks::<N>();
         let drawn = commands.iter().take_while(|command| self.template.fits(command)).count();
-        // Whoever follows a triangle, but for the last, is one.
+        // Every triangle except the last is followed by another one, which sets Enable anew.
         let read_later = !starts_anew(self.words.get(drawn * N));
         let mut left = drawn;
         for some in commands[..drawn].chunks(LANES) {
@@ -153,6 +154,7 @@ impl<P: PaintTriangle> VectorKernel for DrawBatch<'_, P> {
         let mut edges = Edges(*self.batch.edges);
         edges.localise(self.painter.origin);
         let boxes = Boxes::enclosing(&edges);
+        // Slim triangles have a path of their own, with the whole triangle in one or a few vectors.
         let slim = SlimTriangles::among::<V>(&boxes, &edges, self.batch.planes, self.painter.origin);
         for i in 0..self.batch.len.min(LANES) {
             if slim.has(i) {
@@ -167,21 +169,24 @@ impl<P: PaintTriangle> VectorKernel for DrawBatch<'_, P> {
 }
 
 impl<P: PaintTriangle> TrianglePainter<'_, P> {
-    /// Triangle `i` of those with these boxes.
+    /// Draws triangle `i` of the batch with these boxes.
     #[inline(always)]
     fn triangle<V: SimdVector, S: Surface>(&mut self, triangle: &CurrentTriangle<S>, boxes: &Boxes, i: usize) {
         let bounds = boxes.bounds(i, &triangle.edges);
+        // Clear Enable, so that only the triangle's own pixels are set below.
         if triangle.keep {
             self.enable.emptied(bounds.map_or(0..0, |bounds| bounds.area.top..bounds.area.bottom));
         }
         let Some(bounds) = bounds else { return };
         self.paint.begin(triangle.surface.colour());
         let Area { left, right, top, bottom } = bounds.area;
+        // Most triangles fit in one vector per row.
         if let Some(x) = one_vector(left, right, V::LANES) {
             self.narrow::<V, S>(triangle, x, top..bottom);
             return;
         }
         let wide = self.wide::<V, S>(triangle);
+        // Wide triangles begin each row at a multiple of the vector's lanes.
         for first in (top..bottom).step_by(LANES) {
             let Spans { left, right } = bounds.spans(first);
             for (y, (left, right)) in (first..bottom).zip(left.iter().zip(right)) {
@@ -190,7 +195,7 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         }
     }
 
-    /// What begins each row of a wide triangle.
+    /// Returns the expressions from which each row of a wide triangle starts.
     #[inline(always)]
     fn wide<V: SimdVector, S: Surface>(&self, triangle: &CurrentTriangle<S>) -> WideTriangle<V> {
         let [left, top] = self.origin;
@@ -206,7 +211,7 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         }
     }
 
-    /// An expression over the picture's columns and rows.
+    /// Returns the values of an expression, which has the picture's origin, at a pixel of the array.
     #[inline(always)]
     fn walk<V: SimdVector>(&self, e: &Linear, x: usize, y: usize) -> Walk<V> {
         let [left, top] = self.origin;
@@ -219,8 +224,9 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         [self.walk(&p, x, y), self.walk(&q, x, y), self.walk(&r, x, y)]
     }
 
-    /// One vector a row, from column `x`; two rows at a time, since branches that nobody can foretell cost more than a row
-    /// outside of the triangle.
+    /// Draws a triangle that fits in one vector per row, from column `x`.
+    ///
+    /// Two rows are done at a time: an unpredictable branch costs more than a row outside the triangle.
     #[inline(always)]
     fn narrow<V: SimdVector, S: Surface>(&mut self, triangle: &CurrentTriangle<S>, x: usize, rows: Range<usize>) {
         let pairs = rows.len().div_ceil(2);
@@ -230,11 +236,13 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         let plane = triangle.surface.depth();
         let mut depth = self.walk::<V>(&plane, x, top);
         let deeper = plane.b;
+        // Depth and edges advance by two rows at a time.
         for y in (0..pairs).map(|pair| top + 2 * pair) {
             let at = [y * WIDTH + x, (y + 1) * WIDTH + x];
             let lower = [first.below(p), second.below(q), third.below(r), depth.below(deeper)];
             let upper = self.test::<V, InRow>(at[0], [first, second, third], depth);
             let lower = self.test::<V, InRow>(at[1], [lower[0], lower[1], lower[2]], lower[3]);
+            // Compute colours only if some pixel of either row passes.
             if V::any_of(upper.mask, lower.mask) {
                 let walks = self.components::<V>(&triangle.surface, x, y);
                 self.nearer(&upper, at[0], triangle.keep);
@@ -257,6 +265,7 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         let mut depth = triangle.depth.walk(left, y);
         let [p, q, r] = &triangle.components;
         let mut walks = [p.walk(left, y), q.walk(left, y), r.walk(left, y)];
+        // Colours are stored only if some pixel of the vector passes.
         for x in (left..right).step_by(V::LANES) {
             let at = y * WIDTH + x;
             let tested = self.test::<V, InRow>(at, [first, second, third], depth);
@@ -289,7 +298,7 @@ fn components_below<V: SimdVector>(surface: &impl Surface, [p, q, r]: &[Walk<V>;
     [p.below(i.b), q.below(j.b), r.below(k.b)]
 }
 
-/// Not inlined: the compiler would put vectors together number by number.
+/// Reads the edges of some commands. Not inlined, since inlining would assemble the vectors number by number.
 #[inline(never)]
 fn take_edges<const N: usize>(commands: &[[Word; N]], edges: &mut Edges) {
     for (i, words) in commands.iter().enumerate().take(LANES) {
@@ -298,12 +307,12 @@ fn take_edges<const N: usize>(commands: &[[Word; N]], edges: &mut Edges) {
     }
 }
 
-/// Where one vector that holds all the columns begins: at a multiple of its lanes, if that is possible. `None` where they
-/// are too many.
+/// Returns the first column of one vector that holds all columns, a multiple of its lanes if possible. Returns `None`
+/// if the columns are too many.
 #[inline(always)]
 fn one_vector(left: usize, right: usize, lanes: usize) -> Option<usize> {
     let aligned = left / lanes * lanes;
-    // Where another vector would follow this one, there is room behind the first column as well.
+    // If the aligned vector is too short, the vector from `left` on still ends inside the array.
     let begin = if right <= aligned + lanes { aligned } else { left };
     (right <= begin + lanes).then_some(begin)
 }
@@ -313,7 +322,8 @@ fn coefficients<const N: usize>(words: &[Word; N], at: usize) -> Linear {
     Linear { a: words[at] as i32, b: words[at + 1] as i32, c: words[at + 2] as i32 }
 }
 
-/// Written out, because a closure over an array would be compiled apart, without the vector unit's features.
+/// Returns the starts of three expressions. Written out, since a closure would be compiled without the vector unit's
+/// features.
 #[inline(always)]
 fn three<V: SimdVector>(e: &[Linear; 3], x: usize, y: usize) -> [Walk<V>; 3] {
     let x = x as i32;
@@ -327,7 +337,7 @@ fn blend<V: SimdVector, S: Shape>(column: &mut Values, at: usize, mask: V::Mask,
     S::store(new, mask, old, column, at);
 }
 
-/// Stores interpolated colour, as 0x00RRGGBB.
+/// Stores interpolated colour as 0x00RRGGBB.
 pub(super) struct PaintGouraud<'a> {
     pub(super) colour: &'a mut Values,
 }
@@ -338,7 +348,7 @@ impl PaintTriangle for PaintGouraud<'_> {
 
     #[inline(always)]
     fn store<V: SimdVector, S: Shape>(&mut self, [red, green, blue]: &[Walk<V>; 3], at: usize, mask: V::Mask) {
-        // Each component goes to its place in one shift.
+        // Each component moves to its place in one shift.
         let red = red.value.shift_left(16 - COLOUR_FRACTION_BITS).and(V::splat(0xff_0000));
         let green = green.value.shift_right(COLOUR_FRACTION_BITS - 8).and(V::splat(0xff00));
         let blue = blue.value.shift_right(COLOUR_FRACTION_BITS).and(V::splat(0xff));
@@ -346,7 +356,7 @@ impl PaintTriangle for PaintGouraud<'_> {
     }
 }
 
-/// Interpolated normals and the object's colour.
+/// Stores interpolated normals and the object's colour.
 pub(super) struct PaintPhong<'a> {
     pub(super) normal: [&'a mut Values; 3],
     pub(super) constant: u32,

@@ -1,4 +1,4 @@
-//! Recognises whole commands in the word stream.
+//! Recognition of whole commands in the word stream.
 
 use super::Lanes;
 use super::columns::{ContextColumns, Values};
@@ -13,8 +13,9 @@ use crate::simd::{SimdVector, VectorKernel};
 use pxpl5_wire::{Linear, TriangleBatch, Word};
 
 impl Lanes {
-    /// Executes the command at the start of `words`, if it is one of this layout, and the triangles of the same kind that
-    /// follow a triangle; returns their words.
+    /// Executes the command of this layout at the start of `words`, and returns its length in words.
+    ///
+    /// For a triangle, the consecutive triangles of the same kind are executed with it.
     #[inline]
     pub(super) fn whole_command(&mut self, words: &[Word], executed: &mut Executed) -> Option<usize> {
         let kind = CommandKind::from_opcode((words[0] >> 16) as u8)?;
@@ -30,7 +31,7 @@ impl Lanes {
         Some(commands * kind.words() as usize)
     }
 
-    /// The same for every command until another context is selected.
+    /// Returns the columns of the selected context, which are cached until another context is selected.
     #[inline]
     fn context_columns(&mut self) -> Option<ContextColumns> {
         if self.selected.is_none_or(|known| known.base != self.controller.base) {
@@ -49,7 +50,7 @@ impl Lanes {
         })
     }
 
-    /// Columns of x, y and z of the selected context's normal; `None` where the layout has no normals.
+    /// Returns the columns of x, y and z of the selected context's normal; `None` if the layout has no normals.
     fn normal_columns(&self) -> Option<[usize; 3]> {
         let x = self.column(self.layout.normal(0)?)?;
         let y = self.column(self.layout.normal(1)?)?;
@@ -57,13 +58,13 @@ impl Lanes {
         Some([x, y, z])
     }
 
-    /// The column that holds exactly this field.
+    /// Returns the column that holds exactly this field.
     pub(super) fn column(&self, operand: Operand) -> Option<usize> {
         let FieldBits { first, width, .. } = self.controller.bits(operand).ok()?;
         self.columns.find(first, width)
     }
 
-    /// Both constants are operands: other words than a [`crate::Clear`] has may clear to any depth.
+    /// Executes a clear. Its depth is an operand too: words that are no [`crate::Clear`] may clear to any depth.
     fn clear(&mut self, words: &[Word], columns: ContextColumns) -> Option<(CommandCost, usize)> {
         let template = self.templates.clear.as_ref()?;
         let (&[_, _, colour, _, depth], behind) = template.split(words)?;
@@ -110,16 +111,19 @@ impl Lanes {
                 enable: &mut self.enable,
             },
         });
+        // A later instruction may reuse the last linear coefficients.
         self.controller.hold(linear(words, last(drawn, PHONG_WORDS)?));
         Some((template.cost, drawn))
     }
 
-    /// Draws triangles as their commands would, but for Enable and the coefficients held; `None` where this layout has no such command.
+    /// Draws triangles like their commands, except for Enable and the latched coefficients. Returns `None` if this
+    /// layout lacks the command.
     pub(super) fn batch(&mut self, batch: &TriangleBatch<'_>) -> Option<()> {
         let columns = self.context_columns()?;
         let origin = self.controller.origin();
         let z_shift = self.layout.z_shift();
         let enable = &mut self.enable;
+        // Without colours the planes are those of a Gouraud triangle.
         if batch.colours.is_none() {
             self.templates.triangle.as_ref()?;
             let [z, colour] = self.columns.many_mut([columns.z, columns.colour])?;
@@ -137,12 +141,12 @@ impl Lanes {
     }
 }
 
-/// Where the last coefficients of the last of some commands stand; `None` if there are none.
+/// Returns the position of the last coefficients of the last command; `None` if there are no commands.
 fn last(commands: usize, words: usize) -> Option<usize> {
     Some(commands.checked_sub(1)? * words + COMPONENTS_AT[2])
 }
 
-/// The same value in all pixels.
+/// A kernel that stores the same value in all pixels.
 struct Fill<'a> {
     column: &'a mut Values,
     value: u32,

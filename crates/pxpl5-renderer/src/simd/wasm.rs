@@ -1,11 +1,11 @@
-//! Vectors of WebAssembly: two of 128 bits, so that a vector has as many lanes as with AVX2.
+//! Vectors of WebAssembly: two of 128 bits, to give the eight lanes of AVX2.
 //!
-//! SAFETY of every block: loads and stores go through slices whose length has been checked; WebAssembly allows any alignment.
+//! SAFETY of every block: loads and stores go through slices of checked length. WebAssembly allows any alignment.
 
 use super::{FOUR, ROW, SimdVector};
 use std::arch::wasm32::*;
 
-/// Eight lanes, the first four in the first half.
+/// Eight lanes; the first four are in the first half.
 #[derive(Clone, Copy)]
 pub(super) struct Simd128([v128; 2]);
 

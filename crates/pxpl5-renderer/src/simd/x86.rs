@@ -1,12 +1,12 @@
 //! Vectors of x86-64.
 //!
-//! SAFETY of every block: values of these types are made only in [`super::avx2`] and [`super::avx512`], where the
-//! features are present; loads and stores go through slices whose length has been checked.
+//! SAFETY of every block: values of these types exist only in [`super::avx2`] and [`super::avx512`], where the features
+//! are present. Loads and stores go through slices of checked length.
 
 use super::{FOUR, ROW, SimdVector};
 use std::arch::x86_64::*;
 
-/// The eight lanes of a vector of AVX2.
+/// The eight lanes of an AVX2 vector.
 #[derive(Clone, Copy)]
 pub(super) struct Avx2(__m256i);
 
@@ -163,7 +163,7 @@ impl SimdVector for Avx2 {
     }
 }
 
-/// The sixteen lanes of a vector of AVX-512.
+/// The sixteen lanes of an AVX-512 vector.
 #[derive(Clone, Copy)]
 pub(super) struct Avx512(__m512i);
 

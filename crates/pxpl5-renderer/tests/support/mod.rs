@@ -1,4 +1,4 @@
-//! A renderer board on a bench.
+//! A test bench with one renderer board.
 
 #![allow(dead_code, reason = "each test binary uses a part")]
 
@@ -18,10 +18,10 @@ pub(crate) const HOST: NodeId = NodeId(1);
 pub(crate) const WORD: Span = Span::from_ns(50);
 pub(crate) const CYCLE: Span = Span::from_ns(25);
 
-/// A picture of 2 x 1 regions of 100 x 100 pixels and a narrow one.
+/// A picture of 2 x 1 regions of 100 x 100 pixels, and a third region of 10 columns.
 pub(crate) const GRID: RegionGrid = RegionGrid { width: 210, height: 100, region_width: 100, region_height: 100 };
 
-/// It has four contexts.
+/// Layout of the board, which has four contexts.
 pub(crate) const LAYOUT: fn() -> Layout = Layout::slats;
 
 pub(crate) struct Bench {
@@ -48,7 +48,7 @@ impl Bench {
         Self { device, bench: TestBench::new() }
     }
 
-    /// A message whose first word is on the channel at once.
+    /// Delivers a message whose first word is on the channel immediately.
     pub(crate) fn message(&mut self, at: Time, words: u32, body: Body) {
         let message = Message { source: HOST, destination: NODE, words, body };
         self.bench.feed(at, Phase::Arrive, RendererEvent::Announce { message, first_word_at: at });
@@ -58,7 +58,7 @@ impl Bench {
         self.message(at, list.words(), Body::Commands(list));
     }
 
-    /// The ring has delivered the last pixel of what is being copied.
+    /// Reports that the ring has delivered the last pixel of the copied region.
     pub(crate) fn delivered(&mut self, at: Time) {
         self.bench.feed(at, Phase::Arrive, RendererEvent::Sent);
     }
@@ -72,7 +72,7 @@ impl Bench {
         self.bench.run_until(until, |event, context| device.handle(event, context));
     }
 
-    /// When the board said so, and when the last word of a message is in its FIFO.
+    /// Returns, for each message, the time of the board's notice and the time at which its last word is in the FIFO.
     pub(crate) fn accepted(&self) -> Vec<(Time, Time)> {
         let accepted = self.bench.outputs.iter().filter_map(|(at, output)| match output {
             RendererOutput::Accept { last_word_at } => Some((*at, *last_word_at)),
@@ -92,17 +92,17 @@ impl Bench {
     }
 }
 
-/// So many commands of a kind.
+/// Returns a run of `count` commands of a kind.
 pub(crate) const fn run(kind: CommandKind, count: u32) -> CommandRun {
     CommandRun { opcode: kind.opcode(), words_each: kind.words(), count }
 }
 
-/// Commands without words: of their pixels nobody asks.
+/// Returns a list of commands without words, for tests that read no pixels.
 pub(crate) fn list(runs: &[CommandRun], copies: &[CopyOrder]) -> CommandList {
     CommandList { runs: runs.to_vec(), context: 0, copies: copies.to_vec(), content: None }
 }
 
-/// Commands with their words, equal ones in a row as one run.
+/// Returns a list of commands with their words; equal consecutive commands form one run.
 pub(crate) fn list_of(commands: &[Command], copies: &[CopyOrder]) -> CommandList {
     let mut words: Vec<Word> = Vec::new();
     commands.iter().for_each(|command| command.encode(&LAYOUT(), &mut words).expect("it fits"));

@@ -1,4 +1,4 @@
-//! A leading processor alone on its board: what it sends, and when, whatever comes back from renderers.
+//! Tests of a leading processor alone on its board: its messages and their times, for any answers of the renderers.
 
 use super::*;
 use pphigs::{DisplayList, DisplayStructure, EyeView, ModelFrame, RegionBinning, Shading};
@@ -11,25 +11,25 @@ use pxpl5_wire::{Message, ViewNumber, read_swap_request};
 const BOARD: NodeId = NodeId(1);
 const FRAME_BUFFERS: [NodeId; 2] = [NodeId(2), NodeId(3)];
 const FIRST_RENDERER: u16 = 10;
-/// One for each region, and more that have none.
+/// Number of renderers: one for each region, and some without regions.
 const RENDERERS: u16 = 24;
 const REGIONS: u64 = 20;
 const CYCLE: Span = Span(25_000);
-/// A field is as long here.
+/// Length of a field in ms.
 const FIELD_MS: u64 = 20;
 
 const fn us(us: u64) -> Time {
     Time(us * 1_000_000)
 }
 
-/// A board on its bench, whose messages are accepted from an instant on.
+/// A board on a bench; its messages are accepted from a given instant on.
 struct Rig {
     bench: BoardBench,
     us: u64,
 }
 
 impl Rig {
-    /// A view has come, for so many triangles that nobody sees.
+    /// Creates a bench on which a view has arrived, for invisible triangles.
     fn new(copy: CopySchedule, triangles: usize) -> Self {
         let config = SlatsConfig {
             host: NodeId(0),
@@ -75,7 +75,7 @@ impl Rig {
         self.bench.feed(us(self.us), GpEvent::Delivered(message));
     }
 
-    /// Goes on to an instant, with a retrace at each field's begin, and with the acceptance of what was sent from `accepting` on.
+    /// Runs to an instant, with a retrace at the start of each field. Messages are accepted from `accepting_us` on.
     fn run_to(&mut self, until_us: u64, accepting_us: u64) {
         while self.us < until_us {
             self.us += 10;
@@ -93,7 +93,7 @@ impl Rig {
     }
 }
 
-/// What is asked of frame buffers and renderers about the two buffers.
+/// A request to frame buffers or renderers about one of the two buffers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Asked {
     Show(u8),
@@ -108,13 +108,15 @@ fn asked(message: &Message) -> Option<Asked> {
     }
 }
 
-/// At each retrace the last complete field of the lines that the next one scans is asked for. A field goes into the other buffer, and is
-/// asked for when its top regions have been copied before its retrace, before the bottom ones take the ports of the frame buffers. After a late field, the next one is of the other lines.
+/// At each retrace, the last complete field of the next period's lines is requested. A field goes into the other
+/// buffer. It is requested when its top regions have been copied before its retrace, and before the bottom regions
+/// occupy the ports of the frame buffers. After a late field, the next one has the other lines.
 #[test]
 fn of_a_late_field_the_last_complete_one_of_its_lines_is_shown() {
     use Asked::{Show, Write};
     let mut rig = Rig::new(CopySchedule::Backup, 3);
-    // Fields are 2 and 3 (in time), 4 (late), 5 and 6 (in time), 7 (late by more than a field), 8 (late because of that) and 11.
+    // Fields are 2 and 3 (in time), 4 (late), 5 and 6 (in time), 7 (late by more than a field), 8 (therefore late) and
+    // 11.
     for copied_ms in [30, 50, 85, 95, 110, 165, 175, 190] {
         rig.run_to(copied_ms * 1_000, 0);
         (0..REGIONS / 2).for_each(|_| rig.deliver(Body::Words([COPY_ACKNOWLEDGEMENT, 0, 0, 0].into())));
@@ -132,9 +134,9 @@ fn of_a_late_field_the_last_complete_one_of_its_lines_is_shown() {
         [(1, Show(0)), (1, Write(1)), (1, Show(1)), (1, Write(1))].as_slice(),
         &[(2, Show(0)), (2, Write(1)), (2, Show(1)), (2, Write(1))],
         &[(3, Show(1)), (3, Write(0))],
-        // Field 4 is complete now. Field 5 follows it.
+        // Field 4 is complete now, and field 5 follows.
         &[(4, Show(1)), (4, Write(0)), (4, Show(0)), (4, Write(0))],
-        // Field 4 is asked for.
+        // Field 4 is requested.
         &[(5, Show(0)), (5, Write(1)), (5, Show(1)), (5, Write(1))],
         &[(6, Show(0)), (6, Write(1))],
         &[(7, Show(1))],
@@ -146,7 +148,8 @@ fn of_a_late_field_the_last_complete_one_of_its_lines_is_shown() {
     assert_eq!(found, expected.concat());
 }
 
-/// There is one clump buffer: the next clump is made when all receivers have begun with the one before, at 30 us a triangle and eye.
+/// There is one clump buffer: the next clump is made when all receivers have begun to take the previous one, at 30 us
+/// per triangle and eye.
 #[test]
 fn the_next_clump_is_made_while_the_one_before_is_drained() {
     const SECOND: usize = 7;
@@ -162,7 +165,7 @@ fn the_next_clump_is_made_while_the_one_before_is_drained() {
     assert_eq!(time, Some(us(accepting) + work + Span::from_ns(GpTiming::SLATS_1994.message_ns) + CYCLE));
 }
 
-/// Times at which regions of the lower half are ordered to be copied.
+/// Returns the times at which copies of regions of the lower half are ordered.
 fn bottom_orders(rig: &Rig) -> Vec<Time> {
     let is_bottom = |message: &Message| match &message.body {
         Body::Commands(list) => list.copies.first().is_some_and(|order| u32::from(order.target.region.0) >= 5),
@@ -171,14 +174,14 @@ fn bottom_orders(rig: &Rig) -> Vec<Time> {
     rig.bench.sent().filter(|(_, message)| is_bottom(message)).map(|(time, _)| time).collect()
 }
 
-/// All ten top regions lie on renderers of their own. Each acknowledgement is a message that the processor must take.
+/// All ten top regions are on different renderers. Each acknowledgement is a message that the processor must handle.
 #[test]
 fn bottom_regions_are_copied_when_the_last_top_region_is_acknowledged_and_the_retrace_has_been() {
     let acknowledge = |rig: &mut Rig, count| {
         (0..count).for_each(|_| rig.deliver(Body::Words([COPY_ACKNOWLEDGEMENT, 0, 0, 0].into())));
     };
     let message = GpTiming::SLATS_1994.message_ns / 1_000;
-    // Late: the last acknowledgement comes 3 ms after the retrace at 40 ms.
+    // Late case: the last acknowledgement arrives 3 ms after the retrace at 40 ms.
     let mut rig = Rig::new(CopySchedule::Split, 3);
     rig.run_to(30_000, 0);
     acknowledge(&mut rig, 9);
@@ -188,7 +191,7 @@ fn bottom_regions_are_copied_when_the_last_top_region_is_acknowledged_and_the_re
     rig.run_to(45_000, 0);
     let begins = us(43_000 + message) + CYCLE;
     assert_eq!(bottom_orders(&rig), [begins; 10], "after the software of one message");
-    // Early: all have been acknowledged when the retrace comes.
+    // Early case: all acknowledgements have arrived before the retrace.
     let mut rig = Rig::new(CopySchedule::Split, 3);
     rig.run_to(30_000, 0);
     acknowledge(&mut rig, 10);
@@ -198,7 +201,7 @@ fn bottom_regions_are_copied_when_the_last_top_region_is_acknowledged_and_the_re
     assert_eq!(bottom_orders(&rig), [us(40_000) + CYCLE; 10]);
 }
 
-/// What clears the bottom regions for the next field waits until they are being copied.
+/// Messages that clear the bottom regions for the next field must wait until these regions are being copied.
 #[test]
 fn the_next_field_is_not_drawn_over_regions_that_are_not_copied() {
     let mut rig = Rig::new(CopySchedule::Split, 3);
