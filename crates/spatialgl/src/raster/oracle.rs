@@ -1,4 +1,5 @@
-//! The literal rasteriser: one primitive, one pixel, one test after the other, as the specification says it.
+//! The reference rasterizer, which follows the specification literally: one primitive, one pixel and one test at a
+//! time.
 
 use super::assemble::SliceTransform;
 use super::connected;
@@ -9,7 +10,7 @@ use crate::image::SliceImage;
 use crate::slice_volume::SampleTest;
 use crate::view::SliceView;
 
-/// The definition of what every other renderer must draw; it saves nothing.
+/// The reference model: the definition of the voxels that every other renderer must draw. It has no optimizations.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct OracleRenderer;
 
@@ -62,7 +63,8 @@ fn draw(
 }
 
 impl Setup {
-    /// The weights of the corners at a sample that is inside and between near and far plane.
+    /// Returns the weights of the corners at a sample, or `None` unless the sample is inside and between the near and
+    /// far planes.
     fn weights(&self, x: f64, y: f64) -> Option<[f64; 3]> {
         let weights = self.edges.map(|edge| edge.a * (x - edge.x) + edge.row(y));
         let is_inside = (0..3).all(|i| weights[i] >= self.least[i]);
