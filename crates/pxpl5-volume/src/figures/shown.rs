@@ -1,4 +1,4 @@
-//! What the paper states without numbers, each with a number that shows it or does not.
+//! Statements of the paper without numbers, each with measurements that confirm or refute it.
 
 use super::plain::plain;
 use crate::choices::{ClipKind, ProjectionKind};
@@ -13,18 +13,18 @@ use spatialgl::{
 };
 use std::sync::Arc;
 
-/// A statement of the paper, and what the model does.
+/// A statement of the paper, and the result of the model.
 #[derive(Clone, Debug, Serialize)]
 pub struct Shown {
-    /// What the paper states, in words.
+    /// Statement of the paper, in words.
     pub statement: &'static str,
-    /// The numbers by which it was looked at.
+    /// Numbers that confirm or refute the statement.
     pub evidence: String,
-    /// Whether they show it.
+    /// True if the numbers confirm the statement.
     pub holds: bool,
 }
 
-/// Every statement, looked at on the first of the scenes where one is needed.
+/// Tests every statement. Statements that need a scene are tested on the first of the scenes.
 pub(super) fn all(scenes: &[Arc<Scene>], workers: &dyn Workers) -> Result<Vec<Shown>, VolumeError> {
     let mut shown = vec![dead_zone(), dilation()];
     if let Some(scene) = scenes.first() {
@@ -38,7 +38,7 @@ pub(super) fn all(scenes: &[Arc<Scene>], workers: &dyn Workers) -> Result<Vec<Sh
     Ok(shown)
 }
 
-/// Lit pixels of the prism over those of the exact clip, in rings of 8 px.
+/// Compares the lit pixels of the prism with those of the exact clip, in rings of 8 px.
 fn prism(scene: &Scene, workers: &dyn Workers) -> Result<Shown, VolumeError> {
     let rings = |clip| {
         let volume = Volume::draw(&VolumeSettings { clip, ..plain() }, scene, workers)?;
@@ -62,7 +62,8 @@ fn prism(scene: &Scene, workers: &dyn Workers) -> Result<Shown, VolumeError> {
     })
 }
 
-/// Radius within which no point is accepted when planes have few bits: 2^-(bits + 1) / S (derived).
+/// Measures the radius within which no point is accepted if planes have few bits. The derived value is 2^-(bits + 1) /
+/// S.
 fn dead_zone() -> Shown {
     let radius = |bits: u32| {
         let wedge = HalfWedge::new(396, 384.0);
@@ -99,7 +100,7 @@ fn dilation() -> Shown {
     }
 }
 
-/// A triangle in a plane perpendicular to the axis: the third of the specification's.
+/// A triangle in a plane perpendicular to the axis: the third triangle of the specification.
 const LEVEL: [[f64; 3]; 3] = [[-200.3, 10.2, -100.4], [250.6, 10.2, -150.3], [30.7, 10.2, 260.9]];
 
 fn orthographic(workers: &dyn Workers) -> Result<Shown, VolumeError> {
@@ -125,8 +126,8 @@ fn recording(vertices: Vec<spatialgl::Vertex>, indices: &[u32]) -> Result<Comman
     Ok(context.present())
 }
 
-/// A sphere of 198 x 396 facets with a radius of 300 px: every slice meets the same facets, so that along the normal all have
-/// the same gaps.
+/// Compares the gaps of a sphere with and without jitter. The sphere has 198 x 396 facets and a radius of 300 px. Every
+/// slice meets the same facets, so all slices have the same gaps in an orthographic projection.
 fn noise(workers: &dyn Workers) -> Result<Shown, VolumeError> {
     let likeness = |projection| {
         let (vertices, indices) = tessellated_sphere(glam::DVec3::ZERO, 300.0, 198, [255; 3]);
@@ -146,7 +147,7 @@ fn noise(workers: &dyn Workers) -> Result<Shown, VolumeError> {
     })
 }
 
-/// The parts of the model's GPU time, and of the bus without packing and tiles.
+/// Compares the parts of the model's GPU time, and the bus time without packing and tiles.
 fn limits(volume: &Volume) -> Shown {
     let stats = &volume.frame.stats;
     let model = volume.settings.time_model();
