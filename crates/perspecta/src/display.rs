@@ -1,4 +1,4 @@
-//! The display on the ring: a port, a spinning screen, a strobe for every slice.
+//! The display on the ring: a port, a rotating screen, and a strobe for every slice.
 
 use crate::store::{FrameStore, StoreReceipt};
 use crate::timing::PerspectaConfig;
@@ -12,13 +12,14 @@ use pxpl5_wire::{Body, NodeId, PeriodNumber, Word};
 use spatialgl::pixel_of_word;
 use std::sync::LazyLock;
 
-/// Names of slices, which [`Surface`] wants for ever: made once, for the most slices that there can be.
+/// Names of slices for [`Surface`], which needs static strings. They are made once, for the greatest possible number of
+/// slices.
 static LABELS: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
     let most = 4096;
     (0..most).map(|k| &*Box::leak(format!("slice-{k}").into_boxed_str())).collect()
 });
 
-/// One Perspecta: a period is a revolution, a surface is a slice.
+/// The model of a Perspecta display. A period is a revolution, and a surface is a slice.
 #[derive(Debug)]
 struct Perspecta {
     config: PerspectaConfig,
@@ -143,7 +144,7 @@ impl DisplayConfig for PerspectaConfig {
         vec![("perspecta", self)]
     }
 
-    /// One: there is one volume, however many eyes look at it.
+    /// Returns 1: there is one volume for any number of eyes.
     fn ports(&self, _pictures: usize) -> usize {
         1
     }
