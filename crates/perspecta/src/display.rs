@@ -12,8 +12,8 @@ use pxpl5_wire::{Body, NodeId, PeriodNumber, Word};
 use spatialgl::pixel_of_word;
 use std::sync::LazyLock;
 
-/// Names of slices for [`Surface`], which needs static strings. They are made once, for the greatest possible number of
-/// slices.
+/// Names of slices for [`Surface`], which needs static strings. The names are made once, for the greatest possible
+/// number of slices.
 static LABELS: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
     let most = 4096;
     (0..most).map(|k| &*Box::leak(format!("slice-{k}").into_boxed_str())).collect()

@@ -12,7 +12,7 @@ pub enum PerspectaError {
     /// A number of a camera is out of range.
     #[error("view.{what}: expected {expected}, found {found}")]
     Camera {
-        /// Name of the number.
+        /// Name of the wrong number.
         what: &'static str,
         /// Rule that the number breaks.
         expected: &'static str,

@@ -18,7 +18,7 @@ pub struct Definition {
     pub id: &'static str,
     /// Statement of the paper, in words.
     pub statement: &'static str,
-    /// Value in this model, in `unit`.
+    /// Value of the number in this model, in `unit`.
     pub value: f64,
     pub unit: &'static str,
     /// Provenance of the value: printed or derived.
@@ -215,8 +215,8 @@ fn means(config: &PerspectaConfig, wedge: HalfWedge) -> Vec<Figure> {
     ]
 }
 
-/// Returns the mean number of planes that show a point of the disc. It is the area of a slice's slab within the disc,
-/// times the number of planes, divided by the area of the disc.
+/// Returns the mean number of planes that show a point of the disc. This mean is the area of a slice's slab within the
+/// disc, times the number of planes, divided by the area of the disc.
 fn mean(clip: SliceClip, wedge: HalfWedge, planes: f64) -> f64 {
     let steps = 100_000;
     let radius = wedge.radius;

@@ -8,9 +8,10 @@
 //!
 //! # Behaviour
 //!
-//! - A volume is N slices with one bit each for red, green and blue. It arrives as maps and tiles ([`volume_messages`])
-//!   in the store that is not shown. A map blanks the tiles that are not sent. A swap request takes effect at a later
-//!   strobe 0, and not before all announced tiles have arrived. A partly written slice is therefore never shown.
+//! - A volume is N slices with one bit each for red, green and blue. A volume arrives as maps and tiles
+//!   ([`volume_messages`]) in the store that is not shown. A map blanks the tiles that are not sent. A swap request
+//!   takes effect at a later strobe 0, and not before all announced tiles have arrived. A partly written slice is
+//!   therefore never shown.
 //! - Strobe k of revolution n lights at (n + k / N) / f. In terms of [`Display`](pxpl5_display::Display), a period is a
 //!   revolution and a surface is a slice. Each pixel of a slice lights when its strobe begins.
 //! - Strobes k and k + N/2 show the same plane from opposite sides, so a volume appears twice per revolution.

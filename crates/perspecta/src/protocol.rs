@@ -58,7 +58,7 @@ pub fn volume_messages(planes: &BitPlanes, tiling: Tiling) -> Option<Vec<Arc<[Wo
 /// The messages of a batch of slices.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BatchMessages {
-    /// Map of the tiles that will arrive. It must arrive before the tiles.
+    /// Map of the tiles that will arrive, sent before these tiles.
     pub map: Arc<[Word]>,
     /// Occupied tiles, slice by slice.
     pub tiles: Vec<TileMessage>,

@@ -10,7 +10,7 @@ parameters::parameter_table! {
     pub struct PerspectaConfig {
         /// Number of slices strobed in a revolution.
         slices: 396, "slices", Published, 396..=396 in 4..=4096, "the SpatialGL paper (P1)";
-        /// Pixels of a line of the projector.
+        /// Number of pixels in a line of the projector.
         width: 768, "pixels", Assumed, 256..=2048 in 8..=4096, "open in the paper; 768 x 768 in SPIE 4297, 1024 x 768 in SPIE 5664";
         /// Number of lines of the projector.
         height: 768, "lines", Assumed, 256..=2048 in 1..=4096, "open in the paper; 768 in SPIE 4297 and SPIE 5664";
@@ -18,7 +18,7 @@ parameters::parameter_table! {
         spin_rpm: 900, "1/min", Assumed, 600..=900 in 1..=1_000_000, "open in the paper; 600 in SPIE 4297, 730 and 900 in the press";
         /// Percentage of a strobe's interval in which it is lit.
         lit_percent: 100, "%", Assumed, 1..=100 in 1..=100, "open in the paper; what is less only dims";
-        /// Time of one word at the port.
+        /// Time to transfer one word at the port.
         word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94: 20 Mwords/s per channel of the ring, the same as other displays";
     }
 }

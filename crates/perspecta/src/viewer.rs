@@ -14,11 +14,11 @@ const SLICES_PER_TASK: u32 = 33;
 /// An eye and its picture. The eye looks at the middle of the display, and y points downwards in the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Angle around the axis from +z to +x, degrees.
+    /// Azimuth of the eye: angle around the axis from +z to +x, degrees.
     pub azimuth_deg: f64,
-    /// Angle above the horizon, degrees.
+    /// Elevation of the eye above the horizon, degrees.
     pub elevation_deg: f64,
-    /// Distance from the middle of the display, pixels of the display.
+    /// Distance of the eye from the middle of the display, pixels of the display.
     pub distance: f64,
     /// Focal length, pixels of the picture.
     pub focal: f64,
@@ -27,7 +27,7 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Creates an eye four radii away from a display of this radius. Its picture is about as wide as the display.
+    /// Creates an eye four radii away from a display of this radius, with a picture about as wide as the display.
     #[must_use]
     pub fn around(radius: f64, azimuth_deg: f64, elevation_deg: f64, side: u32) -> Self {
         let focal = f64::from(side) * 1.9;
@@ -256,7 +256,7 @@ fn sum(
     Ok(total.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// A strobe in the coordinates of the eye.
+/// The geometry of a strobe, converted to the coordinates of the eye.
 struct Strobe {
     half: [f64; 2],
     /// Vector of one pixel to the right (`across`) or up (`upward`), as right, up and back in the eye's axes.
@@ -304,7 +304,7 @@ impl Strobe {
         light.splat([self.centre[0] + right * scale, self.centre[1] - up * scale], levels, weight);
     }
 
-    /// Returns |view . e_s| in steps of 1/256.
+    /// Returns the cosine |view . e_s| between screen and eye in steps of 1/256.
     fn facing(&self, to_eye: [f64; 3]) -> u64 {
         let length = dot(to_eye, to_eye).sqrt();
         (256.0 * (dot(self.normal, to_eye) / length).abs() + 0.5) as u64

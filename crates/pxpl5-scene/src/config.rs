@@ -1,6 +1,6 @@
 //! Every assumed or published number of this crate, with unit, source and provenance.
 //!
-//! The shapes of the built-in models are geometry, not parameters. They are in the files of [`crate::builtin`].
+//! The shapes of the built-in models are geometry, not parameters. These shapes are in the files of [`crate::builtin`].
 
 /// Radius to which the built-in models are scaled, measured from the centre of their box, metres.
 ///
@@ -30,7 +30,8 @@ pub const FIT_DISTANCE_RADII: f64 = 2.6;
 
 /// Largest absolute coordinate that an importer accepts, in units of the file.
 ///
-/// Assumed, 1e6 to 1e18. Its square stays far from the limit of f32 (3.4e38), and real models have smaller coordinates.
+/// Assumed, 1e6 to 1e18. The square of the limit stays far from the limit of f32 (3.4e38), and real models have smaller
+/// coordinates.
 pub const MAX_COORDINATE: f64 = 1e15;
 
 /// Largest file that an importer reads, in bytes.

@@ -9,8 +9,8 @@ use crate::trig;
 pub struct Edit {
     /// Index of the structure in [`crate::Scene::structures`].
     pub structure: usize,
-    /// Matrix from the structure's coordinates to its frame's coordinates. It replaces the previous matrix. Before the
-    /// first edit the matrix is the identity.
+    /// Matrix from the structure's coordinates to its frame's coordinates, which replaces the previous matrix. Before
+    /// the first edit the matrix is the identity.
     pub model: Mat4,
 }
 

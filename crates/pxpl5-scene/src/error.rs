@@ -57,16 +57,16 @@ pub enum LoadError {
     TooLarge {
         /// Name of the file, as it was given.
         file: String,
-        /// Limit of the size, in bytes.
+        /// Limit of a model file's size, in bytes.
         expected: u64,
     },
-    /// The model takes more memory than [`crate::config::MEMORY_TIMES_FILE`] times its file. This happens if the file
-    /// repeats corners very often.
+    /// The model takes more memory than [`crate::config::MEMORY_TIMES_FILE`] times its file. A file that repeats
+    /// corners very often causes this error.
     #[error("{file}: expected a model that takes at most {expected} bytes, as its size allows, found {found}")]
     TooMuchMemory {
         /// Name of the file, as it was given.
         file: String,
-        /// Limit of the memory, in bytes.
+        /// Limit of the model's memory, in bytes.
         expected: u64,
         /// Memory that the model would take, in bytes.
         found: u64,
@@ -108,7 +108,7 @@ pub enum LoadError {
         at: FilePlace,
         /// Content that the header announced, for example a number of rows.
         expected: String,
-        /// Description of the rest of the file.
+        /// Description of the content that is left in the file.
         found: String,
     },
     /// A corner refers to a vertex or a normal that does not exist.
@@ -192,7 +192,7 @@ pub enum SceneError {
         index: usize,
         /// The rule that the part breaks.
         expected: String,
-        /// Content of the part instead.
+        /// Description of the part that breaks the rule.
         found: String,
     },
 }
@@ -201,7 +201,7 @@ pub enum SceneError {
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{what}: expected {expected}, found {found}")]
 pub struct RangeError {
-    /// Name of the number.
+    /// Name of the wrong number.
     pub what: &'static str,
     /// Allowed range, in words.
     pub expected: &'static str,

@@ -9,11 +9,11 @@
 //!
 //! # Behaviour
 //!
-//! - A [`Scene`] is a display list. It has indexed triangles, with a normal and a colour for each vertex, and spheres.
-//!   A *structure* is a named run of triangles and spheres with one model matrix. An [`Edit`] replaces a model matrix,
+//! - A [`Scene`] is a display list of indexed triangles, with a normal and a colour for each vertex, and of spheres. A
+//!   *structure* is a named run of triangles and spheres with one model matrix. An [`Edit`] replaces a model matrix,
 //!   and [`Scene::edits_at`] returns the scripted edits of a frame.
-//! - [`from_bytes`] reads PLY, OBJ and PDB models and fits them into the default view. It never panics, whatever the
-//!   bytes. `load` reads a file of the host. Without the feature `files` the crate makes no calls to the operating
+//! - [`from_bytes`] reads PLY, OBJ and PDB models and fits them into the default view. No input makes [`from_bytes`]
+//!   panic. `load` reads a file of the host. Without the feature `files` the crate makes no calls to the operating
 //!   system and builds for a browser.
 //! - [`builtin`] generates the scenes of the published measurements, or similar scenes:
 //!
@@ -42,7 +42,7 @@
 //! # Determinism
 //!
 //! All results are computed in double precision with basic arithmetic, square roots and software trigonometry (`libm`),
-//! and then rounded once to f32. They agree in every bit on all hosts.
+//! and then rounded once to f32. The results agree in every bit on all hosts.
 //!
 //! # Not modelled
 //!

@@ -24,7 +24,7 @@ pub struct Vertex {
 pub struct Sphere {
     /// Centre in the coordinates of the structure, metres.
     pub centre: Vec3,
-    /// Radius, metres, above zero.
+    /// Radius of the sphere, metres, above zero.
     pub radius: f32,
     /// Diffuse red, green and blue, 8 bits each.
     pub colour: [u8; 3],

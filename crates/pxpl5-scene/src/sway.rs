@@ -6,7 +6,7 @@ use tracking::random;
 
 use crate::trig;
 
-/// Unconscious and conscious head movement in addition to a path. It is a sum of sines of fixed frequencies, all below
+/// Unconscious and conscious head movement in addition to a path: a sum of sines of fixed frequencies, all below
 /// [`crate::config::HEAD_BAND_HZ`], with phases drawn from the seed.
 ///
 /// At scale 1 on [`crate::HeadPath::Look`], three statistics agree with recorded traces of headset use. The mean

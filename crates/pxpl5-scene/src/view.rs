@@ -131,7 +131,7 @@ impl Hmd {
         self.view(EyePoint::Centre, head)
     }
 
-    /// Returns the distance from the eye to the picture in pixels. It is the number of pixels for a tangent of 1.
+    /// Returns the distance from the eye to the picture in pixels, which is the number of pixels for a tangent of 1.
     #[must_use]
     pub fn focal_length_px(&self) -> f64 {
         f64::from(self.config.width_px) / 2.0 / half_width(&self.config)

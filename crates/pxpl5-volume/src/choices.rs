@@ -2,20 +2,20 @@
 
 use spatialgl::{BinTolerance, Binning, Combine, Coverage, Rotation, Strobes, TieRule};
 
-/// One of the six clips. Its offset or bias is a separate number.
+/// One of the six clips, without its offset or bias, which is a separate number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClipKind {
-    /// Only the near and far planes.
+    /// Clip by the near and far planes alone.
     Prism,
-    /// Two user clip planes in each of two passes.
+    /// Clip by two user clip planes in each of two passes.
     UserPlanes,
-    /// Two planes in the fragment program: the exact volume.
+    /// Clip by two planes in the fragment program: the exact volume.
     Exact,
-    /// Planes that leave some thickness at the axis, in two passes.
+    /// Clip by planes that leave some thickness at the axis, in two passes.
     Tapered,
-    /// Both boundary planes, moved outwards.
+    /// Clip by both boundary planes, moved outwards.
     Parallel,
-    /// A bias, added to the product of both boundary planes.
+    /// Clip by the product of the distances from both boundary planes, plus a bias.
     Hyperbolic,
 }
 
@@ -52,7 +52,7 @@ pub enum RendererKind {
 
 /// A choice with names in options, files and reports.
 pub(crate) trait Named: Copy + PartialEq + 'static {
-    /// Names with their values.
+    /// Names with the choices that they stand for.
     const NAMES: &'static [(&'static str, Self)];
 
     fn name(self) -> &'static str {

@@ -13,7 +13,7 @@ use spatialgl::{Coverage, Workers};
 /// One row of a comparison: a combination of clip, projection, samples and coverage, with its results.
 #[derive(Clone, Debug, Serialize)]
 pub struct VariantRow {
-    /// Clip with its offset or bias.
+    /// Name of the clip with its offset or bias.
     pub clip: String,
     /// Name of the projection.
     pub projection: &'static str,
@@ -81,9 +81,9 @@ pub struct VolumeComparison {
 /// The viewpoint of the pictures of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Viewpoint {
-    /// Angle around the axis from +z to +x, degrees.
+    /// Azimuth of the eye: angle around the axis from +z to +x, degrees.
     pub azimuth_deg: f64,
-    /// Angle above the horizon, degrees.
+    /// Elevation of the eye above the horizon, degrees.
     pub elevation_deg: f64,
     /// Width and height of each picture, pixels.
     pub side: u32,

@@ -13,12 +13,12 @@ pub enum VolumeError {
     UnknownKey {
         /// Option that contained the path.
         place: String,
-        /// The unknown path.
+        /// Path that no setting has.
         found: String,
         /// The valid path that is most similar.
         nearest: String,
     },
-    /// The value of a setting is invalid.
+    /// The value of a setting is not allowed.
     #[error("{place}: {key}: expected {expected}, found {found}")]
     Value {
         /// Option that contained the value.

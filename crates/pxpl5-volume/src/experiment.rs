@@ -33,7 +33,7 @@ pub struct Volume {
 }
 
 impl Volume {
-    /// Draws a scene. Its middle is on the axis, and its farthest corner at 0.9 of the radius.
+    /// Draws a scene with its middle on the axis and its farthest corner at 0.9 of the radius.
     ///
     /// # Errors
     ///

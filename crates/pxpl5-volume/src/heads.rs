@@ -1,12 +1,14 @@
 //! Comparison of two displays for a moving viewer: the volume, and a head-mounted display of the same latency.
 //!
-//! A volume does not move, so a moving viewer sees another side of it at once. Its errors come from the positions of
-//! its voxels. A head-mounted display draws each picture for a past pose of the head. Its errors come from its latency.
+//! A volume does not move, so a moving viewer sees another side of the volume at once. Errors of a volume come from the
+//! positions of its voxels. A head-mounted display draws each picture for a past pose of the head. Errors of this
+//! display come from its latency.
 //!
 //! # Behaviour
 //!
-//! - The display stands upright before the head. Its middle is `viewer.distance_mm` ahead of the start of the motion,
-//!   and its +z axis points towards the head. Both displays show the same scene in the position of the volume.
+//! - The volume stands upright before the head. The middle of the volume is `viewer.distance_mm` ahead of the start of
+//!   the motion, and the +z axis points towards the head. Both displays show the same scene in the position of the
+//!   volume.
 //! - Errors are evaluated at [`POINTS`] vertices of the scene, for both eyes. *Head-mounted*: the angle between the
 //!   drawn position of a point, for the pose one latency ago, and its true position. *Volume*: the angle between a
 //!   point and the voxel that shows it, in the nearest slice.
@@ -86,7 +88,7 @@ pub struct HeadStudy {
     pub volume_latency_ms: Option<f64>,
     /// Angle of a pixel in the middle of the head-mounted display, degrees.
     pub hmd_pixel_deg: f64,
-    /// Edge of a voxel in a slice, millimetres.
+    /// Length of a voxel's edge within a slice, millimetres.
     pub voxel_mm: f64,
     /// Errors at each instant, starting one latency after the beginning of the motion.
     pub samples: Vec<HeadSample>,
@@ -117,9 +119,9 @@ pub struct HeadBefore<'a> {
 }
 
 impl Volume {
-    /// Returns the latency with which the volume shows changes of the scene, milliseconds. It is the model's time for
-    /// one volume, plus on average half a turn until strobe 0 and a quarter turn until the plane is reached. Returns
-    /// `None` if the volume was not drawn by a GPU.
+    /// Returns the latency with which the volume shows changes of the scene, milliseconds. The latency is the model's
+    /// time for one volume, plus on average half a turn until strobe 0 and a quarter turn until the plane is reached.
+    /// Returns `None` if the volume was not drawn by a GPU.
     #[must_use]
     pub fn latency_ms(&self) -> Option<f64> {
         let turn_ms = 60e3 / self.settings.display.spin_rpm as f64;
@@ -387,7 +389,7 @@ fn angle_between(a: DVec3, b: DVec3) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
 }
 
-/// An accumulator of a mean and a maximum.
+/// An accumulator for the mean and the maximum of errors.
 #[derive(Clone, Copy, Debug, Default)]
 struct Mean {
     sum: f64,

@@ -27,9 +27,9 @@ parameters::parameter_table! {
 parameters::parameter_table! {
     /// The eye of the perspective projection, the same for all slices.
     pub struct EyeNumbers {
-        /// Horizontal position of the eye in the slice.
+        /// Horizontal position of the perspective eye in the slice's coordinates.
         across_px: f64 = 0.0, "px", Assumed, -384.0..=384.0 in -1000000.0..=1000000.0, "on the axis";
-        /// Vertical position of the eye in the slice.
+        /// Vertical position of the perspective eye in the slice's coordinates.
         up_px: f64 = 0.0, "px", Assumed, -384.0..=384.0 in -1000000.0..=1000000.0, "in the middle";
         /// Distance of the eye from the slice.
         distance: f64 = 4.0, "radii", Assumed, 2.0..=16.0 in 0.001..=1000000.0, "as with jitter";
@@ -41,7 +41,7 @@ parameters::parameter_table! {
 }
 
 parameters::parameter_table! {
-    /// Tiles, and batches of queries.
+    /// Numbers of the tiles and of the batches of queries.
     pub struct TileNumbers {
         /// Side of a tile. With 0, every pixel is packed and sent.
         size: 32, "px", Published, 32..=32 in 0..=4096, "the SpatialGL paper (P16)";
@@ -51,7 +51,7 @@ parameters::parameter_table! {
 }
 
 parameters::parameter_table! {
-    /// Sampling and halftoning of slices.
+    /// Numbers of sampling and halftoning.
     pub struct DrawNumbers {
         /// Number of samples per pixel.
         samples: 1, "samples", Published, 1..=1 in 1..=16, "the SpatialGL paper rejects more as too dear; 4 and 16 for comparison";
@@ -61,7 +61,7 @@ parameters::parameter_table! {
 }
 
 parameters::parameter_table! {
-    /// The start of the turn.
+    /// The angle at which a turn begins.
     pub struct SweepNumbers {
         /// Angle of slice 0.
         phase_deg: f64 = 0.0, "deg", Assumed, 0.0..=360.0 in -360.0..=360.0, "open in the paper";
@@ -71,13 +71,13 @@ parameters::parameter_table! {
 parameters::parameter_table! {
     /// The viewer before the display, and the head-mounted display for comparison.
     pub struct ViewerNumbers {
-        /// Diameter of the volume.
+        /// Diameter of the displayed volume.
         diameter_mm: f64 = 254.0, "mm", Assumed, 200.0..=500.0 in 1.0..=100000.0, "open in the paper; 768 px over 10 inches in SPIE 4297";
         /// Distance of the head from the middle of the volume at the beginning of a motion.
         distance_mm: f64 = 508.0, "mm", Assumed, 300.0..=2000.0 in 1.0..=1000000.0, "four radii, as other views";
         /// Distance between both eyes.
         eye_separation_mm: f64 = 62.0, "mm", Assumed, 55.0..=70.0 in 0.0..=1000.0, "a mean head";
-        /// Width of the head-mounted display's picture. Its height is three quarters of the width.
+        /// Width of the head-mounted display's picture, whose height is three quarters of the width.
         hmd_width_px: 640, "px", Published, 640..=640 in 8..=16000, "TR94: 640 x 480";
         /// Angle between the left and the right edge of the head-mounted display's picture.
         hmd_angle_deg: f64 = 60.0, "deg", Assumed, 30.0..=100.0 in 1.0..=170.0, "published in JITP's example";

@@ -25,9 +25,9 @@ const MAP_COLUMNS: u32 = 11;
 pub struct Look {
     /// Position of the eye and size of its picture.
     pub camera: Camera,
-    /// Angles to leave out, and true for pixels whose brightness depends on the angle of the screen.
+    /// Options of the view, such as a range of angles to leave out.
     pub options: ViewOptions,
-    /// True for the colours before halftoning.
+    /// True if the view shows the colours before halftoning.
     pub is_undithered: bool,
 }
 

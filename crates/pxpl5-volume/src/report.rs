@@ -19,7 +19,7 @@ pub struct VolumeReport {
     pub scene: String,
     /// Display for which the volume was drawn.
     pub display: DisplayReport,
-    /// Clip with its offset or bias.
+    /// Name of the clip with its offset or bias.
     pub clip: String,
     /// Name of the projection.
     pub projection: &'static str,
@@ -33,7 +33,7 @@ pub struct VolumeReport {
     pub samples: u64,
     /// Number of triangles, lines and points of the scene.
     pub triangles: u64,
-    /// Number of slices drawn. It is less than the number shown if slices are mirrored.
+    /// Number of slices drawn, which is less than the number shown if slices are mirrored.
     pub slices_rendered: u64,
     /// Number of times that the scene is drawn for a slice.
     pub passes: u64,
@@ -102,7 +102,7 @@ pub struct PixelPlanesReport {
     /// Counts of clocks, commands, words and sent tiles.
     #[serde(flatten)]
     pub counts: SliceBounds,
-    /// Formulas of the bounds in `bounds`.
+    /// Formulas by which the numbers in `bounds` and `simulated` are computed.
     pub definition: &'static str,
     /// Volumes per second for several machines, each limited by its slowest part alone.
     pub bounds: Vec<BoundRow>,
@@ -143,10 +143,10 @@ pub struct DisplayReport {
     pub volumes_hz: f64,
 }
 
-/// Lit pixels in rings around the axis.
+/// The numbers of lit pixels in rings around the axis.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Brightness {
-    /// Width of each ring, pixels.
+    /// Width of each ring around the axis, pixels.
     pub ring_px: u32,
     /// Number of lit pixels of all slices in each ring, from the axis outwards.
     pub lit_voxels: Vec<u64>,
@@ -157,7 +157,7 @@ pub struct Brightness {
 pub struct ModelPart {
     /// Time for one volume, milliseconds.
     pub ms: f64,
-    /// Formula of the time.
+    /// Formula by which `ms` is computed.
     pub definition: &'static str,
 }
 
@@ -174,12 +174,12 @@ pub struct ModelTimes {
     pub bus_unpacked: ModelPart,
 }
 
-/// A number that differs from the paper's value.
+/// A number of the settings that differs from the paper's value.
 #[derive(Clone, Debug, Serialize)]
 pub struct Override {
     /// Path of the number, as after `--set`.
     pub path: String,
-    /// Current value.
+    /// Value of the number in this volume.
     pub value: Value,
     /// Value that the paper gives or allows.
     pub papers: Value,

@@ -56,7 +56,7 @@ pub struct VolumeSettings {
     pub renderer: RendererKind,
     /// Rates and times of the host and its GPU.
     pub gpu: GpuTiming,
-    /// Viewer before the display. It has no influence on the volume.
+    /// Viewer before the display, without influence on the volume.
     pub viewer: ViewerNumbers,
 }
 

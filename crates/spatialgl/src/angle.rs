@@ -1,4 +1,4 @@
-//! Sine and cosine of fractions of a turn. Their symmetries hold in every bit.
+//! Sine and cosine of fractions of a turn, with symmetries that hold in every bit.
 
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4};
 

@@ -35,7 +35,7 @@ pub struct BinLayout {
 pub enum Binning {
     /// No binning: every slice draws every primitive.
     Off,
-    /// Only the planes that bound a region decide. This is weaker, and it is the first version of the paper.
+    /// Only the planes that bound a region decide, which is weaker: the first version of the paper.
     TwoPlanes,
     /// All planes of the layout decide for each region.
     #[default]
@@ -49,7 +49,8 @@ pub enum BinTolerance {
     /// The distance by which the display's clip dilates its slices, so that no fragment is lost.
     #[default]
     OfTheClip,
-    /// The paper's codes: zero is positive, and no vertex counts for both sides. This loses fragments of dilated clips.
+    /// The paper's codes: zero is positive, and no vertex counts for both sides. These codes lose fragments of dilated
+    /// clips.
     Codes,
     /// A fixed distance in pixels, independent of the clip.
     Pixels(f64),
@@ -105,7 +106,7 @@ impl BinLayout {
 /// Signs of the sectors from +x to +z. The highest of the four binary digits is bit 3 (x + z).
 const SECTOR_SIGNS: [u32; 8] = [0b1111, 0b1011, 0b1001, 0b0001, 0b0000, 0b0100, 0b0110, 0b1110];
 
-/// Pair of planes that bound each sector.
+/// Planes that bound each sector, one bit for each of the two planes.
 const SECTOR_BOUNDS: [u32; 8] = [0b0101, 0b0110, 0b1010, 0b1001, 0b0101, 0b0110, 0b1010, 0b1001];
 
 /// The combined codes of a primitive. `and` has the planes with the whole primitive on their positive side, `or` those

@@ -22,12 +22,12 @@ pub enum SliceClip {
     ),
     /// Both boundary planes, moved outwards by q pixels.
     Parallel(
-        /// Offset q, pixels.
+        /// Offset q of both planes, pixels.
         f64,
     ),
     /// The product of both boundary planes plus a bias b.
     Hyperbolic(
-        /// Bias b, square pixels.
+        /// Bias b of the product, square pixels.
         f64,
     ),
 }
@@ -42,11 +42,11 @@ pub const DEFAULT_BIAS_PX2: f64 = 0.25;
 /// Half the wedge of one slice: sine, cosine and tangent of d/2, where d is the angle between slices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfWedge {
-    /// S = sin(d/2).
+    /// Sine of half the angle between slices, S = sin(d/2).
     pub sin: f64,
-    /// C = cos(d/2).
+    /// Cosine of half the angle between slices, C = cos(d/2).
     pub cos: f64,
-    /// T = tan(d/2).
+    /// Tangent of half the angle between slices, T = tan(d/2).
     pub tan: f64,
     /// Radius of the display, which is half the width of the image, pixels.
     pub radius: f64,

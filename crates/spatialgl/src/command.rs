@@ -52,7 +52,7 @@ impl Primitive {
 
 /// An immutable recording, replayed for every slice and every pass of every display.
 ///
-/// Vertices are lit and in world coordinates. They were transformed once, during recording.
+/// Vertices are lit and in world coordinates. Each vertex was transformed once, during recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CommandBuffer {
     pub(crate) positions: Vec<[f64; 3]>,

@@ -1,4 +1,4 @@
-//! The programming interface: state as in GL, vertices, and drawing. It is independent of any display.
+//! The programming interface: state as in GL, vertices, and drawing. The interface is independent of any display.
 
 use crate::command::{Combine, CommandBuffer, Primitive, Shape};
 use crate::error::{SpatialError, require};
@@ -76,7 +76,7 @@ pub enum Topology {
     TriangleFan,
 }
 
-/// A directional light. It lights both sides of a surface equally, because a volume is seen from all sides.
+/// A directional light for both sides of a surface, because a volume is seen from all sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
     /// Direction towards the light in world coordinates, of any length except zero.

@@ -40,9 +40,9 @@ pub enum SpatialError {
     /// A range of vertices exceeds its buffer, or its end comes before its start.
     #[error("vertices {start}..{end}: expected a range within 0..{vertices}")]
     Range {
-        /// First vertex of the range.
+        /// Index of the first vertex of the range.
         start: usize,
-        /// End of the range, exclusive.
+        /// Index after the last vertex of the range.
         end: usize,
         /// Number of vertices in the buffer.
         vertices: usize,

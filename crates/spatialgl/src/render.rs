@@ -22,7 +22,7 @@ use std::sync::{Mutex, PoisonError};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Strobes {
-    /// Each slice is drawn.
+    /// Each slice of the turn is drawn.
     #[default]
     Each,
     /// The first half is drawn. The second half shows the first half mirrored, including its jitter. **Beyond the
@@ -37,13 +37,13 @@ pub struct VolumeConfig {
     pub binning: Binning,
     /// Distance from a plane within which a vertex counts for both sides.
     pub bin_tolerance: BinTolerance,
-    /// Size of tiles, and number of slices per query.
+    /// Size of tiles, and number of slices per occlusion query.
     pub tiling: Tiling,
     /// Conversion from eight bits to one bit per channel.
     pub halftone: Halftone,
     /// Pixels of a slice that a primitive covers.
     pub coverage: Coverage,
-    /// Slices that are drawn.
+    /// Slices of a turn that are drawn.
     pub strobes: Strobes,
     /// True if the colours before halftoning are kept.
     pub keeps_colours: bool,
@@ -155,7 +155,7 @@ impl SliceWords<'_> {
     }
 }
 
-/// Data that is the same for all batches.
+/// The data that all batches of a volume share.
 struct Volume<'a> {
     commands: &'a CommandBuffer,
     config: &'a VolumeConfig,
@@ -239,7 +239,7 @@ impl<'a> Volume<'a> {
         self.config.tiling.tile.is_some() && self.commands.background == [0; 3]
     }
 
-    /// Halftones and packs a rectangle, and makes it clean again. Its left and right sides are multiples of 8.
+    /// Halftones and packs a rectangle, and makes its pixels clean again. The left and right sides are multiples of 8.
     fn pack_tile(&self, image: &mut SliceImage, rectangle: [u32; 4], words: &mut SliceWords<'_>) {
         let [left, top, right, bottom] = rectangle;
         let width = image.size()[0];

@@ -61,9 +61,9 @@ pub enum WedgeTest {
     UserPlanes(TieRule),
     /// Both planes are interpolated, and one test compares their signs.
     Shader(TieRule),
-    /// Both planes are moved outwards by this many pixels before their product is taken.
+    /// Both planes are moved outwards by a number of pixels before the product of the distances is taken.
     Parallel(f64),
-    /// This many square pixels are added to the product.
+    /// A number of square pixels is added to the product of the distances.
     Hyperbolic(f64),
 }
 
@@ -74,16 +74,16 @@ pub enum SliceVolume {
     Frustum,
     /// A slab low <= s < high parallel to the slice, pixels.
     Slab {
-        /// Lower limit of s, inclusive.
+        /// Lower limit of the slab's s, inclusive.
         low: f64,
-        /// Upper limit of s, exclusive.
+        /// Upper limit of the slab's s, exclusive.
         high: f64,
     },
     /// A double wedge around the axis y.
     Wedge(WedgePlanes, WedgeTest),
     /// The volume |s| <= offset + slope |u|, with one pass for each side of the axis, by clip planes.
     Taper {
-        /// Half thickness at the axis, pixels.
+        /// Half thickness of the volume at the axis, pixels.
         offset: f64,
         /// Growth of the half thickness, in pixels per pixel of |u|.
         slope: f64,
@@ -114,7 +114,7 @@ impl SliceVolume {
         }
     }
 
-    /// Returns the two values of a vertex for the test. They are linear in space and can be interpolated.
+    /// Returns the two values of a vertex for the test. Both are linear in space and can be interpolated.
     #[inline(always)]
     #[must_use]
     pub(crate) fn attributes(&self, world: [f64; 3], u: f64, s: f64) -> [f64; 2] {
@@ -126,7 +126,7 @@ impl SliceVolume {
         }
     }
 
-    /// Returns the test of a pass.
+    /// Returns the test that samples must pass in a pass over the commands.
     pub(crate) fn test(&self, pass: u32) -> SampleTest {
         match *self {
             Self::Frustum => SampleTest::All,
@@ -155,8 +155,8 @@ fn along(plane: [f64; 2], world: [f64; 3]) -> f64 {
     world[0] * plane[0] + world[2] * plane[1]
 }
 
-/// The test of one pass at one sample. Its inputs are the interpolated attributes p and q and w, all with one positive
-/// factor.
+/// The test of one pass at one sample. The inputs of the test are the interpolated attributes p and q and w, all with
+/// one positive factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum SampleTest {
     All,
@@ -170,7 +170,7 @@ pub(crate) enum SampleTest {
 }
 
 impl SampleTest {
-    /// Returns true if the sample passes the test. This is the reference model.
+    /// Returns true if the sample passes the test. This function is the reference model of the test.
     pub(crate) fn accepts(self, p: f64, q: f64, w: f64) -> bool {
         let (p, q, w) = self.rounded(p, q, w);
         match self {

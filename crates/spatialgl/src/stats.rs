@@ -11,7 +11,7 @@ pub struct VolumeStats {
     pub primitives: u64,
     /// Number of primitives with a corner outside the display's volume.
     pub outside_volume: u64,
-    /// Number of slices drawn. It is less than the number shown if slices are mirrored.
+    /// Number of slices drawn, which is less than the number shown if slices are mirrored.
     pub slices_rendered: u64,
     /// Number of times that the commands are replayed for a slice.
     pub passes: u64,
@@ -21,13 +21,13 @@ pub struct VolumeStats {
     pub draws: u64,
     /// Number of primitives that would be issued without bins.
     pub draws_unbinned: u64,
-    /// Number of entries in all bins.
+    /// Number of primitives in all bins. A primitive in several bins counts in each of them.
     pub bin_memberships: u64,
     /// Number of fragments that reached the fragment program.
     pub fragments_generated: u64,
     /// Number of fragments that lie in their slice's volume.
     pub fragments_accepted: u64,
-    /// Number of pixels added to connect intersections. Beyond the paper.
+    /// Number of pixels added to connect intersections, which is beyond the paper.
     pub fragments_added: u64,
     /// Number of slices on which nothing was drawn.
     pub slices_empty: u64,

@@ -53,7 +53,6 @@ pub struct TileGrid {
 }
 
 impl TileGrid {
-    /// Returns the number of tiles.
     #[must_use]
     pub const fn tiles(&self) -> u32 {
         self.columns * self.rows

@@ -18,12 +18,12 @@ pub struct SliceView {
     pub volume: SliceVolume,
     /// Bins that the slice draws, one bit for each group of regions of [`SpatialDisplay::bins`].
     pub bins: u64,
-    /// True if the nearest surface hides others. This is meant for a view that is seen from one side only.
+    /// True if the nearest surface hides others, which suits a view that is seen from one side only.
     pub hides: bool,
     pub(crate) window: [[f64; 4]; 4],
     /// Range of s in which anything can be drawn, with some slack, or `None` if the range is unknown.
     pub(crate) reach: Option<[f64; 2]>,
-    /// Number of samples along a side of a pixel. It exceeds 1 while a supersampled image is drawn.
+    /// Number of samples along a side of a pixel, above 1 while a supersampled image is drawn.
     pub(crate) magnification: f64,
 }
 
@@ -72,8 +72,8 @@ pub enum PixelFormat {
     Rgb8,
 }
 
-/// A volumetric or flat display, as the pipeline sees it. It knows no triangles, and the pipeline knows no other
-/// property of it.
+/// A volumetric or flat display, as the pipeline sees it. A display knows no triangles, and the pipeline knows no other
+/// property of a display.
 pub trait SpatialDisplay: Send + Sync {
     /// Returns the slices, in the order in which they are shown.
     fn views(&self) -> &[SliceView];

@@ -1,6 +1,7 @@
 //! Random numbers as pure functions of (seed, index). Reports and knots can be drawn in any order, on any host.
 //!
-//! The generator is SplitMix64 (Steele, Lea and Flood 2014). Its step is [`pxpl5_sim::mix`] of the simulation kernel.
+//! The generator is SplitMix64 (Steele, Lea and Flood 2014). The step of the generator is [`pxpl5_sim::mix`] of the
+//! simulation kernel.
 
 use pxpl5_sim::mix;
 

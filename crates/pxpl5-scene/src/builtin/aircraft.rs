@@ -1,4 +1,4 @@
-//! A swept-wing jet of 100 triangles. Its surface is closed, and Slats can draw it in time.
+//! A swept-wing jet with a closed surface of 100 triangles, few enough for Slats to draw in time.
 //!
 //! The length is along z with the nose at +z. +y is up, and +x is the left of the aircraft. Lengths are roughly metres.
 //! The finished aircraft is scaled to the radius of `mig` and uses the same flight path. Every part is a closed solid
@@ -131,8 +131,8 @@ fn reversed(mut face: Vec<DVec3>) -> Vec<DVec3> {
     face
 }
 
-/// Adds a solid of flat faces with outward normals. Mirrored solids, whose volume comes out negative, are turned inside
-/// out.
+/// Adds a solid of flat faces with outward normals. A solid with a negative volume is a mirrored one, and its faces are
+/// reversed.
 fn add_flat(mesh: &mut Mesh, faces: Vec<Vec<DVec3>>, colour: Colour) {
     let six_volumes =
         |face: &Vec<DVec3>| -> f64 { face[1..].windows(2).map(|pair| face[0].dot(pair[0].cross(pair[1]))).sum() };

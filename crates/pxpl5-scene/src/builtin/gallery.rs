@@ -2,7 +2,7 @@
 //! rendering cuts such quadrangles into segments.
 //!
 //! All numbers are assumed, because the papers print neither size nor plan. The path runs 1 m beside the partitions.
-//! This is the worst case for a method that redraws only outdated segments.
+//! This path is the worst case for a method that redraws only outdated segments.
 
 use glam::{DVec3, Vec3};
 
@@ -80,7 +80,7 @@ pub(super) fn scene(is_full: bool) -> Scene {
     Scene::new(parts).expect("pxpl5-scene: generators check what they make")
 }
 
-/// Adds a quadrangle. Its corners are anticlockwise seen from its visible side.
+/// Adds a quadrangle, whose corners are anticlockwise seen from the visible side.
 fn quadrangle(solid: &mut Solid, corners: [DVec3; 4], colour: [u8; 3]) {
     let normal = (corners[1] - corners[0]).cross(corners[3] - corners[0]).normalize();
     let mut part = Mesh::default();

@@ -203,7 +203,7 @@ fn brow(p: DVec3) -> f64 {
     ((p.y - middle).abs() - half_height).max(end).max(5.0 - p.z)
 }
 
-/// Returns the mask of the hair. Its border runs from the forehead over the temples, in front of and around the ears,
+/// Returns the mask of the hair, whose border runs from the forehead over the temples, in front of and around the ears,
 /// to the nape.
 fn hair(p: DVec3) -> f64 {
     let hairline = 8.2 - 0.05 * p.x * p.x;

@@ -87,7 +87,7 @@ fn mouth(d: f64, p: DVec3) -> f64 {
 /// Adds an ear: a bowl whose front edge lies on the skull and whose rear edge stands away from it.
 fn ears(d: f64, p: DVec3) -> f64 {
     let q = p - xyz(7.35, -0.2, -1.3);
-    // The ear leans back, so its top is further behind than its lobe. Its rear is turned outwards.
+    // The ear leans back, so its top is further behind than its lobe. The rear of the ear is turned outwards.
     let q = xyz(q.x + 0.45 * q.z, q.y + 0.22 * q.z, q.z + 0.22 * q.y);
     let flap = ellipsoid(q, xyz(0.2, 0.0, 0.0), xyz(0.75, 3.1, 1.75));
     let bowl = ellipsoid(q, xyz(1.05, 0.35, 0.25), xyz(0.75, 2.1, 1.0));
@@ -112,7 +112,7 @@ fn carve(a: f64, b: f64, k: f64) -> f64 {
     meet(a, -b, k)
 }
 
-/// Returns a first-order estimate of the distance to an ellipsoid. It is exact at the surface.
+/// Returns a first-order estimate of the distance to an ellipsoid, which is exact at the surface.
 fn ellipsoid(p: DVec3, centre: DVec3, radii: DVec3) -> f64 {
     let scaled = (p - centre) / radii;
     let reach = scaled.length();

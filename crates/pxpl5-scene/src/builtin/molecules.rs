@@ -18,8 +18,8 @@ const SECTIONS: usize = 328;
 /// Half the distance between the centres of the two molecules, Ångström. The radius of each is about 25.
 const APART: f64 = 25.0;
 
-/// Greatest distance between alpha carbons three residues apart in a helix, Ångström. It is 5.0 in an ideal alpha helix
-/// and above 8 in an extended chain (derived from rise 1.5, radius 2.3 and 100 degrees per residue).
+/// Greatest distance between alpha carbons three residues apart in a helix, Ångström. The distance is 5.0 in an ideal
+/// alpha helix and above 8 in an extended chain (derived from rise 1.5, radius 2.3 and 100 degrees per residue).
 const HELIX_STEP: f64 = 6.2;
 
 pub(super) fn scene() -> Scene {
@@ -49,7 +49,7 @@ fn water() -> [Sphere; 3] {
     [sphere(oxygen, 1.52, [240, 24, 24]), sphere(right, 1.20, [255, 255, 255]), sphere(left, 1.20, [255, 255, 255])]
 }
 
-/// A residue of the chain.
+/// A residue of the protein's chain.
 struct Residue {
     alpha: DVec3,
     /// Direction from the carbonyl carbon to its oxygen. In a helix this is along the axis, so the ribbon lies flat on
@@ -130,7 +130,7 @@ fn section(chain: &[Residue], place: f64) -> [DVec3; 4] {
     [wide + thick, thick - wide, -wide - thick, wide - thick].map(|corner| centre + corner)
 }
 
-/// Evaluates a uniform cubic B-spline. It passes near its points, which smooths the zigzag of a chain.
+/// Evaluates a uniform cubic B-spline. The spline passes near its points, which smooths the zigzag of a chain.
 fn spline(p: [DVec3; 4], t: f64) -> DVec3 {
     let u = 1.0 - t;
     let weights = [u * u * u, 3.0 * t * t * t - 6.0 * t * t + 4.0, 3.0 * u * u * u - 6.0 * u * u + 4.0, t * t * t];

@@ -25,15 +25,15 @@ pub(super) fn scene(count: u32) -> Scene {
     fitted_scene(&format!("sphere:{count}"), mesh, Vec::new())
 }
 
-/// The points of one parallel.
+/// The vertices on one parallel of the sphere.
 struct Ring {
     first: u32,
     points: u32,
 }
 
 /// Returns the number of points on each parallel. Between two parallels lie as many triangles as both have points
-/// together. Without the poles, there are therefore half as many points as triangles. They are distributed by the
-/// length of the parallels.
+/// together. Without the poles, there are therefore half as many points as triangles. These points are distributed by
+/// the length of the parallels.
 fn rings(count: u32) -> Vec<u32> {
     // An equilateral triangle with side s has the area s^2 sqrt(3)/4, and rows of such triangles are s sqrt(3)/2 apart.
     let side = (16.0 * std::f64::consts::PI / (3f64.sqrt() * f64::from(count))).sqrt();

@@ -10,7 +10,7 @@ use super::surface::{Surface, is_degenerate};
 /// 45 to 90 degrees.
 const LEAST_COSINE: f64 = 0.2;
 
-/// Rules for a pass over all edges.
+/// The rules of a pass that collapses edges.
 #[derive(Clone, Copy)]
 pub(super) struct Rules {
     /// True if triangles may turn over.
@@ -19,7 +19,7 @@ pub(super) struct Rules {
     pub(super) may_overshoot: bool,
 }
 
-/// A point that may move onto another point.
+/// A possible collapse of an edge: one end moves onto the other.
 struct Candidate {
     cost: f64,
     from: u32,

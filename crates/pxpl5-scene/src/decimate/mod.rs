@@ -85,7 +85,7 @@ fn drop_pieces(surface: &mut Surface<'_>, wanted: usize) {
     }
 }
 
-/// Removes the smallest triangles. This is needed only if no edge can be collapsed and one piece is left.
+/// Removes the smallest triangles, if no edge can be collapsed and only one piece is left.
 fn drop_triangles(surface: &mut Surface<'_>, wanted: usize) {
     let left: Vec<u32> = surface.all().map(|(triangle, _)| triangle).collect();
     let areas: Vec<f64> = left.iter().map(|&triangle| area(surface, triangle)).collect();
@@ -111,7 +111,7 @@ fn remove(surface: &mut Surface<'_>, triangle: u32) {
     }
 }
 
-/// The primitives that remain.
+/// The primitives that remain after decimation.
 struct Kept {
     triangles: Vec<Option<[u32; 3]>>,
     spheres: Vec<bool>,

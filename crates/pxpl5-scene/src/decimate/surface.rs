@@ -19,7 +19,7 @@ pub(super) struct Surface<'a> {
     pub(super) triangles: Vec<Option<[u32; 3]>>,
     /// Indices of the remaining triangles around each point.
     around: Vec<Vec<u32>>,
-    /// Number of remaining triangles.
+    /// Number of triangles that have not been removed.
     pub(super) left: usize,
 }
 
@@ -102,7 +102,7 @@ impl<'a> Surface<'a> {
         self.round(a).filter(|(_, points)| points.contains(&b)).count()
     }
 
-    /// Returns the normal of a triangle of points. Its length is twice the area.
+    /// Returns the normal of a triangle of points, with a length of twice the triangle's area.
     pub(super) fn normal(&self, points: [u32; 3]) -> DVec3 {
         let [a, b, c] = points.map(|point| self.places[point as usize]);
         (b - a).cross(c - a)
@@ -125,7 +125,7 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// Removes a triangle.
+    /// Removes a triangle with these points.
     pub(super) fn remove(&mut self, triangle: u32, points: [u32; 3]) {
         for point in points {
             self.around[point as usize].retain(|other| *other != triangle);

@@ -136,9 +136,9 @@ fn read_placed(
 /// Polygons are cut into triangles, concave ones too. A missing normal becomes the mean of the adjacent triangles,
 /// weighted by area. In OBJ files the mean covers only a smoothing group, and faces without a smoothing group are flat.
 ///
-/// The model is moved so that the centre of its box is the origin. It is scaled so that its farthest point is
-/// [`crate::config::IMPORT_RADIUS_M`] away. Both eyes then see all of it under [`Scene::motion`], whatever the units of
-/// the file. The axes stay: +y is up, and +z faces the viewer.
+/// The model is moved so that the centre of its box is the origin. The scale puts the farthest point of the model at a
+/// distance of [`crate::config::IMPORT_RADIUS_M`]. Both eyes then see all of it under [`Scene::motion`], whatever the
+/// units of the file. The axes stay: +y is up, and +z faces the viewer.
 ///
 /// # Errors
 ///

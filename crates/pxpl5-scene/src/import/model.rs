@@ -1,5 +1,5 @@
-//! The common result of the mesh readers. Its columns hold only the data of the file, so a model takes at most seven
-//! times its file.
+//! The common result of the mesh readers. The columns of a model hold only the data of its file, so a model takes at
+//! most seven times the memory of its file.
 
 use std::hash::{BuildHasher, RandomState};
 
@@ -116,7 +116,7 @@ pub(super) fn push_slowly<T>(list: &mut Vec<T>, item: T) {
     list.push(item);
 }
 
-/// A mesh as its file contains it.
+/// A mesh in the form in which its file contains it, before scaling.
 pub(super) struct Model {
     pub(super) places: Places,
     /// Unit normals, with zero vectors for missing ones. The list is empty until the first normal is read.
@@ -165,7 +165,7 @@ impl Model {
         }
     }
 
-    /// Returns the normal of the polygon whose fan consists of the triangles from `first` on. It is zero for a polygon
+    /// Returns the normal of the polygon whose fan consists of the triangles from `first` on, or zero for a polygon
     /// without area.
     pub(super) fn polygon_normal(&self, first: usize) -> Vec3 {
         direction(polygon::normal(&self.triangles[first..], |vertex| self.places.at(self.point(vertex as usize))))
@@ -233,7 +233,7 @@ impl Model {
         if self.corners.is_empty() { self.places.len() } else { self.corners.len() }
     }
 
-    /// Returns the point of a vertex.
+    /// Returns the index of the point at which a vertex lies.
     fn point(&self, vertex: usize) -> usize {
         self.corners.get(vertex).map_or(vertex, |corner| corner.0 as usize)
     }
@@ -314,7 +314,8 @@ impl Model {
         }
     }
 
-    /// Removes the vertices that triangles do not use. They would affect the fit and cost time in every frame.
+    /// Removes the vertices that triangles do not use. Unused vertices would affect the fit and cost time in every
+    /// frame.
     fn drop_unused(&mut self) {
         let mut used = vec![false; self.places.len()];
         for &corner in self.triangles.iter().flatten() {

@@ -173,7 +173,7 @@ impl<'a> Reader<'a> {
     /// Reads a face and cuts it into triangles.
     fn face<'w>(&mut self, at: FilePlace, line: &[u8], words: impl Iterator<Item = &'w [u8]>) -> Result<(), LoadError> {
         let first = self.model.triangles.len();
-        // The normal of a flat face is computed after its corners are read. It will get this number.
+        // The normal of a flat face is computed after its corners are read, and will get this number.
         let flat = self.model.normals.len() as u32 + 1;
         let mut needs_normal = false;
         let mut known = [0; 2];

@@ -480,8 +480,8 @@ fn message(error: &ParseError) -> String {
     words.join(" ").chars().take(200).collect()
 }
 
-/// Returns the least size of a row in bytes. It is at least one, so that rows without properties cannot be announced
-/// without end.
+/// Returns the least size of a row in bytes. The size is at least one, so that a header cannot announce any number of
+/// rows without properties.
 fn least_row_bytes(element: &ElementDef, encoding: Encoding) -> u64 {
     let widths = element.properties.values().map(|p| match (&p.data_type, encoding) {
         // A digit, and a space or the end of the line.

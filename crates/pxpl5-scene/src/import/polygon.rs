@@ -13,7 +13,7 @@ const STRAIGHT: f64 = 1e-6;
 
 /// The result of cutting a polygon into triangles.
 pub(super) enum Cut {
-    /// The fan covers the polygon.
+    /// The fan of triangles covers the polygon, which is convex.
     Fan,
     /// These triangles cover the polygon, with the orientation of the polygon.
     Ears(Vec<[u32; 3]>),
@@ -137,7 +137,7 @@ fn area(fan: &[[u32; 3]], from_first: impl Fn(u32) -> DVec3) -> DVec3 {
     fan.iter().map(|&[_, b, c]| from_first(b).cross(from_first(c))).sum()
 }
 
-/// Returns the normal of a polygon, of any length. It is zero for a polygon without area.
+/// Returns the normal of a polygon, of any length, or zero for a polygon without area.
 pub(super) fn normal(fan: &[[u32; 3]], place: impl Fn(u32) -> DVec3) -> DVec3 {
     match near_one(fan, &place) {
         Some((origin, scale)) => area(fan, |corner| (place(corner) - origin) * scale),

@@ -20,7 +20,7 @@ impl<'a> Source<'a> {
     }
 
     /// Returns all lines with their numbers, from 1, without a byte order mark (U+FEFF). Lines may end in LF, CR LF or
-    /// CR alone. They are bytes, because comments and names may be in any encoding.
+    /// CR alone. Lines are returned as bytes, because comments and names may be in any encoding.
     pub(crate) fn lines(&self) -> impl Iterator<Item = (u64, &'a [u8])> + Clone {
         let text = self.bytes.strip_prefix(MARK).unwrap_or(self.bytes);
         let end = if text.contains(&b'\n') { b'\n' } else { b'\r' };

@@ -9,7 +9,7 @@ use spatialgl::{
     SweptDisplay, Tiling, Topology, Vertex, VertexBuffer, VolumeConfig, VolumeStats, Workers, render_volume,
 };
 
-/// Returns all figures of this module.
+/// Returns all figures that are counted or measured.
 pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError> {
     let exact = display(SliceClip::ShaderPlanes, Projection::Orthographic)?;
     let mut rows = passes(workers)?;

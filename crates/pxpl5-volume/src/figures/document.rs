@@ -90,7 +90,7 @@ fn missed(text: &mut String, rows: &[FigureRow]) {
     }
 }
 
-/// Returns the known cause of a missed row.
+/// Returns the known cause for which the model misses a figure.
 fn cause(id: &str) -> &'static str {
     match id {
         "P17" => {

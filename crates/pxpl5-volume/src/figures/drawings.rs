@@ -1,7 +1,7 @@
 //! Figures 4 to 12 of the paper, drawn again. Every pixel of the drawings is computed by the model.
 //!
-//! Plans are seen from above, with +x to the right and +z up. Their display has few slices, so that a single slice is
-//! visible.
+//! Plans are seen from above, with +x to the right and +z up. The display of the plans has few slices, so that a single
+//! slice is visible.
 
 use crate::choices::{ClipKind, ProjectionKind};
 use crate::error::VolumeError;

@@ -13,14 +13,14 @@ use spatialgl::{
 const P: Standing = Standing::Published;
 const D: Standing = Standing::Derived;
 
-/// A triangle that stands upright beside the axis, pixels. It is the first triangle of the specification.
+/// A triangle that stands upright beside the axis, pixels: the first triangle of the specification.
 pub(super) const TRIANGLE: [[f64; 3]; 3] = [[-200.3, -150.2, 40.1], [200.4, -150.2, 40.1], [0.6, 200.7, 40.1]];
 
 /// The slice in which the triangle is examined. The exact volume contains 209 pixels of it (derived: the area of the
 /// intersection).
 const SLICE: usize = 13;
 
-/// Returns all figures of this module.
+/// Returns all figures that need single slices.
 pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError> {
     let exact = display(SliceClip::ShaderPlanes, Projection::Orthographic)?;
     let frame = draw(&exact, workers)?;

@@ -44,7 +44,7 @@ pub struct Figures {
     pub schema: &'static str,
     /// One row for each figure that the code computes or counts: printed figures by number, then derived ones.
     pub figures: Vec<FigureRow>,
-    /// Inputs of the model, and numbers that follow from inputs by arithmetic alone. They have no verdict.
+    /// Inputs of the model, and numbers that follow from inputs by arithmetic alone, all without a verdict.
     pub definitions: Vec<DefinitionRow>,
     /// Statements of the paper without numbers.
     pub shown: Vec<Shown>,

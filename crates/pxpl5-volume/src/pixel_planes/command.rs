@@ -16,17 +16,17 @@ pub const CLIP_FRACTION_BITS: u32 = 26;
 pub struct SliceCorner {
     /// Column and row from the top left of the image, in sixteenths of a pixel.
     pub place: [i32; 2],
-    /// Distance from the slice, pixels.
+    /// Distance of the corner from the slice, pixels.
     pub off: f64,
     /// Red, green and blue, 0 to 255.
     pub colour: [f64; 3],
 }
 
-/// A triangle of one slice. It covers the pixels inside all edges at which the hyperbola is not negative. There is no
-/// depth.
+/// A triangle of one slice, without depth. The triangle covers the pixels inside all edges at which the hyperbola is
+/// not negative.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SliceTriangle {
-    /// Edge functions, all `>= 0` inside. They include the tie rule.
+    /// Edge functions, all `>= 0` inside, with the tie rule included.
     pub edges: [Linear; 3],
     /// The hyperbola A B + b on the triangle's plane, with [`CLIP_FRACTION_BITS`].
     pub clip: Quadratic,
@@ -91,8 +91,8 @@ impl SliceTriangle {
         self.program(layout).iter().for_each(|instruction| instruction.encode(out));
     }
 
-    /// Returns a bound of the rounding error of the hyperbola's value at any pixel of an image, square pixels. It is
-    /// half a unit for each of the six coefficients.
+    /// Returns a bound of the rounding error of the hyperbola's value at any pixel of an image, square pixels. The
+    /// bound is half a unit for each of the six coefficients.
     #[must_use]
     pub fn clip_rounding_px2([width, height]: Size) -> f64 {
         let [x, y] = [width, height].map(f64::from);
@@ -100,8 +100,8 @@ impl SliceTriangle {
     }
 }
 
-/// Returns the exact edge function from one corner to the next, in units of 1/256 px^2 at the middle of each pixel. It
-/// is one unit less if samples on the edge belong to the neighbour.
+/// Returns the exact edge function from one corner to the next, in units of 1/256 px^2 at the middle of each pixel. The
+/// function is one unit less if samples on the edge belong to the neighbour.
 fn edge(from: [i64; 2], to: [i64; 2], orientation: i64, [width, height]: Size) -> Option<Linear> {
     let steps = 1i64 << SUBPIXEL_BITS;
     let middle = steps / 2;

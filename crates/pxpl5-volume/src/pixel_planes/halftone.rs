@@ -18,7 +18,8 @@ pub fn threshold_field(layout: &Layout) -> Operand {
     scratch(layout).part(0, THRESHOLD_BITS)
 }
 
-/// Returns the field with the bit of a channel (0 red, 1 green, 2 blue) after halftoning. It follows the thresholds.
+/// Returns the field with the bit of a channel (0 red, 1 green, 2 blue) after halftoning, which follows the field of
+/// the thresholds.
 ///
 /// # Panics
 /// The same as [`threshold_field`].

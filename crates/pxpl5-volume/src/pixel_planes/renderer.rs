@@ -18,8 +18,8 @@ use std::sync::{Mutex, PoisonError};
 pub enum ArrayKind {
     /// The fast array, which computes whole values of the pixels that a command touches.
     Lanes,
-    /// The reference model, which executes one bit of one instruction at a time. It skips only steps that cannot change
-    /// a result.
+    /// The reference model, which executes one bit of one instruction at a time. The array skips only steps that cannot
+    /// change a result.
     BitSerial,
 }
 
@@ -64,7 +64,7 @@ pub struct SliceLoad {
     pub commands: Vec<u32>,
 }
 
-/// The view matrix of a slice as bits. It distinguishes the slice from the display's other slices.
+/// The view matrix of a slice as bits, which distinguishes the slice from the display's other slices.
 type ViewKey = [u64; 16];
 
 fn key_of(view: &SliceView) -> ViewKey {
@@ -112,7 +112,7 @@ impl PixelPlanesRenderer {
         Ok(Self { layout, wedge, bias: settings.clip_numbers.bias_px2, kind, work, loads })
     }
 
-    /// Returns the work done so far.
+    /// Returns the work that these renderers have done so far.
     #[must_use]
     pub fn work(&self) -> RendererWork {
         *self.work.lock().unwrap_or_else(PoisonError::into_inner)
@@ -189,7 +189,7 @@ impl PixelPlanesRenderer {
         }
     }
 
-    /// Returns the clocks of a region without triangles. It is still selected, cleared and halftoned.
+    /// Returns the clocks of a region without triangles, which is still selected, cleared and halftoned.
     fn empty_clocks(&self) -> u64 {
         self.clocks(CommandKind::SelectRegion) + self.clocks(CommandKind::Clear) + halftone_clocks(&self.layout)
     }

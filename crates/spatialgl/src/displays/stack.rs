@@ -7,7 +7,7 @@ use crate::slice_volume::SliceVolume;
 use crate::view::{PixelFormat, SliceView, SpatialDisplay};
 use glam::{DMat4, DVec3};
 
-/// Parallel planes perpendicular to z, from the farthest (least z) to the nearest. Their slabs touch.
+/// Parallel planes perpendicular to z, from the farthest (least z) to the nearest, with slabs that touch.
 #[derive(Clone, Debug)]
 pub struct PlaneStack {
     size: Size,

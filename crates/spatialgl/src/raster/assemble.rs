@@ -8,7 +8,7 @@ use crate::view::SliceView;
 /// Number of triangles in the round end of a line.
 const CAP_TRIANGLES: usize = 12;
 
-/// The matrices of a view as rows of numbers.
+/// The transformation of a view, with its matrices as rows of numbers.
 #[derive(Clone, Debug)]
 pub(super) struct SliceTransform {
     pub(super) rows: [[f64; 4]; 3],

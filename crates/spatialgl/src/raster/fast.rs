@@ -1,5 +1,5 @@
-//! The fast rasterizer of the host. It rejects whole triangles by their distance from the slice and draws eight pixels
-//! at a time.
+//! The fast rasterizer of the host, which rejects whole triangles by their distance from the slice and draws eight
+//! pixels at a time.
 
 use super::assemble::SliceTransform;
 use super::connected;
@@ -11,8 +11,7 @@ use crate::image::SliceImage;
 use crate::view::SliceView;
 use multiversion::multiversion;
 
-/// A fast renderer on one thread. It draws the same voxels as [`OracleRenderer`](super::OracleRenderer) and returns the
-/// same counts.
+/// A fast renderer on one thread with the same voxels and the same counts as [`OracleRenderer`](super::OracleRenderer).
 ///
 /// The loops are compiled once for each vector unit (see [`mod@multiversion`]), all from the same code and with the
 /// same results.

@@ -1,8 +1,8 @@
 //! The inner loops of the fast path: eight pixels of a row at a time, in plain Rust.
 //!
 //! Every lane computes the same as the reference model for one pixel, with the same operations in the same order. The
-//! optimizations cannot change a result. They omit pixels outside a conservative range of a row, and sums whose terms
-//! all have the same sign.
+//! optimizations cannot change a result. The loops omit pixels outside a conservative range of a row, and sums whose
+//! terms all have the same sign.
 
 use super::setup::{Edge, Setup, channel};
 use crate::command::Combine;
@@ -33,7 +33,7 @@ pub(super) struct Fragments {
 pub(super) struct Mode {
     pub(super) test: SampleTest,
     pub(super) combine: Combine,
-    /// True if only accepted fragments are generated.
+    /// True if rejected fragments do not count as generated.
     pub(super) clips_first: bool,
     pub(super) hides: bool,
 }
@@ -91,7 +91,7 @@ fn rows(setup: &Setup, mode: Mode, image: &mut SliceImage, accepts: impl Fn(f64,
     fragments
 }
 
-/// Draws a triangle of few pixels. The pixels of all its rows fill vectors one after the other.
+/// Draws a triangle of few pixels. All its pixels are numbered row by row and processed eight at a time.
 #[inline(always)]
 fn small(
     setup: &Setup,
@@ -245,7 +245,8 @@ impl Setup {
         weights
     }
 
-    /// Returns the weights at eight pixels of the bounds from index `first` on, numbered row by row.
+    /// Returns the weights at eight pixels from index `first` on. The pixels of the triangle's bounds are numbered row
+    /// by row.
     #[inline(always)]
     fn weights_of_block(&self, first: u32, width: u32) -> [EachLane; 3] {
         let columns = f64::from(width);

@@ -24,10 +24,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Coverage {
-    /// Samples at pixel centres inside the primitive.
+    /// The pixels whose centres lie inside the primitive.
     #[default]
     Sampled,
-    /// The same samples, plus a line of adjacent pixels along the intersection with the slice. **Beyond the paper**,
+    /// The same pixels, plus a line of adjacent pixels along the intersection with the slice. **Beyond the paper**,
     /// which wants this coverage and finds that GPUs do not offer it.
     Connected,
 }
@@ -41,7 +41,7 @@ pub struct SliceStats {
     pub generated: u64,
     /// Number of fragments that lie in the slice's volume.
     pub accepted: u64,
-    /// Number of pixels added to make intersections connected. Beyond the paper.
+    /// Number of pixels added to connect intersections, which is beyond the paper.
     pub added: u64,
 }
 
@@ -54,7 +54,7 @@ pub struct SliceWork<'a> {
     pub coverage: Coverage,
 }
 
-/// A renderer of slices. It receives an image in the state after [`SliceImage::clear`].
+/// A renderer of slices, which receives an image in the state after [`SliceImage::clear`].
 pub trait SliceRenderer: Send + Sync {
     /// Draws one slice in all its passes.
     fn render(&self, work: SliceWork<'_>, view: &SliceView, image: &mut SliceImage) -> SliceStats;

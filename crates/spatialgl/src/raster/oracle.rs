@@ -10,7 +10,7 @@ use crate::image::SliceImage;
 use crate::slice_volume::SampleTest;
 use crate::view::SliceView;
 
-/// The reference model: the definition of the voxels that every other renderer must draw. It has no optimizations.
+/// The reference model, without optimizations: the definition of the voxels that every other renderer must draw.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct OracleRenderer;
 

@@ -87,7 +87,7 @@ impl Edge {
         self.b * (y - self.y) + self.c
     }
 
-    /// Returns the value at a homogeneous point.
+    /// Returns the value of the function at a homogeneous point.
     #[inline(always)]
     fn dot(&self, corner: &Place) -> f64 {
         if corner.w > 0.0 {
@@ -101,8 +101,8 @@ impl Edge {
         Self { a: -self.a, b: -self.b, c: -self.c, ..self }
     }
 
-    /// Returns the least value of the function for a sample inside. It is zero for left edges and horizontal upper
-    /// edges, which include the samples on them. For other edges it is the smallest number above zero.
+    /// Returns the least value of the function for a sample inside. The value is zero for left edges and horizontal
+    /// upper edges, which include the samples on them. For other edges it is the smallest number above zero.
     #[inline(always)]
     fn least(&self) -> f64 {
         let has_its_samples = self.a > 0.0 || (self.a == 0.0 && self.b > 0.0);
@@ -122,7 +122,7 @@ fn anchor(from: &Place, to: &Place) -> [f64; 2] {
     if one < other { one } else { other }
 }
 
-/// Ranges of columns and rows of pixels, ends excluded.
+/// Ranges of columns and rows of pixels, with exclusive ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Bounds {
     pub(super) x: [u32; 2],

@@ -1,4 +1,4 @@
-//! Supersampling, which the paper rejects as too expensive. It serves for comparison with jitter.
+//! Supersampling for comparison with jitter. The paper rejects supersampling as too expensive.
 
 use super::{Coverage, SliceRenderer, SliceStats, SliceWork};
 use crate::command::Combine;

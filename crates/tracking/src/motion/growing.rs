@@ -21,7 +21,7 @@ pub struct Growing(Arc<RwLock<Recording>>);
 pub struct GrowthError {
     /// Time of the last sample of the motion.
     pub last_ps: u64,
-    /// Time of the first of the added samples.
+    /// Time of the first added sample.
     pub found_ps: u64,
 }
 

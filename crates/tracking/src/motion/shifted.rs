@@ -7,7 +7,7 @@ use crate::pose::Pose;
 /// A motion that runs ahead of another motion by a constant time: the pose at t is the other's pose at t + `by_ps`.
 #[derive(Clone, Copy, Debug)]
 pub struct Shifted<M> {
-    /// The original motion.
+    /// Original motion, which runs `by_ps` behind.
     pub motion: M,
     /// Time by which the original motion is advanced, ps.
     pub by_ps: u64,

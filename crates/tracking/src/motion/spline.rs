@@ -7,8 +7,8 @@ use crate::identity::SettingSink;
 use crate::random::{bell, bits, stream, unit};
 use crate::time::seconds;
 
-/// Variance of a spline with independent coefficients of variance 1: the integral of the squared quintic B-spline. It
-/// equals the centre value of the B-spline of degree 11, 655177 / 1663200.
+/// Variance of a spline with independent coefficients of variance 1: the integral of the squared quintic B-spline. This
+/// integral equals the centre value of the B-spline of degree 11, 655177 / 1663200.
 const VARIANCE: f64 = 655_177.0 / 1_663_200.0;
 
 /// Number of successive knots with the same activity level, so that calm and lively spells last some seconds.

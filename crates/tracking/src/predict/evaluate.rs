@@ -7,7 +7,7 @@ use crate::tracker::TrackerModel;
 /// Errors of predicted poses against the true motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PredictionError {
-    /// Number of predictions behind the other figures.
+    /// Number of evaluated predictions.
     pub n: u64,
     /// Mean distance between predicted and true position, m.
     pub mean_m: f64,

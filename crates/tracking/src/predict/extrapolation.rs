@@ -81,7 +81,7 @@ mod tests {
     use crate::time::PS_PER_MS;
     use glam::DQuat;
 
-    /// Uneven times, in ms.
+    /// Uneven times of reports, ms.
     const TIMES: [u64; 7] = [0, 3, 11, 12, 20, 31, 33];
 
     fn fed<T: Movable>(order: Order, baseline: usize, value: impl Fn(f64) -> T) -> Extrapolation<T> {

@@ -41,7 +41,8 @@ pub fn constant_velocity(wp: f64) -> Gain {
     Gain { re: 1.0, im: wp }
 }
 
-/// Returns the gain of x + v p + a p^2 / 2: 1 + j w p - (w p)^2 / 2. Its magnitude is sqrt(1 + (w p)^4 / 4).
+/// Returns the gain of x + v p + a p^2 / 2: 1 + j w p - (w p)^2 / 2. The magnitude of this gain is sqrt(1 + (w p)^4 /
+/// 4).
 pub fn constant_acceleration(wp: f64) -> Gain {
     Gain { re: 1.0 - wp * wp / 2.0, im: wp }
 }

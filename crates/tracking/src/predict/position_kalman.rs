@@ -6,16 +6,16 @@ use crate::time::span_s;
 /// Assumptions of a filter about noise.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Belief {
-    /// Variance of each axis of a measurement.
+    /// Variance of the measurement noise of each axis.
     pub(super) measurement: f64,
-    /// Spectral density of the white jerk.
+    /// Spectral density of the white jerk of the motion.
     pub(super) jerk: f64,
     /// Variances of velocity and acceleration at the start.
     pub(super) start: (f64, f64),
 }
 
-/// Returns the growth over `dt` of the covariance of value, velocity and acceleration under white jerk of density 1. It
-/// is the integral of (s^2/2, s, 1)(s^2/2, s, 1)^T over s.
+/// Returns the growth over `dt` of the covariance of value, velocity and acceleration under white jerk of density 1.
+/// The growth is the integral of (s^2/2, s, 1)(s^2/2, s, 1)^T over s.
 pub(super) fn white_jerk(dt: f64) -> DMat3 {
     let d2 = dt * dt;
     let d3 = dt * dt * dt;

@@ -14,7 +14,7 @@ pub struct Sighting {
 /// One pass of the bob, measured by the system's own time stamps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct InsidePass {
-    /// Detection of the low point by the host.
+    /// Report by which the host detected the low point.
     pub sighting: Sighting,
     /// Start of the frame that the low point requested, ps.
     pub started_ps: u64,
@@ -38,9 +38,9 @@ pub struct OutsidePass {
 pub struct Latency {
     /// Number of passes of the bob.
     pub n: usize,
-    /// Mean over the passes, seconds.
+    /// Mean latency over the passes, seconds.
     pub mean_s: f64,
-    /// Sample standard deviation (division by n - 1), seconds. It is NaN for a single pass.
+    /// Sample standard deviation (division by n - 1), seconds, or NaN for a single pass.
     pub deviation_s: f64,
     /// Latency of the fastest pass, seconds.
     pub least_s: f64,
@@ -105,17 +105,17 @@ pub struct Measurement {
     pub outside_passes: Vec<OutsidePass>,
     /// Measurements from inside, in the order of the passes.
     pub inside_passes: Vec<InsidePass>,
-    /// Latencies by oscilloscope and photodiodes.
+    /// Latencies measured with the oscilloscope and the photodiodes.
     pub outside: Side,
-    /// Latencies by the time stamps of host and boards.
+    /// Latencies measured by the time stamps of host and boards.
     pub inside: Side,
     /// Bound of the excess of outside tracking over inside tracking: the detection's delay, one report interval for a
     /// crossing.
     pub tracking_bound_ps: u64,
     /// Bound of the excess of outside rendering over inside rendering: the photodiode's delay in the scan.
     pub rendering_bound_ps: u64,
-    /// Bound by which outside rendering can be shorter than inside rendering. It is 0 unless the pipeline counts a
-    /// frame as shown during the scan, at a line below the photodiode.
+    /// Bound by which outside rendering can be shorter than inside rendering. The bound is 0 unless the pipeline counts
+    /// a frame as shown during the scan, at a line below the photodiode.
     pub rendering_early_ps: u64,
 }
 
@@ -177,7 +177,7 @@ impl Measurement {
     }
 }
 
-/// The channels of the oscilloscope.
+/// The traces of the oscilloscope's three channels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Oscilloscope {
     /// Photodiode at the low point: one pulse for each low point, centred on its instant.

@@ -32,7 +32,7 @@ const EARLY_PART: u64 = 10;
 /// The pendulum rig. The pendulum's pivot and the tracker's origin are both at the origin of the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PendulumRig {
-    /// The pendulum, undamped and in closed form.
+    /// Undamped pendulum whose bob carries the tracker.
     pub pendulum: Pendulum,
     /// Method by which the host detects the low point.
     pub detection: Detection,
@@ -49,7 +49,7 @@ pub enum RigError {
     /// The tracker stopped reporting, or the host detected too few low points.
     #[error("expected {expected} low points, the host saw {found}")]
     TooFewPasses {
-        /// Requested number of low points.
+        /// Number of low points that the measurement needs.
         expected: usize,
         /// Number of low points that the host detected.
         found: usize,
@@ -59,7 +59,7 @@ pub enum RigError {
     NoLight {
         /// Number of frames that low points requested.
         expected: usize,
-        /// Number of changes between dark and light.
+        /// Number of changes between dark and light that the photodiode saw.
         found: usize,
     },
 }

@@ -14,7 +14,7 @@ use crate::config::{self as table, Tables};
 pub struct TrackerConfig {
     /// Name of the tracker, shown in reports of a run.
     pub name: String,
-    /// Solutions per second over all receivers, 1 to 10,000.
+    /// Measurements per second over all receivers, 1 to 10,000.
     pub rate_hz: u32,
     /// Number of receivers that share the rate, 1 to 16. The head's receiver is sent first.
     pub receivers: u32,
@@ -28,17 +28,17 @@ pub struct TrackerConfig {
     pub position_noise_m: f64,
     /// White orientation noise about each axis, rms, degrees.
     pub orientation_noise_deg: f64,
-    /// Systematic position error of each axis, rms over installations, m. It is drawn once from the seed and is the
-    /// same in every report.
+    /// Systematic position error of each axis, rms over installations, m. The error is drawn once from the seed and is
+    /// the same in every report.
     pub position_bias_m: f64,
-    /// Systematic orientation error about each axis, rms over installations, degrees. It is drawn once from the seed
-    /// and is the same in every report.
+    /// Systematic orientation error about each axis, rms over installations, degrees. The error is drawn once from the
+    /// seed and is the same in every report.
     pub orientation_bias_deg: f64,
     /// Gain a of the tracker's filter x' = a x + (1 - a) x', above 0. A gain of 1 turns the filter off.
     pub filter_gain: f64,
     /// The serial cable, or `None` if the latencies include the cable.
     pub serial: Option<SerialLine>,
-    /// Handling of the serial port by the host's kernel.
+    /// Method by which the host's kernel reads the serial port.
     pub host: HostLine,
     /// Time from the first report to the crash of a host that interrupts for each character, or `None` if the host
     /// never crashes. TR94 reports this crash for the Flock of Birds.

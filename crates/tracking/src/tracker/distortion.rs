@@ -9,8 +9,9 @@ use crate::rotation;
 /// Distortion by metal near a magnetic tracker: a smooth error that depends only on the position. A plane appears as a
 /// bowl, and even a still head sees objects in wrong places (TR94).
 ///
-/// At distance r from the transmitter, positions move towards the metal by depth r^2 / (1 + (r / reach)^2). This is a
-/// parabola near the transmitter. Orientations tilt with the bowl's surface. The true magnetic field is not modelled.
+/// At distance r from the transmitter, positions move towards the metal by depth r^2 / (1 + (r / reach)^2). This
+/// function is a parabola near the transmitter. Orientations tilt with the bowl's surface. The true magnetic field is
+/// not modelled.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MagneticDistortion {
@@ -46,7 +47,7 @@ impl MagneticDistortion {
         let axis = self.towards_metal.normalize();
         let saturation = 1.0 + from_transmitter.length_squared() / (self.reach_m * self.reach_m);
         let depth = self.depth_per_m2 * from_transmitter.length_squared() / saturation;
-        // The gradient of the depth. Its component across the axis is the slope of the bowl.
+        // The component of the depth's gradient across the axis is the slope of the bowl.
         let gradient = from_transmitter * (2.0 * self.depth_per_m2 / (saturation * saturation));
         Pose {
             position: pose.position + axis * depth,
@@ -78,7 +79,7 @@ mod tests {
         METAL.distort(&Pose::at(DVec3::new(x, 0.0, 0.0))).position.y
     }
 
-    /// Returns the second difference of the height over 10 mm. It is negative if the plane is curved downwards.
+    /// Returns the second difference of the height over 10 mm, which is negative if the plane is curved downwards.
     fn second_difference(x: f64) -> f64 {
         height(x + 0.01) - 2.0 * height(x) + height(x - 0.01)
     }

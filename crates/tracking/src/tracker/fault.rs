@@ -12,14 +12,14 @@ const MOST_LIKELY: f64 = 0.99;
 pub enum TrackerFault {
     /// The tracker fails for good: no report reaches the host at or after this instant.
     Silence {
-        /// First instant without arrivals, ps.
+        /// First instant at which no report arrives, ps.
         from_ps: u64,
     },
     /// The tracker measures no solutions in [from, to).
     Dropout {
-        /// First instant without solutions, ps.
+        /// First instant without measured solutions, ps.
         from_ps: u64,
-        /// First instant with solutions again, ps.
+        /// First instant at which solutions are measured again, ps.
         to_ps: u64,
     },
     /// Each solution is lost with this probability.

@@ -7,8 +7,8 @@ pub struct TrackerReport {
     pub solution: u64,
     /// Instant at which the orientation was true, ps.
     pub measured_ps: u64,
-    /// Instant at which the position was true, ps. It equals `measured_ps` except for the Flock of Birds, whose
-    /// position is older.
+    /// Instant at which the position was true, ps. This instant equals `measured_ps` except for the Flock of Birds,
+    /// whose position is older.
     pub position_measured_ps: u64,
     /// Instant at which the host receives the report, ps.
     pub arrives_ps: u64,

@@ -43,7 +43,7 @@ impl SerialLine {
     }
 }
 
-/// Handling of the serial port by the host's kernel.
+/// The method by which the host's kernel reads the serial port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum HostLine {

@@ -111,7 +111,7 @@ pub fn drift_deg(deg_per_s: f64, span_ps: u64) -> f64 {
     deg_per_s * seconds(span_ps)
 }
 
-/// Returns the angle between two vectors, radians. It is exact for small angles too.
+/// Returns the angle between two vectors, radians, with full accuracy for small angles too.
 pub(super) fn angle_between(a: DVec3, b: DVec3) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
 }

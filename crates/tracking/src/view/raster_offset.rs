@@ -18,9 +18,9 @@ pub struct RasterOffset {
     pub yaw: f64,
     /// Pitch of the offset, radians. A positive value moves the picture up.
     pub pitch: f64,
-    /// Rate of change of the yaw, rad/s.
+    /// Rate of change of the offset's yaw, rad/s.
     pub yaw_rate: f64,
-    /// Rate of change of the pitch, rad/s.
+    /// Rate of change of the offset's pitch, rad/s.
     pub pitch_rate: f64,
     /// Instant at which `yaw` and `pitch` hold, ps.
     pub at_ps: u64,
@@ -42,7 +42,7 @@ impl RasterOffset {
         Self { yaw_rate: -of_head.y, pitch_rate: -of_head.x, ..self }
     }
 
-    /// Returns yaw and pitch at `t_ps`.
+    /// Returns yaw and pitch of the offset at `t_ps`.
     fn angles(&self, t_ps: u64) -> (f64, f64) {
         let dt_s = span_s(self.at_ps, t_ps);
         (self.yaw + self.yaw_rate * dt_s, self.pitch + self.pitch_rate * dt_s)

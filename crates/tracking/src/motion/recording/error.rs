@@ -116,7 +116,7 @@ pub enum RecordingError {
     TooFast {
         /// Number of the line, from 1.
         line: u64,
-        /// Speed from the sample before, in `unit`.
+        /// Speed since the sample before, in `unit`.
         found: f64,
         /// Unit of the speed: m/s or rad/s.
         unit: &'static str,

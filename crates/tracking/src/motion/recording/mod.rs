@@ -54,10 +54,10 @@ pub enum End {
 }
 
 impl End {
-    /// Every end with its name in experiment files.
+    /// Every behaviour at the end of a recording, with its name in experiment files.
     pub const NAMES: [(&'static str, Self); 3] = [("error", Self::Refuse), ("hold", Self::Hold), ("loop", Self::Loop)];
 
-    /// Returns the name of the end in experiment files and on the command line.
+    /// Returns the name of this behaviour in experiment files and on the command line.
     pub fn name(self) -> &'static str {
         Self::NAMES.iter().find(|(_, end)| *end == self).map_or("", |(name, _)| name)
     }
@@ -66,7 +66,7 @@ impl End {
 /// The format of a recording's file, where the contents of the file do not determine it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RecordingFormat {
-    /// Mapping from fields to columns. It is empty for a file whose header or first line is recognized.
+    /// Mapping from fields to columns. The mapping is empty for a file whose header or first line is recognized.
     pub columns: Columns,
     /// Axis convention of the file, or `None` for the usual convention of this kind of file.
     pub axes: Option<Axes>,
