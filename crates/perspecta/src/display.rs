@@ -83,11 +83,13 @@ impl Display for Perspecta {
                 self.revolutions += 1;
                 if let Some(buffer) = self.store.swap(context.now()) {
                     self.swaps += 1;
+                    // The notice of a swap takes the time of one word.
                     let at = context.now() + Span::from_ns(self.config.word_ns);
                     context.output(at, DisplayOutput::Swapped { surface: 0, buffer, tick });
                 }
             }
             DisplayEvent::Delivered { body, .. } => {
+                // Unusable messages are counted, and the first one is described.
                 if let StoreReceipt::Fault(what) = self.receive(&body, context.now()) {
                     self.faults += 1;
                     self.first_fault.get_or_insert(what);
@@ -157,6 +159,7 @@ impl DisplayConfig for PerspectaConfig {
         DisplayConfig::check(self)?;
         let width = self.width as u32;
         let height = self.height as u32;
+        // Every slice is a surface of the display.
         let labels = LABELS.iter().copied().take(self.slices as usize);
         let surfaces = labels.map(|label| Surface { label, title: label, width, height }).collect();
         Ok(Box::new(Perspecta {

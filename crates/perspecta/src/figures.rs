@@ -125,6 +125,7 @@ fn arithmetic(config: &PerspectaConfig) -> Vec<Definition> {
     let pixels = config.slices as f64 * slice;
     let packed = pixels / f64::from(PIXELS_PER_WORD) * 4.0;
     let tile = f64::from(Tiling::PAPER.tile.unwrap_or(0));
+    // Sizes follow from the numbers of slices, pixels and bits.
     let waste = 100.0 * (1.0 - PROJECTOR_PIXEL_BITS / GPU_PIXEL_BITS);
     let stores = 2.0 * pixels * PROJECTOR_PIXEL_BITS / 8.0;
     vec![

@@ -191,6 +191,7 @@ pub fn view_planes(
     sum(planes.size(), planes.slices(), camera, options, workers, &|k, each| {
         let row = planes.size()[0] / 8;
         for (at, word) in (0u32..).zip(planes.slice(k)).filter(|(_, word)| **word != 0) {
+            // Visit the lit pixels of a word. Bit 7 is the leftmost pixel.
             let mut rest = (word | word >> 8 | word >> 16) & 0xFF;
             while rest != 0 {
                 let bit = rest.ilog2();
@@ -220,6 +221,7 @@ pub fn view_undithered(
     let size = frame.planes.size();
     let light = sum(size, frame.planes.slices(), camera, options, workers, &|k, each| {
         let drawn = colours.len() as u32;
+        // Slices that were not drawn show a drawn slice mirrored.
         let is_mirrored = k >= drawn;
         for ColourSample { pixel, colour } in &colours[(k % drawn) as usize] {
             let x = pixel % size[0];

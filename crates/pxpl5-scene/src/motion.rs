@@ -190,6 +190,7 @@ impl HeadPath {
     fn eye_and_gaze(&self, seconds: f64, swing: &Swing) -> (DVec3, DQuat) {
         match *self {
             HeadPath::Still { eye, target } => facing(eye.as_dvec3(), target.as_dvec3()),
+            // A pan is the only path whose gaze has no target.
             HeadPath::Pan { eye, deg_per_s } => (eye.as_dvec3(), sway::turn_about(DVec3::Y, deg_per_s * seconds)),
             HeadPath::Orbit { target, distance, height, deg_per_s } => {
                 let arm = direction(deg_per_s * seconds, 0.0) * distance + DVec3::Y * height;

@@ -176,6 +176,7 @@ impl Viewpoint {
 impl Variant {
     fn draw(&self, shared: &VolumeSettings, scene: &Scene, workers: &dyn Workers) -> Result<Volume, VolumeError> {
         let mut settings = shared.clone();
+        // Everything else stays as in the shared settings.
         settings.clip = self.clip;
         settings.projection = self.projection;
         settings.draw.samples = self.samples;
@@ -184,6 +185,7 @@ impl Variant {
     }
 
     fn row(&self, volume: &Volume) -> VariantRow {
+        // Most columns come from the report, so that both always agree.
         let report = volume.report();
         let stats = &volume.frame.stats;
         let time = volume.time();

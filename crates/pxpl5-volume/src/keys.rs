@@ -60,6 +60,7 @@ impl VolumeSettings {
             "draw.combine" => choose(&mut self.combine, text),
             "draw.lit" => choose(&mut self.is_lit, text),
             "display.rotation" => choose(&mut self.rotation, text),
+            // All other paths are numbers of a table.
             _ => return self.set_number(path, text, place),
         };
         done.map_err(|expected| wrong(path, text, place, expected))
@@ -84,6 +85,7 @@ impl VolumeSettings {
             None => (text, None),
         };
         let clip = ClipKind::named(name)?;
+        // Only some clips have a number, and the number belongs to one of two settings.
         let own = match clip {
             ClipKind::Tapered | ClipKind::Parallel => Some(&mut self.clip_numbers.offset_px),
             ClipKind::Hyperbolic => Some(&mut self.clip_numbers.bias_px2),

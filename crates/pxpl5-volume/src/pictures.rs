@@ -185,6 +185,7 @@ pub fn tile_map(volume: &Volume) -> Option<RgbImage> {
     let columns = MAP_COLUMNS.min(batches.len() as u32);
     let mut map = RgbImage::from_pixel(columns * (grid[0] + 1), rows * (grid[1] + 1), Rgb([64, 64, 96]));
     for (i, slices) in (0u32..).zip(batches) {
+        // A line of one pixel separates the batches.
         let place = [i % MAP_COLUMNS * (grid[0] + 1), i / MAP_COLUMNS * (grid[1] + 1)];
         fill(&mut map, place, grid, Rgb([0; 3]));
         for sample in slices.iter().flatten() {
@@ -193,6 +194,7 @@ pub fn tile_map(volume: &Volume) -> Option<RgbImage> {
             map.put_pixel(place[0] + x, place[1] + y, Rgb([255; 3]));
         }
     }
+    // Enlarge the map, since a tile is a single pixel.
     let scale = 3;
     let [map_width, map_height] = [map.width() * scale, map.height() * scale];
     Some(imageops::resize(&map, map_width, map_height, FilterType::Nearest))
@@ -217,6 +219,7 @@ pub fn tiles_of_slice(volume: &Volume, slice: u32, tiling: Tiling) -> RgbImage {
     let mut shown = RgbImage::new(picture.width(), picture.height());
     for tile in 0..grid.tiles() {
         let [left, top, right, bottom] = grid.rectangle(tile);
+        // A tile is occupied if any of its pixels is lit.
         let places = || (top..bottom).flat_map(move |y| (left..right).map(move |x| (x, y)));
         let is_lit = |(x, y): (u32, u32)| picture.get_pixel(x, y).0 != [0; 3];
         let is_occupied = places().any(is_lit);

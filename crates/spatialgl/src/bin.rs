@@ -128,6 +128,7 @@ impl Codes {
                 least = least.min(d);
                 most = most.max(d);
             }
+            // The distances of the corners bound the distances of the whole primitive.
             let (and, or) = sides(least, most, norm(plane), tolerance, layout.tolerance, extra);
             codes.and |= u32::from(and) << i;
             codes.or |= u32::from(or) << i;

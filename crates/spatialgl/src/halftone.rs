@@ -23,6 +23,7 @@ impl Halftone {
     /// [`SpatialError::Setting`] unless the size is 2, 4, 8 or 16.
     pub fn bayer(size: u32) -> Result<Self, SpatialError> {
         require([2, 4, 8, 16].contains(&size), "halftone.matrix", "2, 4, 8 or 16", size)?;
+        // Repeat small matrices, so that eight thresholds can always be read at once.
         let period = size.max(8);
         let threshold = |i: u32, j: u32| ((2 * bayer(size, i % size, j % size) + 1) * 255 / (2 * size * size)) as u8;
         let rows = (0..size).map(|j| (0..period).map(|i| threshold(i, j)).collect()).collect();

@@ -47,6 +47,7 @@ pub fn connected(display: &dyn SpatialDisplay, commands: &CommandBuffer, frame: 
 
 /// Calls `each` with both ends of every triangle's intersection with the plane of a slice.
 fn each_curve(view: &SliceView, commands: &CommandBuffer, all: &Bin, mut each: impl FnMut([[f64; 3]; 2])) {
+    // Clusters away from the slice are skipped.
     let middle = view.volume.middle();
     let row = view.view.transpose().z_axis.to_array();
     for primitive in all.clusters().flat_map(|cluster| cluster.reaching(&row, [middle, middle])) {
@@ -126,6 +127,7 @@ impl Around {
         for sample in drawn {
             let x = sample.pixel % width;
             let y = sample.pixel / width;
+            // Mark the pixel and its eight neighbours inside the image.
             for row in y.saturating_sub(1)..(y + 2).min(height) {
                 for column in x.saturating_sub(1)..(x + 2).min(width) {
                     near[(row * width + column) as usize] = true;

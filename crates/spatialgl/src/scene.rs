@@ -20,6 +20,7 @@ pub const SCENE_REACH: f64 = 0.9;
 /// [`SpatialError`] if the scene has vertices that a recording cannot hold.
 pub fn record_scene(scene: &Scene, radius: f64, lit: bool) -> Result<CommandBuffer, SpatialError> {
     let (centre, reach) = scene.bounding_sphere();
+    // A scene of a single point is not scaled.
     let scale = if reach > 0.0 { SCENE_REACH * radius / f64::from(reach) } else { 1.0 };
     let mut context = Context::default();
     context.model_view = DMat4::from_scale(DVec3::splat(scale)) * DMat4::from_translation(-centre.as_dvec3());

@@ -90,6 +90,7 @@ fn quadrangle(solid: &mut Solid, corners: [DVec3; 4], colour: [u8; 3]) {
 }
 
 fn hall(solid: &mut Solid) {
+    // Corners run anticlockwise seen from inside the hall.
     let corner = |x: f64, y: f64, z: f64| DVec3::new(x * HALF_M, y * HEIGHT_M, z * HALF_M);
     let sides = [
         (

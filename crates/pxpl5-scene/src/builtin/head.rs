@@ -161,6 +161,7 @@ fn between(a: f64, b: f64, t: f64) -> f64 {
 
 /// Returns the colour of a point. Layers of paint have soft edges, because the grid is too coarse for hard edges.
 fn colour(point: DVec3) -> Colour {
+    // The head is symmetric, so one half is enough.
     let p = DVec3::new(point.x.abs(), point.y, point.z);
     let eye_depth = (p - EYE).length() - EYE_RADIUS - 0.05;
     let layers = [
@@ -172,6 +173,7 @@ fn colour(point: DVec3) -> Colour {
         (PUPIL, eye_depth.max(off_axis(p) - 0.27), 0.12),
     ];
     layers.into_iter().fold(SKIN, |under, (over, outside, edge)| {
+        // Blend over a soft edge of the width `edge`.
         let share = (0.5 - outside / edge / 2.0).clamp(0.0, 1.0);
         [0, 1, 2].map(|k| {
             let under = f64::from(under[k]);

@@ -35,6 +35,7 @@ pub(super) fn scene() -> Scene {
     ventral_fin(&mut solid); // 10
     canopy(&mut solid); // 24
     boom(&mut solid); // 3
+    // Moving control surfaces are structures of their own.
     solid.end_structure("airframe", None);
     for (name, side) in [("left aileron", 1.0), ("right aileron", -1.0)] {
         aileron(&mut solid, name, side); // 8
@@ -48,6 +49,7 @@ pub(super) fn scene() -> Scene {
 
 /// Scales the aircraft and its hinges to [`RADIUS_M`] about the origin, and makes a scene.
 fn finish(mut solid: Solid) -> Scene {
+    // Hinges move and scale together with the vertices.
     let balls = solid.mesh.positions.iter().map(|&p| (p, 0.0));
     let (centre, radius) = bounding_sphere(balls);
     let scale = RADIUS_M / radius;

@@ -42,6 +42,7 @@ impl Solid {
                 part.push(point, DVec3::ZERO, colour);
             }
         }
+        // Join each section with the next, side by side.
         let sides = sections[0].len() as u32;
         for ring in 0..sections.len() as u32 - 1 {
             for side in 0..sides {

@@ -37,6 +37,7 @@ impl<'a> Surface<'a> {
             around: Vec::new(),
             left: scene.triangles().len(),
         };
+        // Points are not shared between structures, which can move apart.
         for structure in scene.structures() {
             surface.weld(structure.vertices.clone());
         }

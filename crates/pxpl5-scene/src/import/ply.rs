@@ -109,6 +109,7 @@ fn header_of(bytes: &[u8]) -> (String, usize, u8) {
 impl<'a> Rows<'a> {
     fn after_header(source: &'a Source<'a>) -> Result<Self, LoadError> {
         let (text, behind, end) = header_of(source.bytes);
+        // Let the library parse the cleaned header, and find the line of an error.
         let mut reader = Reader::new(Cursor::new(text.as_bytes()));
         let parsed = Parser::<VertexRow>::new().read_header(&mut reader);
         let line = reader.line() as u64;
@@ -118,6 +119,7 @@ impl<'a> Rows<'a> {
         })?;
         check_header(source, &text)?;
         let mut cursor = Cursor::new(source.bytes);
+        // Rows are read from the original bytes.
         cursor.set_position(behind as u64);
         Ok(Self {
             source,
@@ -181,6 +183,7 @@ impl<'a> Rows<'a> {
         let mut words = self.text.split_ascii_whitespace();
         let mut row = E::new();
         for (name, property) in &element.properties {
+            // A list begins with its length.
             let value = match &property.data_type {
                 PropertyType::Scalar(kind) => words.next().and_then(|word| scalar(kind, word)),
                 PropertyType::List(_, kind) => {
@@ -194,6 +197,7 @@ impl<'a> Rows<'a> {
                 return Err(self.source.syntax(at, row_of(element), found));
             }
         }
+        // A row must not have more numbers than properties.
         match words.next() {
             None => Ok(row),
             Some(surplus) => Err(self.source.syntax(at, format!("the end of {}", row_of(element)), excerpt(surplus))),
@@ -203,6 +207,7 @@ impl<'a> Rows<'a> {
     /// Reads the next line that is not blank.
     fn next_line(&mut self, element: &ElementDef) -> Result<(), LoadError> {
         loop {
+            // Take the text up to the next line end, or to the end of the file.
             let begin = self.cursor.position() as usize;
             let rest = &self.source.bytes[begin..];
             if rest.is_empty() {
@@ -335,12 +340,14 @@ impl<'a> Rows<'a> {
             let mut strip = Vec::with_capacity(3);
             let mut turned = 0;
             for n in 0..row.len() {
+                // -1 begins a new strip.
                 if row.corner(n) == -1 {
                     strip.clear();
                     turned = 0;
                     continue;
                 }
                 strip.push(self.corner(at, &row, n, mesh)?);
+                // Swapping the first two corners of every second triangle keeps the orientation.
                 if let [_, _, last] = strip[..] {
                     push_slowly(&mut mesh.triangles, [strip[turned], strip[1 - turned], last]);
                     strip.remove(0);
@@ -409,6 +416,7 @@ fn row_of(element: &ElementDef) -> String {
 fn check_header(source: &Source<'_>, header: &str) -> Result<(), LoadError> {
     let mut known = Vec::new();
     for (number, line) in (1..).zip(header.lines()) {
+        // `known` collects the properties of the current element.
         let words: Vec<&str> = line.split_whitespace().collect();
         match words.as_slice() {
             ["format", _, version, ..] if *version != "1.0" => {

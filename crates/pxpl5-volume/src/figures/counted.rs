@@ -56,6 +56,7 @@ fn small_triangle() -> Result<CommandBuffer, VolumeError> {
 /// Returns D8, P9 and D7: queries and clears of a volume with and without batches, and the number of words in a slice.
 fn batches(display: &SweptDisplay, workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError> {
     let drawn = |batch| {
+        // The same triangle is drawn with batches of one slice and of four slices.
         let tiling = Tiling { batch, ..Tiling::PAPER };
         let config = VolumeConfig { tiling, binning: Binning::AllPlanes, ..VolumeConfig::paper() };
         render_volume(display, &recording()?, &config, &HostRenderer, workers).map_err(VolumeError::from)
@@ -152,6 +153,7 @@ fn bounds() -> Vec<Figure> {
         .regions
         .iter()
         .map(|region| {
+            // A step between two different codes crosses a plane.
             let changes = (0..STEPS).map(|step| (code(step), code((step + 1) % STEPS)));
             let ends = changes.filter(|(here, next)| here != next && [*here, *next].contains(&region.signs));
             (ends.fold(0, |planes, (here, next)| planes | (here ^ next)) & region.bounds).count_ones()

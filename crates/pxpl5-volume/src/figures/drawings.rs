@@ -175,6 +175,7 @@ fn sliver(workers: &dyn Workers) -> Result<RgbImage, VolumeError> {
 fn bin_plan() -> RgbImage {
     let layout = BinLayout::double_wedges(0.0);
     RgbImage::from_fn(SIDE, SIDE, |x, y| {
+        // The signs of a point determine its sector.
         let code = layout.code(place(x, y));
         let sector = layout.regions.iter().position(|region| region.signs == code);
         sector.map_or(DARK, |sector| {
@@ -196,6 +197,7 @@ fn outcodes() -> RgbImage {
         let column = x / cell;
         let is_gap = x % cell < 2 || y % cell < 2;
         let is_touched = touched >> sector & 1 == 1;
+        // Four columns of signs, a gap, then three columns for touched sectors.
         match column {
             _ if is_gap => DARK,
             0..=3 => Rgb([if layout.regions[sector].signs >> (3 - column) & 1 == 1 { 240 } else { 60 }; 3]),

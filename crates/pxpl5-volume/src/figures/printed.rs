@@ -145,6 +145,7 @@ fn pixels() -> Figure {
 fn stencil(frame: &VolumeFrame) -> Vec<Figure> {
     let marked = |slice: usize| frame.colours.as_ref().map_or(0, |colours| colours[slice].len()) as f64;
     let queries = Tiling::PAPER.grid(frame.planes.size()).tiles();
+    // Every batch is cleared once and queried tile by tile.
     let per_batch = frame.stats.queries as f64 / frame.stats.stencil_clears.max(1) as f64;
     vec![
         row(
@@ -172,6 +173,7 @@ fn jitter() -> Result<Vec<Figure>, VolumeError> {
     let eyes: Vec<_> = (0..396).map(|slice| projection.eye(slice, wedge.radius, reach)).collect();
     let shift = eyes.iter().map(|eye| reach * (eye.shear[0].powi(2) + eye.shear[1].powi(2)).sqrt());
     let largest = shift.fold(0.0, f64::max);
+    // Count distinct eyes and distinct projection matrices.
     let mut places: Vec<_> = eyes.iter().filter_map(|eye| eye.eye.map(|place| place.map(f64::to_bits))).collect();
     places.sort_unstable();
     places.dedup();

@@ -50,6 +50,7 @@ fn prism(scene: &Scene, workers: &dyn Workers) -> Result<Shown, VolumeError> {
         let sum = |rings: &[u64]| rings[from..to].iter().sum::<u64>() as f64;
         sum(&prism) / sum(&exact).max(1.0)
     };
+    // Rings 1 to 3 are near the axis, rings 36 to 42 near the rim.
     let near = ratio(1, 4);
     let far = ratio(36, 43);
     Ok(Shown {
@@ -67,6 +68,7 @@ fn prism(scene: &Scene, workers: &dyn Workers) -> Result<Shown, VolumeError> {
 fn dead_zone() -> Shown {
     let radius = |bits: u32| {
         let wedge = HalfWedge::new(396, 384.0);
+        // Walk along u in the middle of a wedge until a point is accepted.
         let planes = WedgePlanes { a: [wedge.sin, wedge.cos], b: [wedge.sin, -wedge.cos], fraction_bits: Some(bits) };
         let volume = SliceVolume::Wedge(planes, WedgeTest::Shader(TieRule::HalfOpen));
         let steps = (1..=10_000).map(|i| f64::from(i) * 1e-3);
@@ -130,6 +132,7 @@ fn recording(vertices: Vec<spatialgl::Vertex>, indices: &[u32]) -> Result<Comman
 /// slice meets the same facets, so all slices have the same gaps in an orthographic projection.
 fn noise(workers: &dyn Workers) -> Result<Shown, VolumeError> {
     let likeness = |projection| {
+        // As many facets around the sphere as slices make the gaps of all slices equal.
         let (vertices, indices) = tessellated_sphere(glam::DVec3::ZERO, 300.0, 198, [255; 3]);
         let settings = VolumeSettings { projection, ..VolumeSettings::paper() };
         let volume = Volume::draw_commands(&settings, "sphere", recording(vertices, &indices)?, workers)?;
@@ -154,6 +157,7 @@ fn limits(volume: &Volume) -> Shown {
     let size = volume.frame.planes.size();
     let time = volume.time();
     let unpacked = model.unpacked(stats, size);
+    // A volume with draws alone gives the time of the vertices, and the rest is fill.
     let vertices_only = VolumeStats { draws: stats.draws, ..VolumeStats::default() };
     let vertices_ms = model.unpacked(&vertices_only, size).gpu_ms;
     let fill_ms = unpacked.gpu_ms - vertices_ms;
@@ -178,6 +182,7 @@ fn tiles(scene: &Scene, workers: &dyn Workers) -> Result<Shown, VolumeError> {
         settings.tile.size = size;
         let volume = Volume::draw(&settings, scene, workers)?;
         let stats = &volume.frame.stats;
+        // Smaller tiles pack fewer pixels but need more queries.
         let queries_ms = (stats.queries * settings.gpu.query_ns) as f64 / 1e6;
         let share = 100.0 * stats.pixels_packed as f64 / (stats.bytes_unpacked / 4) as f64;
         found.push((size, share, queries_ms));

@@ -152,6 +152,7 @@ fn gradient(corners: &[SliceCorner; 3], area: f64, channel: usize) -> Linear {
     let rise = [value[1] - value[0], value[2] - value[0]];
     let x = along(0);
     let y = along(1);
+    // Solve for the plane through the three values.
     let area_px = area / (STEPS * STEPS);
     let a = (rise[0] * y[1] - rise[1] * y[0]) / area_px;
     let b = (rise[1] * x[0] - rise[0] * x[1]) / area_px;

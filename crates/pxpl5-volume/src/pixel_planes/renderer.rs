@@ -89,6 +89,7 @@ pub fn supported(settings: &VolumeSettings) -> Result<(), VolumeError> {
         (settings.draw.samples == 1, "draw.samples", "1", settings.draw.samples.to_string()),
         (settings.coverage == spatialgl::Coverage::Sampled, "draw.coverage", "sampled", "connected".to_owned()),
     ];
+    // Report the first setting that is not supported.
     match rules.into_iter().find(|(holds, ..)| !holds) {
         None => Ok(()),
         Some((_, what, expected, found)) => {
@@ -134,6 +135,7 @@ impl PixelPlanesRenderer {
         for primitive in work.bin.primitives() {
             let Some(triangle) = work.commands.triangle(*primitive) else { continue };
             let local = triangle.corners.map(|corner| view.local(corner.into()));
+            // Triangles on one side of the slab have no pixels.
             if local.iter().all(|p| p.z > reach) || local.iter().all(|p| p.z < -reach) {
                 continue;
             }
@@ -246,6 +248,7 @@ impl SliceRenderer for PixelPlanesRenderer {
         let (placed, left_out) = self.commands(work, view, size);
         let mut done = RendererWork { triangles: placed.len() as u64, left_out, ..RendererWork::default() };
         let mut load = SliceLoad { triangles: done.triangles, commands: Vec::new() };
+        // Every region is cleared and halftoned, even without triangles.
         for top in (0..size[1]).step_by(REGION_SIZE as usize) {
             for left in (0..size[0]).step_by(REGION_SIZE as usize) {
                 let region = self.region([left, top], &placed, image);
@@ -254,6 +257,7 @@ impl SliceRenderer for PixelPlanesRenderer {
             }
         }
         self.loads.lock().unwrap_or_else(PoisonError::into_inner).insert(key_of(view), load);
+        // Slices are drawn on several threads, and their work is added up.
         let mut total = self.work.lock().unwrap_or_else(PoisonError::into_inner);
         *total = total.and(done);
         let drawn = image.marked();

@@ -307,10 +307,12 @@ impl<'a> Machine<'a> {
         let first = self.processors.len();
         match output {
             RingOutput::Announce { message, first_word_at, .. } => {
+                // Only renderers receive announced messages: their FIFOs may hold the words back.
                 let board = usize::from(message.destination.0) - first;
                 self.renderer_event(now, board, RendererEvent::Announce { message, first_word_at });
             }
             RingOutput::Delivered(message) => {
+                // Messages from renderers are tiles, and messages from processors are maps.
                 if usize::from(message.source.0) >= first {
                     self.last_tile_at = now;
                 }
@@ -385,6 +387,7 @@ impl<'a> Machine<'a> {
         self.ring.settle(self.last_tile_at);
         let bound = bounds.with(renderers, processors);
         let slowest = bound.ms.iter().copied().fold(0.0, f64::max);
+        // Mean busy time of the boards of a kind, relative to the total time.
         let share = |spans: Vec<Span>| {
             let sum: f64 = spans.iter().map(|span| span.as_ms()).sum();
             100.0 * sum / (ms * spans.len() as f64).max(f64::MIN_POSITIVE)

@@ -62,6 +62,7 @@ impl SliceTransform {
             Shape::Triangle => draw(&[a, b, c].map(|i| self.corner(world(i), colour(i)))),
             Shape::Point(size) => self.square(world(a), size / 2.0, colour(a), draw),
             Shape::Line(width) => {
+                // A line needs the position at which it crosses the slice.
                 let middle = self.volume.middle();
                 let off = [a, b].map(|i| self.local(world(i))[2] - middle);
                 let ends = [a, b].map(|i| self.corner(world(i), colour(i)));

@@ -121,6 +121,7 @@ fn balls_of_each(commands: &CommandBuffer, cluster: &[u32]) -> BallLanes {
 fn ball(commands: &CommandBuffer, cluster: &[u32]) -> Ball {
     let used = |i: &u32| commands.primitives[*i as usize].corners();
     let corners = || cluster.iter().flat_map(used).map(|vertex| commands.positions[*vertex as usize]);
+    // The sphere is centred in the box around all corners.
     let mut low = [f64::INFINITY; 3];
     let mut high = [f64::NEG_INFINITY; 3];
     for corner in corners() {

@@ -44,6 +44,7 @@ pub(super) fn draw(setup: &Setup, mode: Mode, image: &mut SliceImage) -> Fragmen
         let scale = libm::ldexp(1.0, bits as i32);
         return draw_rounded(setup, mode, scale, image);
     }
+    // Each test gets its own copy of the loops, so that the test is inlined.
     match mode.test {
         SampleTest::All => rows(setup, mode, image, |_, _, _| true),
         SampleTest::Slab => rows(setup, mode, image, |p, q, _| (p >= 0.0) & (q > 0.0)),
@@ -75,6 +76,7 @@ fn rows(setup: &Setup, mode: Mode, image: &mut SliceImage, accepts: impl Fn(f64,
         small(setup, mode, image, checks, &accepts, &mut fragments);
         return fragments;
     }
+    // Computing the range of a row pays off only for wide triangles.
     let is_wide = right - left > WIDE;
     for y in top..bottom {
         let centre = f64::from(y) + 0.5;
@@ -106,6 +108,7 @@ fn small(
     let width = right - left;
     let area = width * (bottom - top);
     let mut first = 0;
+    // The last vector may hold fewer than eight pixels.
     while first < area {
         let weights = setup.weights_of_block(first, width);
         let pixels = Pixels { weights, count: area - first, x: left + first, y: top, width };

@@ -46,6 +46,7 @@ fn draw(
     let clips_first = view.volume.clips_before_fragments();
     for y in setup.bounds.y[0]..setup.bounds.y[1] {
         for x in setup.bounds.x[0]..setup.bounds.x[1] {
+            // Test the pixel centre against edges and planes, then against the slice's volume.
             let Some(weights) = setup.weights(f64::from(x) + 0.5, f64::from(y) + 0.5) else { continue };
             let sum = weights[0] + weights[1] + weights[2];
             let is_accepted = test.accepts(weighted(weights, setup.p), weighted(weights, setup.q), sum);
@@ -53,6 +54,7 @@ fn draw(
             if is_accepted {
                 stats.accepted += 1;
                 let colour = setup.colour.map(|values| channel(weights, values, 1.0 / sum));
+                // Views that hide surfaces also need the depth test.
                 let is_seen = !view.hides || image.is_nearest(x, y, weighted(weights, setup.near) / sum);
                 if is_seen {
                     image.put(x, y, colour, combine);

@@ -90,6 +90,7 @@ fn basis(u: f64) -> ([f64; 6], [f64; 6]) {
     let v = 1.0 - u;
     let u2 = u * u;
     let v2 = v * v;
+    // Polynomials of the six B-splines in Horner form, times 120.
     let weights = [
         v2 * v2 * v,
         26.0 + u * (-50.0 + u * (20.0 + u * (20.0 + u * (-20.0 + 5.0 * u)))),
@@ -98,6 +99,7 @@ fn basis(u: f64) -> ([f64; 6], [f64; 6]) {
         1.0 + u * (5.0 + u * (10.0 + u * (10.0 + u * (5.0 - 5.0 * u)))),
         u2 * u2 * u,
     ];
+    // Derivatives of these polynomials.
     let slopes = [
         -5.0 * v2 * v2,
         -50.0 + u * (40.0 + u * (60.0 + u * (-80.0 + 25.0 * u))),

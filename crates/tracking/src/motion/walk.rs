@@ -68,6 +68,7 @@ impl Walk {
     #[must_use]
     pub fn place(&self, way_m: f64) -> DVec3 {
         let way = rounded(way_m, self.length_m());
+        // Find the leg of the path and the fraction of this leg.
         let leg = self.ways.partition_point(|begin| *begin <= way).clamp(1, self.corners.len()) - 1;
         let share = ((way - self.ways[leg]) / (self.ways[leg + 1] - self.ways[leg])).clamp(0.0, 1.0);
         self.corners[leg].lerp(self.corners[(leg + 1) % self.corners.len()], share)
@@ -133,10 +134,10 @@ mod tests {
         let gaze = |t_ps: u64| walk.pose(t_ps).orientation * DVec3::NEG_Z;
         assert!(gaze(PS_PER_S).distance(DVec3::X) < 1e-12);
         assert!(gaze(4 * PS_PER_S).distance(DVec3::Z) < 1e-12);
-        // 0.75 m before a square corner the point ahead is as far behind it: half of the turn is done.
+        // 0.75 m before a square corner, the point ahead is 0.75 m beyond the corner: half of the turn is done.
         let half = DVec3::new(1.0, 0.0, 1.0).normalize();
         assert!(gaze(13 * PS_PER_S / 4).distance(half) < 1e-12);
-        // At most 2 v / AHEAD_M rad/s, where half of the turn is done: 0.0222 rad in a frame.
+        // The fastest turn is 2 v / AHEAD_M rad/s, when half of the turn is done: 0.0222 rad per frame.
         for frame in 0..960_u64 {
             let [before, after] = [frame, frame + 1].map(|n| gaze(n * PS_PER_S / 60));
             assert!(before.angle_between(after) < 2.0 / AHEAD_M / 60.0 * 1.01, "{frame}");

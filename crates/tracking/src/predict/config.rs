@@ -176,6 +176,7 @@ impl PredictorConfig {
     }
 
     fn kalman(&self) -> Box<dyn Predictor> {
+        // Settings have standard deviations, filters need variances.
         let position = Belief {
             measurement: square(self.position_noise_m),
             jerk: square(self.position_jerk),

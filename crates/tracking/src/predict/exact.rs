@@ -37,6 +37,7 @@ impl<M: Motion + Send> Predictor for ExactPredictor<M> {
         let moved = self.motion.pose(at_ps);
         let place = self.motion.pose(report.position_measured_ps).position;
         let attitude = self.motion.pose(report.measured_ps).orientation;
+        // The errors of the report stay constant along the true motion.
         let wrong: DQuat = report.pose.orientation * attitude.conjugate();
         Pose {
             position: moved.position + (report.pose.position - place),

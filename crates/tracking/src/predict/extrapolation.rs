@@ -47,6 +47,7 @@ impl<T: Movable> Extrapolation<T> {
         let oldest = (2 * self.baseline).min(self.past.len() - 1);
         let (t1, offset1) = self.point(oldest / 2);
         let (t2, offset2) = self.point(oldest);
+        // Newton's divided differences with the newest value at the origin.
         let slope = offset1 / t1;
         let curvature = ((offset2 - offset1) / (t2 - t1) - slope) / t2;
         slope * dt_s + curvature * (dt_s * (dt_s - t1))

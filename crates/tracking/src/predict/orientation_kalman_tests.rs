@@ -147,7 +147,7 @@ fn pan(t: f64) -> DQuat {
 fn a_pan_through_180_degrees_is_followed_for_turns() {
     let mut filter = OrientationKalman::new(Belief { measurement: 1e-10, ..BELIEF });
     for i in 1..=1200u64 {
-        // Alternate signs: the double cover must not matter.
+        // The signs of the quaternions alternate, which must not matter.
         let q = pan(i as f64 / 120.0);
         filter.update(i * PS_PER_S / 120, if i % 2 == 0 { -q } else { q });
         if i > 120 {

@@ -168,8 +168,8 @@ mod tests {
 
     #[test]
     fn after_an_hour_the_error_is_still_that_of_the_covariance() {
-        // A still head: errors over the last minute have the deviation that the filter claims, or less, since it
-        // expects jerks that do not come.
+        // The head is still. Errors over the last minute have at most the deviation that the filter claims, because the
+        // filter expects jerks that do not occur.
         let mut filter = PositionKalman::new(BELIEF);
         let mut squares = 0.0;
         for i in 1..=432_000u64 {

@@ -35,6 +35,7 @@ impl<P, O> GatedFilters<P, O> {
 impl<P: Channel<DVec3>, O: Channel<DQuat>> Predictor for GatedFilters<P, O> {
     fn observe(&mut self, report: &TrackerReport) {
         let stamps = (report.position_measured_ps, report.measured_ps);
+        // The gate accepts quaternions of nearly unit length.
         let orientation = report.pose.orientation.normalize();
         match self.gate.judge(report) {
             Verdict::Reject => return,

@@ -111,6 +111,7 @@ impl PendulumRig {
     ) -> Result<Measurement, RigError> {
         let found = oscilloscope.screen.edges().len();
         let no_light = RigError::NoLight { expected: inside.len(), found };
+        // The passes of both sides are compared one by one, so their numbers must agree.
         let outside = oscilloscope.passes(self).filter(|passes| passes.len() == inside.len() && !inside.is_empty());
         Ok(Measurement::new(self.detection, tracker, place_ps, outside.ok_or(no_light)?, inside))
     }

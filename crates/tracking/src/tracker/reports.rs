@@ -145,6 +145,7 @@ impl<M: Motion> Reports<M> {
                 TrackerFault::Jump { probability, distance_m, angle_deg }
                     if self.strikes(i, report.solution, probability) =>
                 {
+                    // The direction of a jump depends only on the seed, the fault and the solution.
                     let draws = stream(stream(self.faults, i as u64), report.solution);
                     report.pose.position += random_direction(draws, 0) * distance_m;
                     let turn = rotation::exp(random_direction(draws, 2) * angle_deg.to_radians());
@@ -202,6 +203,7 @@ impl<M: Motion> Iterator for Reports<M> {
             if self.is_lost(solution, sync_ps) {
                 continue;
             }
+            // Measure even if the cable is busy, because the tracker's filter advances with every solution.
             let mut report = self.solve(solution, output_ps);
             // A busy cable drops the solution.
             let Some(arrives_ps) = self.send(output_ps) else { continue };

@@ -115,7 +115,7 @@ impl Recording {
         if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
             return Err(unreadable("expected UTF-8 text, found text in units of 16 bits".to_owned()));
         }
-        // Comments may have any encoding, so invalid UTF-8 is replaced.
+        // UTF-16 was refused above. Comments may have any encoding, so invalid UTF-8 is replaced.
         let text = String::from_utf8_lossy(&bytes);
         let read::Samples { samples, repeated } = read::samples(&text, &format.columns, format.axes)?;
         let gaps = gaps(&samples);
