@@ -1,4 +1,4 @@
-//! Host time of the swept view of one revolution of the head, beside the volume that it is a view of.
+//! Host time of the view of one revolution of the head scene, and of the volume that is viewed.
 #![allow(missing_docs, reason = "criterion's macro writes an undocumented function")]
 
 use criterion::{Criterion, SamplingMode, criterion_group, criterion_main};

@@ -1,5 +1,5 @@
-//! All clip variants and projections of a scene beside each other, as a table.
-//! `cargo run --release -p perspecta --example compare_clips -- SCENE`.
+//! Prints a table of all clip variants and projections of a scene. `cargo run --release -p perspecta --example
+//! compare_clips -- SCENE`.
 
 use perspecta::PerspectaConfig;
 use spatialgl::{

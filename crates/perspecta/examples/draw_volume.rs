@@ -1,4 +1,4 @@
-//! Writes what there is to look at: the six clip variants beside each other, a sheet of all slices, a slice before and after
+//! Writes pictures of a volume: the six clip variants side by side, a sheet of all slices, a slice before and after
 //! halftoning. `cargo run --release -p perspecta --example draw_volume -- SCENE FOLDER`.
 
 use image::{GenericImage, Rgb, RgbImage, imageops};
@@ -30,7 +30,7 @@ fn volume(commands: &CommandBuffer, clip: SliceClip, projection: Projection) -> 
     Ok(render_volume(&display, commands, &config, &HostRenderer, &Threads::all())?)
 }
 
-/// One row for each clip: orthographic and jittered, from the side and from above, all of one exposure.
+/// Draws one row for each clip: orthographic and jittered, from the side and from above, all with one exposure.
 fn variants(commands: &CommandBuffer) -> Result<RgbImage, Box<dyn Error>> {
     let mut all = RgbImage::new(4 * SIDE, 6 * SIDE);
     let reference = volume(commands, SliceClip::ShaderPlanes, Projection::Jittered(Jitter::new(1)))?;
@@ -48,7 +48,7 @@ fn variants(commands: &CommandBuffer) -> Result<RgbImage, Box<dyn Error>> {
     Ok(all)
 }
 
-/// All slices as thumbnails, 22 in a row.
+/// Draws all slices as thumbnails, 22 in a row.
 fn sheet(frame: &VolumeFrame) -> Result<RgbImage, Box<dyn Error>> {
     let mut all = RgbImage::new(22 * 64, frame.planes.slices().div_ceil(22) * 64);
     for k in 0..frame.planes.slices() {

@@ -1,4 +1,4 @@
-//! The display on the ring: a port, a spinning screen, a strobe for every slice.
+//! The display on the ring: a port, a rotating screen, and a strobe for every slice.
 
 use crate::store::{FrameStore, StoreReceipt};
 use crate::timing::PerspectaConfig;
@@ -12,13 +12,14 @@ use pxpl5_wire::{Body, NodeId, PeriodNumber, Word};
 use spatialgl::pixel_of_word;
 use std::sync::LazyLock;
 
-/// Names of slices, which [`Surface`] wants for ever: made once, for the most slices that there can be.
+/// Names of slices for [`Surface`], which needs static strings. The names are made once, for the greatest possible
+/// number of slices.
 static LABELS: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
     let most = 4096;
     (0..most).map(|k| &*Box::leak(format!("slice-{k}").into_boxed_str())).collect()
 });
 
-/// One Perspecta: a period is a revolution, a surface is a slice.
+/// The model of a Perspecta display. A period is a revolution, and a surface is a slice.
 #[derive(Debug)]
 struct Perspecta {
     config: PerspectaConfig,
@@ -82,11 +83,13 @@ impl Display for Perspecta {
                 self.revolutions += 1;
                 if let Some(buffer) = self.store.swap(context.now()) {
                     self.swaps += 1;
+                    // The notice of a swap takes the time of one word.
                     let at = context.now() + Span::from_ns(self.config.word_ns);
                     context.output(at, DisplayOutput::Swapped { surface: 0, buffer, tick });
                 }
             }
             DisplayEvent::Delivered { body, .. } => {
+                // Unusable messages are counted, and the first one is described.
                 if let StoreReceipt::Fault(what) = self.receive(&body, context.now()) {
                     self.faults += 1;
                     self.first_fault.get_or_insert(what);
@@ -143,7 +146,7 @@ impl DisplayConfig for PerspectaConfig {
         vec![("perspecta", self)]
     }
 
-    /// One: there is one volume, however many eyes look at it.
+    /// Returns 1: there is one volume for any number of eyes.
     fn ports(&self, _pictures: usize) -> usize {
         1
     }
@@ -156,6 +159,7 @@ impl DisplayConfig for PerspectaConfig {
         DisplayConfig::check(self)?;
         let width = self.width as u32;
         let height = self.height as u32;
+        // Every slice is a surface of the display.
         let labels = LABELS.iter().copied().take(self.slices as usize);
         let surfaces = labels.map(|label| Surface { label, title: label, width, height }).collect();
         Ok(Box::new(Perspecta {

@@ -1,20 +1,20 @@
-//! What can be wrong with what a user hands in.
+//! Errors in the numbers and cameras of a user.
 
 use thiserror::Error;
 
-/// A number, a camera or a message that the display cannot use.
+/// An error for a number or a camera that the display cannot use.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PerspectaError {
-    /// A number beyond its limits: its path, what was expected and what was found.
+    /// A number is out of range. The text names its path, the expected and the found value.
     #[error("{0}")]
     Number(String),
-    /// A camera that sees nothing.
+    /// A number of a camera is out of range.
     #[error("view.{what}: expected {expected}, found {found}")]
     Camera {
-        /// Which of its numbers.
+        /// Name of the wrong number.
         what: &'static str,
-        /// The rule that it breaks.
+        /// Rule that the number breaks.
         expected: &'static str,
         /// The number that was given.
         found: f64,

@@ -1,5 +1,5 @@
-//! The SpatialGL paper's figures. A row ([`Figure`]) compares a number with one that code computes or counts. Numbers that are
-//! inputs of the model, or follow from inputs by arithmetic alone, are [`Definition`]s: they have no verdict.
+//! The figures of the SpatialGL paper. A [`Figure`] compares a number of the paper with a number that code computes or
+//! counts. A [`Definition`] is an input of the model, or follows from inputs by arithmetic alone, and has no verdict.
 
 use crate::timing::PerspectaConfig;
 use parameters::Standing;
@@ -9,57 +9,56 @@ use spatialgl::{
     packed_word,
 };
 
-/// A number of the paper that the model takes as an input, or that follows from its inputs by arithmetic alone.
+/// A number of the paper that is an input of the model, or that follows from its inputs by arithmetic alone.
 ///
-/// No run can give another value, so it is not compared with anything.
+/// No run can give another value, so a definition is not compared with anything.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Definition {
-    /// Its number in the specification: P is printed in the paper, D derived from it.
+    /// Identifier in the specification. P numbers are printed in the paper, D numbers are derived.
     pub id: &'static str,
-    /// The statement, in words.
+    /// Statement of the paper, in words.
     pub statement: &'static str,
-    /// The number that this model has, in `unit`.
+    /// Value of the number in this model, in `unit`.
     pub value: f64,
-    /// Unit of the value.
     pub unit: &'static str,
     /// Provenance of the value: printed or derived.
     pub standing: Standing,
 }
 
-/// One figure of the paper beside what the model has.
+/// A figure of the paper and the corresponding value of the model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figure {
-    /// Its number in the specification: P is printed in the paper, D derived from it.
+    /// Identifier in the specification. P numbers are printed in the paper, D numbers are derived.
     pub id: &'static str,
-    /// The statement, in words.
+    /// Statement of the paper, in words.
     pub statement: &'static str,
     /// Unit of both values and of the interval.
     pub unit: &'static str,
-    /// The value that is printed or derived; for "over" and "about" the middle or the end of the interval.
+    /// Printed or derived value. For "over" and "about" it is the middle or the end of the interval.
     pub published: f64,
-    /// Smallest and largest value that agree with it.
+    /// Least and greatest value that agree with the figure.
     pub interval: [f64; 2],
-    /// The value that this model computes.
+    /// Value that this model computes.
     pub computed: f64,
-    /// Provenance of the value: printed or derived.
+    /// Provenance of the published value: printed or derived.
     pub standing: Standing,
 }
 
 impl Figure {
-    /// Whether the model agrees with it.
+    /// Returns true if the model agrees with the figure.
     #[must_use]
     pub fn is_met(&self) -> bool {
         (self.interval[0]..=self.interval[1]).contains(&self.computed)
     }
 
-    /// Distance from the published value, percent of it.
+    /// Returns the difference between computed and published value, as a percentage of the published value.
     #[must_use]
     pub fn error_percent(&self) -> f64 {
         100.0 * (self.computed - self.published) / self.published
     }
 }
 
-/// A row whose interval is half a unit of its last printed digit.
+/// Returns a figure whose interval extends `half_digit` to both sides of the published value.
 const fn row(
     id: &'static str,
     statement: &'static str,
@@ -79,7 +78,7 @@ const fn row(
     }
 }
 
-/// Months in which the performance of GPUs doubles, least and most (published, P20).
+/// Least and greatest number of months in which the performance of GPUs doubles (published, P20).
 pub const GPU_DOUBLES_MONTHS: [f64; 2] = [6.0, 9.0];
 
 /// Months in which the performance of CPUs doubles (published, P20).
@@ -88,7 +87,7 @@ pub const CPU_DOUBLES_MONTHS: f64 = 18.0;
 const P: Standing = Standing::Published;
 const D: Standing = Standing::Derived;
 
-/// Inputs of the model that the paper prints, and what follows from them by arithmetic.
+/// Returns the inputs of the model that the paper prints, and the numbers that follow from them by arithmetic.
 #[must_use]
 pub fn definitions() -> Vec<Definition> {
     let config = PerspectaConfig::PAPERS;
@@ -98,15 +97,15 @@ pub fn definitions() -> Vec<Definition> {
     all
 }
 
-/// A definition; what the paper prints has an id that begins with P.
+/// Returns a definition. Printed numbers have an id that begins with P.
 fn defined(id: &'static str, statement: &'static str, value: f64, unit: &'static str) -> Definition {
     Definition { id, statement, value, unit, standing: if id.starts_with('P') { P } else { D } }
 }
 
-/// Bits of a pixel on the GPU: 4 channels of 8 (published, P6).
+/// Bits of a pixel on the GPU: 4 channels of 8 bits (published, P6).
 const GPU_PIXEL_BITS: f64 = 32.0;
 
-/// Bits of a pixel on the projector: 3 channels of 1 (published, P7).
+/// Bits of a pixel on the projector: 3 channels of 1 bit (published, P7).
 const PROJECTOR_PIXEL_BITS: f64 = 3.0;
 
 fn inputs(config: &PerspectaConfig) -> Vec<Definition> {
@@ -126,6 +125,7 @@ fn arithmetic(config: &PerspectaConfig) -> Vec<Definition> {
     let pixels = config.slices as f64 * slice;
     let packed = pixels / f64::from(PIXELS_PER_WORD) * 4.0;
     let tile = f64::from(Tiling::PAPER.tile.unwrap_or(0));
+    // Sizes follow from the numbers of slices, pixels and bits.
     let waste = 100.0 * (1.0 - PROJECTOR_PIXEL_BITS / GPU_PIXEL_BITS);
     let stores = 2.0 * pixels * PROJECTOR_PIXEL_BITS / 8.0;
     vec![
@@ -141,9 +141,9 @@ fn arithmetic(config: &PerspectaConfig) -> Vec<Definition> {
     ]
 }
 
-/// P20, and D12: equal times of CPU and GPU today, and the CPU's share in 18 months.
+/// Returns P20, and D12: the CPU's share of the time in 18 months, if CPU and GPU take equal times today.
 fn doubling() -> Vec<Definition> {
-    // The CPU takes half of its time then, a GPU that doubles every m months 2^(-18/m) of it.
+    // In 18 months the CPU takes half of its time. A GPU that doubles every m months takes 2^(-18/m) of its time.
     let share = |months: f64| 100.0 / (1.0 + libm::exp2(1.0 - CPU_DOUBLES_MONTHS / months));
     let [least, most] = GPU_DOUBLES_MONTHS;
     vec![
@@ -155,7 +155,7 @@ fn doubling() -> Vec<Definition> {
     ]
 }
 
-/// Figures that the model computes without drawing anything: its trigonometry, its bins and the thickness of its slabs.
+/// Returns figures that the model computes without drawing: its trigonometry, its bins and the thickness of its slabs.
 #[must_use]
 pub fn formulas() -> Vec<Figure> {
     let config = PerspectaConfig::PAPERS;
@@ -165,7 +165,7 @@ pub fn formulas() -> Vec<Figure> {
     figures
 }
 
-/// What was counted in a volume against what the paper says of most scenes.
+/// Compares the counts of a volume with the paper's statements about most scenes.
 #[must_use]
 pub fn measured(stats: &VolumeStats) -> Vec<Figure> {
     let occupancy = Figure {
@@ -177,7 +177,8 @@ pub fn measured(stats: &VolumeStats) -> Vec<Figure> {
     vec![occupancy, binned]
 }
 
-/// Words that the packing functions make of white pixels: ten a word (P10), and the waste of both packings (D6).
+/// Returns figures about the words that the packing functions make of white pixels: ten pixels per word (P10), and the
+/// waste of both packings (D6).
 #[must_use]
 pub fn packing() -> Vec<Figure> {
     let white = |pixels: usize| pack_dense(&vec![0b111; pixels]);
@@ -215,7 +216,8 @@ fn means(config: &PerspectaConfig, wedge: HalfWedge) -> Vec<Figure> {
     ]
 }
 
-/// Planes that show a point, on the mean over the disc: the area of a slice's slab within it, times the planes.
+/// Returns the mean number of planes that show a point of the disc. This mean is the area of a slice's slab within the
+/// disc, times the number of planes, divided by the area of the disc.
 fn mean(clip: SliceClip, wedge: HalfWedge, planes: f64) -> f64 {
     let steps = 100_000;
     let radius = wedge.radius;
@@ -234,7 +236,7 @@ fn mean(clip: SliceClip, wedge: HalfWedge, planes: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Numbers that the paper prints, and D-numbers by hand: 396 x 768 x 768 pixels.
+    /// Compares with the printed numbers of the paper, and with D numbers computed by hand for 396 x 768 x 768 pixels.
     #[test]
     fn definitions_are_the_papers_numbers() {
         let all = definitions();

@@ -1,12 +1,13 @@
-//! The messages that bring a volume: a map of tiles for each batch of slices, then the tiles that hold something.
+//! The messages that transfer a volume: a map of tiles for each batch of slices, then the occupied tiles.
 //!
 //! ```text
 //! map   MAP   first slice | slices   tile size   bit i: tile i is sent for every slice of the batch
 //! tile  TILE  slice       | tile     tile size   eight pixels a word, row by row
 //! ```
 //!
-//! Empty tiles are not sent, so the map is what blanks them (derived: without it the last volume but one would shine
-//! through). Words of the ring, at most [`MAX_MESSAGE_WORDS`] a message; all of it goes to the store that is not shown.
+//! Empty tiles are not sent, so the map must blank them (derived: otherwise the volume before the last would stay
+//! visible). The words are those of the ring, at most [`MAX_MESSAGE_WORDS`] per message. Everything goes to the store
+//! that is not shown.
 
 use pxpl5_wire::{MAX_MESSAGE_WORDS, Word};
 use spatialgl::{BitPlanes, Size, TileGrid, Tiling};
@@ -18,19 +19,20 @@ const MAP: Word = 0x0050_4D41;
 /// First word of a tile.
 const TILE: Word = 0x0050_5449;
 
-/// Words before the map's bits or the tile's pixels.
+/// Number of words before the map's bits or the tile's pixels.
 const HEADER_WORDS: usize = 3;
 
-/// A message as the frame store reads it.
+/// A message in the form that the frame store reads.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum StoreMessage<'a> {
-    /// Which tiles of so many slices are coming.
+    /// A map of the tiles that will arrive for these slices.
     Map { first: u32, slices: u32, tile: u32, bits: &'a [Word] },
     /// The pixels of a tile of one slice.
     Tile { slice: u32, number: u32, tile: u32, words: &'a [Word] },
 }
 
-/// Reads a message; `None` if it is no such message. Whether its slices and tiles exist, the store checks.
+/// Parses a message, or returns `None` if it is neither a map nor a tile. The store checks that its slices and tiles
+/// exist.
 pub(crate) fn read(words: &[Word]) -> Option<StoreMessage<'_>> {
     let (header, rest) = words.split_at_checked(HEADER_WORDS)?;
     let [kind, numbers, tile] = *header else { return None };
@@ -43,8 +45,8 @@ pub(crate) fn read(words: &[Word]) -> Option<StoreMessage<'_>> {
     }
 }
 
-/// The messages of a volume, batch by batch: its map, then its tiles, slice by slice. `None` if tiles are switched off, too
-/// large for a message, or more than 65,536 a slice.
+/// Returns the messages of a volume, batch by batch: the map, then the tiles, slice by slice. Returns `None` if tiles
+/// are switched off, too large for a message, or more than 65,536 per slice.
 #[must_use]
 pub fn volume_messages(planes: &BitPlanes, tiling: Tiling) -> Option<Vec<Arc<[Word]>>> {
     let batches = batch_messages(planes, tiling, planes.slices())?;
@@ -56,24 +58,25 @@ pub fn volume_messages(planes: &BitPlanes, tiling: Tiling) -> Option<Vec<Arc<[Wo
 /// The messages of a batch of slices.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BatchMessages {
-    /// Which tiles are coming; it must arrive before they do.
+    /// Map of the tiles that will arrive, sent before these tiles.
     pub map: Arc<[Word]>,
-    /// The tiles that hold something, slice by slice.
+    /// Occupied tiles, slice by slice.
     pub tiles: Vec<TileMessage>,
 }
 
 /// The message of one tile.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TileMessage {
-    /// Number of its slice in the turn.
+    /// Index of the slice in the turn.
     pub slice: u32,
-    /// Number of the tile in the slice, row by row from the top left.
+    /// Index of the tile in the slice, row by row from the top left.
     pub tile: u32,
-    /// All its words, with those before the pixels.
+    /// All words of the message, including the words before the pixels.
     pub words: Arc<[Word]>,
 }
 
-/// The messages of the first so many slices, batch by batch; the last batch may be short. `None` as of [`volume_messages`].
+/// Returns the messages of the first `slices` slices, batch by batch. The last batch may be short. Returns `None` in
+/// the same cases as [`volume_messages`].
 #[must_use]
 pub fn batch_messages(planes: &BitPlanes, tiling: Tiling, slices: u32) -> Option<Vec<BatchMessages>> {
     let tile = tiling.tile?;
@@ -90,6 +93,7 @@ pub fn batch_messages(planes: &BitPlanes, tiling: Tiling, slices: u32) -> Option
 
 fn batch(planes: &BitPlanes, first: u32, slices: u32, tile: u32, grid: &TileGrid) -> BatchMessages {
     let size = planes.size();
+    // A tile is sent for every slice of the batch if it is occupied in any of them.
     let is_lit = |number: &u32| (first..first + slices).any(|k| has_light(planes.slice(k), size, grid, *number));
     let lit: Vec<u32> = (0..grid.tiles()).filter(is_lit).collect();
     let of_tile = |slice: u32, number: u32| TileMessage {
@@ -123,7 +127,7 @@ fn has_light(words: &[Word], size: Size, grid: &TileGrid, number: u32) -> bool {
     rows(size, grid, number).any(|row| words[row].iter().any(|word| *word != 0))
 }
 
-/// The words of a slice that make up a tile, row by row.
+/// Returns the ranges of a slice's words that make up a tile, row by row.
 pub(crate) fn rows(size: Size, grid: &TileGrid, number: u32) -> impl Iterator<Item = std::ops::Range<usize>> + use<> {
     let [left, top, right, bottom] = grid.rectangle(number);
     let row_words = size[0] / 8;

@@ -1,4 +1,4 @@
-//! Two frame stores of bit planes: one is shown, the other one filled.
+//! Two frame stores of bit planes: one is shown while the other is filled.
 
 use crate::protocol::{StoreMessage, read, rows};
 use pxpl5_sim::Time;
@@ -12,30 +12,30 @@ type Slice = Arc<Vec<Word>>;
 
 /// Two volumes of N slices.
 ///
-/// What arrives goes to the one that is not shown. A request to swap waits until every tile that a map has announced is
-/// there, so that no volume is ever shown with a slice half written.
+/// Tiles go to the volume that is not shown. A swap request waits until every tile announced by a map has arrived, so a
+/// volume with a partly written slice is never shown.
 #[derive(Clone, Debug)]
 pub(crate) struct FrameStore {
     size: Size,
     volumes: [Vec<Slice>; 2],
     shown: usize,
-    /// What was shown before the last tick.
+    /// Slices that were shown until the last tick.
     scanned: Vec<Slice>,
-    /// Slice and tile of everything that was announced and has not arrived, with the size of its tile.
+    /// Slice, tile and tile size of each announced tile that has not arrived.
     missing: BTreeSet<(u32, u32, u32)>,
-    /// The last request, and when it arrived.
+    /// Arrival time and buffer of the last swap request.
     requested: Option<(Time, u8)>,
     pub(crate) tiles: u64,
 }
 
-/// What a message was to the store.
+/// The meaning of a message for the store.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum StoreReceipt {
-    /// The last tile of a slice that was announced.
+    /// The last announced tile of a slice.
     SliceComplete(u32),
-    /// A map, a tile or a request.
+    /// A map, a tile or a swap request.
     Part,
-    /// Nothing that it can use.
+    /// A message that the store cannot use.
     Fault(&'static str),
 }
 
@@ -73,7 +73,7 @@ impl FrameStore {
         StoreReceipt::Part
     }
 
-    /// Blanks the tiles that are not coming and notes those that are.
+    /// Blanks the tiles of these slices, and notes the tiles that will arrive.
     fn announce(&mut self, first: u32, slices: u32, tile: u32, bits: &[Word]) -> StoreReceipt {
         let Some(tiling) = tiling(tile) else { return StoreReceipt::Fault("tiles of a size that is no multiple of 8") };
         let grid = tiling.grid(self.size);
@@ -81,6 +81,7 @@ impl FrameStore {
         if bits.len() != grid.tiles().div_ceil(32) as usize || end > self.scanned.len() as u64 {
             return StoreReceipt::Fault("a map of slices or tiles that do not exist");
         }
+        // A new map replaces earlier announcements of its slices.
         for slice in first..first + slices {
             self.missing.retain(|(other, ..)| *other != slice);
             let words = Arc::make_mut(&mut self.volumes[1 - self.shown][slice as usize]);
@@ -92,6 +93,7 @@ impl FrameStore {
     }
 
     fn write(&mut self, slice: u32, number: u32, tile: u32, words: &[Word]) -> StoreReceipt {
+        // Only announced tiles of the right size are stored.
         if !self.missing.remove(&(slice, number, tile)) {
             return StoreReceipt::Fault("a tile that no map has announced");
         }
@@ -101,6 +103,7 @@ impl FrameStore {
             self.missing.insert((slice, number, tile));
             return StoreReceipt::Fault("a tile with too few or too many words");
         }
+        // Copy the rows of the tile into the store that is not shown.
         let stored = Arc::make_mut(&mut self.volumes[1 - self.shown][slice as usize]);
         let mut source = words.iter();
         for row in rows(self.size, &grid, number) {
@@ -113,7 +116,8 @@ impl FrameStore {
         if is_complete { StoreReceipt::SliceComplete(slice) } else { StoreReceipt::Part }
     }
 
-    /// At strobe 0: shows the store that was asked for before (not at) this instant, if all of it has arrived; which.
+    /// Handles strobe 0: shows the store that was requested before (not at) this instant, if all its tiles have
+    /// arrived. Returns the buffer if it was swapped.
     pub(crate) fn swap(&mut self, now: Time) -> Option<u8> {
         self.scanned.clone_from(&self.volumes[self.shown]);
         let is_whole = self.missing.is_empty();
@@ -122,12 +126,12 @@ impl FrameStore {
         Some(buffer)
     }
 
-    /// A slice of the store that is shown.
+    /// Returns a slice of the store that is shown.
     pub(crate) fn shown(&self, slice: usize) -> Option<&[Word]> {
         self.volumes[self.shown].get(slice).map(|words| words.as_slice())
     }
 
-    /// A slice of what was shown until the last tick.
+    /// Returns a slice that was shown until the last tick.
     pub(crate) fn scanned(&self, slice: usize) -> Option<&[Word]> {
         self.scanned.get(slice).map(|words| words.as_slice())
     }

@@ -1,4 +1,4 @@
-//! Every number of the display.
+//! All numbers of the display.
 
 use crate::error::PerspectaError;
 use parameters::ParameterTable;
@@ -6,29 +6,30 @@ use pxpl5_sim::{Clock, Span, Time};
 use spatialgl::{Rotation, SpatialError, SweptConfig};
 
 parameters::parameter_table! {
-    /// A screen that spins about its vertical axis, and the projector that lights it.
+    /// A screen that rotates about its vertical axis, and the projector that lights it.
     pub struct PerspectaConfig {
-        /// Slices strobed in a revolution.
+        /// Number of slices strobed in a revolution.
         slices: 396, "slices", Published, 396..=396 in 4..=4096, "the SpatialGL paper (P1)";
-        /// Pixels of a line of the projector.
+        /// Number of pixels in a line of the projector.
         width: 768, "pixels", Assumed, 256..=2048 in 8..=4096, "open in the paper; 768 x 768 in SPIE 4297, 1024 x 768 in SPIE 5664";
-        /// Lines of the projector.
+        /// Number of lines of the projector.
         height: 768, "lines", Assumed, 256..=2048 in 1..=4096, "open in the paper; 768 in SPIE 4297 and SPIE 5664";
-        /// Revolutions of the screen a minute.
+        /// Revolutions of the screen per minute.
         spin_rpm: 900, "1/min", Assumed, 600..=900 in 1..=1_000_000, "open in the paper; 600 in SPIE 4297, 730 and 900 in the press";
-        /// Part of a strobe's interval in which it is lit.
+        /// Percentage of a strobe's interval in which it is lit.
         lit_percent: 100, "%", Assumed, 1..=100 in 1..=100, "open in the paper; what is less only dims";
-        /// Time of one word at the port.
+        /// Time to transfer one word at the port.
         word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94: 20 Mwords/s per channel of the ring, the same as other displays";
     }
 }
 
 impl PerspectaConfig {
-    /// Checks that it can be built: every number within its limits, an even number of slices, whole words in a line.
+    /// Checks that every number is within its limits, that the number of slices is even, and that a line consists of
+    /// whole words.
     ///
     /// # Errors
     ///
-    /// [`PerspectaError::Number`] names the number, what was expected and what was found.
+    /// [`PerspectaError::Number`] names the number, the expected and the found value.
     pub fn check(&self) -> Result<(), PerspectaError> {
         ParameterTable::check(self).map_err(|error| PerspectaError::Number(format!("perspecta.{error}")))?;
         let rule = |holds: bool, name: &str, expected: &str, found: u64| {
@@ -39,7 +40,8 @@ impl PerspectaConfig {
         rule(self.width.is_multiple_of(8), "width", "a multiple of 8", self.width)
     }
 
-    /// Edges are the instants of strobe 0: 60 s over the revolutions of a minute, exactly.
+    /// Returns a clock whose edges are the instants of strobe 0. The period is exactly 60 s divided by the revolutions
+    /// per minute.
     ///
     /// # Panics
     /// Never after [`Self::check`].
@@ -48,7 +50,8 @@ impl PerspectaConfig {
         Clock::new(60_000_000_000_000, self.spin_rpm).expect("at most a million revolutions a minute")
     }
 
-    /// When strobe `slice` of a revolution lights and how long: (n + k / N) / f, and its share of f / N.
+    /// Returns the instant at which strobe `slice` of a revolution lights, and its duration. The instant is (n + k / N)
+    /// / f. The duration is `lit_percent` of the interval between strobes.
     #[must_use]
     pub fn strobe(&self, revolution: u64, slice: u64) -> (Time, Span) {
         let begin = self.instant(revolution, slice);
@@ -61,23 +64,24 @@ impl PerspectaConfig {
         Time((picoseconds / u128::from(self.slices * self.spin_rpm)) as u64)
     }
 
-    /// Volumes a second that an eye gets: two a revolution, since the screen passes every plane twice (D2).
+    /// Returns the volumes per second that an eye sees: two per revolution, because the screen passes every plane twice
+    /// (D2).
     #[must_use]
     pub fn volume_hz(&self) -> f64 {
         2.0 * self.spin_rpm as f64 / 60.0
     }
 
-    /// Strobes a second: slices times revolutions.
+    /// Returns the strobes per second: slices times revolutions.
     #[must_use]
     pub fn strobe_hz(&self) -> f64 {
         self.slices as f64 * self.spin_rpm as f64 / 60.0
     }
 
-    /// The same screen as the pipeline sees it, with a clip and a projection.
+    /// Returns the same screen as a display of the pipeline, with a clip and a projection.
     ///
     /// # Errors
     ///
-    /// [`PerspectaError`] as [`Self::check`], or what the pipeline cannot draw for.
+    /// [`PerspectaError`] as for [`Self::check`], or for settings that the pipeline does not support.
     pub fn swept(
         &self,
         clip: spatialgl::SliceClip,

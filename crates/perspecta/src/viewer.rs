@@ -1,24 +1,24 @@
-//! What an eye at any place sees of one revolution: the sum of all lit pixels of all strobes.
+//! The view of an eye at any position during one revolution: the sum of all lit pixels of all strobes.
 
 use crate::error::PerspectaError;
 use image::{Rgb, RgbImage};
 use spatialgl::{BitPlanes, ColourSample, Rotation, Size, VolumeFrame, Workers, sin_cos_of_turn};
 use std::sync::{Mutex, PoisonError};
 
-/// Units of light of one lit pixel: 256 x 256, so that bilinear shares are whole numbers.
+/// Units of light of one lit pixel: 256 x 256, so that bilinear shares are integers.
 const FULL: u64 = 1 << 16;
 
-/// Slices that one task adds up before it puts its sums to those of others.
+/// Number of slices that one task adds up before it adds its sums to the total.
 const SLICES_PER_TASK: u32 = 33;
 
-/// Where the eye is and how its picture is drawn. It looks at the middle of the display, image y downwards.
+/// An eye and its picture. The eye looks at the middle of the display, and y points downwards in the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Angle around the axis from +z to +x, degrees.
+    /// Azimuth of the eye: angle around the axis from +z to +x, degrees.
     pub azimuth_deg: f64,
-    /// Angle above the horizon, degrees.
+    /// Elevation of the eye above the horizon, degrees.
     pub elevation_deg: f64,
-    /// Distance from the middle of the display, pixels of the display.
+    /// Distance of the eye from the middle of the display, pixels of the display.
     pub distance: f64,
     /// Focal length, pixels of the picture.
     pub focal: f64,
@@ -27,18 +27,18 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// An eye four radii away from a display of this radius, its picture as wide as the display.
+    /// Creates an eye four radii away from a display of this radius, with a picture about as wide as the display.
     #[must_use]
     pub fn around(radius: f64, azimuth_deg: f64, elevation_deg: f64, side: u32) -> Self {
         let focal = f64::from(side) * 1.9;
         Self { azimuth_deg, elevation_deg, distance: 4.0 * radius, focal, size: [side, side] }
     }
 
-    /// Checks that it is an eye outside of a display whose slices have this size.
+    /// Checks that the numbers describe an eye outside of a display with slices of this size.
     ///
     /// # Errors
     ///
-    /// [`PerspectaError::Camera`] names the number that is wrong.
+    /// [`PerspectaError::Camera`] names the number that is out of range.
     pub fn check_before(&self, slice: Size) -> Result<(), PerspectaError> {
         let [half_width, half_height] = slice.map(|side| f64::from(side) / 2.0);
         let reach = libm::hypot(half_width, half_height);
@@ -56,14 +56,14 @@ impl Camera {
         Ok(())
     }
 
-    /// Axes of the eye: to the right, up, and from the middle of the display to the eye.
+    /// Returns the axes of the eye: to the right, up, and from the middle of the display to the eye.
     fn axes(&self) -> [[f64; 3]; 3] {
         let (sin_a, cos_a) = libm::sincos(self.azimuth_deg.to_radians());
         let (sin_e, cos_e) = libm::sincos(self.elevation_deg.to_radians());
         [[cos_a, 0.0, -sin_a], [-sin_e * sin_a, cos_e, -sin_e * cos_a], [cos_e * sin_a, sin_e, cos_e * cos_a]]
     }
 
-    /// Where a point of the world is seen, pixels from the top left of the picture.
+    /// Returns the position of a world point in the picture, pixels from the top left.
     #[must_use]
     pub fn project(&self, world: [f64; 3]) -> [f64; 2] {
         let [right, up, back] = self.axes().map(|axis| dot(axis, world));
@@ -77,21 +77,21 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// What of a volume is looked at, and how.
+/// The part of a volume to show, and the way of showing it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ViewOptions {
-    /// Angles around the axis, degrees from +x to +z, of which nothing is shown: a cutaway.
+    /// Range of angles around the axis, degrees from +x to +z, in which nothing is shown (a cutaway).
     pub cut_deg: Option<[f64; 2]>,
-    /// Whether a pixel is as bright as its screen is turned towards the eye: |view . e_s|.
+    /// True if the brightness of a pixel is proportional to |view . e_s|, the cosine of the angle between screen and
+    /// eye.
     pub lambert: bool,
     /// Angle of slice 0 from +x towards +z, degrees.
     pub phase_deg: f64,
-    /// Which way the screen turns.
     pub rotation: Rotation,
 }
 
 impl ViewOptions {
-    /// Degrees from +x to +z of a slice, with their sine and cosine.
+    /// Returns the angle of a slice in degrees from +x to +z, with its sine and cosine.
     fn angle(&self, k: u32, slices: u32) -> (f64, f64, f64) {
         let is_forward = self.rotation == Rotation::XToZ;
         let steps = if is_forward { i64::from(k) } else { -i64::from(k) };
@@ -102,7 +102,7 @@ impl ViewOptions {
     }
 }
 
-/// Light that reached a picture, in units that add up exactly, whatever the order and the threads.
+/// The light of a picture, in integer units that add up exactly in any order and on any number of threads.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Light {
     size: Size,
@@ -115,7 +115,7 @@ impl Light {
         Self { size, sums: vec![[0; 3]; size[0] as usize * size[1] as usize] }
     }
 
-    /// All light of the picture in lit pixels of single strobes, by channel.
+    /// Returns all light of the picture by channel, in units of a lit pixel of a single strobe.
     #[must_use]
     pub fn total(&self) -> [f64; 3] {
         let mut sums = [0.0; 3];
@@ -127,7 +127,7 @@ impl Light {
         sums
     }
 
-    /// The exposure with which so much of the lit part of the picture (0 to 1) stays below white.
+    /// Returns the exposure at which the fraction `share` (0 to 1) of the lit pixels stays below white.
     #[must_use]
     pub fn exposure(&self, share: f64) -> f64 {
         let lit = self.sums.iter().map(|pixel| pixel[0].max(pixel[1]).max(pixel[2])).filter(|value| *value > 0);
@@ -140,7 +140,7 @@ impl Light {
         255.0 * FULL as f64 / *value as f64
     }
 
-    /// The picture, with so many of 255 steps for one lit pixel of one strobe.
+    /// Returns the picture. `exposure` is the number of steps, of 255, for one lit pixel of one strobe.
     #[must_use]
     pub fn picture(&self, exposure: f64) -> RgbImage {
         let mut picture = RgbImage::new(self.size[0], self.size[1]);
@@ -156,13 +156,14 @@ impl Light {
         }
     }
 
-    /// Adds a point of light bilinearly; `levels` are 0 to 255 and `weight` 0 to 256.
+    /// Adds a point of light bilinearly. `levels` are 0 to 255, and `weight` is 0 to 256.
     #[inline(always)]
     fn splat(&mut self, [x, y]: [f64; 2], levels: [u64; 3], weight: u64) {
         let left = (x - 0.5).floor();
         let top = (y - 0.5).floor();
         let across = ((x - 0.5 - left) * 256.0 + 0.5) as u64;
         let down = ((y - 0.5 - top) * 256.0 + 0.5) as u64;
+        // The point lies between four pixels. Each gets its bilinear share.
         for (row, part) in [(top, 256 - down), (top + 1.0, down)] {
             for (column, share) in [(left, 256 - across), (left + 1.0, across)] {
                 let is_inside = row >= 0.0 && column >= 0.0 && row < f64::from(self.size[1]);
@@ -176,11 +177,11 @@ impl Light {
     }
 }
 
-/// Light of one revolution of a volume as the display shows it, halftoned.
+/// Returns the light of one revolution of a volume as the display shows it, halftoned.
 ///
 /// # Errors
 ///
-/// [`PerspectaError::Camera`] if the eye sees nothing.
+/// [`PerspectaError::Camera`] if a number of the camera is out of range.
 pub fn view_planes(
     planes: &BitPlanes,
     camera: &Camera,
@@ -190,6 +191,7 @@ pub fn view_planes(
     sum(planes.size(), planes.slices(), camera, options, workers, &|k, each| {
         let row = planes.size()[0] / 8;
         for (at, word) in (0u32..).zip(planes.slice(k)).filter(|(_, word)| **word != 0) {
+            // Visit the lit pixels of a word. Bit 7 is the leftmost pixel.
             let mut rest = (word | word >> 8 | word >> 16) & 0xFF;
             while rest != 0 {
                 let bit = rest.ilog2();
@@ -201,13 +203,14 @@ pub fn view_planes(
     })
 }
 
-/// The same before halftoning, with all 256 levels: what dither costs shows beside it.
+/// Returns the light before halftoning, with all 256 levels. A comparison with [`view_planes`] shows the cost of the
+/// dither.
 ///
-/// `None` if the frame was made without its colours.
+/// Returns `None` if the frame was made without its colours.
 ///
 /// # Errors
 ///
-/// As [`view_planes`].
+/// The same as [`view_planes`].
 pub fn view_undithered(
     frame: &VolumeFrame,
     camera: &Camera,
@@ -218,6 +221,7 @@ pub fn view_undithered(
     let size = frame.planes.size();
     let light = sum(size, frame.planes.slices(), camera, options, workers, &|k, each| {
         let drawn = colours.len() as u32;
+        // Slices that were not drawn show a drawn slice mirrored.
         let is_mirrored = k >= drawn;
         for ColourSample { pixel, colour } in &colours[(k % drawn) as usize] {
             let x = pixel % size[0];
@@ -227,7 +231,7 @@ pub fn view_undithered(
     Ok(Some(light))
 }
 
-/// Calls for every lit pixel of a slice: column, row and levels.
+/// A function that calls its argument with column, row and levels of every lit pixel of a slice.
 type EachPixel<'a> = dyn Fn(u32, &mut dyn FnMut(u32, u32, [u64; 3])) + Sync + 'a;
 
 fn sum(
@@ -239,6 +243,7 @@ fn sum(
     pixels: &EachPixel<'_>,
 ) -> Result<Light, PerspectaError> {
     camera.check_before(size)?;
+    // Each task sums a range of slices, so that the lock is taken rarely.
     let total = Mutex::new(Light::dark(camera.size));
     let part = |first: u32| {
         let mut light = Light::dark(camera.size);
@@ -253,19 +258,19 @@ fn sum(
     Ok(total.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// One strobe as the eye has it: its pixels in the axes of the eye.
+/// The geometry of a strobe, converted to the coordinates of the eye.
 struct Strobe {
     half: [f64; 2],
-    /// Of one pixel to the right, and of one up: right, up and back.
+    /// Vector of one pixel to the right (`across`) or up (`upward`), as right, up and back in the eye's axes.
     across: [f64; 3],
     upward: [f64; 3],
-    /// The screen's normal, in the same axes.
+    /// Normal of the screen, in the eye's axes.
     normal: [f64; 3],
     distance: f64,
     focal: f64,
     centre: [f64; 2],
     lambert: bool,
-    /// Which halves of the screen (u < 0, u >= 0) are left out.
+    /// True for each half of the screen (u < 0, u >= 0) that is left out.
     cut: [bool; 2],
 }
 
@@ -301,25 +306,25 @@ impl Strobe {
         light.splat([self.centre[0] + right * scale, self.centre[1] - up * scale], levels, weight);
     }
 
-    /// |view . e_s| in steps of 1/256.
+    /// Returns the cosine |view . e_s| between screen and eye in steps of 1/256.
     fn facing(&self, to_eye: [f64; 3]) -> u64 {
         let length = dot(to_eye, to_eye).sqrt();
         (256.0 * (dot(self.normal, to_eye) / length).abs() + 0.5) as u64
     }
 }
 
-/// Whether an angle lies in a range of angles that may run over 360 degrees.
+/// Returns true if an angle lies in a range of angles that may wrap at 360 degrees.
 fn is_cut(cut: Option<[f64; 2]>, angle: f64) -> bool {
     let Some([from, to]) = cut else { return false };
     let past = (angle - from).rem_euclid(360.0);
     to - from >= 360.0 || past < (to - from).rem_euclid(360.0)
 }
 
-/// Pictures of a turn around a volume, `frames` of them from the camera's own place on, all with one exposure.
+/// Returns `frames` pictures of a turn around a volume, starting from the camera's own position, all with one exposure.
 ///
 /// # Errors
 ///
-/// As [`view_planes`]; the first picture says so already.
+/// The same as [`view_planes`]. An error occurs already in the first picture.
 pub fn film(
     planes: &BitPlanes,
     camera: Camera,

@@ -1,4 +1,4 @@
-//! The display on the ring: what is lit when, and that nothing half written is ever shown.
+//! The display on the ring: times of light, and a test that partly written volumes are never shown.
 
 use perspecta::{PerspectaConfig, volume_messages};
 use pxpl5_display::{Display, DisplayConfig, DisplayEvent, DisplayOutput};
@@ -13,7 +13,7 @@ fn build(config: &PerspectaConfig) -> Box<dyn Display> {
     config.build(&[NodeId(7)]).expect("valid")
 }
 
-/// A volume with a few lit pixels in some slices.
+/// Returns a volume with a few lit pixels in some slices.
 fn volume(seed: u32) -> BitPlanes {
     let mut planes = BitPlanes::dark([64, 48], 12);
     for k in [0, 3, 4, 11] {

@@ -1,4 +1,4 @@
-//! What an eye sees of a revolution: places by formula, sums by count, pictures that were looked at.
+//! The view of an eye during a revolution: positions from formulas, sums from counts, and reference pictures.
 
 use image::RgbImage;
 use perspecta::{Camera, PerspectaConfig, PerspectaError, ViewOptions, film, view_planes, view_undithered};
@@ -15,14 +15,14 @@ fn case_8(azimuth_deg: f64, elevation_deg: f64) -> Camera {
     Camera { azimuth_deg, elevation_deg, distance: 1536.0, focal: 512.0, size: [512, 512] }
 }
 
-/// Slices 0 to 395 of 768 x 768 with one lit pixel.
+/// Returns 396 slices of 768 x 768 pixels with one lit pixel.
 fn one_pixel(slice: u32, x: u32, y: u32) -> BitPlanes {
     let mut planes = BitPlanes::dark([768, 768], 396);
     planes.slice_mut(slice)[(y * 96 + x / 8) as usize] = 0x00_01_01_01 << (7 - x % 8);
     planes
 }
 
-/// Centre of all light of a picture, pixels.
+/// Returns the centre of all light of a picture, pixels.
 fn centre(picture: &RgbImage) -> [f64; 2] {
     let mut sums = [0.0; 3];
     for (x, y, pixel) in picture.enumerate_pixels() {
@@ -54,7 +54,7 @@ fn case_8_a_pixel_is_seen_where_its_voxel_is() {
     }
 }
 
-/// A slice stands at phase + k d, or phase - k d on a screen that turns the other way.
+/// Slice k is at the angle phase + k d, or phase - k d on a screen that turns the other way.
 #[test]
 fn phase_and_direction_of_the_turn_place_a_slice() {
     let camera = case_8(40.0, 25.0);
@@ -70,7 +70,7 @@ fn phase_and_direction_of_the_turn_place_a_slice() {
     }
 }
 
-/// Strobes k and k + 198 show the same plane turned over: the same voxel is at the mirrored pixel.
+/// Strobes k and k + 198 show the same plane from opposite sides, so the same voxel is at the mirrored pixel.
 #[test]
 fn the_second_half_turn_shows_the_same_voxels() {
     let camera = case_8(40.0, 25.0);
@@ -134,7 +134,7 @@ fn the_light_does_not_depend_on_threads_and_is_that_of_all_lit_voxels() {
     assert!(most <= frame.planes.lit_voxels() as f64 && most > 0.5 * frame.planes.lit_voxels() as f64);
 }
 
-/// Dither keeps the light: on the mean a channel of value c lights c/255 of its pixels.
+/// Dither preserves the light: on average a channel of value c lights c/255 of its pixels.
 #[test]
 fn halftoned_and_undithered_light_agree() {
     for strobes in [Strobes::Each, Strobes::Mirror] {
@@ -178,7 +178,7 @@ fn cameras_that_see_nothing_are_named() {
     assert!(dark.picture(dark.exposure(0.98)).pixels().all(|pixel| pixel.0 == [0; 3]));
 }
 
-/// Compares with the picture that somebody has looked at, or with `PXPL5_UPDATE_GOLDEN` writes it.
+/// Compares with the reference picture, or writes the reference picture if `PXPL5_UPDATE_GOLDEN` is set.
 fn golden(name: &str, picture: &RgbImage) {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name);
     if std::env::var_os("PXPL5_UPDATE_GOLDEN").is_some() {
@@ -189,7 +189,8 @@ fn golden(name: &str, picture: &RgbImage) {
     assert!(*picture == expected, "{name} is another picture");
 }
 
-/// The swept view, a cutaway, and without dither. libm and whole numbers: the same bits on every host.
+/// Compares the view, a cutaway and the view without dither with reference pictures. With libm and integers, the bits
+/// are the same on every host.
 #[test]
 fn the_mig_looks_as_it_did() {
     let frame = mig(Strobes::Each);

@@ -1,7 +1,7 @@
 //! Draws a scene as a PNG, one picture for each side: `draw SCENE-OR-FILE OUT.png [AZIMUTH ELEVATION]...`
 //!
-//! Without angles it draws the first eight seconds of the scene's own head motion, a picture a second. A plain
-//! Z-buffer in world units: to look at scenes, not to compare with the machine.
+//! Without angles the example draws the first eight seconds of the scene's own head motion, one picture per second. A
+//! plain Z-buffer in world units suffices for inspecting scenes, but not for comparing with the machine.
 
 use std::error::Error;
 
@@ -83,7 +83,7 @@ fn shade(scene: &Scene, normal: Vec3, colour: [u8; 3]) -> Vec3 {
     Vec3::from(colour.map(f32::from)) * bright
 }
 
-/// Pixels right and down, and 1 / distance.
+/// Position in the picture, pixels to the right and down, and 1 / distance.
 fn screen(view: &View, eye: Vec3) -> Vec3 {
     let clip = view.projection * eye.extend(1.0);
     let x = (clip.x / clip.w + 1.0) * 0.5 * WIDTH as f32;
@@ -129,7 +129,7 @@ impl Canvas {
         }
     }
 
-    /// As if seen from afar: a disc with the normals of a ball.
+    /// Draws a sphere as if seen from afar: a disc with the normals of a sphere.
     fn sphere(&mut self, scene: &Scene, view: &View, sphere: pxpl5_scene::Sphere) {
         let centre = view.world_to_eye.transform_point3(sphere.centre);
         if centre.z > -sphere.radius {

@@ -1,44 +1,45 @@
-//! Edits: what a host changes in a scene from one frame to the next.
+//! Edits: changes of a scene by the host from one frame to the next.
 
 use glam::{DMat3, DMat4, DVec3, Mat4, Vec3};
 
 use crate::trig;
 
-/// Sets the model matrix of one structure. A host sends few of these per frame (published TR94).
+/// A new model matrix for one structure. A host sends few edits per frame (published TR94).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Edit {
-    /// Which structure: an index into [`crate::Scene::structures`].
+    /// Index of the structure in [`crate::Scene::structures`].
     pub structure: usize,
-    /// From the structure's coordinates to its frame's; replaces the previous one. Identity before the first edit.
+    /// Matrix from the structure's coordinates to its frame's coordinates, which replaces the previous matrix. Before
+    /// the first edit the matrix is the identity.
     pub model: Mat4,
 }
 
 /// A scripted motion of a structure: it swings about an axis like a control surface.
 ///
-/// Angle at time t: `amplitude_deg * sin(2 pi (t / period_ps + phase_turns))`.
+/// The angle at time t is `amplitude_deg * sin(2 pi (t / period_ps + phase_turns))`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hinge {
-    /// A point of the axis, metres, coordinates of the scene.
+    /// A point on the axis, metres, in coordinates of the scene.
     pub point: Vec3,
-    /// Direction of the axis; need not be of unit length, but not zero.
+    /// Direction of the axis, of any length except zero.
     pub axis: Vec3,
-    /// Largest deflection to either side, degrees.
+    /// Greatest deflection to each side, degrees.
     pub amplitude_deg: f64,
-    /// Time of one swing, picoseconds of simulated time; not zero.
+    /// Duration of a full swing, picoseconds of simulated time, above zero.
     pub period_ps: u64,
-    /// Beginning of the swing, in turns.
+    /// Phase of the swing at time 0, in turns.
     pub phase_turns: f64,
 }
 
 impl Hinge {
-    /// Deflection at simulated time `time_ps` (picoseconds), degrees.
+    /// Returns the deflection at simulated time `time_ps` (picoseconds), degrees.
     #[must_use]
     pub fn angle_deg(&self, time_ps: u64) -> f64 {
         let turns = (time_ps % self.period_ps) as f64 / self.period_ps as f64;
         self.amplitude_deg * trig::sin_turns(turns + self.phase_turns)
     }
 
-    /// Model matrix at simulated time `time_ps` (picoseconds): a rotation about the axis.
+    /// Returns the model matrix at simulated time `time_ps` (picoseconds): a rotation about the axis.
     #[must_use]
     pub fn model(&self, time_ps: u64) -> Mat4 {
         let rotation = rotation_about(self.axis.as_dvec3(), self.angle_deg(time_ps));
@@ -53,7 +54,7 @@ impl Hinge {
     }
 }
 
-/// Rotation by `angle_deg` about `axis`, right-handed (Rodrigues' formula).
+/// Returns the right-handed rotation by `angle_deg` about `axis` (Rodrigues' formula).
 fn rotation_about(axis: DVec3, angle_deg: f64) -> DMat3 {
     let axis = axis.normalize_or(DVec3::Y);
     let (sin, cos) = trig::sin_cos_deg(angle_deg);

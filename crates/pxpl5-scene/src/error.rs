@@ -1,16 +1,16 @@
-//! What can be wrong with a file, a scene, a display or a motion.
+//! Errors of model files, scenes, displays and motions.
 
 use std::fmt;
 use std::io;
 
 use thiserror::Error;
 
-/// Where in a file a fault was found.
+/// The position in a file at which an error was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FilePlace {
-    /// A line, counted from 1.
+    /// Line number, counted from 1.
     Line(u64),
-    /// An offset from the beginning of the file, in bytes.
+    /// Offset from the beginning of the file, in bytes.
     Byte(u64),
 }
 
@@ -23,16 +23,17 @@ impl fmt::Display for FilePlace {
     }
 }
 
-/// Why a model could not be loaded. Every message names the file, the place, what was expected and what was found.
+/// The reason why a model could not be loaded. Every message names the file, the position, the expected and the found
+/// content.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum LoadError {
-    /// The operating system refused: the file is missing, unreadable, or the disk failed.
+    /// The operating system reports an error: the file is missing, unreadable, or the disk failed.
     #[error("{file}: expected a readable file, found: {source}")]
     Io {
         /// Path of the file, as it was given.
         file: String,
-        /// What the operating system said.
+        /// Error of the operating system.
         source: io::Error,
     },
     /// The path leads to a directory, a device or a pipe.
@@ -40,15 +41,15 @@ pub enum LoadError {
     NotAFile {
         /// Path of the file, as it was given.
         file: String,
-        /// What the path leads to: "a directory", or "a device or a pipe".
+        /// Kind of the path's target: "a directory" or "a device or a pipe".
         found: &'static str,
     },
-    /// The extension is none that an importer reads.
+    /// No importer reads files with this extension.
     #[error("{file}: expected an extension .ply, .obj or .pdb, found {found:?}")]
     UnknownFormat {
         /// Path of the file, as it was given.
         file: String,
-        /// The extension, empty if there is none.
+        /// The extension, or an empty text if the path has none.
         found: String,
     },
     /// The file is larger than [`crate::config::MAX_FILE_BYTES`].
@@ -56,33 +57,34 @@ pub enum LoadError {
     TooLarge {
         /// Name of the file, as it was given.
         file: String,
-        /// The limit in bytes.
+        /// Limit of a model file's size, in bytes.
         expected: u64,
     },
-    /// The model takes more memory than [`crate::config::MEMORY_TIMES_FILE`] times its file: corners that repeat without end.
+    /// The model takes more memory than [`crate::config::MEMORY_TIMES_FILE`] times its file. A file that repeats
+    /// corners very often causes this error.
     #[error("{file}: expected a model that takes at most {expected} bytes, as its size allows, found {found}")]
     TooMuchMemory {
         /// Name of the file, as it was given.
         file: String,
-        /// The limit in bytes.
+        /// Limit of the model's memory, in bytes.
         expected: u64,
-        /// What the model would take, in bytes.
+        /// Memory that the model would take, in bytes.
         found: u64,
     },
-    /// The file has no bytes, or nothing but white space.
+    /// The file has no bytes, or only white space.
     #[error("{file}: expected a model, found an empty file")]
     Empty {
         /// Name of the file, as it was given.
         file: String,
     },
-    /// A byte that is not UTF-8 in a file, or part of a file, that must be text.
+    /// A part of the file that must be text contains a byte that is not UTF-8.
     #[error("{file}: {at}: expected UTF-8 text, found byte {found:#04x}")]
     NotText {
         /// Name of the file, as it was given.
         file: String,
-        /// Where in the file the fault was found.
+        /// Position of the error in the file.
         at: FilePlace,
-        /// The first byte that does not belong.
+        /// First byte that is not UTF-8.
         found: u8,
     },
     /// The file breaks the rules of its format.
@@ -90,23 +92,23 @@ pub enum LoadError {
     Syntax {
         /// Name of the file, as it was given.
         file: String,
-        /// Where in the file the fault was found.
+        /// Position of the error in the file.
         at: FilePlace,
-        /// What the format asks for.
+        /// Content that the format requires.
         expected: String,
-        /// What stands there, quoted and cut to 40 characters.
+        /// Content of the file at this position, quoted and cut to 40 characters.
         found: String,
     },
-    /// The file ends before everything that it announces; also how an absurd count in a header shows.
+    /// The file ends before the content that its header announces. An absurd count in a header also causes this error.
     #[error("{file}: {at}: expected {expected}, found {found}")]
     Truncated {
         /// Name of the file, as it was given.
         file: String,
-        /// Where in the file the fault was found.
+        /// Position of the error in the file.
         at: FilePlace,
-        /// What the file announced, for example a number of rows.
+        /// Content that the header announced, for example a number of rows.
         expected: String,
-        /// What is left of the file instead.
+        /// Description of the content that is left in the file.
         found: String,
     },
     /// A corner refers to a vertex or a normal that does not exist.
@@ -114,100 +116,100 @@ pub enum LoadError {
     Index {
         /// Name of the file, as it was given.
         file: String,
-        /// Where in the file the fault was found.
+        /// Position of the error in the file.
         at: FilePlace,
-        /// What is indexed: "vertices" or "normals".
+        /// Kind of the indexed items: "vertices" or "normals".
         what: &'static str,
-        /// How many of them the file has up to that place.
+        /// Number of such items in the file that the index may refer to.
         expected: usize,
-        /// The index as the file has it.
+        /// The index as it is written in the file.
         found: i64,
     },
-    /// A coordinate is not a number, infinite, or beyond [`crate::config::MAX_COORDINATE`].
+    /// A coordinate is NaN, infinite, or beyond [`crate::config::MAX_COORDINATE`].
     #[error("{file}: {at}: expected a coordinate between -{expected:e} and {expected:e}, found {found}")]
     Coordinate {
         /// Name of the file, as it was given.
         file: String,
-        /// Where in the file the fault was found.
+        /// Position of the error in the file.
         at: FilePlace,
-        /// The limit, in units of the file.
+        /// Limit of the absolute coordinate, in units of the file.
         expected: f64,
-        /// The coordinate as read, in units of the file.
+        /// The coordinate as it was read, in units of the file.
         found: f64,
     },
-    /// The file is well formed but holds nothing to draw.
+    /// The file is well formed but contains nothing to draw.
     #[error("{file}: expected at least one {expected}, found none")]
     NothingToDraw {
         /// Name of the file, as it was given.
         file: String,
-        /// What one would have been enough: "triangle" or "atom".
+        /// Kind of primitive that is missing: "triangle", "triangle with an area" or "atom".
         expected: &'static str,
     },
 }
 
-/// Why a scene could not be had or made.
+/// The reason why a scene could not be found or created.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SceneError {
     /// No built-in scene has this name.
     #[error("scene {found:?}: expected one of {valid}; the nearest is {nearest:?}")]
     UnknownScene {
-        /// The name asked for, cut to 40 characters.
+        /// The requested name, cut to 40 characters.
         found: String,
-        /// The valid name with the fewest edits to it.
+        /// The valid name with the smallest edit distance to the requested name.
         nearest: String,
-        /// All valid names, with commas between.
+        /// All valid names, separated by commas.
         valid: String,
     },
-    /// The N of a scene such as `full-screen:N` is no number or out of range.
+    /// The N of a scene such as `full-screen:N` is not a number or is out of range.
     #[error("scene {scene}: expected N {expected}, found {found:?}")]
     TriangleCount {
-        /// The scene, with N in its name.
+        /// Name of the scene, with N in place of the number.
         scene: &'static str,
-        /// What N may be.
+        /// Allowed values of N.
         expected: String,
-        /// What stands after the colon.
+        /// Text after the colon of the requested name.
         found: String,
     },
-    /// More primitives are to be kept than there are, or none.
+    /// The number of primitives to keep is zero or exceeds the number in the scene.
     #[error("scene {scene}: expected 1 to {expected} triangles to keep, found {found}")]
     Kept {
         /// Name of the scene.
         scene: String,
-        /// How many primitives it has.
+        /// Number of primitives in the scene.
         expected: usize,
-        /// How many were to be kept.
+        /// Requested number of primitives to keep.
         found: usize,
     },
-    /// A part of a hand-made scene breaks a rule of [`crate::Scene`].
+    /// A part of a scene breaks a rule of [`crate::Scene`].
     #[error("scene {scene}: {what} {index}: expected {expected}, found {found}")]
     Part {
         /// Name of the scene.
         scene: String,
-        /// "vertex", "triangle", "sphere", "structure" or "corner of the path".
+        /// Kind of the part: "vertex", "triangle", "sphere", "structure" or "corner of the path".
         what: &'static str,
-        /// Which of them, counted from 0.
+        /// Index of the part, counted from 0.
         index: usize,
-        /// The rule that it breaks.
+        /// The rule that the part breaks.
         expected: String,
-        /// What the scene holds instead.
+        /// Description of the part that breaks the rule.
         found: String,
     },
 }
 
-/// Why a display or a head motion could not be made: a number out of its range.
+/// The reason why a display or a head motion could not be created: a number out of its range.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{what}: expected {expected}, found {found}")]
 pub struct RangeError {
-    /// Name of the number, with its unit.
+    /// Name of the wrong number.
     pub what: &'static str,
-    /// The allowed range, in words.
+    /// Allowed range, in words.
     pub expected: &'static str,
     /// The number that was given, in the unit of its name.
     pub found: f64,
 }
 
-/// `Ok` if `holds`, otherwise the error.
+/// Returns an error unless `holds` is true.
 pub(crate) fn require(holds: bool, what: &'static str, expected: &'static str, found: f64) -> Result<(), RangeError> {
     if holds { Ok(()) } else { Err(RangeError { what, expected, found }) }
 }

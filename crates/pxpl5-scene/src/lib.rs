@@ -1,4 +1,4 @@
-//! What the machine draws and who looks at it: scenes, model files, the head-mounted display, and a head's motion.
+//! Input of the machine: scenes, model files, the head-mounted display and the motion of the head.
 //!
 //! ```text
 //!  load("x.ply") --+                 +--> vertices, triangles, spheres   --> processors, once
@@ -9,49 +9,53 @@
 //!
 //! # Behaviour
 //!
-//! - A [`Scene`] is a display list: indexed triangles with a normal and a colour for each vertex, spheres, and
-//!   *structures*, named runs of both with one model matrix each. An [`Edit`] replaces a model matrix;
-//!   [`Scene::edits_at`] gives the scripted edits of a frame.
-//! - [`from_bytes`] reads PLY, OBJ and PDB models and fits them into the default view. No bytes make it panic. `load`
-//!   does so with a file of the host; without the feature `files` the crate asks no operating system for anything, and
-//!   builds for a browser.
-//! - [`builtin`] generates the scenes of the published measurements, or likenesses of them:
+//! - A [`Scene`] is a display list of indexed triangles, with a normal and a colour for each vertex, and of spheres. A
+//!   *structure* is a named run of triangles and spheres with one model matrix. An [`Edit`] replaces a model matrix,
+//!   and [`Scene::edits_at`] returns the scripted edits of a frame.
+//! - [`from_bytes`] reads PLY, OBJ and PDB models and fits them into the default view. No input makes [`from_bytes`]
+//!   panic. `load` reads a file of the host. Without the feature `files` the crate makes no calls to the operating
+//!   system and builds for a browser.
+//! - [`builtin`] generates the scenes of the published measurements, or similar scenes:
 //!
-//! | name | triangles | spheres | standing of the counts |
+//! | name | triangles | spheres | provenance of the counts |
 //! |---|---|---|---|
-//! | `aircraft` | 100 | | assumed: what Slats draws in time |
+//! | `aircraft` | 100 | | assumed: Slats can draw it in time |
 //! | `mig` | 417 | | published TR94 |
 //! | `molecules` | 2,620 | 1,219 | assumed |
 //! | `head` | 59,592 | | assumed |
+//! | `room` | 4 | | assumed |
 //! | `gallery`, `gallery:full` | 112, 572 | | assumed |
 //! | `full-screen:N` | N | | published TR94 for N = 12 |
 //! | `typical:N` | N | | published TR94 for their size |
 //! | `sphere:N` | N | | |
 //!
-//! - [`HeadMotion::pose`] gives the head's [`Pose`] at any picosecond; [`Hmd::stereo`] the [`View`]s of its eyes.
+//! - [`HeadMotion::pose`] returns the [`Pose`] of the head at any picosecond. [`Hmd::stereo`] returns the [`View`]s of
+//!   its eyes.
 //!
 //! # Conventions
 //!
-//! Metres, degrees, picoseconds. World, head and eye coordinates are right-handed with +y up; a head and an eye look
-//! along their -z. A head's place is the point between its eyes. Triangles are anticlockwise seen from outside. Clip depth z/w runs from 0 at the near plane to 1 at
-//! the far plane, growing with distance. Matrices act on column vectors: `projection * world_to_eye * model * point`.
+//! Units are metres, degrees and picoseconds. World, head and eye coordinates are right-handed with +y up. Head and
+//! eyes look along their -z axes. The position of a head is the point between its eyes. Triangles are anticlockwise
+//! seen from outside. Clip depth z/w grows from 0 at the near plane to 1 at the far plane. Matrices act on column
+//! vectors: `projection * world_to_eye * model * point`.
 //!
 //! # Determinism
 //!
-//! Everything is computed in double precision with arithmetic, square roots and software trigonometry (`libm`), then
-//! rounded once to f32: all hosts agree in every bit.
+//! All results are computed in double precision with basic arithmetic, square roots and software trigonometry (`libm`),
+//! and then rounded once to f32. The results agree in every bit on all hosts.
 //!
 //! # Not modelled
 //!
-//! Textures, materials other than a diffuse colour, transparency, several lights, nested structures, edits that add
-//! or remove primitives, level of detail; lens distortion and converging optical axes of the display; the heavy tail
-//! of recorded head speeds; trackers, which see this motion through their own errors.
+//! Scenes have no textures, transparency, nested structures or levels of detail. Materials are diffuse colours, and
+//! there is one light. Edits cannot add or remove primitives. The display has no lens distortion and parallel optical
+//! axes. Head speeds lack the long tail of recorded speeds. The errors of trackers are modelled in the crate
+//! `tracking`, not here.
 //!
 //! # Sources
 //!
-//! TR94 = Cohen and Olano, *Low Latency Rendering on Pixel-Planes 5*, UNC TR94-028; JITP = Mine and Bishop,
-//! *Just-In-Time Pixels*, UNC TR93-005; myoglobin = H. C. Watson 1969, Protein Data Bank 1MBN; radii of atoms =
-//! Bondi 1964. Every number with its standing: [`config`] and [`HmdConfig::unc`].
+//! TR94 is Cohen and Olano, *Low Latency Rendering on Pixel-Planes 5*, UNC TR94-028. JITP is Mine and Bishop,
+//! *Just-In-Time Pixels*, UNC TR93-005. Myoglobin is by H. C. Watson 1969, Protein Data Bank 1MBN. Radii of atoms are
+//! by Bondi 1964. [`config`] and [`HmdConfig::unc`] list every number with its provenance.
 
 #![warn(missing_docs)]
 

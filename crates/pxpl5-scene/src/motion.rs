@@ -1,4 +1,4 @@
-//! Head motion: the pose of a head at any simulated time, the same for the same seed on every host.
+//! Head motion: the pose of a head at any simulated time. The same seed gives the same motion on every host.
 
 use glam::{DMat3, DQuat, DVec3, Vec3};
 use serde::{Deserialize, Serialize};
@@ -9,59 +9,59 @@ use crate::error::{RangeError, require};
 use crate::sway::{self, Sway, Swing};
 use crate::trig;
 
-/// Largest coordinate, distance or rate in a motion. Assumed: any run fits, and no product overflows.
+/// Greatest coordinate, distance or rate in a motion. Assumed: enough for any run, and no product overflows.
 const LIMIT: f64 = 1e9;
 
-/// What the head would do without sway. Lengths in metres, angles in degrees, world coordinates.
+/// The path of a head without sway. Lengths are metres, angles degrees, and coordinates are in the world.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum HeadPath {
-    /// Stands at `eye` and looks at `target`.
+    /// The head stands at `eye` and looks at `target`.
     Still {
-        /// Place of the head in the world, metres.
+        /// Position of the head in the world, metres.
         eye: Vec3,
-        /// The point that it looks at, metres, world coordinates.
+        /// Point at which the head looks, metres, world coordinates.
         target: Vec3,
     },
-    /// Stands at `eye`, looks along -z at time 0 and turns left (about +y) at a steady rate.
+    /// The head stands at `eye`, looks along -z at time 0 and turns left (about +y) at a constant rate.
     Pan {
-        /// Place of the head in the world, metres.
+        /// Position of the head in the world, metres.
         eye: Vec3,
-        /// Rate of turn, degrees per second; negative turns right.
+        /// Rate of the turn, degrees per second. A negative rate turns right.
         deg_per_s: f64,
     },
-    /// Circles round `target` in a level plane and looks at it; at time 0 it is on the +z side.
+    /// The head circles around `target` in a horizontal plane and looks at it. At time 0 the head is on the +z side.
     Orbit {
-        /// The point that it looks at, metres, world coordinates.
+        /// Point at which the head looks, metres, world coordinates.
         target: Vec3,
         /// Radius of the circle, metres.
         distance: f64,
         /// Height of the circle above the target, metres.
         height: f64,
-        /// Rate of the circle, degrees per second; positive goes towards +x first.
+        /// Rate of the circle, degrees per second. A positive rate moves towards +x first.
         deg_per_s: f64,
     },
-    /// Looks at `target` from the +z side and leans and walks to and fro around it as [`Sway`] says.
+    /// The head looks at `target` from the +z side. [`Sway`] makes it lean and walk to and fro around the target.
     Look {
-        /// The point that it looks at, metres, world coordinates.
+        /// Point at which the head looks, metres, world coordinates.
         target: Vec3,
         /// Mean distance from the target, metres.
         distance: f64,
     },
-    /// Flies round `target` and looks at it, near and far by turns: five approaches in two laps.
+    /// The head flies around `target` and looks at it, alternately near and far: five approaches in two laps.
     FlyThrough {
-        /// The point that it looks at, metres, world coordinates.
+        /// Point at which the head looks, metres, world coordinates.
         target: Vec3,
         /// Least distance from the target, metres.
         nearest: f64,
         /// Greatest distance from the target, metres.
         farthest: f64,
-        /// Time of one lap round the target, seconds.
+        /// Duration of one lap around the target, seconds.
         lap_s: f64,
     },
 }
 
-/// A head's motion: a path, and sway upon it.
+/// A head's motion: a path with additional sway.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Unchecked", into = "Unchecked")]
 pub struct HeadMotion {
@@ -69,7 +69,7 @@ pub struct HeadMotion {
     sway: Sway,
 }
 
-/// The same before its numbers are checked.
+/// A head motion whose numbers are not yet checked.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Unchecked {
@@ -92,7 +92,7 @@ impl From<HeadMotion> for Unchecked {
 }
 
 impl HeadMotion {
-    /// Checks the numbers.
+    /// Creates a motion after checking its numbers.
     ///
     /// # Errors
     ///
@@ -103,47 +103,48 @@ impl HeadMotion {
         Ok(Self { path, sway })
     }
 
-    /// Looks at a model with the published head speeds ([`HeadPath::Look`], sway of scale 1, seed 1).
+    /// Creates a motion that looks at a model with the published head speeds ([`HeadPath::Look`], sway of scale 1, seed
+    /// 1).
     ///
-    /// The distance is [`crate::config::FIT_DISTANCE_RADII`] times `radius` (metres); so the model, if it lies within
-    /// `radius` of `centre`, roughly fills the default view.
+    /// The distance is [`crate::config::FIT_DISTANCE_RADII`] times `radius` (metres). A model within `radius` of
+    /// `centre` then roughly fills the default view.
     #[must_use]
     pub fn looking_at(centre: Vec3, radius: f64) -> Self {
         let path = HeadPath::Look { target: centre, distance: radius * FIT_DISTANCE_RADII };
         Self { path, sway: Sway { seed: 1, scale: 1.0 } }
     }
 
-    /// The same from so far away that all of the model is in the view of both eyes at any time, whatever the seed: from
-    /// [`crate::config::WHOLE_DISTANCE_RADII`] times `radius` (metres).
+    /// Creates a motion that looks at a model from a distance at which both eyes always see all of it, with any seed.
+    /// The distance is [`crate::config::WHOLE_DISTANCE_RADII`] times `radius` (metres).
     #[must_use]
     pub fn seeing_whole(centre: Vec3, radius: f64) -> Self {
         let path = HeadPath::Look { target: centre, distance: radius * WHOLE_DISTANCE_RADII };
         Self { path, sway: Sway { seed: 1, scale: 1.0 } }
     }
 
-    /// What the head does without sway.
+    /// Returns the path of the head without sway.
     #[must_use]
     pub fn path(&self) -> &HeadPath {
         &self.path
     }
 
-    /// The movement upon the path.
+    /// Returns the sway that is added to the path.
     #[must_use]
     pub fn sway(&self) -> &Sway {
         &self.sway
     }
 
-    /// The same motion with another seed.
+    /// Returns the same motion with another seed.
     #[must_use]
     pub fn with_seed(mut self, seed: u64) -> Self {
         self.sway.seed = seed;
         self
     }
 
-    /// The pose at simulated time `time_ps`, picoseconds.
+    /// Returns the pose at simulated time `time_ps`, picoseconds.
     ///
-    /// Computed in double precision with software trigonometry, then rounded to single precision as all coordinates of
-    /// a scene are. The time is held to 2 ns after 200 days.
+    /// The pose is computed in double precision with software trigonometry, and then rounded to single precision like
+    /// all coordinates of a scene. The time is exact to 2 ns after 200 days.
     #[must_use]
     pub fn pose(&self, time_ps: u64) -> Pose {
         let seconds = time_ps as f64 * 1e-12;
@@ -185,10 +186,11 @@ impl HeadPath {
         }
     }
 
-    /// Place of the head, and its orientation before the gaze wanders.
+    /// Returns the position of the head, and its orientation without the sway of the gaze.
     fn eye_and_gaze(&self, seconds: f64, swing: &Swing) -> (DVec3, DQuat) {
         match *self {
             HeadPath::Still { eye, target } => facing(eye.as_dvec3(), target.as_dvec3()),
+            // A pan is the only path whose gaze has no target.
             HeadPath::Pan { eye, deg_per_s } => (eye.as_dvec3(), sway::turn_about(DVec3::Y, deg_per_s * seconds)),
             HeadPath::Orbit { target, distance, height, deg_per_s } => {
                 let arm = direction(deg_per_s * seconds, 0.0) * distance + DVec3::Y * height;
@@ -208,22 +210,23 @@ impl HeadPath {
 }
 
 fn check_point(what: &'static str, point: Vec3) -> Result<(), RangeError> {
-    // The largest element of a vector passes over what is not a number.
+    // The largest element of a vector ignores NaN, so NaN is tested separately.
     let reach = if point.is_nan() { f64::NAN } else { f64::from(point.abs().max_element()) };
     require(reach <= LIMIT, what, "coordinates of at most 1e9", reach)
 }
 
-/// For distances and times.
+/// Checks a distance or a duration.
 fn check_length(what: &'static str, length: f64) -> Result<(), RangeError> {
     require((1e-9..=LIMIT).contains(&length), what, "1e-9 to 1e9", length)
 }
 
-/// For heights and rates.
+/// Checks a height or a rate.
 fn check_either_sign(what: &'static str, number: f64) -> Result<(), RangeError> {
     require(number.abs() <= LIMIT, what, "-1e9 to 1e9", number)
 }
 
-/// From the target to the head after `laps`: two and a half approaches a lap, each from another side and height.
+/// Returns the vector from the target to the head after `laps`. A lap has two and a half approaches, each from another
+/// side and height.
 fn fly_through_arm(laps: f64, nearest: f64, farthest: f64) -> DVec3 {
     let middle = (farthest + nearest) / 2.0;
     let half = (farthest - nearest) / 2.0;
@@ -232,14 +235,15 @@ fn fly_through_arm(laps: f64, nearest: f64, farthest: f64) -> DVec3 {
     direction(360.0 * laps, elevation_deg) * distance
 }
 
-/// Unit vector `azimuth_deg` from +z towards +x, raised by `elevation_deg`.
+/// Returns the unit vector at `azimuth_deg` from +z towards +x, raised by `elevation_deg`.
 fn direction(azimuth_deg: f64, elevation_deg: f64) -> DVec3 {
     let (sin_a, cos_a) = trig::sin_cos_deg(azimuth_deg);
     let (sin_e, cos_e) = trig::sin_cos_deg(elevation_deg);
     DVec3::new(sin_a * cos_e, sin_e, cos_a * cos_e)
 }
 
-/// At `eye`, upright, looking at `target`; along -z if they coincide; feet towards +z if it looks straight up.
+/// Returns the position and orientation of an upright head at `eye` that looks at `target`. If the two coincide, the
+/// head looks along -z. If the head looks straight up, its feet point towards +z.
 fn facing(eye: DVec3, target: DVec3) -> (DVec3, DQuat) {
     let back = (eye - target).normalize_or(DVec3::Z);
     let right = DVec3::Y.cross(back).normalize_or(DVec3::X);

@@ -8,72 +8,72 @@ use crate::edit::{Edit, Hinge};
 use crate::error::SceneError;
 use crate::motion::HeadMotion;
 
-/// A corner that triangles share: place, normal and colour in one.
+/// A corner shared by triangles: position, normal and colour in one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Vertex {
-    /// Place in the coordinates of its structure, metres.
+    /// Position in the coordinates of the structure, metres.
     pub position: Vec3,
-    /// Direction outwards from the surface, of unit length.
+    /// Unit normal that points outwards from the surface.
     pub normal: Vec3,
-    /// Diffuse red, green, blue, 8 bits each.
+    /// Diffuse red, green and blue, 8 bits each.
     pub colour: [u8; 3],
 }
 
-/// A sphere, which the renderers draw as one primitive.
+/// A sphere, which a renderer draws as one primitive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sphere {
-    /// Place of its centre in the coordinates of its structure, metres.
+    /// Centre in the coordinates of the structure, metres.
     pub centre: Vec3,
-    /// Its radius, metres, above zero.
+    /// Radius of the sphere, metres, above zero.
     pub radius: f32,
-    /// Diffuse red, green, blue, 8 bits each.
+    /// Diffuse red, green and blue, 8 bits each.
     pub colour: [u8; 3],
 }
 
-/// What the coordinates of a structure are fixed to.
+/// The frame to which a structure is fixed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Frame {
-    /// The room; the head moves through it.
+    /// The room, through which the head moves.
     World,
-    /// The head; it is always at the same place of the view.
+    /// The head. The structure is always at the same position of the view.
     Head,
 }
 
 /// A named run of primitives with one model matrix.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Structure {
-    /// Its name, for people: no code asks for it.
+    /// Name for display only. The code never depends on it.
     pub name: String,
-    /// Its vertices, indices into [`Scene::vertices`]; only its own triangles use them.
+    /// Range of the structure's vertices in [`Scene::vertices`]. Only triangles of this structure use them.
     pub vertices: Range<usize>,
-    /// Its triangles, indices into [`Scene::triangles`].
+    /// Range of the structure's triangles in [`Scene::triangles`].
     pub triangles: Range<usize>,
-    /// Its spheres, indices into [`Scene::spheres`].
+    /// Range of the structure's spheres in [`Scene::spheres`].
     pub spheres: Range<usize>,
-    /// What its coordinates are fixed to.
+    /// Frame to which the coordinates are fixed.
     pub frame: Frame,
-    /// Its scripted motion, if it has one.
+    /// Scripted motion of the structure, or `None` for a structure that does not move by itself.
     pub hinge: Option<Hinge>,
-    /// Whether triangles that face away from the eye are dropped: those whose corners run clockwise, seen from the eye. Right for
-    /// surfaces without holes that are seen from outside.
+    /// True if triangles that face away from the eye are dropped. The corners of such a triangle run clockwise, seen
+    /// from the eye. This is correct for surfaces without holes that are seen from outside.
     pub culls_back_faces: bool,
 }
 
-/// One directional light, the same for all scenes.
+/// The light of a scene: one directional light with ambient light.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lighting {
-    /// Towards the light, of unit length, world coordinates.
+    /// Unit vector towards the light, world coordinates.
     pub towards_light: Vec3,
-    /// Part of the colour that is seen in shadow, 0 to 1.
+    /// Fraction of the colour that is visible in shadow, 0 to 1.
     pub ambient: f32,
-    /// Part of the colour added where the light falls square, 0 to 1.
+    /// Fraction of the colour that perpendicular light adds, 0 to 1.
     pub diffuse: f32,
-    /// Red, green, blue where nothing is drawn.
+    /// Red, green and blue of pixels without a primitive.
     pub background: [u8; 3],
 }
 
 impl Lighting {
-    /// From above, behind the viewer's right shoulder: direction (2, 3, 6) / 7. Assumed, any.
+    /// Returns light from above and behind the viewer's right shoulder, with direction (2, 3, 6) / 7. Assumed, any.
     #[must_use]
     pub fn over_the_shoulder() -> Self {
         Self {
@@ -85,24 +85,26 @@ impl Lighting {
     }
 }
 
-/// What a scene is made of, before it is checked by [`Scene::new`].
+/// The parts of a scene before [`Scene::new`] checks them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneParts {
     /// Name of the scene, as reports show it.
     pub name: String,
-    /// The corners that triangles share.
+    /// Vertices that the triangles share.
     pub vertices: Vec<Vertex>,
-    /// Indices of three vertices, anticlockwise seen from outside.
+    /// Indices of three vertices each, anticlockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// The spheres, in the order of drawing, after the triangles.
+    /// Spheres in the order of drawing, after the triangles.
     pub spheres: Vec<Sphere>,
-    /// In order, they divide all vertices, triangles and spheres among them. Empty stands for one structure of all.
+    /// Structures in order, which together contain all vertices, triangles and spheres. An empty list stands for a
+    /// single structure.
     pub structures: Vec<Structure>,
-    /// The one light, and the colour of the background.
+    /// Light and background colour.
     pub lighting: Lighting,
-    /// How a head moves that looks at this scene.
+    /// Motion of a head that looks at this scene.
     pub motion: HeadMotion,
-    /// Corners of the closed path on which somebody can walk through the scene, places of the eyes in metres; empty without one.
+    /// Corners of a closed path for walking through the scene, as eye positions in metres. The list is empty if the
+    /// scene has no path.
     pub path: Vec<Vec3>,
 }
 
@@ -114,7 +116,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Checks the parts.
+    /// Creates a scene after checking the parts.
     ///
     /// # Errors
     ///
@@ -127,83 +129,85 @@ impl Scene {
         Ok(Self { parts, warnings: Vec::new() })
     }
 
-    /// Replaces what is to be said of the file that the scene was read from.
+    /// Replaces the warnings about the file from which the scene was read.
     #[must_use]
     pub fn with_warnings(mut self, warnings: Vec<String>) -> Self {
         self.warnings = warnings;
         self
     }
 
-    /// What a reader made of its file that the writer may not have meant, a sentence each; empty for other scenes.
+    /// Returns warnings of a reader about content that its writer may have meant otherwise, one sentence each. The list
+    /// is empty for scenes without a file.
     #[must_use]
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
 
-    /// Name of the scene, as reports show it.
+    /// Returns the name of the scene, as reports show it.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.parts.name
     }
 
-    /// The vertices of all structures, one structure after the other.
+    /// Returns the vertices of all structures, one structure after the other.
     #[must_use]
     pub fn vertices(&self) -> &[Vertex] {
         &self.parts.vertices
     }
 
-    /// All triangles: indices into [`Self::vertices`], anticlockwise seen from outside.
+    /// Returns all triangles as indices into [`Self::vertices`], anticlockwise seen from outside.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.parts.triangles
     }
 
-    /// The spheres of all structures, one structure after the other.
+    /// Returns the spheres of all structures, one structure after the other.
     #[must_use]
     pub fn spheres(&self) -> &[Sphere] {
         &self.parts.spheres
     }
 
-    /// At least one; in order they divide the primitives among them.
+    /// Returns the structures, at least one. In order they contain all primitives.
     #[must_use]
     pub fn structures(&self) -> &[Structure] {
         &self.parts.structures
     }
 
-    /// The one light, and the colour of the background.
+    /// Returns the light and the background colour.
     #[must_use]
     pub fn lighting(&self) -> &Lighting {
         &self.parts.lighting
     }
 
-    /// How a head moves that looks at this scene: the model stays in view however long the run.
+    /// Returns the motion of a head that looks at this scene. The model stays in view for runs of any length.
     #[must_use]
     pub fn motion(&self) -> &HeadMotion {
         &self.parts.motion
     }
 
-    /// Corners of the closed path on which somebody can walk through the scene, places of the eyes in metres; empty where there is
-    /// none.
+    /// Returns the corners of a closed path for walking through the scene, as eye positions in metres. The list is
+    /// empty if the scene has no path.
     #[must_use]
     pub fn path(&self) -> &[Vec3] {
         &self.parts.path
     }
 
-    /// The same scene, all of whose structures drop their back faces: right for surfaces without holes that are seen from outside; of
-    /// others the inside cannot be seen any more.
+    /// Returns the same scene with back-face culling in all structures. This is correct for surfaces without holes that
+    /// are seen from outside. The inside of other surfaces becomes invisible.
     #[must_use]
     pub fn culled(mut self) -> Self {
         self.parts.structures.iter_mut().for_each(|structure| structure.culls_back_faces = true);
         self
     }
 
-    /// Takes the scene apart, to change it and check it again.
+    /// Returns the parts of the scene, which can be changed and checked again.
     #[must_use]
     pub fn into_parts(self) -> SceneParts {
         self.parts
     }
 
-    /// The edits of a frame begun at simulated time `time_ps` (picoseconds): one for each structure with a script.
+    /// Returns the edits of a frame that begins at simulated time `time_ps` (picoseconds): one for each structure with
+    /// a script.
     #[must_use]
     pub fn edits_at(&self, time_ps: u64) -> Vec<Edit> {
         let structures = self.structures().iter().enumerate();
@@ -215,10 +219,10 @@ impl Scene {
             .collect()
     }
 
-    /// A copy with `edits` applied to positions and normals, for code that knows no model matrices.
+    /// Returns a copy with `edits` applied to positions and normals, for code without model matrices.
     ///
-    /// The matrices must turn, move and scale alike in all directions. Edits of structures that the scene does not
-    /// have change nothing.
+    /// The matrices may only rotate, move and scale uniformly. Edits of structures that the scene does not have are
+    /// ignored.
     #[must_use]
     pub fn posed(&self, edits: &[Edit]) -> Scene {
         let mut posed = self.clone();
@@ -230,7 +234,7 @@ impl Scene {
         posed
     }
 
-    /// Centre of the box around everything, and distance from it to the farthest point; metres.
+    /// Returns the centre of the box around everything, and the distance from the centre to the farthest point, metres.
     #[must_use]
     pub fn bounding_sphere(&self) -> (Vec3, f32) {
         let points = self.vertices().iter().map(|v| (v.position.as_dvec3(), 0.0));
@@ -241,7 +245,8 @@ impl Scene {
     }
 }
 
-/// Centre of the box around the balls (centre, radius), and the farthest reach of one from it. (0, 0) without balls.
+/// Returns the centre of the box around the balls (centre, radius), and the distance to the farthest point of a ball.
+/// Without balls both are zero.
 pub(crate) fn bounding_sphere(balls: impl Iterator<Item = (DVec3, f64)> + Clone) -> (DVec3, f64) {
     let inverted = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let (low, high) = balls
@@ -255,7 +260,7 @@ pub(crate) fn bounding_sphere(balls: impl Iterator<Item = (DVec3, f64)> + Clone)
     (middle, reaches.fold(0.0, f64::max))
 }
 
-/// Length of a vector whose square may leave the range of f64.
+/// Returns the length of a vector whose square may leave the range of f64.
 fn length(v: DVec3) -> f64 {
     let largest = v.abs().max_element();
     if largest > 0.0 { (v / largest).length() * largest } else { 0.0 }
@@ -311,7 +316,8 @@ impl SceneParts {
             if !v.position.is_finite() {
                 return Err(self.fault("vertex", i, "a finite position", v.position));
             }
-            // f32 keeps a unit length to about 1e-7; 1e-3 passes what other programs wrote with few digits.
+            // f32 keeps a unit length to about 1e-7. The tolerance of 1e-3 accepts normals that other programs wrote
+            // with few digits.
             let length = v.normal.length();
             if length.is_nan() || (length - 1.0).abs() > 1e-3 {
                 return Err(self.fault("vertex", i, "a normal of length 1", length));
@@ -339,6 +345,7 @@ impl SceneParts {
     }
 
     fn check_structures(&self) -> Result<(), SceneError> {
+        // In order, the structures must divide each of the three lists without a gap.
         let mut ends = [0; 3];
         for (i, s) in self.structures.iter().enumerate() {
             for (range, end) in [&s.vertices, &s.triangles, &s.spheres].into_iter().zip(&mut ends) {

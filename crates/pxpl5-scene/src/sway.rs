@@ -1,4 +1,4 @@
-//! Seeded, band-limited sway of a head.
+//! Random, band-limited sway of a head, determined by a seed.
 
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
@@ -6,46 +6,46 @@ use tracking::random;
 
 use crate::trig;
 
-/// Unconscious and conscious movement upon a path: sums of sines of fixed frequencies, all below
+/// Unconscious and conscious head movement in addition to a path: a sum of sines of fixed frequencies, all below
 /// [`crate::config::HEAD_BAND_HZ`], with phases drawn from the seed.
 ///
-/// At scale 1 on [`crate::HeadPath::Look`] the mean angular speed is about
-/// [`crate::config::MEAN_HEAD_SPEED_DEG_PER_S`], never above [`crate::config::MAX_HEAD_SPEED_DEG_PER_S`], and at
-/// least 95 % of the energy of yaw lies below 0.14 Hz, all three as in recorded traces of headset use. Unlike those,
-/// the speeds have no long tail: a sum of sines is nearly Gaussian.
+/// At scale 1 on [`crate::HeadPath::Look`], three statistics agree with recorded traces of headset use. The mean
+/// angular speed is about [`crate::config::MEAN_HEAD_SPEED_DEG_PER_S`]. The speed never exceeds
+/// [`crate::config::MAX_HEAD_SPEED_DEG_PER_S`]. At least 95 % of the energy of yaw lies below 0.14 Hz. Unlike recorded
+/// speeds, these speeds have no long tail, because a sum of sines is nearly Gaussian.
 ///
-/// On [`crate::HeadPath::Look`] the head moves round the target and the gaze wanders; on all other paths only the gaze
-/// wanders, by at most 11 degrees a scale.
+/// On [`crate::HeadPath::Look`] the head moves around the target and the gaze wanders. On all other paths only the gaze
+/// wanders, by at most 11 degrees at scale 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sway {
-    /// Draws the phases of the sines; any number.
+    /// Seed from which the phases of the sines are drawn.
     pub seed: u64,
-    /// Multiplies all amplitudes: 0 is none, 1 as published.
+    /// Factor of all amplitudes, 0 to 10. With 0 there is no sway, and 1 gives the published speeds.
     pub scale: f64,
 }
 
-/// Frequency in hertz and amplitude of one sine.
+/// Frequency in hertz and amplitude of a sine.
 type Sine = (f64, f64);
 
-// Amplitudes and frequencies are assumed, within the published band and energy; frequencies have no common period.
-// Their root mean square angular speed, sqrt(sum (2 pi f A)^2 / 2) over all but the distance, is 44 degrees per
-// second, whose mean, for speeds nearly Gaussian in three unequal directions, is about nine tenths: 40.
+// Amplitudes and frequencies are assumed, within the published band and energy. The frequencies have no common period.
+// The root mean square angular speed, sqrt(sum (2 pi f A)^2 / 2) over all but the distance, is 44 degrees per second.
+// For nearly Gaussian speeds in three unequal directions the mean is about nine tenths of this: 40.
 
-/// Degrees round the target.
+/// Angle around the target, degrees.
 const AZIMUTH: [Sine; 5] = [(0.041, 41.0), (0.067, 40.0), (0.097, 38.0), (0.131, 35.0), (0.43, 5.0)];
-/// Degrees above the target.
+/// Angle above the target, degrees.
 const ELEVATION: [Sine; 3] = [(0.053, 12.0), (0.113, 9.0), (0.47, 4.0)];
-/// Fraction of the distance.
+/// Change of the distance, as a fraction.
 const DISTANCE: [Sine; 2] = [(0.059, 0.06), (0.149, 0.04)];
-/// Degrees of gaze left of the target.
+/// Angle of the gaze to the left of the target, degrees.
 const GAZE_YAW: [Sine; 3] = [(0.37, 3.4), (0.89, 2.9), (1.61, 2.2)];
-/// Degrees of gaze above the target.
+/// Angle of the gaze above the target, degrees.
 const GAZE_PITCH: [Sine; 3] = [(0.31, 2.7), (0.97, 2.2), (1.73, 1.6)];
-/// Degrees of tilt of the head to its left.
+/// Tilt of the head to its left, degrees.
 const GAZE_ROLL: [Sine; 3] = [(0.17, 3.4), (0.71, 2.5), (1.37, 1.6)];
 
-/// The sway at one time.
+/// The sway at one instant.
 pub(crate) struct Swing {
     pub(crate) azimuth_deg: f64,
     pub(crate) elevation_deg: f64,
@@ -56,7 +56,7 @@ pub(crate) struct Swing {
 }
 
 impl Sway {
-    /// A head that keeps exactly to its path: amplitudes of 0.
+    /// Returns a sway with amplitudes of 0: the head stays exactly on its path.
     #[must_use]
     pub fn none() -> Self {
         Self { seed: 0, scale: 0.0 }
@@ -66,7 +66,7 @@ impl Sway {
         let mut sums = SumsOfSines { sway: self, seconds, phases_drawn: 0 };
         Swing {
             azimuth_deg: sums.next(&AZIMUTH),
-            // Held short of the pole, where upright has no meaning, whatever the scale.
+            // Limited to stay away from the pole at any scale, because upright has no meaning there.
             elevation_deg: (10.0 + sums.next(&ELEVATION)).clamp(-80.0, 80.0),
             distance_factor: (1.0 + sums.next(&DISTANCE)).max(0.1),
             yaw_deg: sums.next(&GAZE_YAW),
@@ -76,7 +76,7 @@ impl Sway {
     }
 }
 
-/// Adds up sines, each with the next phase of the seed.
+/// A generator of sums of sines. Each sine gets the next phase of the seed.
 struct SumsOfSines<'a> {
     sway: &'a Sway,
     seconds: f64,
@@ -101,13 +101,13 @@ impl SumsOfSines<'_> {
 }
 
 impl Swing {
-    /// How far the gaze is off the path's.
+    /// Returns the rotation of the gaze relative to the path's gaze.
     pub(crate) fn gaze(&self) -> DQuat {
         turn_about(DVec3::Y, self.yaw_deg) * turn_about(DVec3::X, self.pitch_deg) * turn_about(DVec3::Z, self.roll_deg)
     }
 }
 
-/// Rotation by `angle_deg` about the unit vector `axis`.
+/// Returns the rotation by `angle_deg` about the unit vector `axis`.
 pub(crate) fn turn_about(axis: DVec3, angle_deg: f64) -> DQuat {
     let (sin, cos) = trig::sin_cos_deg(angle_deg / 2.0);
     DQuat::from_xyzw(axis.x * sin, axis.y * sin, axis.z * sin, cos)

@@ -1,4 +1,4 @@
-//! The head-mounted display: from a head's pose to the matrices of its two eyes.
+//! The head-mounted display, which converts a head's pose into the matrices of its two eyes.
 
 use glam::{DMat4, DQuat, DVec3, DVec4, Mat4};
 use serde::{Deserialize, Serialize};
@@ -8,33 +8,33 @@ use crate::error::{RangeError, require};
 use crate::scene::Frame;
 use crate::trig;
 
-/// An eye. Left comes first everywhere.
+/// An eye of the viewer. In pairs, the left eye comes first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum EyePoint {
-    /// The left eye, half the eye separation left of the head's place.
+    /// The left eye, half the eye separation to the left of the head's position.
     Left,
-    /// The right eye, half the eye separation right of the head's place.
+    /// The right eye, half the eye separation to the right of the head's position.
     Right,
     /// The point between the eyes, for a single picture.
     Centre,
 }
 
-/// The transforms of one eye's picture.
+/// The transformations of one eye's picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
-    /// The eye that sees the picture.
+    /// Eye that sees the picture.
     pub eye: EyePoint,
-    /// From world to eye coordinates: right-handed, +y up, looking along -z. Rigid.
+    /// Rigid matrix from world to eye coordinates: right-handed, +y up, looking along -z.
     pub world_to_eye: Mat4,
-    /// From head to eye coordinates, for structures fixed to the head. Rigid.
+    /// Rigid matrix from head to eye coordinates, for structures fixed to the head.
     pub head_to_eye: Mat4,
-    /// From eye to clip coordinates: -w <= x <= w (right), -w <= y <= w (up), 0 <= z <= w; z/w grows from 0 at the
-    /// near plane to 1 at the far plane.
+    /// Matrix from eye to clip coordinates: -w <= x <= w (right), -w <= y <= w (up), 0 <= z <= w. The depth z/w grows
+    /// from 0 at the near plane to 1 at the far plane.
     pub projection: Mat4,
 }
 
 impl View {
-    /// From the coordinates of a frame to eye coordinates.
+    /// Returns the matrix from the coordinates of a frame to eye coordinates.
     #[must_use]
     pub fn to_eye(&self, frame: Frame) -> Mat4 {
         match frame {
@@ -44,7 +44,7 @@ impl View {
     }
 }
 
-/// Numbers of a head-mounted display, in metres, degrees and pixels; checked by [`Hmd::new`].
+/// Numbers of a head-mounted display in metres, degrees and pixels. [`Hmd::new`] checks them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HmdConfig {
@@ -52,20 +52,20 @@ pub struct HmdConfig {
     pub eye_separation_m: f64,
     /// Angle between the left and the right edge of a picture, degrees.
     pub horizontal_fov_deg: f64,
-    /// Width of a picture, square pixels.
+    /// Width of a picture in square pixels.
     pub width_px: u32,
-    /// Height of a picture, square pixels.
+    /// Height of a picture in square pixels.
     pub height_px: u32,
-    /// Distance of the near plane, metres.
+    /// Distance from the eye to the near plane, metres.
     pub near_m: f64,
-    /// Distance of the far plane, metres.
+    /// Distance from the eye to the far plane, metres.
     pub far_m: f64,
 }
 
 impl HmdConfig {
-    /// The display of the low-latency experiments of 1993 to 1995.
+    /// Returns the display of the low-latency experiments of 1993 to 1995.
     ///
-    /// | number | value | standing |
+    /// | number | value | provenance |
     /// |---|---|---|
     /// | picture | 640 x 480 | published TR94 |
     /// | field of view | 60 degrees | published in JITP's example, assumed here; 30 to 100 |
@@ -84,7 +84,7 @@ impl HmdConfig {
     }
 }
 
-/// A head-mounted display with checked numbers: parallel optical axes, each picture centred on its axis.
+/// A head-mounted display with checked numbers. The optical axes are parallel, and each picture is centred on its axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hmd {
     config: HmdConfig,
@@ -92,7 +92,7 @@ pub struct Hmd {
 }
 
 impl Hmd {
-    /// Checks the numbers.
+    /// Creates a display after checking its numbers.
     ///
     /// # Errors
     ///
@@ -113,32 +113,32 @@ impl Hmd {
         Ok(Self { config, projection })
     }
 
-    /// The numbers, all within their ranges.
+    /// Returns the numbers of the display, all within their ranges.
     #[must_use]
     pub fn config(&self) -> &HmdConfig {
         &self.config
     }
 
-    /// The views of the left and the right eye.
+    /// Returns the views of the left and the right eye.
     #[must_use]
     pub fn stereo(&self, head: &Pose) -> [View; 2] {
         [EyePoint::Left, EyePoint::Right].map(|eye| self.view(eye, head))
     }
 
-    /// One view, from between the eyes.
+    /// Returns one view from the point between the eyes.
     #[must_use]
     pub fn mono(&self, head: &Pose) -> View {
         self.view(EyePoint::Centre, head)
     }
 
-    /// Distance from the eye to the picture, in pixels: how many pixels a tangent of 1 takes.
+    /// Returns the distance from the eye to the picture in pixels, which is the number of pixels for a tangent of 1.
     #[must_use]
     pub fn focal_length_px(&self) -> f64 {
         f64::from(self.config.width_px) / 2.0 / half_width(&self.config)
     }
 
-    /// How far right of its place in the right picture a point `depth_m` (metres) ahead is in the left one, pixels:
-    /// eye separation x focal length / depth.
+    /// Returns the disparity of a point `depth_m` (metres) ahead in pixels: eye separation x focal length / depth. The
+    /// point is this far to the right in the left picture, relative to the right picture.
     #[must_use]
     pub fn disparity_px(&self, depth_m: f64) -> f64 {
         self.config.eye_separation_m * self.focal_length_px() / depth_m
@@ -161,7 +161,7 @@ impl Hmd {
     }
 }
 
-/// Tangent of half the horizontal field of view.
+/// Returns the tangent of half the horizontal field of view.
 fn half_width(config: &HmdConfig) -> f64 {
     let (sin, cos) = trig::sin_cos_deg(config.horizontal_fov_deg / 2.0);
     sin / cos
@@ -181,7 +181,7 @@ fn projection(config: &HmdConfig) -> Mat4 {
     .as_mat4()
 }
 
-/// Inverse of the head's pose, in double precision. An orientation of length zero counts as none.
+/// Returns the inverse of the head's pose in double precision. An orientation of length zero counts as the identity.
 fn world_to_head(head: &Pose) -> DMat4 {
     let q = head.orientation;
     let length = q.length();

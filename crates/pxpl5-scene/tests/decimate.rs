@@ -1,4 +1,4 @@
-//! Scenes of fewer primitives keep the shape: area, box, closedness, and no more than was asked for.
+//! Decimated scenes keep their shape (area, box, closedness) and have at most the requested number of primitives.
 
 use std::collections::BTreeMap;
 
@@ -10,12 +10,13 @@ fn scene(name: &str) -> Scene {
     builtin(name).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Places of the corners, by their bits: vertices of one place are one point.
+/// Returns the positions of the corners as bits, so that vertices at one position are one point.
 fn places(scene: &Scene, triangle: &[u32; 3]) -> [[u32; 3]; 3] {
     triangle.map(|corner| scene.vertices()[corner as usize].position.to_array().map(|x| (x + 0.0).to_bits()))
 }
 
-/// Whether every edge is used as often in one direction as in the other: closed, and wound all alike.
+/// Returns true if every edge is used equally often in both directions: the surface is closed and consistently
+/// oriented.
 fn is_closed(scene: &Scene) -> bool {
     let mut edges: BTreeMap<[[u32; 3]; 2], i32> = BTreeMap::new();
     for triangle in scene.triangles() {
@@ -42,7 +43,7 @@ fn volume(scene: &Scene) -> f64 {
     scene.triangles().iter().map(|triangle| of(corners(scene, triangle))).sum()
 }
 
-/// Lengths of the sides of the box around a scene.
+/// Returns the lengths of the sides of the box around a scene.
 fn size(scene: &Scene) -> Vec3 {
     let used = scene.triangles().iter().flatten().map(|corner| scene.vertices()[*corner as usize].position);
     let (low, high) = used.fold((Vec3::MAX, Vec3::MIN), |(low, high), p| (low.min(p), high.max(p)));
@@ -52,7 +53,8 @@ fn size(scene: &Scene) -> Vec3 {
 #[test]
 fn a_head_of_fewer_triangles_is_a_closed_head_of_the_same_size() {
     let whole = scene("head");
-    // What a polyhedron of so many triangles must lose of a smooth shape grows as one over their number.
+    // The unavoidable error of a polyhedron against a smooth shape is inversely proportional to the number of
+    // triangles.
     for (wanted, within) in [(6_000, 0.01), (1_000, 0.04), (140, 0.2)] {
         let few = whole.decimated(wanted).expect("it has more");
         assert_eq!(few.triangles().len(), wanted);
@@ -66,7 +68,7 @@ fn a_head_of_fewer_triangles_is_a_closed_head_of_the_same_size() {
     }
 }
 
-/// All eight corners of the box are looked into: the first N triangles of the head are its crown alone.
+/// Every octant of the box must keep triangles. The first N triangles of the head would be only its crown.
 #[test]
 fn no_part_of_the_head_is_left_out() {
     let few = scene("head").decimated(200).expect("it has more");
@@ -94,7 +96,7 @@ fn an_aircraft_of_fewer_triangles_keeps_wings_tail_and_nose() {
 
 #[test]
 fn a_flat_sheet_of_many_triangles_becomes_two() {
-    // Corners keep their places, and within a plane everything can go.
+    // Corners keep their positions, and everything within a plane can be removed.
     let mut parts = scene("full-screen:1").into_parts();
     const SIDE: u32 = 9;
     let vertex = parts.vertices[0];

@@ -1,11 +1,13 @@
-//! Models by file are whole in the view of both eyes; by a formula: their bounding sphere against the sides of the view.
+//! Imported models are completely visible to both eyes. The test compares the bounding sphere with the sides of the
+//! view.
 
 use glam::{DVec3, Vec3};
 use pxpl5_scene::{Format, Hmd, HmdConfig, Placement, Scene, builtin, from_bytes, placed_from_bytes};
 
 const SECOND: u64 = 1_000_000_000_000;
 
-/// How far the bounding sphere is inside the nearest side of a view, degrees: below zero where it is cut off.
+/// Returns the angle between the bounding sphere and the nearest side of a view, degrees. A negative angle means that
+/// the sphere is cut off.
 fn margin_deg(scene: &Scene, time_ps: u64) -> f64 {
     let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is in range");
     let (centre, radius) = scene.bounding_sphere();
@@ -13,7 +15,8 @@ fn margin_deg(scene: &Scene, time_ps: u64) -> f64 {
     let margins = hmd.stereo(&scene.motion().pose(time_ps)).map(|view| {
         let c = view.world_to_eye.transform_point3(centre).as_dvec3();
         let reach = (f64::from(radius) / c.length()).asin().to_degrees();
-        // A side of the view through the eye: its normal points outwards; the angle of the centre from it, less the sphere.
+        // A side of the view is a plane through the eye with an outward normal. Its margin is the angle to the centre
+        // minus the angle of the sphere.
         let sides = [
             DVec3::new(1.0, 0.0, half_width),
             DVec3::new(-1.0, 0.0, half_width),
@@ -25,7 +28,7 @@ fn margin_deg(scene: &Scene, time_ps: u64) -> f64 {
     margins.into_iter().flatten().fold(f64::MAX, f64::min)
 }
 
-/// A bar, a flat plate and a lump, in any units.
+/// Returns a bar, a flat plate and a lump, in any units.
 fn models() -> Vec<Scene> {
     let texts = [
         "v 0 0 0\nv 1000 0 0\nv 0 2000 30\nv 5 5 5\nf 1 2 3\nf 1 2 4\n",
@@ -40,7 +43,7 @@ fn models() -> Vec<Scene> {
 fn the_whole_model_is_in_the_view_of_both_eyes_at_any_time_with_a_margin() {
     for scene in models() {
         let least = (0..6_000).map(|i| margin_deg(&scene, i * SECOND / 9)).fold(f64::MAX, f64::min);
-        // 1.2 degrees by the worst case of all sines at once; not smaller than need be either.
+        // The worst case of all sines at once leaves 1.2 degrees. The model must not be smaller than necessary either.
         assert!((1.0..8.0).contains(&least), "{}: {least} degrees", scene.name());
     }
 }

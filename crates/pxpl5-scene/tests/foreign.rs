@@ -1,11 +1,11 @@
-//! Files of other programs, as those write them: what a format allows and few files use, and what no format allows but many files hold.
+//! Files as other programs write them, with rare features of the formats and with common violations of the formats.
 
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use pxpl5_scene::config::{DEFAULT_COLOUR, IMPORT_RADIUS_M};
 use pxpl5_scene::{Format, LoadError, Placement, Scene, from_bytes, placed_from_bytes};
 
-/// The scene with the places of its file, so that expected values are those of the file.
+/// Returns the scene with the coordinates of its file, so that expected values equal the file's values.
 fn read(format: Format, bytes: impl AsRef<[u8]>) -> Result<Scene, LoadError> {
     placed_from_bytes(bytes.as_ref(), format, "test", Placement::AsInFile)
 }
@@ -22,7 +22,7 @@ fn corners(scene: &Scene, triangle: [u32; 3]) -> [DVec3; 3] {
     triangle.map(|corner| scene.vertices()[corner as usize].position.as_dvec3())
 }
 
-/// Areas of all triangles as vectors.
+/// Returns the area vectors of all triangles.
 fn areas(scene: &Scene) -> Vec<DVec3> {
     let area = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a) / 2.0;
     scene.triangles().iter().map(|triangle| area(corners(scene, *triangle))).collect()
@@ -30,7 +30,7 @@ fn areas(scene: &Scene) -> Vec<DVec3> {
 
 const TETRAHEDRON: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
-// Lines that go on.
+// Lines that continue in the next line.
 
 #[test]
 fn a_line_of_obj_that_ends_in_a_backslash_goes_on_in_the_next_one() {
@@ -66,7 +66,7 @@ fn a_fault_in_a_line_that_goes_on_is_named_with_the_line_where_it_begins() {
     assert_eq!(error, "test: line 5: expected an index of one of 3 vertices, found 9");
 }
 
-// Order.
+// Order of elements.
 
 #[test]
 fn faces_may_stand_before_the_points_of_an_obj_file() {
@@ -105,7 +105,7 @@ fn elements_of_ply_may_come_in_any_order() {
     assert_eq!(ply(ascii_ply(&[strip, vertices])).triangles(), [[0, 2, 1]]);
 }
 
-/// The tetrahedron with faces first, in binary: 1 + 3 x 4 bytes a face, lists counted by `count`.
+/// Returns the tetrahedron in binary with faces first: 1 + 3 x 4 bytes per face. `word` gives the byte order of a word.
 fn binary_faces_first(encoding: &str, word: fn(u32) -> [u8; 4]) -> Vec<u8> {
     let [[vertex, _], [face, _]] = ELEMENTS;
     let mut file = format!("ply\r\nformat {encoding} 1.0\r\ncomment Gr\u{f6}\r\n{face}{vertex}end_header\r\n")
@@ -165,7 +165,7 @@ fn indices_of_ply_have_any_type() {
     }
 }
 
-// Bytes.
+// Encodings and line ends.
 
 #[test]
 fn comments_and_names_in_any_encoding_are_no_reason_to_refuse_a_model() {
@@ -193,22 +193,23 @@ fn what_is_no_text_where_a_number_must_be_is_refused_with_its_line() {
     assert!(matches!(read(Format::Obj, wide), Err(LoadError::NotText { found: 0xff, .. })));
 }
 
-// Polygons.
+// Polygons with more than three corners.
 
-/// A polygon as OBJ, in the plane z = 0.
+/// Returns a polygon in the plane z = 0 as an OBJ file.
 fn polygon_obj(points: &[(f64, f64)]) -> String {
     let vertices: String = points.iter().map(|(x, y)| format!("v {x} {y} 0\n")).collect();
     let face: String = (1..=points.len()).map(|n| format!(" {n}")).collect();
     format!("{vertices}f{face}\n")
 }
 
-/// The area by the shoelace formula.
+/// Returns the area of a polygon by the shoelace formula.
 fn shoelace(points: &[(f64, f64)]) -> f64 {
     let next = points.iter().cycle().skip(1);
     points.iter().zip(next).map(|(a, b)| (a.0 * b.1 - b.0 * a.1) / 2.0).sum()
 }
 
-/// The triangles of a simple polygon cover it once: all turn as it does, and their areas add up to its own.
+/// Checks that the triangles of a simple polygon cover it once. All have the polygon's orientation, and their areas add
+/// up to its area.
 fn assert_covers(points: &[(f64, f64)], scene: &Scene) {
     let whole = shoelace(points);
     let areas = areas(scene);
@@ -296,7 +297,8 @@ fn notches_of_any_size_stay_open() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 1_000, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Polygons about the origin: a radius at each of some rising angles less than half a turn apart, so that none crosses itself.
+    /// Generates polygons around the origin with a radius at each of several rising angles. The angles are less than
+    /// half a turn apart, so a polygon never crosses itself.
     #[test]
     fn any_polygon_about_a_point_is_covered_once(
         radii in prop::collection::vec(0.1..4.0_f64, 4..200),
@@ -324,7 +326,7 @@ proptest! {
     }
 }
 
-// Shading.
+// Shading by smoothing groups.
 
 const CUBE: &str = "v -1 -1 -1\nv -1 -1 1\nv -1 1 -1\nv -1 1 1\nv 1 -1 -1\nv 1 -1 1\nv 1 1 -1\nv 1 1 1\n";
 const FACES: [&str; 6] = ["f 1 2 4 3\n", "f 5 7 8 6\n", "f 1 5 6 2\n", "f 3 4 8 7\n", "f 1 3 7 5\n", "f 2 6 8 4\n"];
@@ -350,7 +352,8 @@ fn faces_of_obj_are_flat_where_smoothing_is_off() {
     for on in ["s 1\n", "s on\n", "s 3\n", "s 4294967296\n"] {
         let scene = obj(format!("{on}{CUBE}{faces}"));
         assert_eq!(scene.vertices().len(), 8, "{on:?}");
-        // Of a cube the mean of three faces is the diagonal, unless one of them has two triangles there: at most 45 degrees away.
+        // At a corner of a cube the mean of three faces is the diagonal, unless a face has two triangles there. The
+        // angle to each face is at most 45 degrees.
         let diagonal = |v: &pxpl5_scene::Vertex| v.position.normalize().dot(v.normal);
         assert!(scene.vertices().iter().all(|v| diagonal(v) > 0.9), "{on:?}");
     }
@@ -379,7 +382,7 @@ fn a_flat_face_that_is_not_plane_has_one_normal() {
     assert!(scene.vertices().iter().all(|v| v.normal == scene.vertices()[0].normal));
 }
 
-// Colours.
+// Colours of vertices and faces.
 
 #[test]
 fn colours_of_obj_vertices_are_drawn_as_fractions_or_bytes() {
@@ -439,7 +442,7 @@ fn colours_of_ply_faces_are_drawn_and_do_not_change_the_shading() {
     }
 }
 
-// Normals that are none.
+// Normals that are NaN.
 
 #[test]
 fn normals_that_are_no_numbers_are_computed_and_told_once() {
@@ -470,15 +473,15 @@ fn a_place_that_is_no_number_is_refused_and_named() {
     }
 }
 
-// Atoms.
+// Atoms of PDB files.
 
-/// A line of a PDB file without element columns; `name` are the columns 13 to 16.
+/// Returns a line of a PDB file without element columns. `name` fills columns 13 to 16.
 fn atom(record: &str, name: &str, residue: &str) -> String {
     assert_eq!(name.len(), 4);
     format!("{record:<6}    1 {name} {residue:>3} A   1    {:>8.3}{:>8.3}{:>8.3}  1.00  0.00\n", 1.0, 2.0, 3.0)
 }
 
-/// Radius of an atom relative to carbon, and its colour.
+/// Returns the radius of an atom relative to carbon, and its colour.
 fn drawn(line: &str) -> (f32, [u8; 3]) {
     let carbon = format!("{:<76} C\n", atom("ATOM", " C  ", "GLY").trim_end());
     let scene = read(Format::Pdb, format!("{carbon}{line}")).expect("two atoms");
@@ -553,7 +556,7 @@ fn what_stands_in_the_columns_of_the_element_and_is_none_is_passed_over() {
     }
 }
 
-// Nothing to see.
+// Models without visible content.
 
 #[test]
 fn a_model_without_a_triangle_that_has_an_area_is_refused() {

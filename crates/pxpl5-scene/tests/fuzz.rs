@@ -1,4 +1,4 @@
-//! No bytes make a reader panic, and what they accept is a sound scene.
+//! Readers never panic, whatever the bytes, and every accepted file is a valid scene.
 
 use proptest::prelude::*;
 use pxpl5_scene::{Format, Scene, from_bytes};
@@ -38,7 +38,7 @@ fn samples() -> Vec<(Format, Vec<u8>)> {
     plys.into_iter().chain(texts).collect()
 }
 
-/// A byte replaced, inserted or removed, the end cut off, or a piece repeated.
+/// A random change of a file: a byte is replaced, inserted or removed, the end is cut off, or a piece is repeated.
 #[derive(Debug, Clone)]
 enum Damage {
     Replace(prop::sample::Index, u8),
@@ -83,7 +83,7 @@ fn apply(file: &mut Vec<u8>, damage: Damage) {
     }
 }
 
-/// Checks again what the reader built: the scene's own rules, by taking it apart.
+/// Checks the scene's own rules again for a scene that a reader has built.
 fn assert_sound(scene: Scene) {
     let drawn = scene.triangles().len() + scene.spheres().len();
     assert!(drawn > 0);

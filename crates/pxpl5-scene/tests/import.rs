@@ -1,4 +1,4 @@
-//! Importers against files written by hand: what they read, and how they refuse.
+//! Importers with files written by hand: results, and errors for invalid files.
 
 use glam::Vec3;
 use pxpl5_scene::config::{DEFAULT_COLOUR, IMPORT_RADIUS_M};
@@ -201,7 +201,7 @@ fn an_empty_file_is_refused_in_every_format() {
     }
 }
 
-/// Of which primitive the error says that there is none.
+/// Returns the kind of primitive that the error reports as missing.
 fn missing_primitive(format: Format, text: &str) -> &'static str {
     match read(format, text) {
         Err(LoadError::NothingToDraw { expected, .. }) => expected,
@@ -375,7 +375,8 @@ fn a_mark_at_the_begin_of_a_text_and_lines_that_end_in_cr_alone_change_nothing()
     assert!(error.contains("line 2"), "{error}");
 }
 
-/// Two vertices and one row too many, in every place where there may be something.
+/// Superfluous content is refused at every position of a PLY file: repeated elements, numbers after a row, and rows
+/// after the last.
 #[test]
 fn what_is_too_much_in_a_ply_file_is_refused_where_it_stands() {
     let file = |version: &str, again: &str, vertex: &str, face: &str, rest: &str| {
@@ -411,7 +412,8 @@ fn triangle_strips_are_read_and_every_other_triangle_is_turned() {
     assert!(scene.vertices().iter().all(|vertex| vertex.normal == Vec3::Z));
 }
 
-/// Serine 5 has two places for CB, one of its OG, and a third residue shares its place; atom CA of 6 has B and C only.
+/// Serine 5 has two locations of CB and one of OG, and a third residue shares its position. Atom CA of residue 6 has
+/// only the locations B and C.
 #[test]
 fn an_atom_is_where_its_first_alternate_location_is_whatever_its_letter() {
     let atom = |name: &str, alternate: &str, residue: &str, place: u32, x: f64| {

@@ -1,4 +1,4 @@
-//! What a reader takes at most, counted by an allocator of its own: seven times the file, and 4 MiB.
+//! The memory limit of readers, measured by a counting allocator: at most seven times the file, plus 4 MiB.
 
 #![allow(unsafe_code, reason = "a counting allocator cannot be written without")]
 
@@ -11,12 +11,13 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use pxpl5_scene::config::{MEMORY_FLOOR_BYTES, MEMORY_TIMES_FILE};
 use pxpl5_scene::{LoadError, load};
 
-/// Counts what is held, and the most of it; a list that grows is moved by the pages, as the system's allocator does with large ones.
+/// An allocator that counts the memory in use and its maximum. A growing list is moved page by page, as the system's
+/// allocator does with large lists.
 struct Counting;
 
 static HELD: AtomicUsize = AtomicUsize::new(0);
 static MOST: AtomicUsize = AtomicUsize::new(0);
-/// One test at a time: what others hold would be counted too.
+/// A lock that lets one test run at a time, because the memory of other tests would be counted too.
 static ALONE: Mutex<()> = Mutex::new(());
 
 fn alone() -> MutexGuard<'static, ()> {
@@ -28,7 +29,7 @@ fn take(bytes: usize) {
     MOST.fetch_max(held, Ordering::SeqCst);
 }
 
-// SAFETY: everything is handed on to the system's allocator as it came.
+// SAFETY: every call is forwarded unchanged to the system's allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         take(layout.size());
@@ -53,7 +54,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Sizes of its file that a reader took at most above the floor, and whether the model was accepted.
+/// Returns the peak memory above the fixed allowance as a multiple of the file's size, and the result of reading.
 fn taken(name: &str, file: Vec<u8>) -> (f64, Result<usize, LoadError>) {
     let path = std::env::temp_dir().join(format!("pxpl5-memory-{}-{name}", std::process::id()));
     fs::write(&path, &file).expect("a temporary file");
@@ -73,11 +74,11 @@ fn taken(name: &str, file: Vec<u8>) -> (f64, Result<usize, LoadError>) {
 fn is_accepted(name: &str, file: Vec<u8>) {
     let size = file.len();
     let (times, read) = taken(name, file);
-    // 64 KiB for what every reading takes.
+    // Every reader takes up to 64 KiB.
     assert!(read.is_ok() && (times - 7.0) * size as f64 <= 65536.0, "{name}: {times}, {read:?}");
 }
 
-/// `count` points on a spiral, as text behind `key`.
+/// Returns `count` points on a spiral as text lines that begin with `key`.
 fn points(key: &str, count: usize) -> String {
     (0..count).fold(String::new(), |mut text, n| {
         writeln!(text, "{key}{} {} {}", n % 10, n / 10 % 10, n / 100 % 10).expect("into a string");
@@ -96,7 +97,7 @@ fn obj_of_corners(points_and_normals: usize) -> Vec<u8> {
 #[test]
 fn obj_files_made_for_it_take_at_most_seven_times_their_size() {
     let _alone = alone();
-    // The four of docs/hardening.md, and the worst for each list of the reader that could be thought of.
+    // The four cases of docs/hardening.md, and the worst known case for each list of the reader.
     is_accepted("corners.obj", obj_of_corners(500));
     is_accepted("short-corners.obj", obj_of_corners(99));
     is_accepted("many-corners.obj", obj_of_corners(1100));
@@ -148,7 +149,7 @@ fn meshes_of_real_size_take_little() {
     is_accepted("grid.obj", text.into_bytes());
 }
 
-/// A binary file of one polygon; vertices of bytes.
+/// Returns a binary file of one polygon with byte coordinates.
 fn ply(kind: &str, vertices: usize, vertex: &[u8], corners: impl Iterator<Item = Vec<u8>>, count: usize) -> Vec<u8> {
     let properties: String = ["x", "y", "z"].map(|axis| format!("property char {axis}\n")).concat();
     let header = format!(

@@ -5,14 +5,14 @@ use pxpl5_scene::config::{MAX_HEAD_SPEED_DEG_PER_S, MEAN_HEAD_SPEED_DEG_PER_S};
 use pxpl5_scene::{HeadMotion, HeadPath, Hmd, HmdConfig, Pose, Scene, Sway, builtin};
 
 const SECOND: u64 = 1_000_000_000_000;
-/// Ten samples a second see every sine below 2 Hz; a tenth of a field's worth of time between poses gives speeds.
+/// Time between the two poses that give a speed, ps. Ten speeds per second resolve every sine below 2 Hz.
 const STEP: u64 = SECOND / 100;
 
 fn forward(pose: &Pose) -> DVec3 {
     pose.orientation * DVec3::NEG_Z
 }
 
-/// Angular speeds of every tenth of a second, degrees per second.
+/// Returns the angular speed at every tenth of a second, degrees per second.
 fn speeds(motion: &HeadMotion, seconds: u64) -> Vec<f64> {
     let speeds = (0..seconds * 10).map(|i| {
         let before = motion.pose(i * SECOND / 10);
@@ -79,7 +79,7 @@ fn practically_all_energy_of_yaw_lies_below_2_hz_and_95_percent_below_0_14_hz() 
     assert!(below_2 > 0.999, "{below_2}");
 }
 
-/// Energy of one frequency of a signal, through a Hann window.
+/// Returns the energy of one frequency of a signal, through a Hann window.
 fn energy(signal: &[f64], mean: f64, bin: usize) -> f64 {
     let count = signal.len();
     let turn = std::f64::consts::TAU / count as f64;
@@ -152,7 +152,7 @@ fn the_default_motion_of_every_scene_keeps_the_centre_of_the_model_in_view_for_h
     }
 }
 
-/// Share of the view that lies in the box around the model's vertices on the screen.
+/// Returns the fraction of the view that the box around the model's vertices covers.
 fn boxed_share(scene: &Scene, time_ps: u64) -> f32 {
     let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is in range");
     let view = hmd.mono(&scene.motion().pose(time_ps));

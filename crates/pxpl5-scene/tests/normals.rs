@@ -1,15 +1,15 @@
-//! Normals of a file: whatever their length, they come out with length 1 and their own direction.
+//! Normals of a file with any length become unit normals with the same direction.
 
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use pxpl5_scene::{Format, Placement, Scene, from_bytes, placed_from_bytes};
 
-/// A triangle whose corners have the normal that the text says.
+/// Returns a triangle whose corners have the normal given as text.
 fn obj(normal: &str) -> String {
     format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn {normal}\nf 1//1 2//1 3//1\n")
 }
 
-/// The same as PLY with normals in double precision.
+/// Returns the same triangle as a PLY file with normals in double precision.
 fn ply(normal: &str) -> String {
     let corners: String = ["0 0 0", "1 0 0", "0 1 0"].map(|place| format!("{place} {normal}\n")).concat();
     let properties: String = ["x", "y", "z", "nx", "ny", "nz"].map(|name| format!("property double {name}\n")).concat();
@@ -19,7 +19,7 @@ fn ply(normal: &str) -> String {
     )
 }
 
-/// Length 1 to the last bits of single precision, as pxpl5-scene demands of every vertex.
+/// Checks that a normal has length 1 within single precision, as required for every vertex.
 fn assert_direction(scene: &Scene, expected: DVec3) {
     for vertex in scene.vertices() {
         let normal = vertex.normal.as_dvec3();

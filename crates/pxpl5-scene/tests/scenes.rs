@@ -1,4 +1,4 @@
-//! The built-in scenes are what their descriptions say.
+//! The built-in scenes agree with their descriptions.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ fn corners(scene: &Scene, triangle: &[u32; 3]) -> [DVec3; 3] {
     triangle.map(|corner| scene.vertices()[corner as usize].position.as_dvec3())
 }
 
-/// Six times the volume inside a closed surface whose triangles are anticlockwise seen from outside.
+/// Returns six times the volume inside a closed surface whose triangles are anticlockwise seen from outside.
 fn six_volumes(scene: &Scene) -> f64 {
     let triangles = scene.triangles().iter();
     triangles.map(|t| corners(scene, t)).map(|[a, b, c]| a.dot(b.cross(c))).sum()
@@ -160,7 +160,7 @@ fn mig_moves_its_five_control_surfaces_and_nothing_else() {
     assert!(still.count() < 12, "only points on a hinge's axis may stay");
 }
 
-/// Over the vertices of a structure at a time, metres.
+/// Returns the sum of the heights of a structure's vertices at an instant, metres.
 fn sum_of_heights(scene: &Scene, structure: usize, time_ps: u64) -> f32 {
     let posed = scene.posed(&scene.edits_at(time_ps));
     let range = scene.structures()[structure].vertices.clone();
@@ -246,7 +246,7 @@ fn a_hand_made_scene_is_checked_in_every_part() {
     }
 }
 
-/// Edges between places, each with how often it is used forwards and backwards.
+/// Returns the edges between positions, each with the number of uses forwards and backwards.
 fn edges(scene: &Scene) -> BTreeMap<[[u32; 3]; 2], [u32; 2]> {
     let mut edges: BTreeMap<[[u32; 3]; 2], [u32; 2]> = BTreeMap::new();
     let place = |corner: u32| scene.vertices()[corner as usize].position.to_array().map(f32::to_bits);
@@ -296,8 +296,9 @@ fn every_sphere_is_closed_of_exactly_its_number_of_triangles_and_nearly_round() 
         };
         let radius = f64::from((top.position - bottom.position).length()) / 2.0;
         let full = 8.0 * std::f64::consts::PI * radius.powi(3);
-        // Under an equilateral triangle of side s the unit sphere stands off by s^2/8 in the mean; N of them have 4 pi / N of area each,
-        // so s^2 = 16 pi / (sqrt(3) N), and 3 s^2 / 8 = 10.9 / N of the volume is missed; half as much again for uneven ones.
+        // The mean distance between an equilateral triangle of side s and the unit sphere is s^2/8. N such triangles
+        // have an area of 4 pi / N each, so s^2 = 16 pi / (sqrt(3) N). The missing part of the volume is 3 s^2 / 8 =
+        // 10.9 / N, and uneven triangles may miss half as much again.
         let share = six_volumes(&sphere) / full;
         assert!(share < 1.0 && 1.0 - share < 1.5 * 10.9 / count as f64, "{count}: {share}");
     }

@@ -7,7 +7,7 @@ fn hmd() -> Hmd {
     Hmd::new(HmdConfig::unc()).expect("the preset is in range")
 }
 
-/// At (1, 2, 3), turned left by 90 degrees: it looks along -x, its right is -z.
+/// Returns a head at (1, 2, 3), turned left by 90 degrees. The head looks along -x, and its right is -z.
 fn turned_left() -> Pose {
     let half = std::f64::consts::FRAC_1_SQRT_2;
     Pose { position: DVec3::new(1.0, 2.0, 3.0), orientation: DQuat::from_xyzw(0.0, half, 0.0, half) }

@@ -2,57 +2,57 @@
 
 use spatialgl::{BinTolerance, Binning, Combine, Coverage, Rotation, Strobes, TieRule};
 
-/// Which of the six clips; its offset or bias is a number of its own.
+/// One of the six clips, without its offset or bias, which is a separate number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClipKind {
-    /// Near and far plane alone.
+    /// Clip by the near and far planes alone.
     Prism,
-    /// Two clip planes for each of two passes.
+    /// Clip by two user clip planes in each of two passes.
     UserPlanes,
-    /// Two planes in the fragment program.
+    /// Clip by two planes in the fragment program: the exact volume.
     Exact,
-    /// Planes that leave room at the axis, in two passes.
+    /// Clip by planes that leave some thickness at the axis, in two passes.
     Tapered,
-    /// Both planes moved outwards.
+    /// Clip by both boundary planes, moved outwards.
     Parallel,
-    /// A bias added to the product of both planes.
+    /// Clip by the product of the distances from both boundary planes, plus a bias.
     Hyperbolic,
 }
 
 impl ClipKind {
-    /// All six in the order of the paper.
+    /// All six clips in the order of the paper.
     pub const ALL: [Self; 6] =
         [Self::Prism, Self::UserPlanes, Self::Exact, Self::Tapered, Self::Parallel, Self::Hyperbolic];
 }
 
-/// Which of the three projections.
+/// One of the three projections.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProjectionKind {
-    /// Along the normal of the slice.
+    /// Projection along the normal of the slice.
     Orthographic,
-    /// From one eye for all slices.
+    /// Projection from one eye for all slices.
     Perspective,
-    /// From an eye and with a shear drawn for each slice.
+    /// Projection from a random eye with a random shear for each slice.
     Jittered,
 }
 
 impl ProjectionKind {
-    /// All three in the order in which they are compared.
+    /// All three projections in the order of a comparison.
     pub const ALL: [Self; 3] = [Self::Orthographic, Self::Perspective, Self::Jittered];
 }
 
-/// Who draws the slices.
+/// The hardware that draws the slices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RendererKind {
-    /// This computer, as the paper's GPU would.
+    /// This computer, in the role of the paper's GPU.
     Host,
-    /// The renderers of Pixel-Planes 5, which is beyond the paper.
+    /// The emulated renderers of Pixel-Planes 5, which are beyond the paper.
     PixelPlanes,
 }
 
-/// Something that has names in options, files and reports.
+/// A choice with names in options, files and reports.
 pub(crate) trait Named: Copy + PartialEq + 'static {
-    /// Names and what they stand for.
+    /// Names with the choices that they stand for.
     const NAMES: &'static [(&'static str, Self)];
 
     fn name(self) -> &'static str {

@@ -1,4 +1,4 @@
-//! All clips and projections of a scene beside each other, and what the paper rejects as too dear.
+//! Comparison of all clips and projections of a scene, and of the methods that the paper rejects as too expensive.
 
 use crate::choices::{ClipKind, Named, ProjectionKind};
 use crate::error::VolumeError;
@@ -10,79 +10,80 @@ use pxpl5_scene::Scene;
 use serde::Serialize;
 use spatialgl::{Coverage, Workers};
 
-/// One variant of how slices are made.
+/// One row of a comparison: a combination of clip, projection, samples and coverage, with its results.
 #[derive(Clone, Debug, Serialize)]
 pub struct VariantRow {
-    /// The clip with its offset or bias.
+    /// Name of the clip with its offset or bias.
     pub clip: String,
     /// Name of the projection.
     pub projection: &'static str,
-    /// Samples taken of each pixel.
+    /// Number of samples per pixel.
     pub samples: u64,
-    /// `sampled` or `connected`.
+    /// Coverage: `sampled` or `connected`.
     pub coverage: &'static str,
-    /// How often the scene is drawn for a slice.
+    /// Number of times that the scene is drawn for a slice.
     pub passes: u64,
-    /// Fragments that reached the fragment program.
+    /// Number of fragments that reached the fragment program.
     pub fragments_generated: u64,
-    /// Fragments that lie in their slice's volume.
+    /// Number of fragments that lie in their slice's volume.
     pub fragments_accepted: u64,
-    /// Draws that bins leave of all, percent.
+    /// Draws with bins as a percentage of the draws without bins.
     pub draws_percent: f64,
-    /// Part of the queried tiles that holds something, percent.
+    /// Percentage of queried tiles that are occupied.
     pub tile_occupancy_percent: f64,
-    /// Part of the mesh's intersections with the slices that is shown, percent.
+    /// Percentage of the mesh's intersections with the slices that is shown.
     pub connected_percent: f64,
-    /// Radius in pixels within which no slice can show a point, whatever the scene; none if no slice can show anything.
+    /// Radius within which no slice shows anything, or `None` for a dark volume.
     pub dead_zone_radius_px: Option<u32>,
-    /// Pixels lit in any colour, in all slices.
+    /// Number of pixels lit in any colour, in all slices.
     pub lit_voxels: u64,
-    /// Lit pixels in rings around the axis.
+    /// Number of lit pixels in each ring around the axis.
     pub brightness_by_radius: Vec<u64>,
-    /// The same over those of the exact clip with the same projection; none where that shows nothing.
+    /// Ratio of `brightness_by_radius` to that of the exact clip with the same projection, or `None` for rings without
+    /// lit pixels there.
     pub brightness_over_exact: Vec<Option<f64>>,
-    /// Milliseconds of the model: processor, GPU, bus.
+    /// Time of the model in milliseconds: processor, GPU, bus.
     pub model_ms: [f64; 3],
-    /// Volumes a second if the three follow each other.
+    /// Volumes per second if processor, GPU and bus work one after the other.
     pub volumes_hz_serial: f64,
-    /// Volumes a second if they work at the same time.
+    /// Volumes per second if processor, GPU and bus work at the same time.
     pub volumes_hz_overlapped: f64,
-    /// A number that any other bit of the volume would change.
+    /// Hash of all bits of the volume.
     pub volume_hash: String,
-    /// What of it is not the paper's.
+    /// Settings of this variant that go beyond the paper.
     pub beyond_paper: Vec<&'static str>,
-    /// Seconds that this computer took.
+    /// Time that this computer took, seconds.
     pub host_seconds: f64,
     #[serde(skip)]
     variant: Variant,
 }
 
-/// Every variant of a scene.
+/// The comparison of all variants of a scene.
 #[derive(Clone, Debug, Serialize)]
 pub struct VolumeComparison {
     /// Name and version of this record's layout.
     pub schema: &'static str,
-    /// Name of the scene that all draw.
+    /// Name of the scene that all variants draw.
     pub scene: String,
-    /// Triangles, lines and points of the scene.
+    /// Number of triangles, lines and points of the scene.
     pub triangles: u64,
-    /// Width of the rings of brightness, pixels.
+    /// Width of the rings in `brightness_by_radius`, pixels.
     pub ring_px: u32,
-    /// Names the sequence of the jitter.
+    /// Seed of the jitter's random sequence.
     pub seed: u64,
-    /// A row for each variant.
+    /// One row for each variant.
     pub variants: Vec<VariantRow>,
-    /// What an eye sees of them, in their order, all of one exposure.
+    /// Views of the variants in the same order, all with one exposure.
     #[serde(skip)]
     pub pictures: Vec<RgbImage>,
 }
 
-/// From where the pictures of a comparison are seen.
+/// The viewpoint of the pictures of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Viewpoint {
-    /// Angle around the axis from +z to +x, degrees.
+    /// Azimuth of the eye: angle around the axis from +z to +x, degrees.
     pub azimuth_deg: f64,
-    /// Angle above the horizon, degrees.
+    /// Elevation of the eye above the horizon, degrees.
     pub elevation_deg: f64,
     /// Width and height of each picture, pixels.
     pub side: u32,
@@ -96,7 +97,8 @@ struct Variant {
     coverage: Coverage,
 }
 
-/// Six clips by three projections; then the hyperbola along the normal with more samples and with connected intersections.
+/// Returns all variants: six clips by three projections, then the orthographic hyperbolic clip with more samples and
+/// with connected coverage.
 fn variants() -> Vec<Variant> {
     let sampled = |clip, projection| Variant { clip, projection, samples: 1, coverage: Coverage::Sampled };
     let mut all: Vec<Variant> = ClipKind::ALL
@@ -110,17 +112,18 @@ fn variants() -> Vec<Variant> {
     all
 }
 
-/// How many volumes a comparison draws.
+/// Returns the number of volumes that a comparison draws.
 #[must_use]
 pub fn variant_count() -> u64 {
     variants().len() as u64
 }
 
-/// Draws every variant of a scene; all other settings are shared. `finished` hears how many of them are done.
+/// Draws every variant of a scene, with all other settings shared. `finished` is called with the number of finished and
+/// of all variants.
 ///
 /// # Errors
 ///
-/// [`VolumeError`] names what is wrong with a setting or with the scene.
+/// [`VolumeError`] describes the error in a setting or in the scene.
 pub fn compare(
     settings: &VolumeSettings,
     scene: &Scene,
@@ -144,6 +147,7 @@ pub fn compare(
         samples: 1,
         coverage: Coverage::Sampled,
     };
+    // One exposure for all pictures makes their brightness comparable.
     let mut exposure = None;
     if let Some(viewpoint) = viewpoint {
         let volume = reference.draw(settings, scene, workers)?;
@@ -172,6 +176,7 @@ impl Viewpoint {
 impl Variant {
     fn draw(&self, shared: &VolumeSettings, scene: &Scene, workers: &dyn Workers) -> Result<Volume, VolumeError> {
         let mut settings = shared.clone();
+        // Everything else stays as in the shared settings.
         settings.clip = self.clip;
         settings.projection = self.projection;
         settings.draw.samples = self.samples;
@@ -180,6 +185,7 @@ impl Variant {
     }
 
     fn row(&self, volume: &Volume) -> VariantRow {
+        // Most columns come from the report, so that both always agree.
         let report = volume.report();
         let stats = &volume.frame.stats;
         let time = volume.time();
@@ -210,7 +216,7 @@ impl Variant {
 }
 
 impl VolumeComparison {
-    /// Divides each row's brightness by that of the exact clip with the same projection.
+    /// Divides each row's brightness by the brightness of the exact clip with the same projection.
     fn relate_to_exact(&mut self) {
         let exact: Vec<(ProjectionKind, Vec<u64>)> = self
             .variants
@@ -227,7 +233,8 @@ impl VolumeComparison {
         }
     }
 
-    /// The six clips by three projections: a row for each clip. Nothing of a comparison without pictures.
+    /// Returns the pictures of six clips by three projections, with one row for each clip. Returns `None` for a
+    /// comparison without pictures.
     #[must_use]
     pub fn clips_and_projections(&self) -> Option<RgbImage> {
         let columns = ProjectionKind::ALL.len();
@@ -235,7 +242,8 @@ impl VolumeComparison {
         Some(grid(pictures, columns as u32))
     }
 
-    /// The hyperbola along the normal with 1, 4 and 16 samples, connected, and jittered. Nothing without pictures.
+    /// Returns pictures of the hyperbolic clip: orthographic with 1 sample, jittered, orthographic with 4 and 16
+    /// samples, and connected. Returns `None` without pictures.
     #[must_use]
     pub fn samples_and_coverage(&self) -> Option<RgbImage> {
         let shown: Vec<RgbImage> = self

@@ -1,55 +1,55 @@
-//! What can be wrong with what a user hands in.
+//! Errors in the settings and requests of a user.
 
 use perspecta::PerspectaError;
 use spatialgl::SpatialError;
 use thiserror::Error;
 
-/// A setting, a scene or a question that cannot be answered: what, where, what was expected and what was found.
+/// An error for a setting, a scene or a request. Each message names the item, the expected and the found value.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum VolumeError {
-    /// There is no setting of this path.
+    /// No setting has this path.
     #[error("{place}: there is no key `{found}`; did you mean `{nearest}`?")]
     UnknownKey {
-        /// The option that named it.
+        /// Option that contained the path.
         place: String,
-        /// The path that nobody knows.
+        /// Path that no setting has.
         found: String,
-        /// The nearest valid one.
+        /// The valid path that is most similar.
         nearest: String,
     },
-    /// A setting was given a value that it cannot have.
+    /// The value of a setting is not allowed.
     #[error("{place}: {key}: expected {expected}, found {found}")]
     Value {
-        /// The option that gave it.
+        /// Option that contained the value.
         place: String,
         /// Path of the setting.
         key: String,
-        /// What values it takes, in words.
+        /// Allowed values, in words.
         expected: String,
         /// The value that was given.
         found: String,
     },
-    /// A slice, a batch or a picture that is not there.
+    /// A requested slice, batch or picture does not exist, or a requested combination is not supported.
     #[error("{what}: expected {expected}, found {found}")]
     Missing {
-        /// What was asked for.
+        /// Name of the requested item.
         what: &'static str,
-        /// Which of them there are.
+        /// Available items, in words.
         expected: String,
-        /// The one that was asked for.
+        /// The item that was requested.
         found: String,
     },
-    /// What the pipeline cannot draw.
+    /// An error of the drawing pipeline.
     #[error(transparent)]
     Pipeline(#[from] SpatialError),
-    /// What the display or an eye before it cannot be.
+    /// An error of the display or of a camera.
     #[error(transparent)]
     Display(#[from] PerspectaError),
 }
 
 impl VolumeError {
-    /// Whether the scene is at fault and not what was asked for.
+    /// Returns true if the error is in the scene and not in the request.
     #[must_use]
     pub const fn is_of_scene(&self) -> bool {
         matches!(self, Self::Pipeline(SpatialError::NotFinite { .. } | SpatialError::Index { .. }))

@@ -1,4 +1,4 @@
-//! One volume: a scene, settings, and what was drawn.
+//! A volume that has been drawn from a scene and settings.
 
 use crate::choices::RendererKind;
 use crate::error::VolumeError;
@@ -11,43 +11,43 @@ use spatialgl::{
 };
 use std::time::Instant;
 
-/// A volume that has been drawn, with all that it was drawn from.
+/// A drawn volume with everything from which it was drawn.
 #[derive(Clone, Debug)]
 pub struct Volume {
-    /// The settings that it was drawn with.
+    /// Settings with which the volume was drawn.
     pub settings: VolumeSettings,
-    /// Name of the scene that it shows.
+    /// Name of the scene that the volume shows.
     pub scene: String,
-    /// The display's slices, volumes and bins.
+    /// Display with its slices, their volumes and bins.
     pub display: SweptDisplay,
-    /// The recording that was replayed for every slice.
+    /// Recording that was replayed for every slice.
     pub commands: CommandBuffer,
     /// Bits, counts, and colours before halftoning.
     pub frame: VolumeFrame,
-    /// What the renderers of Pixel-Planes 5 did for it, if they drew it.
+    /// Work of the renderers of Pixel-Planes 5, or `None` if the host drew the volume.
     pub bounds: Option<SliceBounds>,
-    /// The messages of the same volume, if they drew it and its tiles can be sent.
+    /// Ring messages of the volume, or `None` if the host drew the volume or its tiles cannot be sent.
     pub traffic: Option<SliceTraffic>,
-    /// Seconds that this computer took to draw it.
+    /// Time that this computer took to draw the volume, seconds.
     pub host_seconds: f64,
 }
 
 impl Volume {
-    /// Draws a scene: its middle on the axis, its farthest corner at 0.9 of the radius.
+    /// Draws a scene with its middle on the axis and its farthest corner at 0.9 of the radius.
     ///
     /// # Errors
     ///
-    /// [`VolumeError`] names what is wrong with a setting, or with the scene.
+    /// [`VolumeError`] describes the error in a setting or in the scene.
     pub fn draw(settings: &VolumeSettings, scene: &Scene, workers: &dyn Workers) -> Result<Self, VolumeError> {
         let commands = record_scene(scene, settings.radius(), settings.is_lit)?;
         Self::draw_commands(settings, scene.name(), commands, workers)
     }
 
-    /// Draws a recording whose vertices are in pixels already.
+    /// Draws a recording whose vertices are already in pixels.
     ///
     /// # Errors
     ///
-    /// As [`Self::draw`].
+    /// The same as [`Self::draw`].
     pub fn draw_commands(
         settings: &VolumeSettings,
         scene: &str,
@@ -61,6 +61,7 @@ impl Volume {
         let started = Instant::now();
         let mut bounds = None;
         let mut traffic = None;
+        // The renderers of Pixel-Planes 5 also count their work and messages.
         let frame = match (settings.renderer, settings.draw.samples) {
             (RendererKind::Host, 1) => draw(&HostRenderer)?,
             (RendererKind::Host, samples) => draw(&Supersampled::new(HostRenderer, samples as u32)?)?,
@@ -78,11 +79,11 @@ impl Volume {
         Ok(Self { settings, scene: scene.to_owned(), display, commands, frame, bounds, traffic, host_seconds })
     }
 
-    /// A slice of the turn.
+    /// Returns the index of a slice after checking that the slice exists.
     ///
     /// # Errors
     ///
-    /// [`VolumeError::Missing`] if there are not so many.
+    /// [`VolumeError::Missing`] if the volume has fewer slices.
     pub fn check_slice(&self, slice: u32) -> Result<u32, VolumeError> {
         let slices = self.frame.planes.slices();
         if slice < slices {

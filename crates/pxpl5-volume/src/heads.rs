@@ -1,22 +1,26 @@
-//! A user who moves around the volume, and the same user with a head-mounted display of the same latency.
+//! Comparison of two displays for a moving viewer: the volume, and a head-mounted display of the same latency.
 //!
-//! A volume stands still: whoever moves sees another side of it at once, and what is wrong with it is where its voxels lie. A
-//! head-mounted display draws each picture for where the head was, so that what is wrong with it is its latency.
+//! A volume does not move, so a moving viewer sees another side of the volume at once. Errors of a volume come from the
+//! positions of its voxels. A head-mounted display draws each picture for a past pose of the head. Errors of this
+//! display come from its latency.
 //!
 //! # Behaviour
 //!
-//! - The display stands upright before the head: its middle `viewer.distance_mm` ahead of where the motion begins, its +z axis towards
-//!   it. The scene is the same for both displays, in the volume's place.
-//! - Errors are taken at [`POINTS`] vertices of the scene, for both eyes. *Head-mounted*: the angle between where a point is drawn, for
-//!   the pose one latency ago, and where it is. *Volume*: the angle between a point and the voxel that shows it, in the slice nearest
-//!   to it.
-//! - Dither: a colour's level is right on the mean of a cell of the matrix; the cell's angle is how coarse that is.
-//! - Pictures: each eye looks at the middle of the volume, upright. What the head-mounted display shows it is drawn for the eye of one
-//!   latency ago, and moved by as much as its middle is off.
+//! - The volume stands upright before the head. The middle of the volume is `viewer.distance_mm` ahead of the start of
+//!   the motion, and the +z axis points towards the head. Both displays show the same scene in the position of the
+//!   volume.
+//! - Errors are evaluated at [`POINTS`] vertices of the scene, for both eyes. *Head-mounted*: the angle between the
+//!   drawn position of a point, for the pose one latency ago, and its true position. *Volume*: the angle between a
+//!   point and the voxel that shows it, in the nearest slice.
+//! - Dither: the level of a colour is correct only on average over a cell of the matrix. The angle of this cell
+//!   measures the coarseness.
+//! - Pictures: each eye looks at the middle of the volume, upright. The picture of the head-mounted display is drawn
+//!   for the eye one latency ago, and shifted by the error of its middle.
 //!
 //! # Not modelled
 //!
-//! A predicting tracker, tracker noise and the head-mounted display's own pixels (their angle is reported); roll of the head in
+//! A predicting tracker, tracker noise, and the pixels of the head-mounted display (their angle is reported). Roll of
+//! the head in pictures. The resolution of the eye.
 //! pictures; the eye's resolution.
 
 use crate::error::VolumeError;
@@ -33,10 +37,10 @@ use tracking::Pose;
 use tracking::motion::Motion;
 use tracking::view::HmdView;
 
-/// Vertices of the scene at which errors are taken (assumed: the mean does not move any more).
+/// Number of scene vertices at which errors are evaluated. Assumed: with more points the mean does not change.
 pub const POINTS: usize = 512;
 
-/// Picoseconds of a second.
+/// Picoseconds in a second.
 const PS_PER_S: f64 = 1e12;
 
 /// Errors at one instant, over all points and both eyes.
@@ -44,69 +48,70 @@ const PS_PER_S: f64 = 1e12;
 pub struct HeadSample {
     /// Time since the motion began, seconds.
     pub time_s: f64,
-    /// Where the head is: angle around the volume from its +z to its +x axis, degrees.
+    /// Azimuth of the head around the volume, from its +z axis to its +x axis, degrees.
     pub azimuth_deg: f64,
-    /// Where the head is: angle above the volume's middle, degrees.
+    /// Elevation of the head above the volume's middle, degrees.
     pub elevation_deg: f64,
     /// Distance of the head from the volume's middle, millimetres.
     pub distance_mm: f64,
-    /// Head-mounted display: mean angle between drawn and true place, degrees; none with every point behind the eye.
+    /// Mean angle between drawn and true position on the head-mounted display, degrees, or `None` if every point is
+    /// behind the eye.
     pub hmd_mean_deg: Option<f64>,
-    /// Head-mounted display: the largest such angle, degrees.
+    /// Largest angle between drawn and true position on the head-mounted display, degrees.
     pub hmd_worst_deg: Option<f64>,
-    /// The mean in pixels of the head-mounted display.
+    /// Mean error on the head-mounted display, in its pixels.
     pub hmd_mean_px: Option<f64>,
-    /// The mean at the points' distance, millimetres.
+    /// Mean error on the head-mounted display, in millimetres at the points' distance.
     pub hmd_mean_mm: Option<f64>,
-    /// Volume: mean angle between a point and its voxel, degrees.
+    /// Mean angle between a point and its voxel in the volume, degrees.
     pub voxel_mean_deg: f64,
-    /// Volume: the largest such angle, degrees.
+    /// Largest angle between a point and its voxel in the volume, degrees.
     pub voxel_worst_deg: f64,
-    /// Volume: the mean distance between a point and its voxel, across the line of sight, millimetres.
+    /// Mean distance between a point and its voxel in the volume, perpendicular to the line of sight, millimetres.
     pub voxel_mean_mm: f64,
     /// Angle of a cell of the dither matrix in the middle of the volume, degrees.
     pub dither_cell_deg: f64,
 }
 
-/// A head before a volume.
+/// The errors of a volume and of a head-mounted display during a motion of the head.
 #[derive(Clone, Debug, Serialize)]
 pub struct HeadStudy {
     /// Name and version of this record's layout.
     pub schema: &'static str,
-    /// Name of the scene.
+    /// Name of the scene that both displays show.
     pub scene: String,
     /// Latency of the head-mounted display, milliseconds.
     pub latency_ms: f64,
-    /// Whose latency that is.
+    /// Origin of the latency: "the volume's" or "given".
     pub latency_is: &'static str,
-    /// Latency of the volume itself, milliseconds: how late it shows what changes in the scene.
+    /// Latency with which the volume shows changes of the scene, milliseconds.
     pub volume_latency_ms: Option<f64>,
     /// Angle of a pixel in the middle of the head-mounted display, degrees.
     pub hmd_pixel_deg: f64,
-    /// Edge of a voxel in a slice, millimetres.
+    /// Length of a voxel's edge within a slice, millimetres.
     pub voxel_mm: f64,
-    /// The instants, from one latency after the beginning of the motion.
+    /// Errors at each instant, starting one latency after the beginning of the motion.
     pub samples: Vec<HeadSample>,
 }
 
-/// What is asked of a head.
+/// The parameters of a study of a moving head.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeadQuestion {
-    /// Latency of the head-mounted display, milliseconds; none for that of the volume.
+    /// Latency of the head-mounted display, milliseconds, or `None` for the latency of the volume.
     pub latency_ms: Option<f64>,
     /// Length of the study, seconds.
     pub seconds: f64,
-    /// Instants of it, 2 or more.
+    /// Number of instants in the study, 2 or more.
     pub instants: u32,
 }
 
-/// A volume with a head before it.
+/// A volume with a moving head before it.
 #[derive(Debug)]
 pub struct HeadBefore<'a> {
     volume: &'a Volume,
     motion: &'a dyn Motion,
     viewer: ViewerNumbers,
-    /// From the world of the motion, metres, to the volume, pixels.
+    /// Matrix from the world of the motion, metres, to the volume, pixels.
     into_volume: DMat4,
     latency_ps: u64,
     /// Points of the scene and the voxels that show them, pixels of the volume.
@@ -114,8 +119,9 @@ pub struct HeadBefore<'a> {
 }
 
 impl Volume {
-    /// How late the volume shows what changes in the scene, milliseconds: the time of the model for one volume, and on the mean half a
-    /// turn until strobe 0 and a quarter until the plane is met. None if no GPU drew it.
+    /// Returns the latency with which the volume shows changes of the scene, milliseconds. The latency is the model's
+    /// time for one volume, plus on average half a turn until strobe 0 and a quarter turn until the plane is reached.
+    /// Returns `None` if the volume was not drawn by a GPU.
     #[must_use]
     pub fn latency_ms(&self) -> Option<f64> {
         let turn_ms = 60e3 / self.settings.display.spin_rpm as f64;
@@ -125,11 +131,11 @@ impl Volume {
 }
 
 impl<'a> HeadBefore<'a> {
-    /// Puts a volume before a moving head.
+    /// Places a volume before a moving head.
     ///
     /// # Errors
     ///
-    /// [`VolumeError::Missing`] for a latency that is negative or no number, and where there is none.
+    /// [`VolumeError::Missing`] if the latency is out of range (0 to 10,000 ms) or missing.
     pub fn new(volume: &'a Volume, motion: &'a dyn Motion, latency_ms: Option<f64>) -> Result<Self, VolumeError> {
         let wrong = |found: String| VolumeError::Missing {
             what: "latency",
@@ -159,18 +165,19 @@ impl<'a> HeadBefore<'a> {
         self.viewer.diameter_mm / self.volume.settings.display.width as f64
     }
 
-    /// The pose of an eye: -1 the left one, 1 the right one.
+    /// Returns the pose of an eye. `side` is -1 for the left eye and 1 for the right eye.
     fn eye(&self, time_ps: u64, side: f64) -> Pose {
         let head = self.motion.pose(time_ps);
         let across = head.orientation * DVec3::X * (side * self.viewer.eye_separation_mm / 2e3);
         Pose { position: head.position + across, ..head }
     }
 
-    /// Errors at every instant.
+    /// Evaluates the errors at every instant.
     ///
     /// # Errors
     ///
-    /// [`VolumeError::Missing`] for a length that is no time, fewer than two instants, and a view that cannot be.
+    /// [`VolumeError::Missing`] if the length is out of range, if there are fewer than two instants, or if the
+    /// head-mounted view is invalid.
     pub fn study(&self, question: &HeadQuestion) -> Result<HeadStudy, VolumeError> {
         let view = self.view()?;
         let samples = self.instants(question)?.into_iter().map(|time_ps| self.sample(time_ps, &view)).collect();
@@ -188,7 +195,7 @@ impl<'a> HeadBefore<'a> {
         })
     }
 
-    /// Instants, evenly spread from one latency on.
+    /// Returns the instants of a study, evenly spaced and starting one latency after the beginning.
     fn instants(&self, question: &HeadQuestion) -> Result<Vec<u64>, VolumeError> {
         let HeadQuestion { seconds, instants, .. } = *question;
         let wrong =
@@ -210,6 +217,7 @@ impl<'a> HeadBefore<'a> {
         let mut voxel = Mean::default();
         let mut voxel_mm = Mean::default();
         let from_volume = self.into_volume.inverse();
+        // Both displays are evaluated from the same eye positions.
         for side in [-1.0, 1.0] {
             let seen_from = self.eye(time_ps, side);
             let drawn_for = self.eye(time_ps - self.latency_ps, side);
@@ -245,12 +253,12 @@ impl<'a> HeadBefore<'a> {
         }
     }
 
-    /// What both eyes see: above of the volume, left and right, below of the head-mounted display. `exposure` as of
-    /// [`Look::picture`].
+    /// Returns the views of both eyes, left and right: the volume in the upper row, the head-mounted display in the
+    /// lower row. [`Look::picture`] describes `exposure`.
     ///
     /// # Errors
     ///
-    /// [`VolumeError`] for a side that is no multiple of 8, and an eye within the display.
+    /// [`VolumeError`] if `side` is not a multiple of 8, or if an eye is inside the display.
     pub fn picture(
         &self,
         time_ps: u64,
@@ -268,20 +276,20 @@ impl<'a> HeadBefore<'a> {
         Ok(grid(&shown, 2))
     }
 
-    /// An exposure for all pictures: that of the left eye at an instant.
+    /// Returns an exposure for all pictures: the exposure of the left eye at an instant.
     ///
     /// # Errors
     ///
-    /// As [`Self::picture`].
+    /// The same as [`Self::picture`].
     pub fn exposure(&self, time_ps: u64, side: u32, workers: &dyn Workers) -> Result<f64, VolumeError> {
         self.look(time_ps, -1.0, side)?.exposure(self.volume, workers)
     }
 
-    /// Instants of a film.
+    /// Returns the instants of the frames of a film.
     ///
     /// # Errors
     ///
-    /// As [`Self::study`].
+    /// The same as [`Self::study`].
     pub fn film_instants(&self, question: &HeadQuestion, frames: u32) -> Result<Vec<u64>, VolumeError> {
         self.instants(&HeadQuestion { instants: frames, ..*question })
     }
@@ -297,6 +305,7 @@ impl<'a> HeadBefore<'a> {
 
     fn head_mounted(&self, time_ps: u64, side: f64, picture_px: u32) -> Result<RgbImage, VolumeError> {
         let then = time_ps - self.latency_ps;
+        // Draw the scene for the eye of one latency ago.
         let look = self.look(then, side, picture_px)?;
         let camera = look.camera;
         let azimuth = camera.azimuth_deg.to_radians();
@@ -307,6 +316,7 @@ impl<'a> HeadBefore<'a> {
         let mut drawn = SliceImage::new(camera.size);
         let work = SliceWork { commands, bin: &bin, coverage: Coverage::Sampled };
         HostRenderer.render(work, &display.views()[0], &mut drawn);
+        // Shift the picture by the angle that its middle has moved since then.
         let middle = self.into_volume.inverse().transform_point3(DVec3::ZERO);
         let then = direction(&self.eye(then, side), middle);
         let now = direction(&self.eye(time_ps, side), middle);
@@ -316,7 +326,8 @@ impl<'a> HeadBefore<'a> {
     }
 }
 
-/// Where a point is seen in a head's flat picture of focal length 1, x to the right and y down; none behind the head.
+/// Returns the position of a point in a head's flat picture of focal length 1, with x to the right and y down. Returns
+/// `None` if the point is behind the head.
 fn direction(head: &Pose, point: DVec3) -> Option<DVec2> {
     let seen = head.view_of(point);
     (seen.z < -1e-6).then(|| DVec2::new(seen.x, -seen.y) / -seen.z)
@@ -332,7 +343,7 @@ fn moved(image: &SliceImage, by: DVec2) -> RgbImage {
     })
 }
 
-/// The upright volume before a head: from metres of the world to pixels of the volume.
+/// Returns the matrix from metres of the world to pixels of an upright volume before a head.
 fn placed(head: &Pose, volume: &Volume, viewer: &ViewerNumbers) -> DMat4 {
     let ahead = head.orientation * DVec3::NEG_Z;
     let yaw = DQuat::from_rotation_y(libm::atan2(-ahead.x, -ahead.z));
@@ -342,13 +353,13 @@ fn placed(head: &Pose, volume: &Volume, viewer: &ViewerNumbers) -> DMat4 {
     DMat4::from_scale(DVec3::splat(pixels_per_metre)) * turn * DMat4::from_translation(-middle)
 }
 
-/// Azimuth and elevation of a place, degrees, as cameras have them.
+/// Returns azimuth and elevation of a position in degrees, in the convention of cameras.
 fn around(place: DVec3) -> [f64; 2] {
     let level = libm::hypot(place.x, place.z);
     [libm::atan2(place.x, place.z).to_degrees(), libm::atan2(place.y, level).to_degrees()]
 }
 
-/// Vertices that the display shows, evenly spread over the list, and the voxels that show them.
+/// Returns vertices that the display shows, evenly spread over the list, each with the voxel that shows it.
 fn points(volume: &Volume) -> Vec<[DVec3; 2]> {
     let shown: Vec<DVec3> = volume
         .commands
@@ -361,7 +372,7 @@ fn points(volume: &Volume) -> Vec<[DVec3; 2]> {
     shown.iter().step_by(step).filter_map(|point| Some([*point, voxel_of(volume, *point)?])).collect()
 }
 
-/// The middle of the pixel in which a point is drawn, in the nearest slice of the first half turn.
+/// Returns the middle of the pixel that shows a point, in the nearest slice of the first half turn.
 fn voxel_of(volume: &Volume, point: DVec3) -> Option<DVec3> {
     let views = volume.display.views();
     let half = &views[..views.len().div_ceil(2)];
@@ -378,7 +389,7 @@ fn angle_between(a: DVec3, b: DVec3) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
 }
 
-/// A mean and a largest value.
+/// An accumulator for the mean and the maximum of errors.
 #[derive(Clone, Copy, Debug, Default)]
 struct Mean {
     sum: f64,

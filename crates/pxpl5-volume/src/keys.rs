@@ -1,11 +1,11 @@
-//! Settings by path.
+//! Access to settings by path.
 
 use crate::choices::{ClipKind, Named};
 use crate::error::VolumeError;
 use crate::settings::VolumeSettings;
 use parameters::{Entry, ParameterInfo, ParameterTable, Value, nearest};
 
-/// Paths of choices, and of numbers that stand in no table.
+/// Paths of choices, and of numbers outside the tables.
 const CHOICES: [&str; 12] = [
     "on",
     "clip.variant",
@@ -22,7 +22,7 @@ const CHOICES: [&str; 12] = [
 ];
 
 impl VolumeSettings {
-    /// All paths that [`Self::set`] knows.
+    /// Returns all paths that [`Self::set`] accepts.
     #[must_use]
     pub fn keys(&self) -> Vec<String> {
         let numbers = self
@@ -32,7 +32,7 @@ impl VolumeSettings {
         CHOICES.iter().map(|key| (*key).to_owned()).chain(numbers).collect()
     }
 
-    /// All numbers with their paths, as they are now.
+    /// Returns all numbers with their paths and current values.
     #[must_use]
     pub fn numbers(&self) -> Vec<(String, Entry)> {
         let numbers = self.tables().into_iter().flat_map(|(prefix, table)| {
@@ -41,7 +41,7 @@ impl VolumeSettings {
         numbers.collect()
     }
 
-    /// Sets a path to a value; `place` says in errors where it was given, such as `--set`.
+    /// Sets the setting at a path to a value. Errors name `place`, the origin of the value, such as `--set`.
     ///
     /// # Errors
     ///
@@ -60,16 +60,17 @@ impl VolumeSettings {
             "draw.combine" => choose(&mut self.combine, text),
             "draw.lit" => choose(&mut self.is_lit, text),
             "display.rotation" => choose(&mut self.rotation, text),
+            // All other paths are numbers of a table.
             _ => return self.set_number(path, text, place),
         };
         done.map_err(|expected| wrong(path, text, place, expected))
     }
 
-    /// Sets `path=value`, as after `--set`.
+    /// Applies an assignment `path=value`, as after `--set`.
     ///
     /// # Errors
     ///
-    /// As [`Self::set`], and [`VolumeError::Value`] without an equals sign.
+    /// The same as [`Self::set`], and [`VolumeError::Value`] without an equals sign.
     pub fn assign(&mut self, assignment: &str, place: &str) -> Result<(), VolumeError> {
         match assignment.split_once('=') {
             Some((path, text)) => self.set(path.trim(), text.trim(), place),
@@ -77,13 +78,14 @@ impl VolumeSettings {
         }
     }
 
-    /// `NAME` or `NAME:NUMBER`, where the number is the clip's offset or bias.
+    /// Parses `NAME` or `NAME:NUMBER`, where the number is the clip's offset or bias.
     fn set_clip(&mut self, text: &str) -> Result<(), String> {
         let (name, number) = match text.split_once(':') {
             Some((name, number)) => (name, Some(number)),
             None => (text, None),
         };
         let clip = ClipKind::named(name)?;
+        // Only some clips have a number, and the number belongs to one of two settings.
         let own = match clip {
             ClipKind::Tapered | ClipKind::Parallel => Some(&mut self.clip_numbers.offset_px),
             ClipKind::Hyperbolic => Some(&mut self.clip_numbers.bias_px2),
@@ -100,7 +102,7 @@ impl VolumeSettings {
         Ok(())
     }
 
-    /// `clip`, `codes` or a number of pixels.
+    /// Parses `clip`, `codes` or a number of pixels.
     fn set_tolerance(&mut self, text: &str) -> Result<(), String> {
         if let Ok(pixels) = text.parse::<f64>()
             && pixels.is_finite()
@@ -120,6 +122,7 @@ impl VolumeSettings {
         };
         let Some((_, entry)) = self.numbers().into_iter().find(|(key, _)| key == path) else { return Err(unknown()) };
         let expected = expected_of(entry.info);
+        // A whole number is also valid for a real setting, but not the reverse.
         let value = number(text).filter(|value| matches!(entry.value, Value::Real(_)) || value.whole().is_some());
         let Some(value) = value else { return Err(wrong(path, text, place, expected)) };
         let value = if matches!(entry.value, Value::Real(_)) { Value::Real(value.real()) } else { value };

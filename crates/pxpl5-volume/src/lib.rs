@@ -1,4 +1,4 @@
-//! Experiments on a volumetric display: settings and a scene in, a volume, its report and its pictures out.
+//! Experiments on a volumetric display: from settings and a scene to a volume, its report and its pictures.
 //!
 //! ```text
 //!  VolumeSettings --+                                    +--> VolumeReport   "pxpl5-volume/1"
@@ -7,17 +7,18 @@
 //!                                                        +--> figures        the paper's numbers beside the model's
 //! ```
 //!
-//! The pipeline is `spatialgl`'s, the display `perspecta`'s; nothing is drawn or measured here by rules of its own.
+//! The crate `spatialgl` has the pipeline, and `perspecta` the display. This crate adds no rules of its own for drawing
+//! or measuring.
 //!
 //! # Settings
 //!
-//! Every number and choice has a path, such as `clip.bias_px2` or `gpu.readback_mb_s` ([`VolumeSettings::set`]); numbers stand
-//! in tables with unit, standing, range and source.
+//! Every number and choice has a path, such as `clip.bias_px2` or `gpu.readback_mb_s` ([`VolumeSettings::set`]). Tables
+//! hold the numbers with unit, provenance, range and source.
 //!
 //! # Beyond the paper
 //!
-//! Connected coverage, mirrored strobes and the renderers of Pixel-Planes 5 are not the paper's. Every report names those that it
-//! used ([`VolumeReport::beyond_paper`]).
+//! Connected coverage, mirrored strobes and the renderers of Pixel-Planes 5 are not in the paper. Every report lists
+//! the ones that it used ([`VolumeReport::beyond_paper`]).
 
 #![warn(missing_docs)]
 

@@ -1,25 +1,25 @@
-//! Every number of an experiment that belongs neither to the display nor to the model of time.
+//! All numbers of an experiment except those of the display and of the time model.
 
 parameters::parameter_table! {
-    /// Offsets and bias of the clips, and the precision of their planes.
+    /// Offset and bias of the clips, and the precision of their planes.
     pub struct ClipNumbers {
         /// Offset of the tapered and the parallel clip.
         offset_px: f64 = 0.5, "px", Assumed, 0.0..=2.0 in 0.0..=4096.0, "half a pixel, so that no slab is thinner than one";
         /// Bias of the hyperbolic clip.
         bias_px2: f64 = 0.25, "px^2", Assumed, 0.0..=4.0 in 0.0..=16777216.0, "the square of the offset";
-        /// Fraction bits of the evaluated planes; 53 stands for double precision.
+        /// Fraction bits of the evaluated planes. A value of 53 means double precision.
         plane_fraction_bits: 53, "bits", Assumed, 4..=53 in 0..=53, "open in the paper; the dead zone shows what few bits do";
     }
 }
 
 parameters::parameter_table! {
-    /// The law by which each slice's eye and shear are drawn.
+    /// Parameters of the random eye and shear of each slice.
     pub struct JitterNumbers {
         /// Distance of the eye from the slice.
         eye_distance: f64 = 4.0, "radii", Assumed, 2.0..=16.0 in 0.001..=1000000.0, "open in the paper";
         /// Radius of the disc in which the eye lies.
         eye_radius: f64 = 0.5, "radii", Assumed, 0.0..=1.0 in 0.0..=1000.0, "open in the paper";
-        /// Largest shift by the shear at the face of the slab.
+        /// Greatest shift by the shear at the face of the slab.
         shear_px: f64 = 0.5, "px", Assumed, 0.0..=1.0 in 0.0..=1000.0, "the paper: below a pixel";
     }
 }
@@ -27,41 +27,41 @@ parameters::parameter_table! {
 parameters::parameter_table! {
     /// The eye of the perspective projection, the same for all slices.
     pub struct EyeNumbers {
-        /// Place along the slice.
+        /// Horizontal position of the perspective eye in the slice's coordinates.
         across_px: f64 = 0.0, "px", Assumed, -384.0..=384.0 in -1000000.0..=1000000.0, "on the axis";
-        /// Place up the slice.
+        /// Vertical position of the perspective eye in the slice's coordinates.
         up_px: f64 = 0.0, "px", Assumed, -384.0..=384.0 in -1000000.0..=1000000.0, "in the middle";
         /// Distance of the eye from the slice.
         distance: f64 = 4.0, "radii", Assumed, 2.0..=16.0 in 0.001..=1000000.0, "as with jitter";
-        /// Shear along the slice, pixels a pixel of distance from the slice.
+        /// Horizontal shear, in pixels per pixel of distance from the slice.
         shear_across: f64 = 0.0, "1", Assumed, -0.2..=0.2 in -1000.0..=1000.0, "none";
-        /// Shear up the slice.
+        /// Vertical shear, in pixels per pixel of distance from the slice.
         shear_up: f64 = 0.0, "1", Assumed, -0.2..=0.2 in -1000.0..=1000.0, "none";
     }
 }
 
 parameters::parameter_table! {
-    /// Tiles and batches of queries.
+    /// Numbers of the tiles and of the batches of queries.
     pub struct TileNumbers {
-        /// Side of a tile; 0 packs and sends every pixel.
+        /// Side of a tile. With 0, every pixel is packed and sent.
         size: 32, "px", Published, 32..=32 in 0..=4096, "the SpatialGL paper (P16)";
-        /// Slices between stencil clears and queries.
+        /// Number of slices between stencil clears and queries.
         batch: 4, "slices", Published, 4..=4 in 1..=65536, "the SpatialGL paper (P18)";
     }
 }
 
 parameters::parameter_table! {
-    /// How slices are sampled and halftoned.
+    /// Numbers of sampling and halftoning.
     pub struct DrawNumbers {
-        /// Samples of each pixel.
+        /// Number of samples per pixel.
         samples: 1, "samples", Published, 1..=1 in 1..=16, "the SpatialGL paper rejects more as too dear; 4 and 16 for comparison";
-        /// Rows and columns of the dither matrix.
+        /// Number of rows and columns of the dither matrix.
         matrix: 8, "px", Assumed, 2..=16 in 2..=16, "open in the paper";
     }
 }
 
 parameters::parameter_table! {
-    /// Where the turn begins.
+    /// The angle at which a turn begins.
     pub struct SweepNumbers {
         /// Angle of slice 0.
         phase_deg: f64 = 0.0, "deg", Assumed, 0.0..=360.0 in -360.0..=360.0, "open in the paper";
@@ -69,17 +69,17 @@ parameters::parameter_table! {
 }
 
 parameters::parameter_table! {
-    /// Who stands before the display, and the head-mounted display that it is compared with.
+    /// The viewer before the display, and the head-mounted display for comparison.
     pub struct ViewerNumbers {
-        /// Diameter of the volume.
+        /// Diameter of the displayed volume.
         diameter_mm: f64 = 254.0, "mm", Assumed, 200.0..=500.0 in 1.0..=100000.0, "open in the paper; 768 px over 10 inches in SPIE 4297";
-        /// Distance of the head from the middle of the volume where a motion begins.
+        /// Distance of the head from the middle of the volume at the beginning of a motion.
         distance_mm: f64 = 508.0, "mm", Assumed, 300.0..=2000.0 in 1.0..=1000000.0, "four radii, as other views";
         /// Distance between both eyes.
         eye_separation_mm: f64 = 62.0, "mm", Assumed, 55.0..=70.0 in 0.0..=1000.0, "a mean head";
-        /// Width of the head-mounted display's picture; its height is three quarters of it.
+        /// Width of the head-mounted display's picture, whose height is three quarters of the width.
         hmd_width_px: 640, "px", Published, 640..=640 in 8..=16000, "TR94: 640 x 480";
-        /// Angle between the left and the right edge of that picture.
+        /// Angle between the left and the right edge of the head-mounted display's picture.
         hmd_angle_deg: f64 = 60.0, "deg", Assumed, 30.0..=100.0 in 1.0..=170.0, "published in JITP's example";
     }
 }

@@ -1,4 +1,4 @@
-//! What there is to look at of a volume: all slices, one slice before and after halftoning, tiles, and what an eye sees.
+//! Pictures of a volume: all slices, one slice before and after halftoning, tiles, and the view of an eye.
 
 use crate::error::VolumeError;
 use crate::experiment::Volume;
@@ -8,31 +8,31 @@ use image::{GenericImage, Rgb, RgbImage};
 use perspecta::{Camera, Light, ViewOptions, film, view_planes, view_undithered};
 use spatialgl::{SpatialDisplay, Strobes, Tiling, Workers};
 
-/// Thumbnails in a row of a sheet: 22 x 18 are the 396 slices of the paper.
+/// Thumbnails per row of a sheet: 22 x 18 thumbnails show the paper's 396 slices.
 pub const SHEET_COLUMNS: u32 = 22;
 
-/// Distance of thumbnails in a sheet, pixels.
+/// Distance between thumbnails of a sheet, pixels.
 const THUMBNAIL: u32 = 64;
 
-/// Part of the lit pixels of a view that stays below white.
+/// Fraction of the lit pixels of a view that stay below white.
 const BELOW_WHITE: f64 = 0.98;
 
-/// Batches in a row of a map of tiles.
+/// Batches per row of a tile map.
 const MAP_COLUMNS: u32 = 11;
 
-/// How an eye looks at a volume.
+/// The view of an eye at a volume.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
-    /// Where the eye is, and the size of its picture.
+    /// Position of the eye and size of its picture.
     pub camera: Camera,
-    /// Angles left out, and whether pixels are as bright as the screen is turned.
+    /// Options of the view, such as a range of angles to leave out.
     pub options: ViewOptions,
-    /// Whether the colours before halftoning are seen.
+    /// True if the view shows the colours before halftoning.
     pub is_undithered: bool,
 }
 
 impl Look {
-    /// An eye four radii away, its picture so many pixels wide and high.
+    /// Creates the view of an eye four radii away, with a picture of `side` x `side` pixels.
     #[must_use]
     pub fn around(settings: &VolumeSettings, azimuth_deg: f64, elevation_deg: f64, side: u32) -> Self {
         let camera = Camera::around(settings.radius(), azimuth_deg, elevation_deg, side);
@@ -45,17 +45,17 @@ impl Look {
     ///
     /// # Errors
     ///
-    /// [`VolumeError::Display`] names the number that is wrong.
+    /// [`VolumeError::Display`] names the number that is out of range.
     pub fn check(&self, settings: &VolumeSettings) -> Result<(), VolumeError> {
         let display = &settings.display;
         Ok(self.camera.check_before([display.width as u32, display.height as u32])?)
     }
 
-    /// Light of one turn.
+    /// Returns the light of one turn that reaches the eye.
     ///
     /// # Errors
     ///
-    /// [`VolumeError::Display`] if the eye sees nothing.
+    /// [`VolumeError::Display`] if the camera is invalid.
     pub fn light(&self, volume: &Volume, workers: &dyn Workers) -> Result<Light, VolumeError> {
         let undithered = match self.is_undithered {
             true => view_undithered(&volume.frame, &self.camera, self.options, workers)?,
@@ -67,11 +67,11 @@ impl Look {
         }
     }
 
-    /// The picture with its own exposure, or with one that is given.
+    /// Returns the picture with the given exposure, or with its own.
     ///
     /// # Errors
     ///
-    /// As [`Self::light`].
+    /// The same as [`Self::light`].
     pub fn picture(
         &self,
         volume: &Volume,
@@ -82,16 +82,16 @@ impl Look {
         Ok(light.picture(exposure.unwrap_or_else(|| light.exposure(BELOW_WHITE))))
     }
 
-    /// The exposure with which most of the picture stays below white.
+    /// Returns the exposure at which most of the picture stays below white.
     ///
     /// # Errors
     ///
-    /// As [`Self::light`].
+    /// The same as [`Self::light`].
     pub fn exposure(&self, volume: &Volume, workers: &dyn Workers) -> Result<f64, VolumeError> {
         Ok(self.light(volume, workers)?.exposure(BELOW_WHITE))
     }
 
-    /// Pictures of a turn around the volume, all with one exposure.
+    /// Returns pictures of a turn around the volume, all with one exposure.
     pub fn film<'a>(
         &self,
         volume: &'a Volume,
@@ -103,7 +103,7 @@ impl Look {
     }
 }
 
-/// All slices as thumbnails, row by row.
+/// Returns all slices as thumbnails, row by row.
 #[must_use]
 pub fn sheet(volume: &Volume) -> RgbImage {
     let slices = volume.frame.planes.slices();
@@ -116,13 +116,13 @@ pub fn sheet(volume: &Volume) -> RgbImage {
     for k in 0..slices {
         let thumbnail = imageops::thumbnail(&halftoned(volume, k), side(width), side(height));
         let place = (k % columns * THUMBNAIL + 1, k / columns * THUMBNAIL + 1);
-        // A thumbnail is smaller than its place.
+        // A thumbnail is smaller than its place, so copying cannot fail.
         let _ = all.copy_from(&thumbnail, place.0, place.1);
     }
     all
 }
 
-/// A slice as it is lit: each channel on or off.
+/// Returns a slice as it is lit, with each channel on or off.
 ///
 /// # Panics
 /// If there is no such slice ([`Volume::check_slice`]).
@@ -142,10 +142,10 @@ pub fn halftoned(volume: &Volume, slice: u32) -> RgbImage {
     picture
 }
 
-/// A slice before halftoning, with all 256 levels.
+/// Returns a slice before halftoning, with all 256 levels.
 ///
 /// # Panics
-/// As [`halftoned`].
+/// The same as [`halftoned`].
 #[must_use]
 pub fn coloured(volume: &Volume, slice: u32) -> RgbImage {
     let [width, height] = volume.frame.planes.size();
@@ -162,17 +162,17 @@ pub fn coloured(volume: &Volume, slice: u32) -> RgbImage {
     picture
 }
 
-/// A slice before and after halftoning, beside each other.
+/// Returns a slice before and after halftoning, side by side.
 ///
 /// # Panics
-/// As [`halftoned`].
+/// The same as [`halftoned`].
 #[must_use]
 pub fn before_and_after(volume: &Volume, slice: u32) -> RgbImage {
     beside(&[coloured(volume, slice), halftoned(volume, slice)])
 }
 
-/// The tiles of every batch, a pixel each, white where something was drawn; batches follow each other row by row. Nothing
-/// without tiles.
+/// Returns the tiles of every batch with one pixel per tile, white for occupied tiles. Batches follow each other row by
+/// row. Returns `None` without tiles.
 #[must_use]
 pub fn tile_map(volume: &Volume) -> Option<RgbImage> {
     let tile = u32::try_from(volume.settings.tile.size).ok().filter(|tile| *tile > 0)?;
@@ -185,6 +185,7 @@ pub fn tile_map(volume: &Volume) -> Option<RgbImage> {
     let columns = MAP_COLUMNS.min(batches.len() as u32);
     let mut map = RgbImage::from_pixel(columns * (grid[0] + 1), rows * (grid[1] + 1), Rgb([64, 64, 96]));
     for (i, slices) in (0u32..).zip(batches) {
+        // A line of one pixel separates the batches.
         let place = [i % MAP_COLUMNS * (grid[0] + 1), i / MAP_COLUMNS * (grid[1] + 1)];
         fill(&mut map, place, grid, Rgb([0; 3]));
         for sample in slices.iter().flatten() {
@@ -193,6 +194,7 @@ pub fn tile_map(volume: &Volume) -> Option<RgbImage> {
             map.put_pixel(place[0] + x, place[1] + y, Rgb([255; 3]));
         }
     }
+    // Enlarge the map, since a tile is a single pixel.
     let scale = 3;
     let [map_width, map_height] = [map.width() * scale, map.height() * scale];
     Some(imageops::resize(&map, map_width, map_height, FilterType::Nearest))
@@ -206,10 +208,10 @@ fn fill(picture: &mut RgbImage, [left, top]: [u32; 2], [width, height]: [u32; 2]
     }
 }
 
-/// A slice with its tiles: those that are sent lighter, those that are not dark; what was drawn in white.
+/// Returns a slice with its tiles. Occupied tiles, which are sent, are lighter than empty ones. Drawn pixels are white.
 ///
 /// # Panics
-/// As [`halftoned`].
+/// The same as [`halftoned`].
 #[must_use]
 pub fn tiles_of_slice(volume: &Volume, slice: u32, tiling: Tiling) -> RgbImage {
     let picture = coloured(volume, slice);
@@ -217,6 +219,7 @@ pub fn tiles_of_slice(volume: &Volume, slice: u32, tiling: Tiling) -> RgbImage {
     let mut shown = RgbImage::new(picture.width(), picture.height());
     for tile in 0..grid.tiles() {
         let [left, top, right, bottom] = grid.rectangle(tile);
+        // A tile is occupied if any of its pixels is lit.
         let places = || (top..bottom).flat_map(move |y| (left..right).map(move |x| (x, y)));
         let is_lit = |(x, y): (u32, u32)| picture.get_pixel(x, y).0 != [0; 3];
         let is_occupied = places().any(is_lit);
@@ -235,13 +238,13 @@ pub fn tiles_of_slice(volume: &Volume, slice: u32, tiling: Tiling) -> RgbImage {
     shown
 }
 
-/// Pictures beside each other, all as high as the highest.
+/// Returns pictures side by side. The result is as high as the highest.
 #[must_use]
 pub fn beside(pictures: &[RgbImage]) -> RgbImage {
     grid(pictures, pictures.len().max(1) as u32)
 }
 
-/// Pictures row by row, so many in a row, each in a place as large as the largest.
+/// Returns pictures row by row with `columns` per row. Each place is as large as the largest picture.
 #[must_use]
 pub fn grid(pictures: &[RgbImage], columns: u32) -> RgbImage {
     let width = pictures.iter().map(RgbImage::width).max().unwrap_or(1);
@@ -249,7 +252,7 @@ pub fn grid(pictures: &[RgbImage], columns: u32) -> RgbImage {
     let rows = (pictures.len() as u32).div_ceil(columns).max(1);
     let mut all = RgbImage::new(width * columns, height * rows);
     for (i, picture) in (0u32..).zip(pictures) {
-        // Each has its place.
+        // Every picture fits its place, so copying cannot fail.
         let _ = all.copy_from(picture, i % columns * width, i / columns * height);
     }
     all

@@ -1,4 +1,4 @@
-//! What a volume's report says: `pxpl5-volume/1`.
+//! The report of a volume, with schema `pxpl5-volume/1`.
 
 use crate::experiment::Volume;
 use crate::pixel_planes::{BoundRow, SimulatedRow, SliceBounds, SliceTraffic, simulate};
@@ -10,106 +10,109 @@ use spatialgl::{SpatialDisplay, VolumeTime, brightness_by_radius, connected, dea
 /// Width of the rings in which brightness is reported, pixels.
 const RING_PX: u32 = 8;
 
-/// One volume in numbers; all counts are exact, times are a model whose definitions stand beside them.
+/// The report of one volume. All counts are exact. Times come from a model, and each is reported with its formula.
 #[derive(Clone, Debug, Serialize)]
 pub struct VolumeReport {
     /// Name and version of this record's layout.
     pub schema: &'static str,
     /// Name of the scene that was drawn.
     pub scene: String,
-    /// The display that it was drawn for.
+    /// Display for which the volume was drawn.
     pub display: DisplayReport,
-    /// The clip with its offset or bias.
+    /// Name of the clip with its offset or bias.
     pub clip: String,
     /// Name of the projection.
     pub projection: &'static str,
-    /// Names the sequence of the jitter.
+    /// Seed of the jitter's random sequence.
     pub seed: u64,
-    /// Who drew the slices.
+    /// Name of the renderer that drew the slices.
     pub renderer: &'static str,
-    /// What the renderers of Pixel-Planes 5 did, and their bounds; none if this computer drew.
+    /// Work and bounds of the renderers of Pixel-Planes 5, or `None` if this computer drew the slices.
     pub pixel_planes: Option<PixelPlanesReport>,
-    /// Samples taken of each pixel.
+    /// Number of samples per pixel.
     pub samples: u64,
-    /// Triangles, lines and points of the scene.
+    /// Number of triangles, lines and points of the scene.
     pub triangles: u64,
-    /// Slices drawn; fewer than are shown if some are mirrored.
+    /// Number of slices drawn, which is less than the number shown if slices are mirrored.
     pub slices_rendered: u64,
-    /// How often the scene is drawn for a slice.
+    /// Number of times that the scene is drawn for a slice.
     pub passes: u64,
-    /// Primitives issued for all slices and passes.
+    /// Number of primitives issued, over all slices and passes.
     pub draws: u64,
-    /// What they would be without bins.
+    /// Number of primitives that would be issued without bins.
     pub draws_unbinned: u64,
-    /// Entries in all bins.
+    /// Number of entries in all bins.
     pub bin_memberships: u64,
-    /// Fragments that reached the fragment program; none if the renderers of Pixel-Planes 5 drew, which count no fragments.
+    /// Number of fragments that reached the fragment program, or `None` for the renderers of Pixel-Planes 5, which
+    /// count no fragments.
     pub fragments_generated: Option<u64>,
-    /// Fragments that lie in their slice's volume; none likewise.
+    /// Number of fragments that lie in their slice's volume, or `None` for the renderers of Pixel-Planes 5.
     pub fragments_accepted: Option<u64>,
-    /// Pixels added to connect intersections, which is beyond the paper.
+    /// Number of pixels added to connect intersections, which is beyond the paper.
     pub fragments_added: u64,
-    /// Slices on which nothing was drawn.
+    /// Number of slices on which nothing was drawn.
     pub slices_empty: u64,
-    /// Tiles of batches that hold something.
+    /// Number of occupied tiles, summed over batches.
     pub tiles_occupied: u64,
-    /// Part of the queried tiles that holds something, percent.
+    /// Percentage of queried tiles that are occupied.
     pub tile_occupancy_percent: f64,
-    /// Queries of tiles of all batches.
+    /// Number of tile queries of all batches.
     pub queries: u64,
-    /// Stencil clears, one a batch.
+    /// Number of stencil clears: one for each batch.
     pub stencil_clears: u64,
-    /// Bytes of all slices with 32 bits a pixel.
+    /// Size of all drawn slices with 32 bits per pixel, bytes.
     pub bytes_unpacked: u64,
-    /// Bytes of all slices packed.
+    /// Size of all drawn slices in packed form, bytes.
     pub bytes_packed: u64,
-    /// Bytes sent: packed words of occupied tiles and the maps of tiles.
+    /// Number of bytes sent: packed words of occupied tiles, and the maps of tiles.
     pub bytes_sent: u64,
-    /// Bits of unpacked pixels that the projector has no use for, percent.
+    /// Percentage of the bits of unpacked pixels that the projector does not use.
     pub waste_percent: f64,
-    /// Pixels lit in any colour, in all slices.
+    /// Number of pixels lit in any colour, in all slices.
     pub lit_voxels: u64,
-    /// Samples on the mesh's intersections with the slices that have a drawn pixel beside them, percent.
+    /// Percentage of samples on the mesh's intersections with the slices that have a drawn pixel beside them.
     pub connected_percent: f64,
-    /// Lit pixels by their distance from the axis.
+    /// Number of lit pixels by their distance from the axis.
     pub brightness_by_radius: Brightness,
-    /// Radius in pixels within which no slice can show a point, whatever the scene; none if no slice can show anything.
+    /// Radius in pixels within which no slice can show a point of any scene. `None` if no slice can show anything.
     pub dead_zone_radius_px: Option<u32>,
-    /// Distance in pixels from the axis to the nearest lit pixel; none of a dark volume.
+    /// Distance in pixels from the axis to the nearest lit pixel, or `None` for a dark volume.
     pub innermost_lit_px: Option<u32>,
-    /// Times of the model of a host with a GPU; none if the renderers of Pixel-Planes 5 drew.
+    /// Times by the model of a host with a GPU, or `None` for the renderers of Pixel-Planes 5.
     pub model_ms: Option<ModelTimes>,
-    /// Volumes a second if processor, GPU and bus follow each other; none likewise.
+    /// Volumes per second if processor, GPU and bus work one after the other, or `None` for the renderers of
+    /// Pixel-Planes 5.
     pub volumes_hz_serial: Option<f64>,
-    /// Volumes a second if they work at the same time; none likewise.
+    /// Volumes per second if processor, GPU and bus work at the same time, or `None` for the renderers of Pixel-Planes
+    /// 5.
     pub volumes_hz_overlapped: Option<f64>,
-    /// Primitives with a corner outside what the display shows.
+    /// Number of primitives with a corner outside the display's volume.
     pub outside_volume: u64,
-    /// A number, in hexadecimal digits, that any other bit of the volume would change.
+    /// Hash of all bits of the volume, in hexadecimal digits.
     pub volume_hash: String,
-    /// Numbers that are not the papers'.
+    /// Numbers that differ from the papers' values.
     pub overrides: Vec<Override>,
-    /// What of it is not the paper's.
+    /// Settings that go beyond the paper.
     pub beyond_paper: Vec<&'static str>,
-    /// Seconds that this computer took.
+    /// Time that this computer took, seconds.
     pub host_seconds: f64,
 }
 
-/// What a volume costs on Pixel-Planes 5, which is beyond the paper.
+/// The cost of a volume on Pixel-Planes 5, which is beyond the paper.
 #[derive(Clone, Debug, Serialize)]
 pub struct PixelPlanesReport {
-    /// Counted clocks, commands and words, and the tiles sent.
+    /// Counts of clocks, commands, words and sent tiles.
     #[serde(flatten)]
     pub counts: SliceBounds,
-    /// What the milliseconds of the bounds are.
+    /// Formulas by which the numbers in `bounds` and `simulated` are computed.
     pub definition: &'static str,
-    /// Volumes a second with more and more boards, by the slowest part alone.
+    /// Volumes per second for several machines, each limited by its slowest part alone.
     pub bounds: Vec<BoundRow>,
-    /// The same machines event by event; none if the volume's tiles cannot be sent.
+    /// Results of simulating the same machines event by event. The list is empty if the volume's tiles cannot be sent.
     pub simulated: Vec<SimulatedRow>,
 }
 
-/// Renderers and graphics processors of the bounds; the third is the largest machine that was built.
+/// Numbers of renderers and graphics processors for the bounds. The third pair is the largest machine that was built.
 const BOARDS: [[u64; 2]; 5] = [[1, 4], [5, 13], [20, 50], [20, 13], [5, 50]];
 
 const BOUNDS: &str = "renderers: clocks of clears, triangles and halftones and of the moves to the backing store / 40 MHz; ring: words of commands and of occupied tiles with \
@@ -125,62 +128,62 @@ impl PixelPlanesReport {
     }
 }
 
-/// The display in numbers.
+/// The numbers of the display.
 #[derive(Clone, Debug, Serialize)]
 pub struct DisplayReport {
-    /// What it is called.
+    /// Name of the display in options and files.
     pub name: &'static str,
-    /// Slices of a turn.
+    /// Number of slices per turn.
     pub slices: u64,
     /// Width of a slice, pixels.
     pub width: u64,
     /// Height of a slice, pixels.
     pub height: u64,
-    /// Turns of the screen a minute.
+    /// Turns of the screen per minute.
     pub spin_rpm: u64,
-    /// Volumes a second that an eye gets: two a turn.
+    /// Volumes per second that an eye sees: two per turn.
     pub volumes_hz: f64,
 }
 
-/// Lit pixels in rings around the axis.
+/// The numbers of lit pixels in rings around the axis.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Brightness {
-    /// Width of each ring, pixels.
+    /// Width of each ring around the axis, pixels.
     pub ring_px: u32,
-    /// Lit pixels of all slices in each ring, from the axis outwards.
+    /// Number of lit pixels of all slices in each ring, from the axis outwards.
     pub lit_voxels: Vec<u64>,
 }
 
-/// A part of the model's time.
+/// A part of the model's time with its formula.
 #[derive(Clone, Debug, Serialize)]
 pub struct ModelPart {
-    /// Milliseconds of one volume.
+    /// Time for one volume, milliseconds.
     pub ms: f64,
-    /// The formula that it is computed by.
+    /// Formula by which `ms` is computed.
     pub definition: &'static str,
 }
 
-/// Milliseconds of one volume, each with its formula.
+/// The times of the model for one volume, each with its formula.
 #[derive(Clone, Debug, Serialize)]
 pub struct ModelTimes {
-    /// The processor: vertices, bins and calls.
+    /// Processor time for vertices, bins and calls.
     pub cpu: ModelPart,
-    /// The GPU: vertices, fragments, clears, queries and packing.
+    /// GPU time for vertices, fragments, clears, queries and packing.
     pub gpu: ModelPart,
-    /// The bus: from the GPU and to the projector.
+    /// Bus time for transfers from the GPU and to the projector.
     pub bus: ModelPart,
-    /// The same volume sent as pixels of 32 bits, without queries and packing: bus.
+    /// Bus time for the same volume sent as 32-bit pixels, without queries and packing.
     pub bus_unpacked: ModelPart,
 }
 
-/// A number that was set.
+/// A number of the settings that differs from the paper's value.
 #[derive(Clone, Debug, Serialize)]
 pub struct Override {
-    /// Its path, as after `--set`.
+    /// Path of the number, as after `--set`.
     pub path: String,
-    /// The value that it has.
+    /// Value of the number in this volume.
     pub value: Value,
-    /// The value that the paper gives or allows.
+    /// Value that the paper gives or allows.
     pub papers: Value,
 }
 
@@ -191,20 +194,20 @@ const BUS: &str = "bytes sent / readback, and the same to the projector";
 const BUS_UNPACKED: &str = "4 bytes a pixel of all slices / readback, and the same to the projector";
 
 impl Volume {
-    /// Milliseconds of the volume by the model of its settings.
+    /// Returns the time of the volume by the time model of its settings.
     #[must_use]
     pub fn time(&self) -> VolumeTime {
         let tile = self.settings.tile.size as u32;
         self.settings.time_model().packed(&self.frame.stats, self.display.target_size(), tile)
     }
 
-    /// The volume in numbers.
+    /// Returns the report of the volume.
     #[must_use]
     pub fn report(&self) -> VolumeReport {
         let stats = &self.frame.stats;
         let planes = &self.frame.planes;
         let settings = &self.settings;
-        // The model of time and its counts of fragments are a GPU's.
+        // Time model and fragment counts are those of a GPU.
         let fragments = self.bounds.is_none().then_some(stats);
         let time = self.bounds.is_none().then(|| self.time());
         VolumeReport {
@@ -251,13 +254,13 @@ impl Volume {
         }
     }
 
-    /// Part of the mesh's intersections with the slices that is shown, percent.
+    /// Returns the percentage of the mesh's intersections with the slices that is shown.
     #[must_use]
     pub fn connected_percent(&self) -> f64 {
         connected(&self.display, &self.commands, &self.frame).map_or(f64::NAN, |found| found.percent())
     }
 
-    /// Lit pixels in rings around the axis.
+    /// Returns the number of lit pixels in rings around the axis.
     #[must_use]
     pub fn brightness(&self) -> Brightness {
         Brightness { ring_px: RING_PX, lit_voxels: brightness_by_radius(&self.frame.planes, RING_PX) }
@@ -274,7 +277,7 @@ impl Volume {
     }
 }
 
-/// Bits that the projector has no use for, of all bits that are sent unpacked.
+/// Returns the percentage of the unpacked bits that the projector does not use.
 fn waste_percent(bytes_unpacked: u64, settings: &VolumeSettings) -> f64 {
     let display = &settings.display;
     let slices = if settings.strobes == spatialgl::Strobes::Mirror { display.slices / 2 } else { display.slices };
@@ -297,7 +300,7 @@ impl DisplayReport {
 }
 
 impl VolumeSettings {
-    /// The numbers that are not the papers'.
+    /// Returns the numbers that differ from the papers' values.
     #[must_use]
     pub fn overrides(&self) -> Vec<Override> {
         let changed = self.numbers().into_iter().filter(|(_, entry)| entry.value != entry.info.papers);

@@ -1,4 +1,4 @@
-//! What an experiment is made of, by path.
+//! The settings of an experiment, each with a path.
 
 use crate::choices::{ClipKind, Named, ProjectionKind, RendererKind};
 use crate::error::VolumeError;
@@ -10,60 +10,61 @@ use spatialgl::{
     SweptConfig, SweptDisplay, TieRule, Tiling, TimeModel, VolumeConfig,
 };
 
-/// Everything that decides what a volume is, and the numbers of the model of its time.
+/// All settings that determine a volume, and the numbers of its time model.
 ///
-/// [`Self::paper`] has the paper's values where it gives any, and our choices, within their ranges, where it does not.
+/// [`Self::paper`] has the paper's values where the paper gives them. The other values are our choices within their
+/// ranges.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VolumeSettings {
-    /// The display: slices, width, height, spin.
+    /// Number of slices, width, height and spin of the display.
     pub display: PerspectaConfig,
-    /// Where its turn begins.
+    /// Angle of the first slice.
     pub sweep: SweepNumbers,
-    /// Which way its screen turns.
+    /// Direction in which the screen turns.
     pub rotation: Rotation,
-    /// Which of the six clips is used.
+    /// Method of clipping the scene to a slice.
     pub clip: ClipKind,
     /// Offset, bias and precision of the clips.
     pub clip_numbers: ClipNumbers,
-    /// What becomes of points in the planes between slices.
+    /// Rule for points in the planes between slices.
     pub ties: TieRule,
-    /// Which of the three projections is used.
+    /// Projection of points off a slice onto its image.
     pub projection: ProjectionKind,
-    /// The law of the jittered projection.
+    /// Parameters of the jittered projection.
     pub jitter: JitterNumbers,
-    /// The eye of the perspective projection.
+    /// Eye of the perspective projection.
     pub eye: EyeNumbers,
-    /// Names the sequence of the jitter.
+    /// Seed of the jitter's random sequence.
     pub seed: u64,
-    /// How primitives are sorted.
+    /// Method of sorting primitives into bins.
     pub binning: Binning,
-    /// How far from a plane a vertex counts for both sides.
+    /// Distance from a plane within which a vertex counts for both sides.
     pub bin_tolerance: BinTolerance,
-    /// Side of tiles and length of batches.
+    /// Side of tiles, and length of batches.
     pub tile: TileNumbers,
-    /// Samples and dither of the slices.
+    /// Number of samples and size of the dither matrix.
     pub draw: DrawNumbers,
-    /// What of a primitive is drawn.
+    /// Pixels of a slice that a primitive covers.
     pub coverage: Coverage,
-    /// Which slices are drawn and which are mirrored.
+    /// Slices that are drawn, and slices that are mirrored.
     pub strobes: Strobes,
-    /// What becomes of several fragments on one pixel.
+    /// Rule for several fragments on one pixel.
     pub combine: Combine,
-    /// Whether the scene's light shines.
+    /// True if the scene is lit by its light.
     pub is_lit: bool,
-    /// Who draws the slices.
+    /// Hardware that draws the slices.
     pub renderer: RendererKind,
     /// Rates and times of the host and its GPU.
     pub gpu: GpuTiming,
-    /// Who stands before the display; decides nothing of the volume.
+    /// Viewer before the display, without influence on the volume.
     pub viewer: ViewerNumbers,
 }
 
-/// A table and the first part of its paths.
+/// A table with the first part of its paths.
 pub(crate) type NamedTable<'a> = (&'static str, &'a dyn ParameterTable);
 
 impl VolumeSettings {
-    /// The display of the paper, hyperbolic clip, jittered eyes.
+    /// Returns the settings of the paper: its display, the hyperbolic clip and jittered eyes.
     #[must_use]
     pub const fn paper() -> Self {
         Self {
@@ -91,7 +92,7 @@ impl VolumeSettings {
         }
     }
 
-    /// All tables of numbers, with the first part of their paths.
+    /// Returns all tables of numbers with the first part of their paths.
     pub(crate) fn tables(&self) -> [NamedTable<'_>; 9] {
         [
             ("display", &self.display),
@@ -106,7 +107,7 @@ impl VolumeSettings {
         ]
     }
 
-    /// The clip with its offset or bias.
+    /// Returns the clip with its offset or bias.
     #[must_use]
     pub const fn slice_clip(&self) -> SliceClip {
         let ClipNumbers { offset_px, bias_px2, .. } = self.clip_numbers;
@@ -120,7 +121,7 @@ impl VolumeSettings {
         }
     }
 
-    /// The clip as options and reports write it: its name, and its offset or bias after a colon.
+    /// Returns the clip as text for options and reports: its name, then its offset or bias after a colon.
     #[must_use]
     pub fn clip_text(&self) -> String {
         let name = self.clip.name();
@@ -132,7 +133,7 @@ impl VolumeSettings {
         }
     }
 
-    /// The projection with its eye or the law of its jitter.
+    /// Returns the projection with its eye or its jitter.
     #[must_use]
     pub const fn slice_projection(&self) -> Projection {
         match self.projection {
@@ -152,23 +153,23 @@ impl VolumeSettings {
         }
     }
 
-    /// What the projection is called in options and reports.
+    /// Returns the name of the projection in options and reports.
     #[must_use]
     pub fn projection_text(&self) -> &'static str {
         self.projection.name()
     }
 
-    /// Radius of the display, pixels.
+    /// Returns the radius of the display, pixels.
     #[must_use]
     pub const fn radius(&self) -> f64 {
         self.display.width as f64 / 2.0
     }
 
-    /// The display as the pipeline sees it.
+    /// Returns the display for the pipeline.
     ///
     /// # Errors
     ///
-    /// [`VolumeError`] names the first number that is wrong, what was expected and what was found.
+    /// [`VolumeError`] names the first number that is out of range, the expected and the found value.
     pub fn swept_display(&self) -> Result<SweptDisplay, VolumeError> {
         self.check_tables()?;
         let bits = self.clip_numbers.plane_fraction_bits;
@@ -185,11 +186,11 @@ impl VolumeSettings {
         })?)
     }
 
-    /// How a volume is made.
+    /// Returns the settings for rendering a volume.
     ///
     /// # Errors
     ///
-    /// As [`Self::swept_display`].
+    /// The same as [`Self::swept_display`].
     pub fn volume_config(&self) -> Result<VolumeConfig, VolumeError> {
         self.check_tables()?;
         let size = self.tile.size as u32;
@@ -206,19 +207,19 @@ impl VolumeSettings {
         })
     }
 
-    /// The model of time with the numbers of these settings.
+    /// Returns the time model with the numbers of these settings.
     #[must_use]
     pub const fn time_model(&self) -> TimeModel {
         TimeModel { timing: self.gpu }
     }
 
-    /// What the renderer is called in options and reports.
+    /// Returns the name of the renderer in options and reports.
     #[must_use]
     pub fn renderer_text(&self) -> &'static str {
         self.renderer.name()
     }
 
-    /// What of these settings is not the paper's.
+    /// Returns the features of these settings that go beyond the paper.
     #[must_use]
     pub fn beyond_paper(&self) -> Vec<&'static str> {
         let mut beyond = Vec::new();
@@ -234,7 +235,7 @@ impl VolumeSettings {
         beyond
     }
 
-    /// Checks every number against the limits of its table, and those that only a few values suit.
+    /// Checks every number against the limits of its table, and the number of samples against the allowed values.
     fn check_tables(&self) -> Result<(), VolumeError> {
         for (prefix, table) in self.tables() {
             if let Some(entry) = table.entries().into_iter().find(|entry| !entry.is_within_limits()) {

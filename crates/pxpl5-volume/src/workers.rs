@@ -1,16 +1,16 @@
-//! Work that tells how far it is.
+//! Workers that report their progress.
 
 use spatialgl::{Task, Workers};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Workers that say after each task how many are done.
+/// A wrapper of workers that calls a function with the number of finished tasks after each task.
 pub struct Counted<'a> {
     inner: &'a dyn Workers,
     finished: &'a (dyn Fn(u64, u64) + Sync),
 }
 
 impl<'a> Counted<'a> {
-    /// These workers, and who hears of tasks done and of all tasks.
+    /// Wraps these workers. `finished` receives the number of finished tasks and the number of all tasks.
     #[must_use]
     pub fn new(inner: &'a dyn Workers, finished: &'a (dyn Fn(u64, u64) + Sync)) -> Self {
         Self { inner, finished }

@@ -1,4 +1,4 @@
-//! The paper's figures: every formula is met, what is stated without numbers is shown, and the document is fresh.
+//! The paper's figures: every formula is met, statements without numbers are confirmed, and the document is up to date.
 
 use pxpl5_scene::builtin;
 use pxpl5_volume::figures::{Drawing, Figures, all, drawings, markdown};
@@ -23,7 +23,7 @@ fn every_figure_of_the_specification_has_a_row() {
     assert_eq!((ids[0], FIGURES.definitions[0].definition.id), ("P2", "P1"), "printed ones first, by number");
 }
 
-/// What follows without a scene cannot be missed; what was measured says so if it is.
+/// Figures without a scene must be met. Measured figures are listed as missed if they are not met.
 #[test]
 fn every_row_without_a_scene_is_met() {
     for row in FIGURES.figures.iter().filter(|row| row.scene.is_none()) {
@@ -31,7 +31,7 @@ fn every_row_without_a_scene_is_met() {
     }
 }
 
-/// Numbers that a run cannot change: what the paper gives as an input (section 2 of its list), and plain arithmetic.
+/// Some numbers cannot change in a run: inputs of the paper (section 2 of its list), and results of plain arithmetic.
 #[test]
 fn a_number_that_no_run_can_change_is_a_definition_and_has_no_verdict() {
     let inputs = ["P1", "P6", "P13", "P16", "P18", "P20", "D12"];

@@ -1,4 +1,4 @@
-//! A head before the volume: what a late display shows off its place, and what voxels do.
+//! A head before the volume: errors of a late head-mounted display, and errors of voxels.
 
 use pxpl5_scene::builtin;
 use pxpl5_volume::heads::{HeadBefore, HeadQuestion};
@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 use tracking::Pose;
 use tracking::motion::{Motion, Pan, Slide, Still};
 
-/// 36 slices of 128 x 96 pixels of the Mig, along the normal.
+/// A volume of the Mig with 36 orthographic slices of 128 x 96 pixels.
 static VOLUME: LazyLock<Volume> = LazyLock::new(|| {
     let mut settings = VolumeSettings { projection: ProjectionKind::Orthographic, ..VolumeSettings::paper() };
     for (path, text) in [("display.slices", "36"), ("display.width", "128"), ("display.height", "96")] {
@@ -24,7 +24,7 @@ fn study(motion: &dyn Motion, question: &HeadQuestion) -> pxpl5_volume::heads::H
     before.study(question).expect("valid")
 }
 
-/// Whoever stands still sees the head-mounted picture in its place; voxels are off all the same.
+/// For a still head the head-mounted picture has no error, but the voxels still have errors.
 #[test]
 fn a_still_head_has_no_error_of_latency() {
     let study = study(&Still(Pose::IDENTITY), &QUESTION);
@@ -37,8 +37,8 @@ fn a_still_head_has_no_error_of_latency() {
     }
 }
 
-/// A head that slides right at 0.4 m/s is 20 mm farther after 50 ms: from 508 mm that is atan(20/508) = 2.25 degrees for the middle,
-/// and about so on the mean of points around it; the errors grow with the latency.
+/// A head that slides right at 0.4 m/s moves 20 mm in 50 ms. From 508 mm this is atan(20/508) = 2.25 degrees for the
+/// middle, and about the same for the mean over points around it. The errors grow with the latency.
 #[test]
 fn a_sliding_head_is_off_by_its_way_over_the_distance() {
     let slide = Slide::right_at(0.4);
@@ -60,8 +60,9 @@ fn a_turning_head_is_off_by_its_rate_times_the_latency() {
     assert!((found - 3.0).abs() < 0.2, "{found}");
 }
 
-/// In the plane of a slice the pixel is at most half a pixel off along both edges; across, half the distance to the next slice, at
-/// most the rim's 64 px x sin(5 degrees) = 5.58 px (36 slices are 10 degrees apart). One pixel is 254/128 mm.
+/// In the plane of a slice a voxel is at most half a pixel off along both edges. Across the plane it is at most half
+/// the distance to the next slice: 64 px x sin(5 degrees) = 5.58 px at the rim (36 slices are 10 degrees apart). One
+/// pixel is 254/128 mm.
 #[test]
 fn voxels_are_off_by_their_own_size_and_no_more() {
     let study = study(&Still(Pose::IDENTITY), &QUESTION);

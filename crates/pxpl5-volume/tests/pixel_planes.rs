@@ -12,7 +12,7 @@ use pxpl5_volume::spatialgl::{
 };
 use pxpl5_volume::{ProjectionKind, Volume, VolumeSettings};
 
-/// A corner in sixteenths of a pixel of the image, its distance off the slice in pixels, and its colour.
+/// A corner: position in sixteenths of a pixel, distance from the slice in pixels, and colour.
 type Corner = ([i32; 2], f64, [u8; 3]);
 
 const SIZE: [u32; 2] = [768, 768];
@@ -25,12 +25,12 @@ fn wedge() -> HalfWedge {
     HalfWedge::new(396, 384.0)
 }
 
-/// Numbers of [0, 1) from a counter: the low-discrepancy sequence of the plastic number.
+/// Returns a number in [0, 1) from a counter: an element of the low-discrepancy sequence of the plastic number.
 fn unit(n: u32, dimension: u32) -> f64 {
     (0.5 + f64::from(n) * 0.754_877_666_246_692_8 * f64::from(dimension + 1).sqrt()).fract()
 }
 
-/// Triangles of all sizes around the axis, most of which cross slice 0.
+/// Returns triangles of all sizes around the axis, most of which cross slice 0.
 fn triangles() -> Vec<[Corner; 3]> {
     let corner = |n: u32, i: u32| {
         let reach = [40.0, 300.0, 700.0][n as usize % 3];
@@ -42,7 +42,7 @@ fn triangles() -> Vec<[Corner; 3]> {
     (1..=36).map(|n| [0, 1, 2].map(|i| corner(n, i))).collect()
 }
 
-/// The same triangle in the world: in slice 0 of a display without phase u, v and s are x, y and z.
+/// Returns the same triangle in world coordinates. In slice 0 of a display without phase, u, v and s are x, y and z.
 fn recording(corners: &[Corner; 3]) -> CommandBuffer {
     let vertices = corners.map(|([x, y], off, colour)| {
         let place = [f64::from(x) / 16.0 - 384.0, 384.0 - f64::from(y) / 16.0, off];
@@ -98,8 +98,8 @@ fn command(corners: &[Corner; 3]) -> SliceTriangle {
     SliceTriangle::of_corners(corners, SIZE, wedge(), 0.25).expect("it has an area")
 }
 
-/// Wherever the hyperbola is farther from zero than the rounding of its coefficients, the arrays have the host's pixels, and
-/// their colours to a level; both arrays have the same ones everywhere.
+/// The arrays draw the host's pixels, with colours equal to one level, wherever the hyperbola is farther from zero than
+/// its rounding error. Both arrays agree everywhere.
 #[test]
 fn both_pixel_arrays_draw_what_the_host_draws() {
     let lanes = PixelPlanesRenderer::new(&settings(), ArrayKind::Lanes).expect("supported");
@@ -208,8 +208,8 @@ fn halftone_on(array: &mut impl PixelArray, layout: &Layout, matrix: &Halftone) 
     }
 }
 
-/// A volume of few slices, drawn by the renderers and sent: every tile arrives at the display, which understands all of it; no part
-/// is faster than its bound; and one renderer with one processor needs about as long as the slower of both.
+/// A volume of few slices is drawn by the renderers and sent. Every tile arrives at the display without a fault. No
+/// part is faster than its bound. One renderer with one processor needs about as long as the slower of the two.
 #[test]
 fn a_simulated_volume_arrives_whole_and_is_never_faster_than_its_bounds() {
     let mut settings = settings();
@@ -221,7 +221,8 @@ fn a_simulated_volume_arrives_whole_and_is_never_faster_than_its_bounds() {
     let volume = Volume::draw(&settings, &scene, &OneThread).expect("drawn");
     let traffic = volume.traffic.as_ref().expect("32 x 32 pixels fit a message");
     let bounds = volume.bounds.expect("renderers drew it");
-    // A tile is sent for all four slices of its batch if any pixel of theirs is lit: what dither leaves dark is not.
+    // A tile is sent for all four slices of its batch if any of their pixels is lit. Tiles that the dither leaves dark
+    // are not sent.
     let planes = &volume.frame.planes;
     let is_lit = |batch: u32, tile: u32| {
         let pixels = (0..32).flat_map(|y| (0..32).map(move |x| (tile % 8 * 32 + x, tile / 8 * 32 + y)));

@@ -1,4 +1,4 @@
-//! Settings by path: what each takes, and what is said of what it does not.
+//! Settings by path: accepted values, and errors for other values.
 
 use pxpl5_volume::spatialgl::{BinTolerance, SliceClip};
 use pxpl5_volume::{VolumeError, VolumeSettings};

@@ -1,4 +1,4 @@
-//! Volumes and their reports on small displays: counts by formula, pictures by place.
+//! Volumes and their reports on small displays: counts from formulas, and pixels of pictures.
 
 use pxpl5_scene::{Scene, builtin};
 use pxpl5_volume::compare::{Viewpoint, compare, variant_count};
@@ -7,7 +7,7 @@ use pxpl5_volume::spatialgl::{OneThread, Strobes, Threads};
 use pxpl5_volume::{ClipKind, ProjectionKind, Volume, VolumeSettings};
 use serde_json::Value;
 
-/// 36 slices of 128 x 96 pixels.
+/// Returns settings for 36 slices of 128 x 96 pixels.
 fn small() -> VolumeSettings {
     let mut settings = VolumeSettings::paper();
     settings.display.slices = 36;
@@ -24,7 +24,7 @@ fn drawn(settings: &VolumeSettings) -> Volume {
     Volume::draw(settings, &mig(), &OneThread).expect("valid")
 }
 
-/// Section 9's list.
+/// Fields of a report, from the list of section 9.
 const FIELDS: [&str; 34] = [
     "display",
     "clip",
@@ -123,7 +123,7 @@ fn the_hash_depends_on_the_seed_and_not_on_threads() {
     assert_ne!(hash(&small()), hash(&other));
 }
 
-/// Pixels are those of the bit planes and of the colours; mirrored slices are turned over.
+/// The pixels of pictures equal the bit planes and the colours. Mirrored slices are shown reversed.
 #[test]
 fn pictures_show_the_slices() {
     for strobes in [Strobes::Each, Strobes::Mirror] {

@@ -1,4 +1,4 @@
-//! Host time of a volume of 198 distinct slices of the head, and the ratios that the issue asks for, in one process.
+//! Host time of a volume of 198 distinct slices of the head scene, with the ratios of interest measured in one process.
 #![allow(missing_docs, reason = "criterion's macro writes an undocumented function")]
 
 use criterion::{Criterion, SamplingMode, criterion_group, criterion_main};
@@ -32,7 +32,8 @@ fn draw(display: &SweptDisplay, commands: &CommandBuffer, config: &VolumeConfig,
     frame.stats.fragments_accepted
 }
 
-/// Bins and tiles against brute force, one thread against two; the volume has 396 slices, of which 198 are drawn.
+/// Compares bins and tiles with brute force, and one thread with two. The volume has 396 slices, of which 198 are
+/// drawn.
 fn volumes(c: &mut Criterion) {
     let commands = head();
     let mut group = c.benchmark_group("volume");
@@ -49,7 +50,7 @@ fn volumes(c: &mut Criterion) {
     group.finish();
 }
 
-/// Numbers that are linear over a triangle.
+/// The attributes that are interpolated linearly over a triangle.
 #[derive(Clone, Copy)]
 struct Carried<const N: usize>([f32; N]);
 
@@ -65,7 +66,8 @@ impl<const N: usize> Interpolate for Carried<N> {
     }
 }
 
-/// One slice with the hyperbola in the fragment program. `euc` 0.5 has no discard: what is rejected is drawn as zero.
+/// A pipeline of `euc` for one slice, with the hyperbola in the fragment program. `euc` 0.5 has no discard, so rejected
+/// fragments are drawn as zero.
 struct EucSlice<'a> {
     commands: &'a CommandBuffer,
     view: &'a SliceView,
@@ -113,8 +115,8 @@ impl euc::Pipeline for EucSlice<'_> {
     }
 }
 
-/// The same slice, noting which pixels an accepted fragment covers: the window's coordinates are carried to the fragment, since a
-/// target cannot tell what was rejected.
+/// A pipeline for the same slice that records the pixels of accepted fragments. Window coordinates are passed to the
+/// fragment, because the target does not show rejected fragments.
 struct EucCoverage<'a> {
     slice: EucSlice<'a>,
     covered: RefCell<Vec<bool>>,
@@ -142,7 +144,7 @@ impl euc::Pipeline for EucCoverage<'_> {
     }
 }
 
-/// Fragments that `euc` accepts in 198 slices: no bins, no dither, no packing.
+/// Returns the number of fragments that `euc` accepts in 198 slices, without bins, dither and packing.
 fn draw_by_euc(display: &SweptDisplay, commands: &CommandBuffer, indices: &[u32], target: &mut Buffer2d<u32>) -> u64 {
     let views = display.views()[..198].iter();
     let accepted = views.map(|view| {
@@ -154,11 +156,11 @@ fn draw_by_euc(display: &SweptDisplay, commands: &CommandBuffer, indices: &[u32]
     accepted.sum()
 }
 
-/// Most pixels that one of both may cover alone, percent of those that any covers: `euc` works in single precision and has a
-/// rule of its own for samples on edges.
+/// Greatest percentage of covered pixels that only one of the two rasterizers may cover. `euc` works in single
+/// precision and has another rule for samples on edges.
 const MOST_DIFFERING_PERCENT: f64 = 2.0;
 
-/// Pixels that only one of both covers, of all that any covers, in the slices of half a turn.
+/// Returns the percentage of pixels that only one of the two rasterizers covers, in the slices of half a turn.
 fn differing_percent(
     display: &SweptDisplay,
     commands: &CommandBuffer,
@@ -183,7 +185,7 @@ fn differing_percent(
     100.0 * one_alone as f64 / either as f64
 }
 
-/// The same slices by a published rasteriser with the clip in its fragment program.
+/// Measures the same slices with a published rasterizer that has the clip in its fragment program.
 fn peers(c: &mut Criterion) {
     let scene = builtin("head").expect("built in");
     let commands = head();

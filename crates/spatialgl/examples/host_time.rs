@@ -1,6 +1,6 @@
-//! Processor time of a volume of 198 distinct slices of the head by one thread, with and without bins and tiles:
-//! `cargo run --release -p spatialgl --example host_time`. Benches measure the same as time of the clock; this one can be believed
-//! on a busy computer too.
+//! Processor time of a volume of 198 distinct slices of the head by one thread, with and without bins and tiles: `cargo
+//! run --release -p spatialgl --example host_time`. The benches measure wall-clock time. Processor time is reliable on
+//! a busy computer too.
 
 use pxpl5_scene::builtin;
 use spatialgl::{
@@ -8,7 +8,7 @@ use spatialgl::{
     record_scene, render_volume,
 };
 
-/// Nanoseconds that this thread has run (Linux); nothing elsewhere.
+/// Returns the nanoseconds that this thread has run (Linux only), or `None` on other systems.
 fn processor_ns() -> Option<u64> {
     let stat = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     stat.split_whitespace().next()?.parse().ok()

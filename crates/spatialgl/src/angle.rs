@@ -1,16 +1,17 @@
-//! Sine and cosine of fractions of a turn, with the symmetries of the circle in every bit.
+//! Sine and cosine of fractions of a turn, with symmetries that hold in every bit.
 
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4};
 
-/// Sine and cosine of `numerator / denominator` of a turn.
+/// Returns sine and cosine of `numerator / denominator` of a turn.
 ///
-/// The angle is reduced to the first eighth with whole numbers, so that half a turn more gives the exact negative of both,
-/// a quarter exchanges them, and at 45 degrees they are equal.
+/// The angle is reduced to the first eighth of a turn with integers. Adding half a turn therefore gives the exact
+/// negative of both values, a quarter turn exchanges them, and at 45 degrees they are equal.
 ///
 /// # Panics
 /// If the denominator is zero.
 #[must_use]
 pub fn sin_cos_of_turn(numerator: i64, denominator: u32) -> (f64, f64) {
+    // Split the angle into an octant and a rest. Odd octants run backwards.
     let whole = i64::from(denominator);
     let eighths = 8 * numerator.rem_euclid(whole);
     let octant = eighths / whole;
@@ -30,7 +31,7 @@ pub fn sin_cos_of_turn(numerator: i64, denominator: u32) -> (f64, f64) {
     }
 }
 
-/// Sine and cosine of `part / whole` of 45 degrees.
+/// Returns sine and cosine of `part / whole` of 45 degrees.
 fn first_eighth(part: i64, whole: i64) -> (f64, f64) {
     if part == whole {
         return (FRAC_1_SQRT_2, FRAC_1_SQRT_2);

@@ -1,68 +1,70 @@
-//! Binning: which primitives can touch which groups of slices, found once a volume from the signs of a few planes.
+//! Binning: finds the groups of slices that a primitive can touch, once per volume, from the signs of a few planes.
 //!
-//! A vertex has a code, one bit a plane: on its positive side or not. The `and` of a primitive's codes are the planes on
-//! whose positive side it lies wholly, the complement of the `or` those on whose negative side. A region is the signs that
-//! its points have; a primitive cannot touch it if it lies wholly on the other side of one of its planes.
+//! The code of a vertex has one bit per plane, which is set on the positive side. The `and` of a primitive's codes
+//! gives the planes with the whole primitive on their positive side. The complement of the `or` gives the planes with
+//! the whole primitive on their negative side. A region is defined by the signs of its points. A primitive cannot touch
+//! a region if one plane separates them.
 
 use serde::{Deserialize, Serialize};
 
-/// A convex region between planes: the signs that its points have.
+/// A convex region bounded by planes, described by the signs of its points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BinRegion {
-    /// Bit i: its points lie on the positive side of plane i.
+    /// Signs of the region's points: bit i is set if they lie on the positive side of plane i.
     pub signs: u32,
-    /// Bit i: plane i bounds it.
+    /// Planes that bound the region: bit i stands for plane i.
     pub bounds: u32,
-    /// The group that it belongs to, as bit number of [`SliceView::bins`](crate::SliceView::bins).
+    /// Group of the region, as a bit number of [`SliceView::bins`](crate::SliceView::bins).
     pub group: u32,
 }
 
-/// The planes and regions by which a display has primitives sorted.
+/// The planes and regions by which a display sorts primitives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BinLayout {
-    /// Planes (a, b, c, d): positive where a x + b y + c z + d >= 0.
+    /// Planes (a, b, c, d), positive where a x + b y + c z + d >= 0.
     pub planes: Vec<[f64; 4]>,
-    /// The regions that they divide space into.
+    /// Regions into which the planes divide space.
     pub regions: Vec<BinRegion>,
-    /// How far outside its exact volume a slice shows anything, pixels.
+    /// Greatest distance outside its exact volume at which a slice still shows points, pixels.
     pub tolerance: f64,
 }
 
-/// Whether and by how many planes primitives are sorted.
+/// The planes that decide about the bins of a primitive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Binning {
-    /// Every slice draws everything.
+    /// No binning: every slice draws every primitive.
     Off,
-    /// Only the planes that bound a region decide: weaker, as in the first version of the paper.
+    /// Only the planes that bound a region decide, which is weaker: the first version of the paper.
     TwoPlanes,
     /// All planes of the layout decide for each region.
     #[default]
     AllPlanes,
 }
 
-/// How far from a plane a vertex counts for both its sides.
+/// The distance from a plane within which a vertex counts for both sides of the plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BinTolerance {
-    /// As far as the display's clip dilates its slices, so that nothing is lost.
+    /// The distance by which the display's clip dilates its slices, so that no fragment is lost.
     #[default]
     OfTheClip,
-    /// The paper's codes: zero is positive, and nothing lies on both sides. Loses fragments of dilated clips.
+    /// The paper's codes: zero is positive, and no vertex counts for both sides. These codes lose fragments of dilated
+    /// clips.
     Codes,
-    /// So many pixels, whatever the clip is.
+    /// A fixed distance in pixels, independent of the clip.
     Pixels(f64),
 }
 
 impl BinLayout {
-    /// One bin of everything.
+    /// Returns a layout with a single bin for everything.
     #[must_use]
     pub fn one() -> Self {
         Self { planes: Vec::new(), regions: vec![BinRegion { signs: 0, bounds: 0, group: 0 }], tolerance: 0.0 }
     }
 
-    /// Eight sectors of 45 degrees around y by the planes z, x, x - z and x + z (bits 0 to 3); opposite sectors are one
-    /// double wedge, and so one group.
+    /// Returns a layout of eight sectors of 45 degrees around y. The planes z, x, x - z and x + z are bits 0 to 3.
+    /// Opposite sectors form one double wedge and therefore one group.
     #[must_use]
     pub fn double_wedges(tolerance: f64) -> Self {
         let planes = vec![[0.0, 0.0, 1.0, 0.0], [1.0, 0.0, 0.0, 0.0], [1.0, 0.0, -1.0, 0.0], [1.0, 0.0, 1.0, 0.0]];
@@ -71,16 +73,16 @@ impl BinLayout {
         Self { planes, regions, tolerance }
     }
 
-    /// The paper's code of a point: bit i is set where plane i is not negative.
+    /// Returns the paper's code of a point: bit i is set if plane i is not negative.
     #[must_use]
     pub fn code(&self, point: [f64; 3]) -> u32 {
         let bits = self.planes.iter().enumerate().map(|(i, plane)| u32::from(distance(plane, point) >= 0.0) << i);
         bits.fold(0, |code, bit| code | bit)
     }
 
-    /// The groups, one bit each, that a primitive of these corners may touch.
+    /// Returns the groups, one bit each, that a primitive with these corners may touch.
     ///
-    /// `extra` pixels are added to the tolerance, for a primitive that is larger than its corners.
+    /// `extra` pixels are added to the tolerance for a primitive that is larger than its corners.
     #[must_use]
     pub fn groups(&self, corners: &[[f64; 3]], binning: Binning, tolerance: BinTolerance, extra: f64) -> u64 {
         let codes = Codes::of(self, corners, tolerance, extra);
@@ -92,7 +94,7 @@ impl BinLayout {
         touched.fold(0, |groups, region| groups | 1 << region.group)
     }
 
-    /// The regions, one bit each in their order, that a primitive of these corners may touch by all planes.
+    /// Returns the regions, one bit each in their order, that a primitive with these corners may touch by all planes.
     #[must_use]
     pub fn touched_regions(&self, corners: &[[f64; 3]], tolerance: BinTolerance) -> u64 {
         let codes = Codes::of(self, corners, tolerance, 0.0);
@@ -101,13 +103,14 @@ impl BinLayout {
     }
 }
 
-/// Signs of the sectors from +x to +z, bit 3 (x + z) first when written in binary.
+/// Signs of the sectors from +x to +z. The highest of the four binary digits is bit 3 (x + z).
 const SECTOR_SIGNS: [u32; 8] = [0b1111, 0b1011, 0b1001, 0b0001, 0b0000, 0b0100, 0b0110, 0b1110];
 
-/// The two planes that bound each sector.
+/// Planes that bound each sector, one bit for each of the two planes.
 const SECTOR_BOUNDS: [u32; 8] = [0b0101, 0b0110, 0b1010, 0b1001, 0b0101, 0b0110, 0b1010, 0b1001];
 
-/// Planes on whose positive side a primitive lies wholly, and those on whose positive side it lies in part.
+/// The combined codes of a primitive. `and` has the planes with the whole primitive on their positive side, `or` those
+/// with a part of it.
 struct Codes {
     and: u32,
     or: u32,
@@ -125,6 +128,7 @@ impl Codes {
                 least = least.min(d);
                 most = most.max(d);
             }
+            // The distances of the corners bound the distances of the whole primitive.
             let (and, or) = sides(least, most, norm(plane), tolerance, layout.tolerance, extra);
             codes.and |= u32::from(and) << i;
             codes.or |= u32::from(or) << i;
@@ -138,10 +142,10 @@ impl Codes {
     }
 }
 
-/// Whether all of a primitive, and whether any of it, lies on the positive side.
+/// Returns (true if all of a primitive lies on the positive side, true if any of it does).
 ///
-/// With a tolerance, only what is strictly beyond it is on one side: a triangle in a bin plane is drawn by the slices of
-/// both sides, since the half-open rule may give it to either.
+/// With a tolerance, a primitive is on one side only if it lies strictly beyond the tolerance. A triangle in a bin
+/// plane is therefore drawn by the slices on both sides, because the half-open rule may assign it to either.
 fn sides(least: f64, most: f64, norm: f64, tolerance: BinTolerance, clip: f64, extra: f64) -> (bool, bool) {
     let pixels = match tolerance {
         BinTolerance::Codes => return (least >= 0.0, most >= 0.0),

@@ -1,57 +1,59 @@
-//! The six ways in which a swept display clips to a slice, and what each needs of near plane, far plane and bins.
+//! The six methods of clipping to a slice on a swept display, with their near plane, far plane and bins.
 
 use crate::error::{SpatialError, require};
 use crate::slice_volume::{SliceVolume, TieRule, WedgePlanes, WedgeTest};
 use serde::{Deserialize, Serialize};
 
-/// How the scene is clipped to the volume of a slice that is swept around an axis.
+/// A method of clipping the scene to the volume of a slice that is swept around an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SliceClip {
-    /// Near and far plane of an orthographic projection alone: a prism as thick as the slice is at the rim.
+    /// Only the near and far planes of an orthographic projection: a prism with the slice's thickness at the rim.
     Prism,
-    /// Two user clip planes a pass, one pass for each lobe of the double wedge.
+    /// Two user clip planes per pass, with one pass for each lobe of the double wedge.
     UserPlanes,
     /// The product of two interpolated clip planes in the fragment program: the exact volume in one pass.
     ShaderPlanes,
-    /// Planes from q pixels at the axis to the rim's thickness there, one pass for each side.
+    /// Planes from a half thickness of q pixels at the axis to the exact thickness at the rim, with one pass for each
+    /// side.
     Tapered(
-        /// q, the half thickness at the axis in pixels.
+        /// Half thickness q at the axis, pixels.
         f64,
     ),
-    /// Both boundary planes moved outwards by q pixels.
+    /// Both boundary planes, moved outwards by q pixels.
     Parallel(
-        /// q in pixels.
+        /// Offset q of both planes, pixels.
         f64,
     ),
-    /// A bias of b added to the product of both planes.
+    /// The product of both boundary planes plus a bias b.
     Hyperbolic(
-        /// b in square pixels.
+        /// Bias b of the product, square pixels.
         f64,
     ),
 }
 
-/// Offset of the parallel and the tapered clip, pixels. Assumed, 0 to 2: half a pixel, so that no slab is thinner than one.
+/// Offset of the parallel and the tapered clip, pixels. Assumed, 0 to 2: with half a pixel, no slab is thinner than one
+/// pixel.
 pub const DEFAULT_OFFSET_PX: f64 = 0.5;
 
-/// Bias of the hyperbolic clip, square pixels. Assumed, 0 to 4: the square of the offset.
+/// Bias of the hyperbolic clip, square pixels. Assumed, 0 to 4: the square of [`DEFAULT_OFFSET_PX`].
 pub const DEFAULT_BIAS_PX2: f64 = 0.25;
 
-/// Half the wedge that a slice stands for: sine, cosine and tangent of d/2.
+/// Half the wedge of one slice: sine, cosine and tangent of d/2, where d is the angle between slices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfWedge {
-    /// S = sin(d/2), with d the angle between slices.
+    /// Sine of half the angle between slices, S = sin(d/2).
     pub sin: f64,
-    /// C = cos(d/2) of the same angle.
+    /// Cosine of half the angle between slices, C = cos(d/2).
     pub cos: f64,
-    /// T = tan(d/2) of the same angle.
+    /// Tangent of half the angle between slices, T = tan(d/2).
     pub tan: f64,
-    /// Half the width of the image, which is the radius of the display, pixels.
+    /// Radius of the display, which is half the width of the image, pixels.
     pub radius: f64,
 }
 
 impl HalfWedge {
-    /// That of so many slices a turn, around a display of this radius in pixels.
+    /// Returns the half wedge of a display with `slices` per turn and this radius in pixels.
     #[must_use]
     pub fn new(slices: u32, radius: f64) -> Self {
         let (sin, cos) = crate::angle::sin_cos_of_turn(1, 2 * slices);
@@ -60,7 +62,7 @@ impl HalfWedge {
 }
 
 impl SliceClip {
-    /// All six with the default offset and bias, in the order of the paper.
+    /// All six methods with the default offset and bias, in the order of the paper.
     pub const ALL: [Self; 6] = [
         Self::Prism,
         Self::UserPlanes,
@@ -70,7 +72,7 @@ impl SliceClip {
         Self::Hyperbolic(DEFAULT_BIAS_PX2),
     ];
 
-    /// What it is called in options, tables and files.
+    /// Returns the name of the method in options, tables and files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -83,7 +85,7 @@ impl SliceClip {
         }
     }
 
-    /// Distance of near and far plane from the slice, pixels (h_max of the specification).
+    /// Returns the distance of the near and far planes from the slice, pixels (h_max of the specification).
     #[must_use]
     pub fn reach(self, wedge: HalfWedge) -> f64 {
         let face = wedge.radius * wedge.sin;
@@ -94,7 +96,8 @@ impl SliceClip {
         }
     }
 
-    /// How far outside its exact wedge a point can be that a slice shows, pixels: what bins must allow for.
+    /// Returns the greatest distance from the exact wedge at which a slice still shows a point, pixels. Bins must allow
+    /// for this distance.
     #[must_use]
     pub fn tolerance(self, wedge: HalfWedge) -> f64 {
         match self {
@@ -105,7 +108,7 @@ impl SliceClip {
         }
     }
 
-    /// Half thickness of the slice at a distance u from the axis, pixels.
+    /// Returns the half thickness of the slice at a distance u from the axis, pixels.
     #[must_use]
     pub fn half_thickness(self, wedge: HalfWedge, u: f64) -> f64 {
         let exact = u.abs() * wedge.tan;
@@ -118,7 +121,7 @@ impl SliceClip {
         }
     }
 
-    /// The volume of a slice with these boundary planes.
+    /// Returns the volume of a slice with these boundary planes.
     #[must_use]
     pub fn volume(self, planes: WedgePlanes, ties: TieRule, wedge: HalfWedge) -> SliceVolume {
         match self {

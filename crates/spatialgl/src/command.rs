@@ -1,31 +1,32 @@
-//! What a context has recorded: vertices in the world, primitives of them, and how fragments combine. It knows no display.
+//! The recording of a context: vertices in world coordinates, their primitives, and the rule for combining fragments. A
+//! recording is independent of the display.
 
 use serde::{Deserialize, Serialize};
 
-/// What becomes of several fragments on one pixel.
+/// The rule for several fragments on one pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Combine {
-    /// The last one drawn stays, as in GL without a depth test.
+    /// The last fragment replaces earlier ones, as in GL without a depth test.
     #[default]
     Last,
-    /// The larger of each channel, whatever the order.
+    /// The maximum of each channel, in any order of drawing.
     Max,
-    /// The sum of each channel, at most 255, whatever the order.
+    /// The sum of each channel, limited to 255, in any order of drawing.
     Add,
 }
 
-/// What a primitive's vertices make.
+/// The kind of a primitive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Shape {
     Triangle,
-    /// Width in pixels of the image.
+    /// A line with its width in pixels of the image.
     Line(f64),
-    /// Size in pixels of the slice.
+    /// A point with its size in pixels of the slice.
     Point(f64),
 }
 
-/// One triangle, line or point of a recording; lines use two of the vertices, points one.
+/// A triangle, line or point of a recording. A line uses two of the vertices, a point one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Primitive {
     pub(crate) shape: Shape,
@@ -43,7 +44,7 @@ impl Primitive {
         &self.vertices[..count]
     }
 
-    /// How far it reaches beyond its vertices around the axis of a display, pixels.
+    /// Returns the distance by which the primitive extends beyond its vertices around the axis of a display, pixels.
     pub(crate) fn extra(&self) -> f64 {
         if let Shape::Point(size) = self.shape { size / 2.0 } else { 0.0 }
     }
@@ -51,7 +52,7 @@ impl Primitive {
 
 /// An immutable recording, replayed for every slice and every pass of every display.
 ///
-/// Vertices are in the world, lit, and were transformed once when they were recorded.
+/// Vertices are lit and in world coordinates. Each vertex was transformed once, during recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CommandBuffer {
     pub(crate) positions: Vec<[f64; 3]>,
@@ -60,41 +61,42 @@ pub struct CommandBuffer {
     pub(crate) background: [u8; 3],
 }
 
-/// A triangle as a renderer gets it.
+/// A triangle in the form that a renderer receives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CommandTriangle {
-    /// Its corners in the world, pixels.
+    /// Corners in world coordinates, pixels.
     pub corners: [[f64; 3]; 3],
-    /// Red, green and blue of each corner, lit, 0 to 255.
+    /// Lit red, green and blue of each corner, 0 to 255.
     pub colours: [[f64; 3]; 3],
 }
 
 impl CommandBuffer {
-    /// How many vertices were transformed and lit.
+    /// Returns the number of transformed and lit vertices.
     #[must_use]
     pub const fn vertices(&self) -> usize {
         self.positions.len()
     }
 
-    /// Triangles, lines and points.
+    /// Returns the number of triangles, lines and points.
     #[must_use]
     pub const fn primitives(&self) -> usize {
         self.primitives.len()
     }
 
-    /// Red, green and blue of what nothing is drawn on.
+    /// Returns red, green and blue of pixels on which nothing is drawn.
     #[must_use]
     pub const fn background(&self) -> [u8; 3] {
         self.background
     }
 
-    /// The corners of every triangle in the world, in the order of drawing.
+    /// Returns the world corners of every triangle, in the order of drawing.
     pub fn triangles(&self) -> impl Iterator<Item = [[f64; 3]; 3]> + '_ {
         let triangles = self.primitives.iter().filter(|primitive| primitive.shape == Shape::Triangle);
         triangles.map(|primitive| primitive.vertices.map(|i| self.positions[i as usize]))
     }
 
-    /// A triangle by its number among the primitives; `None` of a line, a point, and beyond the last one.
+    /// Returns the triangle with this index among the primitives. Returns `None` for a line, a point or an index beyond
+    /// the last primitive.
     #[must_use]
     pub fn triangle(&self, primitive: u32) -> Option<CommandTriangle> {
         let primitive = self.primitives.get(primitive as usize)?;
@@ -105,7 +107,7 @@ impl CommandBuffer {
         })
     }
 
-    /// The same primitives with another rule for several fragments on one pixel.
+    /// Returns the same primitives with another rule for several fragments on one pixel.
     #[must_use]
     pub fn combining(&self, combine: Combine) -> Self {
         let mut combining = self.clone();
@@ -113,7 +115,7 @@ impl CommandBuffer {
         combining
     }
 
-    /// The same primitives drawn in the opposite order.
+    /// Returns the same primitives in the opposite order of drawing.
     #[must_use]
     pub fn reversed(&self) -> Self {
         let mut reversed = self.clone();
@@ -121,7 +123,7 @@ impl CommandBuffer {
         reversed
     }
 
-    /// Where the vertices are, in the world.
+    /// Returns the positions of the vertices in world coordinates.
     #[must_use]
     pub fn positions(&self) -> &[[f64; 3]] {
         &self.positions

@@ -1,4 +1,4 @@
-//! The programmer's side: state as in GL, vertices, and drawing, all of it independent of any display.
+//! The programming interface: state as in GL, vertices, and drawing. The interface is independent of any display.
 
 use crate::command::{Combine, CommandBuffer, Primitive, Shape};
 use crate::error::{SpatialError, require};
@@ -6,37 +6,36 @@ use glam::{DMat4, DVec3};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// One vertex in the coordinates of its object.
+/// A vertex in the coordinates of its object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vertex {
-    /// Place; pixels where the model-view matrix is the identity.
+    /// Position, in pixels if the model-view matrix is the identity.
     pub position: DVec3,
-    /// Direction off the surface; only light asks for it, at any length.
+    /// Normal of the surface, of any length. Only lighting uses it.
     pub normal: DVec3,
-    /// Red, green and blue, 8 bits each.
     pub colour: [u8; 3],
 }
 
 impl Vertex {
-    /// A vertex without a normal.
+    /// Creates a vertex without a normal.
     #[must_use]
     pub const fn new(position: DVec3, colour: [u8; 3]) -> Self {
         Self { position, normal: DVec3::ZERO, colour }
     }
 }
 
-/// Checked vertices: every position and normal is finite.
+/// A buffer of checked vertices: every position and normal is finite.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct VertexBuffer {
     vertices: Vec<Vertex>,
 }
 
 impl VertexBuffer {
-    /// Takes vertices in and checks that all of them can be drawn.
+    /// Creates a buffer after checking its vertices.
     ///
     /// # Errors
     ///
-    /// [`SpatialError::NotFinite`] names the first one that has a coordinate without a value.
+    /// [`SpatialError::NotFinite`] names the first vertex with a coordinate that is infinite or NaN.
     pub fn new(vertices: Vec<Vertex>) -> Result<Self, SpatialError> {
         for (index, vertex) in vertices.iter().enumerate() {
             for (what, value) in [("position", vertex.position), ("normal", vertex.normal)] {
@@ -48,60 +47,59 @@ impl VertexBuffer {
         Ok(Self { vertices })
     }
 
-    /// How many there are.
     #[must_use]
     pub const fn len(&self) -> usize {
         self.vertices.len()
     }
 
-    /// Whether there is none.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.vertices.is_empty()
     }
 }
 
-/// How a run of vertices makes primitives.
+/// The rule by which a sequence of vertices forms primitives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Topology {
     /// Each vertex is a point.
     Points,
-    /// Each two vertices are a line.
+    /// Each pair of vertices is a line.
     Lines,
-    /// Each vertex but the first ends a line that begins at the one before.
+    /// Each vertex after the first ends a line that begins at the previous vertex.
     LineStrip,
-    /// Each three vertices are a triangle.
+    /// Each group of three vertices is a triangle.
     Triangles,
-    /// Each vertex from the third on makes a triangle with the two before it.
+    /// Each vertex from the third on forms a triangle with the two vertices before it.
     TriangleStrip,
-    /// Each vertex from the third on makes a triangle with the first and the one before it.
+    /// Each vertex from the third on forms a triangle with the first vertex and the previous one.
     TriangleFan,
 }
 
-/// One directional light that lights both sides of a surface alike, since a volume is seen from all sides.
+/// A directional light for both sides of a surface, because a volume is seen from all sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// Towards the light, in the world, of any length but zero.
+    /// Direction towards the light in world coordinates, of any length except zero.
     pub direction: DVec3,
-    /// Part of the colour that is seen without light.
+    /// Fraction of the colour that is visible without light.
     pub ambient: f64,
-    /// Part of the colour that is added where light falls square.
+    /// Fraction of the colour that perpendicular light adds.
     pub diffuse: f64,
 }
 
-/// State and recording. [`Context::present`] hands out what was recorded and begins anew; the state stays.
+/// The drawing state and the current recording. [`Context::present`] returns the recording and starts a new one. The
+/// state stays.
 #[derive(Clone, Debug)]
 pub struct Context {
-    /// From object to world coordinates; a uniform scale at most, where light is used.
+    /// Matrix from object to world coordinates. With a light, its scale must be uniform.
     pub model_view: DMat4,
-    /// Side of the square that a point is, pixels of the slice.
+    /// Side of the square that represents a point, pixels of the slice.
     pub point_size: f64,
     /// Width of lines, pixels of the image.
     pub line_width: f64,
-    /// The light; `None` shows colours as they are.
+    /// Light of the scene. `None` leaves colours unchanged.
     pub light: Option<Light>,
-    /// What becomes of several fragments on one pixel.
+    /// Rule for several fragments on one pixel.
     pub combine: Combine,
     recording: CommandBuffer,
 }
@@ -120,17 +118,17 @@ impl Default for Context {
 }
 
 impl Context {
-    /// Forgets what was drawn before and fills every slice with a colour.
+    /// Discards the recording and fills every slice with a colour.
     pub fn clear(&mut self, colour: [u8; 3]) {
         self.recording = CommandBuffer { background: colour, ..CommandBuffer::default() };
     }
 
-    /// Draws a run of vertices in their order. Vertices at the end that make no whole primitive are left out.
+    /// Draws a sequence of vertices. Vertices at the end that form no complete primitive are ignored.
     ///
     /// # Errors
     ///
-    /// [`SpatialError::Range`] if the range leaves the buffer; [`SpatialError::Setting`] if a point size or line width is
-    /// not above zero or the matrix is not finite.
+    /// [`SpatialError::Range`] if the range exceeds the buffer. [`SpatialError::Setting`] if a point size or line width
+    /// is not above zero, or if the matrix is not finite.
     pub fn draw(&mut self, buffer: &VertexBuffer, range: Range<usize>, topology: Topology) -> Result<(), SpatialError> {
         let vertices = buffer.len();
         let Some(run) = buffer.vertices.get(range.clone()) else {
@@ -142,11 +140,11 @@ impl Context {
         Ok(())
     }
 
-    /// Draws the vertices that a list of indices names, in its order.
+    /// Draws the vertices at these indices, in the order of the list.
     ///
     /// # Errors
     ///
-    /// [`SpatialError::Index`] names the first index beyond the buffer; otherwise as [`Self::draw`].
+    /// [`SpatialError::Index`] names the first index beyond the buffer. Other errors are those of [`Self::draw`].
     pub fn draw_indexed(
         &mut self,
         buffer: &VertexBuffer,
@@ -163,7 +161,7 @@ impl Context {
         Ok(())
     }
 
-    /// Ends the recording: what a display then draws.
+    /// Ends the recording and returns it.
     #[must_use]
     pub fn present(&mut self) -> CommandBuffer {
         std::mem::take(&mut self.recording)
@@ -198,6 +196,7 @@ impl Context {
     }
 
     fn assemble(&mut self, topology: Topology, count: usize, vertex: impl Fn(usize) -> u32) {
+        // Incomplete primitives at the end are left out.
         let last = |needed: usize| (count + 1).saturating_sub(needed);
         match topology {
             Topology::Points => (0..count).for_each(|i| self.push(Shape::Point(self.point_size), [vertex(i); 3])),

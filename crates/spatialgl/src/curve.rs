@@ -1,10 +1,10 @@
-//! Where a triangle crosses the plane of a slice.
+//! The intersection of a triangle with the plane of a slice.
 
-/// The two ends of a curve, and the weights of the triangle's corners at each.
+/// The two ends of an intersection, and the weights of the triangle's corners at each end.
 pub(crate) type PlaneCurve = ([[f64; 3]; 2], [[f64; 3]; 2]);
 
-/// The two ends of a triangle's intersection with the plane s = `s`, and the weights of its corners there; `None` if it
-/// does not cross the plane or lies in it.
+/// Returns the two ends of a triangle's intersection with the plane s = `s`, and the weights of the corners at each
+/// end. Returns `None` if the triangle does not cross the plane or lies in it.
 pub(crate) fn plane_curve(corners: [[f64; 3]; 3], s: f64) -> Option<PlaneCurve> {
     let side = corners.map(|corner| corner[2] - s);
     if side == [0.0; 3] {
@@ -13,6 +13,7 @@ pub(crate) fn plane_curve(corners: [[f64; 3]; 3], s: f64) -> Option<PlaneCurve> 
     let mut ends = [[0.0; 3]; 2];
     let mut weights = [[0.0; 3]; 2];
     let mut found = 0;
+    // Exactly two sides cross the plane. Find the crossing on each.
     for i in 0..3 {
         let j = (i + 1) % 3;
         let crosses = (side[i] < 0.0) != (side[j] < 0.0);

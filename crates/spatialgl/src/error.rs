@@ -1,50 +1,50 @@
-//! What can be wrong with what a user hands in.
+//! Errors in the settings and data of a user.
 
 use std::fmt::Display;
 use thiserror::Error;
 
-/// A setting, a vertex or an index that cannot be used: what, where, what was expected and what was found.
+/// An error for a setting, a vertex or an index. Each message names the item, the expected and the found value.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SpatialError {
-    /// A number that no display or volume can be made with.
+    /// A number is out of range for a display or a volume.
     #[error("{what}: expected {expected}, found {found}")]
     Setting {
         /// Path of the number, as in `--set`.
         what: &'static str,
-        /// The rule that it breaks.
+        /// Rule that the number breaks.
         expected: String,
         /// The number that was given.
         found: String,
     },
-    /// A coordinate, normal or size that is infinite or no number.
+    /// A position or normal of a vertex is infinite or NaN.
     #[error("vertex {index}: expected a finite {what}, found {found}")]
     NotFinite {
-        /// Number of the vertex in its buffer.
+        /// Index of the vertex in its buffer.
         index: usize,
-        /// Which of its properties: "position" or "normal".
+        /// Affected property: "position" or "normal".
         what: &'static str,
         /// The value that was given.
         found: String,
     },
-    /// An index beyond the vertices of its buffer.
+    /// An index exceeds the vertices of its buffer.
     #[error("index {at}: expected below {vertices}, found {found}")]
     Index {
-        /// Which index of the list, counted from 0.
+        /// Position of the index in the list, counted from 0.
         at: usize,
-        /// Vertices in the buffer.
+        /// Number of vertices in the buffer.
         vertices: usize,
         /// The index that was given.
         found: u32,
     },
-    /// A range of vertices beyond the end of its buffer, or with its end before its start.
+    /// A range of vertices exceeds its buffer, or its end comes before its start.
     #[error("vertices {start}..{end}: expected a range within 0..{vertices}")]
     Range {
-        /// First vertex of the range.
+        /// Index of the first vertex of the range.
         start: usize,
-        /// End of the range.
+        /// Index after the last vertex of the range.
         end: usize,
-        /// Vertices in the buffer.
+        /// Number of vertices in the buffer.
         vertices: usize,
     },
 }
@@ -55,7 +55,7 @@ impl SpatialError {
     }
 }
 
-/// `Ok` if the rule holds, otherwise the error.
+/// Returns an error unless `holds` is true.
 pub(crate) fn require(
     holds: bool,
     what: &'static str,

@@ -1,11 +1,11 @@
-//! A finished volume: the bits of all slices, and what was counted while they were drawn.
+//! A finished volume: the bits of all slices, and the counts of drawing them.
 
 use crate::pack::pixel_of_word;
 use crate::projection::Size;
 use crate::stats::VolumeStats;
 use pxpl5_sim::mix;
 
-/// One bit a colour for every pixel of every slice, eight pixels a word as the projector takes them.
+/// One bit per colour for every pixel of every slice, with eight pixels per word as in the projector's memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BitPlanes {
     size: Size,
@@ -14,25 +14,24 @@ pub struct BitPlanes {
 }
 
 impl BitPlanes {
-    /// Dark slices of this size.
+    /// Creates dark slices of this size.
     #[must_use]
     pub fn dark(size: Size, slices: u32) -> Self {
         Self { size, slices, words: vec![0; slices as usize * words_of_slice(size)] }
     }
 
-    /// Width and height of a slice in pixels.
+    /// Returns width and height of every slice in pixels.
     #[must_use]
     pub const fn size(&self) -> Size {
         self.size
     }
 
-    /// How many slices there are.
     #[must_use]
     pub const fn slices(&self) -> u32 {
         self.slices
     }
 
-    /// The words of a slice, row by row from the top, each of eight pixels of a row.
+    /// Returns the words of a slice, row by row from the top. Each word holds eight pixels of a row.
     ///
     /// # Panics
     /// If there is no such slice.
@@ -42,7 +41,7 @@ impl BitPlanes {
         &self.words[k as usize * words..][..words]
     }
 
-    /// The words of a slice, to write.
+    /// Returns the words of a slice for writing.
     ///
     /// # Panics
     /// If there is no such slice.
@@ -51,7 +50,7 @@ impl BitPlanes {
         &mut self.words[k as usize * words..][..words]
     }
 
-    /// The three bits of a pixel: bit 0 red, 1 green, 2 blue.
+    /// Returns the three bits of a pixel: bit 0 is red, bit 1 green and bit 2 blue.
     ///
     /// # Panics
     /// If there is no such slice or pixel.
@@ -60,13 +59,13 @@ impl BitPlanes {
         pixel_of_word(self.slice(k)[(y * (self.size[0] / 8) + x / 8) as usize], x % 8)
     }
 
-    /// Pixels that are lit in any colour, in all slices.
+    /// Returns the number of pixels in all slices that are lit in any colour.
     #[must_use]
     pub fn lit_voxels(&self) -> u64 {
         self.words.iter().map(|word| u64::from((word | word >> 8 | word >> 16).to_le_bytes()[0].count_ones())).sum()
     }
 
-    /// A number that any other bit would change; it does not depend on threads, tiles or the order of drawing.
+    /// Returns a hash of all bits, which does not depend on threads, tiles or the order of drawing.
     #[must_use]
     pub fn hash(&self) -> u64 {
         let lit = (0u64..).zip(&self.words).filter(|(_, word)| **word != 0);
@@ -76,27 +75,25 @@ impl BitPlanes {
     }
 }
 
-/// Words of one slice.
+/// Returns the number of words of one slice.
 pub(crate) const fn words_of_slice(size: Size) -> usize {
     (size[0] / 8) as usize * size[1] as usize
 }
 
-/// A pixel on which something was drawn, with its colour before halftoning.
+/// A drawn pixel with its colour before halftoning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ColourSample {
-    /// Its number in the slice, row by row from the top left.
+    /// Index of the pixel in its slice, row by row from the top left.
     pub pixel: u32,
-    /// Red, green and blue, 8 bits each.
     pub colour: [u8; 3],
 }
 
-/// A volume as a display gets it.
+/// A volume in the form that a display receives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VolumeFrame {
-    /// The bits of all slices.
     pub planes: BitPlanes,
-    /// Counts of the volume.
     pub stats: VolumeStats,
-    /// The drawn pixels of each slice before halftoning, where they were asked for.
+    /// Drawn pixels of each slice before halftoning, or `None` if
+    /// [`VolumeConfig::keeps_colours`](crate::VolumeConfig::keeps_colours) is false.
     pub colours: Option<Vec<Vec<ColourSample>>>,
 }

@@ -1,11 +1,13 @@
-//! From eight bits a channel to one: ordered dither by Bayer's matrix, eight pixels of a row at a time.
+//! Halftoning from eight bits to one bit per channel: ordered dither with Bayer's matrix, eight pixels of a row at a
+//! time.
 
 use crate::error::{SpatialError, require};
 
 /// Thresholds of an ordered dither, the same for all channels and slices.
 ///
-/// Assumed: the matrix of 8 x 8 (2, 4 and 16 are allowed), the threshold floor((2 M + 1) 255 / 2 n^2) of a matrix element
-/// M, and a bit where the channel is above it. So 0 gives no bits, 255 all, and c in between round(n^2 c / 255) of n^2.
+/// Assumed: the matrix is 8 x 8 (2, 4 and 16 are allowed), and the threshold of a matrix element M is floor((2 M + 1)
+/// 255 / 2 n^2). A bit is set if the channel exceeds the threshold. The value 0 lights no pixels, 255 lights all, and c
+/// lights round(n^2 c / 255) of n^2 pixels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Halftone {
     size: u32,
@@ -14,32 +16,34 @@ pub struct Halftone {
 }
 
 impl Halftone {
-    /// The thresholds of a matrix of this size.
+    /// Creates the thresholds of a matrix of this size.
     ///
     /// # Errors
     ///
     /// [`SpatialError::Setting`] unless the size is 2, 4, 8 or 16.
     pub fn bayer(size: u32) -> Result<Self, SpatialError> {
         require([2, 4, 8, 16].contains(&size), "halftone.matrix", "2, 4, 8 or 16", size)?;
+        // Repeat small matrices, so that eight thresholds can always be read at once.
         let period = size.max(8);
         let threshold = |i: u32, j: u32| ((2 * bayer(size, i % size, j % size) + 1) * 255 / (2 * size * size)) as u8;
         let rows = (0..size).map(|j| (0..period).map(|i| threshold(i, j)).collect()).collect();
         Ok(Self { size, rows })
     }
 
-    /// Rows and columns of the matrix.
+    /// Returns the number of rows, which is also the number of columns, of the matrix.
     #[must_use]
     pub const fn size(&self) -> u32 {
         self.size
     }
 
-    /// The value that a channel of pixel (x, y) must exceed to be lit.
+    /// Returns the value that a channel of pixel (x, y) must exceed to be lit.
     #[must_use]
     pub fn threshold(&self, x: u32, y: u32) -> u8 {
         self.rows[(y % self.size) as usize][(x % self.size) as usize]
     }
 
-    /// The eight thresholds of a row's pixels from x on, which is a multiple of 8; the leftmost in the lowest byte.
+    /// Returns the thresholds of eight pixels of a row from x on, with the leftmost in the lowest byte. x is a multiple
+    /// of 8.
     #[inline(always)]
     pub(crate) fn eight(&self, x: u32, y: u32) -> u64 {
         let row = &self.rows[(y % self.size) as usize];
@@ -50,22 +54,22 @@ impl Halftone {
     }
 }
 
-/// Element (column i, row j) of Bayer's matrix: the bits of i xor j and of j, taken in turn from the lowest.
+/// Returns element (column i, row j) of Bayer's matrix: the bits of i xor j and of j, interleaved from the lowest.
 fn bayer(size: u32, i: u32, j: u32) -> u32 {
     let levels = size.trailing_zeros();
     let digit = |bit: u32| ((i ^ j) >> bit & 1) << 1 | (j >> bit & 1);
     (0..levels).fold(0, |value, bit| value << 2 | digit(bit))
 }
 
-/// The bits of eight channel values against eight thresholds, the leftmost pixel (lowest byte) in bit 7.
+/// Compares eight channel values with eight thresholds. The result for the leftmost pixel (lowest byte) is in bit 7.
 #[inline(always)]
 pub(crate) fn bits_above(values: u64, thresholds: u64) -> u8 {
     const HIGH: u64 = 0x8080_8080_8080_8080;
-    // value > threshold is not (threshold >= value), byte by byte without borrows from one to the next.
+    // Compute threshold >= value byte by byte, without borrows between bytes, and negate the result.
     let low_bits = (thresholds | HIGH) - (values & !HIGH);
     let not_above = ((thresholds & !values) | (!(thresholds ^ values) & low_bits)) & HIGH;
     let above = (!not_above & HIGH) >> 7;
-    // Byte i of `above` (0 or 1) goes to bit 63 - i.
+    // Byte i of `above` (0 or 1) moves to bit 63 - i.
     (above.wrapping_mul(0x8040_2010_0804_0201) >> 56) as u8
 }
 

@@ -1,33 +1,32 @@
-//! The target of one slice: colours of eight bits, the stencil, and depth where a view hides surfaces.
+//! The target image of one slice: eight-bit colours, the stencil, and depth if the view hides surfaces.
 
 use crate::command::Combine;
 use crate::projection::Size;
 
-/// One slice before halftoning. Colours lie channel by channel; the stencil has a bit for each pixel, eight a byte.
+/// A slice before halftoning. Colours are stored channel by channel. The stencil has one bit per pixel, eight per byte.
 #[derive(Clone, Debug)]
 pub struct SliceImage {
     size: Size,
     pub(crate) channels: [Vec<u8>; 3],
-    /// Bit i of byte n is pixel 8 n + i.
+    /// Stencil bits: bit i of byte n is pixel 8 n + i.
     pub(crate) stencil: Vec<u8>,
     depth: Vec<f64>,
 }
 
 impl SliceImage {
-    /// A dark image; the width must be a multiple of 8, which displays see to.
+    /// Creates a dark image. The width must be a multiple of 8, which displays guarantee.
     #[must_use]
     pub fn new(size: Size) -> Self {
         let pixels = size[0] as usize * size[1] as usize;
         Self { size, channels: [0, 1, 2].map(|_| vec![0; pixels]), stencil: vec![0; pixels / 8], depth: Vec::new() }
     }
 
-    /// Width and height in pixels.
     #[must_use]
     pub const fn size(&self) -> Size {
         self.size
     }
 
-    /// Fills all pixels with a colour and clears the stencil and the depth.
+    /// Fills all pixels with a colour, and clears the stencil and the depth.
     pub fn clear(&mut self, colour: [u8; 3]) {
         for (channel, value) in self.channels.iter_mut().zip(colour) {
             channel.fill(value);
@@ -36,7 +35,7 @@ impl SliceImage {
         self.depth.clear();
     }
 
-    /// Fills a rectangle (left, top, right, bottom) with a colour and clears its stencil and depth.
+    /// Fills a rectangle (left, top, right, bottom) with a colour, and clears its stencil and depth.
     pub(crate) fn clear_rectangle(&mut self, [left, top, right, bottom]: [u32; 4], colour: [u8; 3]) {
         for y in top..bottom {
             let from = self.at(left, y);
@@ -51,19 +50,19 @@ impl SliceImage {
         }
     }
 
-    /// Whether anything was drawn on the eight pixels from one on, the number of which is a multiple of 8.
+    /// Returns true if anything was drawn on the eight pixels from index `at` on. `at` is a multiple of 8.
     #[inline(always)]
     pub(crate) fn is_marked_at(&self, at: usize) -> bool {
         self.stencil[at / 8] != 0
     }
 
-    /// The same of the pixels from one to before another, the numbers of which are multiples of 8.
+    /// Returns true if anything was drawn on the pixels `from..to`. Both indices are multiples of 8.
     #[inline(always)]
     pub(crate) fn is_marked_between(&self, from: usize, to: usize) -> bool {
         self.stencil[from / 8..to / 8].iter().fold(0, |any, byte| any | byte) != 0
     }
 
-    /// Makes the eight pixels from one on dark and clears their stencil and depth.
+    /// Makes the eight pixels from index `at` on dark, and clears their stencil and depth.
     #[inline(always)]
     pub(crate) fn darken_eight(&mut self, at: usize) {
         for channel in &mut self.channels {
@@ -75,8 +74,8 @@ impl SliceImage {
         }
     }
 
-    /// Eight values of each channel from a pixel on, the number of which is a multiple of 8; the leftmost in the lowest
-    /// byte.
+    /// Returns eight values of each channel from index `at` on, with the leftmost in the lowest byte. `at` is a
+    /// multiple of 8.
     #[inline(always)]
     pub(crate) fn eight(&self, at: usize) -> [u64; 3] {
         [0, 1, 2].map(|c| {
@@ -86,7 +85,7 @@ impl SliceImage {
         })
     }
 
-    /// Red, green and blue of a pixel of the image.
+    /// Returns red, green and blue of a pixel.
     ///
     /// # Panics
     /// If the pixel lies outside the image.
@@ -96,7 +95,7 @@ impl SliceImage {
         [0, 1, 2].map(|c| self.channels[c][at])
     }
 
-    /// Whether a fragment has been drawn on a pixel; nothing is outside the image.
+    /// Returns true if a fragment has been drawn on a pixel, and false for pixels outside the image.
     #[must_use]
     pub fn is_marked(&self, x: u32, y: u32) -> bool {
         let inside = x < self.size[0] && y < self.size[1];
@@ -107,7 +106,8 @@ impl SliceImage {
         y as usize * self.size[0] as usize + x as usize
     }
 
-    /// Whether nothing nearer to the near plane was drawn on a pixel, given the fragment's distance from the plane.
+    /// Returns true if the fragment is nearer to the near plane than earlier fragments of its pixel, and stores its
+    /// distance.
     #[inline]
     pub(crate) fn is_nearest(&mut self, x: u32, y: u32, distance: f64) -> bool {
         if self.depth.is_empty() {
@@ -135,7 +135,7 @@ impl SliceImage {
         }
     }
 
-    /// Draws one fragment: marks its pixel and gives it a colour.
+    /// Draws a fragment: marks its pixel and combines its colour.
     ///
     /// # Panics
     /// If the pixel lies outside the image.
@@ -143,13 +143,13 @@ impl SliceImage {
         self.put(x, y, colour, combine);
     }
 
-    /// Pixels on which a fragment has been drawn.
+    /// Returns the number of pixels on which a fragment has been drawn.
     #[must_use]
     pub fn marked(&self) -> u64 {
         self.stencil.iter().map(|byte| u64::from(byte.count_ones())).sum()
     }
 
-    /// Lights a pixel on which nothing has been drawn; whether it did.
+    /// Lights a pixel if nothing has been drawn on it. Returns true if it did.
     pub(crate) fn fill_gap(&mut self, x: f64, y: f64, colour: [u8; 3]) -> bool {
         let inside = x >= 0.0 && y >= 0.0 && x < f64::from(self.size[0]) && y < f64::from(self.size[1]);
         let is_gap = inside && !self.is_marked(x as u32, y as u32);

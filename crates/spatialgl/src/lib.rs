@@ -1,4 +1,4 @@
-//! SpatialGL: the triangle pipeline of 2-D graphics, run once for every slice of a volumetric display.
+//! SpatialGL: a triangle pipeline as for 2-D graphics, executed once for every slice of a volumetric display.
 //!
 //! ```text
 //!  Context --present()--> CommandBuffer            (vertices transformed and lit once)
@@ -15,29 +15,32 @@
 //!
 //! # Behaviour
 //!
-//! - A display is views and slice volumes ([`SpatialDisplay`]); the pipeline knows no more of it, and a recording nothing.
-//!   [`SweptDisplay`] is the screen of the paper that spins, [`PlaneStack`] and [`FlatDisplay`] show the same recordings.
-//! - The boundary planes of a swept slice come from one table, opposite ones exact negatives, so that neighbouring slices
-//!   compute the same number for a point between them; [`TieRule`] says which of them has it.
-//! - Samples are at pixel centres, with the top-left rule on edges; there is no depth test (but on the flat screen) and no
-//!   culling. Edges, near and far plane and the slice's volume are linear or quadratic in homogeneous window coordinates,
-//!   so nothing is clipped geometrically and nothing divided before a fragment has been accepted.
-//! - [`OracleRenderer`] is the definition; [`HostRenderer`] draws the same voxels and counts the same with eight pixels at a
-//!   time, [`Workers`] run batches on several threads. A volume's hash depends on none of this.
-//! - Lines have round ends that overlap them: under [`Combine::Add`] those pixels get the colour twice.
+//! - A display consists of views and slice volumes ([`SpatialDisplay`]). The pipeline knows nothing else about a
+//!   display, and a recording does not depend on the display. [`SweptDisplay`] is the spinning screen of the paper.
+//!   [`PlaneStack`] and [`FlatDisplay`] show the same recordings.
+//! - The boundary planes of swept slices come from one table in which opposite planes are exact negatives. Neighbouring
+//!   slices therefore compute the same number for a point between them. [`TieRule`] assigns the point to one of them.
+//! - Samples are at pixel centres, with the top-left rule on edges. There is no culling, and only the flat screen has a
+//!   depth test. Edges, near and far plane and slice volume are linear or quadratic in homogeneous window coordinates.
+//!   The pipeline therefore needs neither geometric clipping nor a division before a fragment is accepted.
+//! - [`OracleRenderer`] is the reference model. [`HostRenderer`] draws the same voxels with the same counts, eight
+//!   pixels at a time. [`Workers`] execute batches on several threads. The hash of a volume depends neither on the
+//!   renderer nor on the threads.
+//! - A line has round ends that overlap the line. Under [`Combine::Add`] the overlapping pixels get the colour twice.
 //!
 //! # Numbers
 //!
-//! Counts are exact; times are a stated model ([`TimeModel`]) with [`GpuTiming`] as its table.
+//! Counts are exact. Times come from a model ([`TimeModel`]) with [`GpuTiming`] as its table.
 //!
 //! # Units
 //!
-//! Pixels of the slice image; right-handed, y up, the axis of rotation is y. Depth runs from 0 (near, +s) to 1 (far).
+//! Lengths are pixels of the slice image. Axes are right-handed with y up, and y is the axis of rotation. Depth runs
+//! from 0 (near, +s) to 1 (far).
 //!
 //! # Not modelled
 //!
-//! Textures, programmable shaders, the numerical formats of a GPU except the fraction bits of evaluated boundary planes,
-//! snapping of vertices to a sub-pixel grid.
+//! Textures, programmable shaders, and the snapping of vertices to a sub-pixel grid. Of the numerical formats of a GPU,
+//! only the fraction bits of evaluated boundary planes are modelled.
 //!
 //! # Source
 //!

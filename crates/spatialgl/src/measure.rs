@@ -1,4 +1,4 @@
-//! What a volume shows of a scene: how connected surfaces are, how bright at which radius, and what is dark at the axis.
+//! Measurements of a volume: connectedness of surfaces, brightness by radius, and the dark zone at the axis.
 
 use crate::command::CommandBuffer;
 use crate::curve::plane_curve;
@@ -8,25 +8,25 @@ use crate::view::{SliceView, SpatialDisplay};
 use glam::DVec3;
 use serde::Serialize;
 
-/// Samples of the curves in which a mesh crosses the slices, and how many of them are shown.
+/// Counts of samples along the curves in which a mesh crosses the slices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Connected {
-    /// Samples inside the image, at most a pixel apart.
+    /// Number of samples inside the image. Neighbouring samples are at most a pixel apart.
     pub samples: u64,
-    /// Those with a drawn pixel among the nine around them.
+    /// Number of samples with a drawn pixel among the nine pixels around them.
     pub shown: u64,
 }
 
 impl Connected {
-    /// Part of the samples that is shown, percent; 100 of none.
+    /// Returns the percentage of samples that are shown. Without samples the result is 100.
     #[must_use]
     pub fn percent(&self) -> f64 {
         if self.samples == 0 { 100.0 } else { 100.0 * self.shown as f64 / self.samples as f64 }
     }
 }
 
-/// How connected a swept volume shows a mesh. `None` if the frame was made without its colours
-/// ([`VolumeConfig::keeps_colours`](crate::VolumeConfig::keeps_colours)): dither would count as gaps.
+/// Measures how connected a swept volume shows a mesh. Returns `None` if the frame was made without its colours
+/// ([`VolumeConfig::keeps_colours`](crate::VolumeConfig::keeps_colours)), because the gaps of the dither would count.
 #[must_use]
 pub fn connected(display: &dyn SpatialDisplay, commands: &CommandBuffer, frame: &VolumeFrame) -> Option<Connected> {
     let colours = frame.colours.as_ref()?;
@@ -45,8 +45,9 @@ pub fn connected(display: &dyn SpatialDisplay, commands: &CommandBuffer, frame: 
     Some(found)
 }
 
-/// Calls for both ends of every triangle's intersection with the plane of a slice.
+/// Calls `each` with both ends of every triangle's intersection with the plane of a slice.
 fn each_curve(view: &SliceView, commands: &CommandBuffer, all: &Bin, mut each: impl FnMut([[f64; 3]; 2])) {
+    // Clusters away from the slice are skipped.
     let middle = view.volume.middle();
     let row = view.view.transpose().z_axis.to_array();
     for primitive in all.clusters().flat_map(|cluster| cluster.reaching(&row, [middle, middle])) {
@@ -58,10 +59,11 @@ fn each_curve(view: &SliceView, commands: &CommandBuffer, all: &Bin, mut each: i
     }
 }
 
-/// How alike the gaps of neighbouring slices are: the correlation, over the rows of the image, of the shares of a row's
-/// samples that are shown, on the mean over all neighbours; 1 for a pattern that all slices share, near 0 for noise.
+/// Measures how similar the gaps of neighbouring slices are. For each pair of neighbours, the percentages of shown
+/// samples in each row are correlated over the rows of the image. The result is the mean over all pairs: 1 for a
+/// pattern that all slices share, near 0 for noise.
 ///
-/// `None` without colours, as [`connected`], and of volumes without gaps.
+/// Returns `None` without colours, as [`connected`] does, and for volumes without gaps.
 #[must_use]
 pub fn gap_correlation(display: &dyn SpatialDisplay, commands: &CommandBuffer, frame: &VolumeFrame) -> Option<f64> {
     let colours = frame.colours.as_ref()?;
@@ -78,7 +80,7 @@ pub fn gap_correlation(display: &dyn SpatialDisplay, commands: &CommandBuffer, f
     (count > 0).then(|| sum / f64::from(count))
 }
 
-/// Samples of each row of a slice's image.
+/// Counts the samples of each row of a slice's image.
 fn rows_of_slice(
     view: &SliceView,
     commands: &CommandBuffer,
@@ -96,7 +98,8 @@ fn rows_of_slice(
     rows
 }
 
-/// Pearson's correlation of the shown shares of the rows that both have samples in; `None` if either is the same in all.
+/// Returns Pearson's correlation of the percentages in the rows with samples in both slices. Returns `None` if the
+/// percentage is constant in either slice.
 fn correlation(one: &[Connected], other: &[Connected]) -> Option<f64> {
     let both: Vec<[f64; 2]> = one
         .iter()
@@ -111,7 +114,7 @@ fn correlation(one: &[Connected], other: &[Connected]) -> Option<f64> {
     (spread > 0.0).then(|| product(0, 1) / spread)
 }
 
-/// The drawn pixels of a slice, each with its eight neighbours.
+/// The drawn pixels of a slice, each dilated to its eight neighbours.
 struct Around {
     size: [u32; 2],
     near: Vec<bool>,
@@ -124,6 +127,7 @@ impl Around {
         for sample in drawn {
             let x = sample.pixel % width;
             let y = sample.pixel / width;
+            // Mark the pixel and its eight neighbours inside the image.
             for row in y.saturating_sub(1)..(y + 2).min(height) {
                 for column in x.saturating_sub(1)..(x + 2).min(width) {
                     near[(row * width + column) as usize] = true;
@@ -133,13 +137,13 @@ impl Around {
         Self { size, near }
     }
 
-    /// Calls for each sample of a curve inside the image, with its row and whether it is shown.
+    /// Calls `each` for every sample of a curve inside the image, with its row and true if it is shown.
     fn samples(&self, view: &SliceView, ends: [[f64; 3]; 2], mut each: impl FnMut(u32, bool)) {
         let [from, to] = ends.map(|end| pixel_of(view, end, self.size));
         let length = libm::hypot(to[0] - from[0], to[1] - from[1]);
         let steps = length.ceil().max(1.0);
         for i in 0..steps as u32 {
-            // In the middle of each step, so that no point is counted for two triangles.
+            // Samples are in the middle of each step, so no point is counted for two triangles.
             let t = (f64::from(i) + 0.5) / steps;
             let [x, y] = [0, 1].map(|axis| from[axis] * (1.0 - t) + to[axis] * t);
             if x >= 0.0 && y >= 0.0 && x < f64::from(self.size[0]) && y < f64::from(self.size[1]) {
@@ -149,14 +153,14 @@ impl Around {
     }
 }
 
-/// Where a point of the slice lies in its image, pixels from the top left.
+/// Returns the position of a point of the slice in its image, pixels from the top left.
 fn pixel_of(view: &SliceView, local: [f64; 3], size: [u32; 2]) -> [f64; 2] {
     let clip = view.projection * DVec3::from_array(local).extend(1.0);
     let [width, height] = size.map(f64::from);
     [(clip.x / clip.w + 1.0) * width / 2.0, (1.0 - clip.y / clip.w) * height / 2.0]
 }
 
-/// Lit pixels of all slices by their distance from the middle column, in rings of so many pixels.
+/// Returns the lit pixels of all slices by their distance from the middle column, in rings `ring` pixels wide.
 #[must_use]
 pub fn brightness_by_radius(planes: &BitPlanes, ring: u32) -> Vec<u64> {
     let [width, _] = planes.size();
@@ -169,7 +173,7 @@ pub fn brightness_by_radius(planes: &BitPlanes, ring: u32) -> Vec<u64> {
     rings
 }
 
-/// Returns the distance of the lit pixel that is nearest to the axis, in pixels; `None` for a dark volume.
+/// Returns the radius in pixels within which no slice shows anything, or `None` for a dark volume.
 #[must_use]
 pub fn innermost_lit_radius(planes: &BitPlanes) -> Option<u32> {
     brightness_by_radius(planes, 1).iter().position(|lit| *lit > 0).map(|radius| radius as u32)

@@ -1,14 +1,14 @@
-//! Projector pixels of three bits in words of 32: eight a word as the paper packs them, or ten for comparison.
+//! Packing of three-bit projector pixels in 32-bit words: eight per word as in the paper, or ten for comparison.
 
 use serde::{Deserialize, Serialize};
 
-/// Pixels of three bits in one word of [`pack_dense`] (P10: 32 / 3).
+/// Number of three-bit pixels in one word of [`pack_dense`] (P10: 32 / 3).
 pub const DENSE_PIXELS: usize = 10;
 
-/// Pixels in one word as published (P9).
+/// Number of pixels in one word as published (P9).
 pub const PIXELS_PER_WORD: u32 = 8;
 
-/// Which bit of a byte is the leftmost of its eight pixels.
+/// The bit of a byte that is the leftmost of its eight pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BitOrder {
@@ -19,14 +19,15 @@ pub enum BitOrder {
     LeftIsLow,
 }
 
-/// A word of eight pixels: byte 0 red, byte 1 green, byte 2 blue, byte 3 zero; bit 7 of each is the leftmost pixel.
+/// Packs eight pixels into a word: byte 0 is red, byte 1 green, byte 2 blue, byte 3 zero. Bit 7 of each byte is the
+/// leftmost pixel.
 #[inline(always)]
 #[must_use]
 pub const fn packed_word(red: u8, green: u8, blue: u8) -> u32 {
     u32::from_le_bytes([red, green, blue, 0])
 }
 
-/// The three bits (bit 0 red, 1 green, 2 blue) of pixel 0 (the leftmost) to 7 of a word.
+/// Returns the three bits (bit 0 red, 1 green, 2 blue) of pixel 0 (the leftmost) to 7 of a word.
 #[inline(always)]
 #[must_use]
 pub const fn pixel_of_word(word: u32, pixel: u32) -> u8 {
@@ -34,7 +35,7 @@ pub const fn pixel_of_word(word: u32, pixel: u32) -> u8 {
     (column & 1 | column >> 7 & 2 | column >> 14 & 4) as u8
 }
 
-/// A word with its bytes in an order of bits.
+/// Returns a word with the bits of each byte in this order.
 #[must_use]
 pub const fn in_bit_order(word: u32, order: BitOrder) -> u32 {
     match order {
@@ -43,14 +44,14 @@ pub const fn in_bit_order(word: u32, order: BitOrder) -> u32 {
     }
 }
 
-/// Ten pixels of three bits a word, the first in bits 0 to 2; the last word may hold fewer. For comparison only.
+/// Packs ten three-bit pixels per word, the first in bits 0 to 2. The last word may hold fewer. For comparison only.
 #[must_use]
 pub fn pack_dense(pixels: &[u8]) -> Vec<u32> {
     let word = |pixels: &[u8]| pixels.iter().rev().fold(0, |word, pixel| word << 3 | u32::from(pixel & 7));
     pixels.chunks(DENSE_PIXELS).map(word).collect()
 }
 
-/// The first `count` pixels of densely packed words.
+/// Returns the first `count` pixels of densely packed words.
 #[must_use]
 pub fn unpack_dense(words: &[u32], count: usize) -> Vec<u8> {
     let pixels = words.iter().flat_map(|word| (0..DENSE_PIXELS).map(move |i| (word >> (3 * i) & 7) as u8));

@@ -1,65 +1,68 @@
-//! From the coordinates of a slice to its image: three projections, all of which leave the plane s = 0 where it is.
+//! Projections from the coordinates of a slice to its image. All of them leave points in the plane s = 0 in place.
 
 use crate::error::{SpatialError, require};
 use glam::{DMat4, DVec4};
 use pxpl5_sim::mix;
 use serde::{Deserialize, Serialize};
 
-/// Size of an image: width, then height, in pixels.
+/// The size of an image: width, then height, in pixels.
 pub type Size = [u32; 2];
 
-/// How what lies off a slice reaches its image.
+/// The projection of points off a slice onto its image.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Projection {
-    /// Along s. Loses every plane perpendicular to the screen.
+    /// Projection along s. Planes perpendicular to the screen are lost.
     Orthographic,
-    /// From an eye at (u, v, distance), pixels, in the coordinates of every slice, with a shear in pixels a pixel of s.
+    /// Projection from an eye at (u, v, distance), in pixels of the slice's coordinates, with a shear. All slices have
+    /// the same eye.
     Perspective {
-        /// Place of the eye beside the axis of the image, pixels.
+        /// Position of the eye relative to the axis of the image, pixels.
         eye: [f64; 2],
         /// Distance of the eye along +s, pixels.
         distance: f64,
-        /// Shear across and up, pixels a pixel of s.
+        /// Horizontal and vertical shear, in pixels per pixel of s.
         shear: [f64; 2],
     },
-    /// An eye and a shear drawn for each slice.
+    /// Projection with a random eye and a random shear for each slice.
     Jittered(Jitter),
 }
 
-/// The law by which an eye and a shear are drawn for each slice: a pure function of the seed and the slice.
+/// The random eye and shear of each slice, as a pure function of the seed and the slice.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Jitter {
-    /// Names the sequence; the same in all passes and volumes.
+    /// Seed of the random sequence, which is the same in all passes and volumes.
     pub seed: u64,
     /// Distance of the eye in radii of the display. Assumed 4, 2 to 16.
     pub eye_distance: f64,
     /// Radius of the disc in which the eye lies, in radii of the display. Assumed 0.5, 0 to 1.
     pub eye_radius: f64,
-    /// Largest shift by the shear at the face of the slab, pixels. Assumed 0.5, 0 to 1.
+    /// Greatest shift by the shear at the face of the slab, pixels. Assumed 0.5, 0 to 1.
     pub shear_px: f64,
 }
 
 impl Jitter {
-    /// The assumed law with a seed: 4 R away, within R/2, half a pixel of shear at the face.
+    /// Returns the assumed jitter with a seed. The eye is 4 R away within a radius of R/2, and the shear is half a
+    /// pixel at the face.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self { seed, eye_distance: 4.0, eye_radius: 0.5, shear_px: 0.5 }
     }
 }
 
-/// The eye of one slice; none for a projection along s.
+/// The eye and the shear of one slice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SliceEye {
-    /// Eye across, up and off the slice, pixels; `None` at infinity.
+    /// Eye in coordinates u, v and s, pixels, or `None` for an eye at infinity (a projection along s).
     pub eye: Option<[f64; 3]>,
-    /// Shear across and up, pixels a pixel of s.
+    /// Horizontal and vertical shear, in pixels per pixel of s.
     pub shear: [f64; 2],
 }
 
 impl Projection {
-    /// The eye and shear of a slice, for a display of this radius whose slices reach so far to near and far plane.
+    /// Returns the eye and shear of a slice. `radius` is the display's radius, and `reach` the distance from the slice
+    /// to the near and far planes.
     #[must_use]
     pub fn eye(&self, slice: u32, radius: f64, reach: f64) -> SliceEye {
         match *self {
@@ -69,7 +72,7 @@ impl Projection {
         }
     }
 
-    /// What it is called in options, tables and files.
+    /// Returns the name of the projection in options, tables and files.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -99,14 +102,14 @@ impl Jitter {
     }
 }
 
-/// A point uniform in a disc around (0, 0).
+/// Returns a point uniform in a disc around (0, 0).
 fn in_disc(seed: u64, slice: u32, draw: u64, radius: f64) -> [f64; 2] {
     let r = radius * libm::sqrt(unit(seed, slice, draw));
     let (sin, cos) = libm::sincos(std::f64::consts::TAU * unit(seed, slice, draw + 1));
     [r * cos, r * sin]
 }
 
-/// A number of [0, 1) with 53 bits, by the mixing function of splitmix64.
+/// Returns a number in [0, 1) with 53 random bits from the mixing function of splitmix64.
 fn unit(seed: u64, slice: u32, draw: u64) -> f64 {
     let counter = (u64::from(slice) << 2) | draw;
     let hash = mix(mix(seed).wrapping_add(counter));
@@ -114,7 +117,7 @@ fn unit(seed: u64, slice: u32, draw: u64) -> f64 {
 }
 
 impl SliceEye {
-    /// The matrix from (u, v, s, 1) to clip coordinates, depth 0 at the near plane to 1 at the far plane.
+    /// Returns the matrix from (u, v, s, 1) to clip coordinates, with depth 0 at the near plane and 1 at the far plane.
     #[must_use]
     pub fn clip_matrix(&self, size: Size, reach: f64) -> DMat4 {
         let half = [f64::from(size[0]) / 2.0, f64::from(size[1]) / 2.0];
@@ -136,9 +139,11 @@ impl SliceEye {
         matrix_of_rows(rows)
     }
 
-    /// The rows from (u, v, s, 1) to homogeneous window coordinates: x to the right and y down in pixels, depth, w.
+    /// Returns the rows from (u, v, s, 1) to homogeneous window coordinates: x to the right and y down in pixels,
+    /// depth, w.
     ///
-    /// The same map as [`Self::clip_matrix`] and the viewport, without the rounding of a division and a product by R.
+    /// The map equals [`Self::clip_matrix`] followed by the viewport, but without the rounding of a division and a
+    /// multiplication by R.
     #[must_use]
     pub fn window_rows(&self, size: Size, reach: f64) -> [[f64; 4]; 4] {
         let middle = [f64::from(size[0]) / 2.0, f64::from(size[1]) / 2.0];
@@ -164,13 +169,12 @@ fn depth_row(distance: Option<f64>, reach: f64) -> [f64; 4] {
     }
 }
 
-/// A matrix from its rows.
 pub(crate) fn matrix_of_rows(rows: [[f64; 4]; 4]) -> DMat4 {
     let [x, y, z, w] = rows.map(DVec4::from_array);
     DMat4::from_cols(x, y, z, w).transpose()
 }
 
-/// The rows to homogeneous window coordinates of any projection to clip coordinates.
+/// Returns the rows to homogeneous window coordinates for any projection to clip coordinates.
 pub(crate) fn window_of(projection: &DMat4, size: Size) -> [[f64; 4]; 4] {
     let rows = projection.transpose();
     let w = rows.w_axis;

@@ -1,30 +1,32 @@
-//! The hyperbolic clip on the plane of a triangle as a quadratic in screen coordinates: the form that a machine evaluates
-//! which has a tree for quadratics, such as the renderers of Pixel-Planes 5. **Beyond the paper.**
+//! The hyperbolic clip on the plane of a triangle, as a quadratic in screen coordinates. Hardware with a tree for
+//! quadratics can evaluate this form, for example the renderers of Pixel-Planes 5. **Beyond the paper.**
 
 use crate::clip::HalfWedge;
 
-/// Q(u, v) = uu u^2 + uv u v + vv v^2 + u u + v v + one; the slice has the samples where it is not negative.
+/// The quadratic Q(u, v) = uu u^2 + uv u v + vv v^2 + u u + v v + one. The slice contains the samples at which Q is not
+/// negative.
 ///
-/// With A B = u^2 S^2 - s^2 C^2 and the triangle's plane s = a u + c v + d, Q is A B + b. Pixels of the slice, and square
-/// pixels for the value; orthographic. A shear changes (u, v) affinely and an eye divides by w^2: both stay quadratics.
+/// With A B = u^2 S^2 - s^2 C^2 and the triangle's plane s = a u + c v + d, Q is A B + b. Coordinates are pixels of the
+/// slice, and values are square pixels. The projection is orthographic. A shear changes (u, v) affinely, and an eye
+/// divides by w^2. Both give quadratics again.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClipQuadratic {
-    /// Coefficient of u^2, a pure number.
+    /// Coefficient of u^2, dimensionless.
     pub uu: f64,
-    /// Coefficient of u v, a pure number.
+    /// Coefficient of u v, dimensionless.
     pub uv: f64,
-    /// Coefficient of v^2, a pure number.
+    /// Coefficient of v^2, dimensionless.
     pub vv: f64,
-    /// Coefficient of u, in pixels.
+    /// Coefficient of u, pixels.
     pub u: f64,
-    /// Coefficient of v, in pixels.
+    /// Coefficient of v, pixels.
     pub v: f64,
-    /// The constant, square pixels.
+    /// Constant coefficient, square pixels.
     pub one: f64,
 }
 
 impl ClipQuadratic {
-    /// That of the plane s = a u + c v + offset with the slope (a, c), and a bias of b square pixels.
+    /// Returns the quadratic of the plane s = a u + c v + offset with `slope` = (a, c), for a bias of b square pixels.
     #[must_use]
     pub fn of_plane(slope: [f64; 2], offset: f64, wedge: HalfWedge, bias: f64) -> Self {
         let [a, c] = slope;
@@ -40,7 +42,8 @@ impl ClipQuadratic {
         }
     }
 
-    /// That of the plane through three corners (u, v, s); `None` if it is perpendicular to the slice.
+    /// Returns the quadratic of the plane through three corners (u, v, s), or `None` if the plane is perpendicular to
+    /// the slice.
     #[must_use]
     pub fn of_corners(corners: [[f64; 3]; 3], wedge: HalfWedge, bias: f64) -> Option<Self> {
         let [first, second, third] = corners;
@@ -57,7 +60,7 @@ impl ClipQuadratic {
         Some(Self::of_plane(slope, offset, wedge, bias))
     }
 
-    /// Its value at a sample.
+    /// Returns the value of the quadratic at a sample.
     #[must_use]
     pub fn at(&self, u: f64, v: f64) -> f64 {
         self.uu * u * u + self.uv * u * v + self.vv * v * v + self.u * u + self.v * v + self.one
@@ -85,7 +88,8 @@ mod tests {
         }
     }
 
-    /// With the 16 fraction bits of the renderers' format S^2 would be 4 units; with 26 it has 12 bits, and Q fits 48.
+    /// With the 16 fraction bits of the renderers' format, S^2 would be only 4 units. With 26 bits it has 12
+    /// significant bits, and Q fits into 48 bits.
     #[test]
     fn its_scale_fits_the_renderers_words() {
         let square = WEDGE().sin * WEDGE().sin;

@@ -1,4 +1,4 @@
-//! A volume from a recording: bins, batches of slices, tile queries, halftone and packing.
+//! Rendering of a volume from a recording: bins, batches of slices, tile queries, halftoning and packing.
 
 use crate::bin::{BinTolerance, Binning};
 use crate::command::CommandBuffer;
@@ -18,41 +18,42 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-/// Which slices of a turn are drawn.
+/// The slices of a turn that are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Strobes {
-    /// Each slice is drawn for itself.
+    /// Each slice of the turn is drawn.
     #[default]
     Each,
-    /// The first half is drawn, and the other half shows it turned over, jitter included. **Beyond the paper.**
+    /// The first half is drawn. The second half shows the first half mirrored, including its jitter. **Beyond the
+    /// paper.**
     Mirror,
 }
 
-/// How a volume is made of a recording.
+/// The settings for rendering a volume from a recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VolumeConfig {
-    /// How primitives are sorted before slices are drawn.
+    /// Method of sorting primitives before slices are drawn.
     pub binning: Binning,
-    /// How far from a plane a vertex counts for both its sides.
+    /// Distance from a plane within which a vertex counts for both sides.
     pub bin_tolerance: BinTolerance,
-    /// Size of tiles, and how many slices are queried together.
+    /// Size of tiles, and number of slices per occlusion query.
     pub tiling: Tiling,
-    /// From eight bits to one.
+    /// Conversion from eight bits to one bit per channel.
     pub halftone: Halftone,
-    /// What of a primitive is drawn.
+    /// Pixels of a slice that a primitive covers.
     pub coverage: Coverage,
-    /// Which slices are drawn.
+    /// Slices of a turn that are drawn.
     pub strobes: Strobes,
-    /// Whether the colours before halftoning are kept.
+    /// True if the colours before halftoning are kept.
     pub keeps_colours: bool,
 }
 
 impl VolumeConfig {
-    /// The paper's algorithms, with bins that lose nothing and Bayer's matrix of 8 x 8.
+    /// Returns the paper's algorithms, with bins that lose no fragments and Bayer's matrix of 8 x 8.
     ///
     /// # Panics
-    /// Never: the matrix has a valid size.
+    /// Never, because the matrix has a valid size.
     #[must_use]
     pub fn paper() -> Self {
         Self {
@@ -66,18 +67,19 @@ impl VolumeConfig {
         }
     }
 
-    /// The same picture by brute force: every slice draws everything, and every pixel is packed and sent.
+    /// Returns settings that draw the same picture by brute force: every slice draws everything, and every pixel is
+    /// packed and sent.
     #[must_use]
     pub fn plain() -> Self {
         Self { binning: Binning::Off, tiling: Tiling::OFF, ..Self::paper() }
     }
 }
 
-/// Draws a volume. The result does not depend on the workers, nor on bins and tiles.
+/// Draws a volume. The result depends neither on the workers nor on bins and tiles.
 ///
 /// # Errors
 ///
-/// [`SpatialError::Setting`] if tiles or batches have a size that they cannot have.
+/// [`SpatialError::Setting`] if the size of tiles or batches is invalid.
 pub fn render_volume(
     display: &dyn SpatialDisplay,
     commands: &CommandBuffer,
@@ -89,13 +91,17 @@ pub fn render_volume(
     let size = display.target_size();
     let shown = display.views().len();
     let drawn = if config.strobes == Strobes::Mirror { shown.div_ceil(2) } else { shown };
+    // Sort the primitives once for all slices.
     let bins = Bins::of(display, commands, config);
     let volume = Volume { commands, config, renderer, bins: &bins, size, scratch: Mutex::new(Vec::new()) };
     let mut planes = BitPlanes::dark(size, shown as u32);
+    // The second part of the words belongs to mirrored slices.
     let (first, second) = planes.words.split_at_mut(drawn * words_of_slice(size));
     let mut batches = volume.batches(&display.views()[..drawn], first, second);
+    // Draw the batches, each as an independent task.
     let tasks = batches.iter_mut().map(|batch| Box::new(|| volume.draw(batch)) as Task<'_>).collect();
     workers.run(tasks);
+    // Collect counts and colours in the order of the slices.
     let mut stats = volume.count(display, &batches);
     let colours = batches.into_iter().flat_map(|batch| batch.colours).collect();
     stats.samples = u64::from(renderer.samples());
@@ -120,6 +126,7 @@ impl Bins {
                 layout.groups(&corners[..used], config.binning, config.bin_tolerance, primitive.extra())
             })
             .collect();
+        // Slices with the same groups share one list.
         let mut lists = BTreeMap::new();
         for view in display.views() {
             let drawn_by = |i: &u32| groups[*i as usize] & view.bins != 0;
@@ -131,7 +138,7 @@ impl Bins {
     }
 }
 
-/// The words of a slice, and of the one that shows it turned over, if there is one: both dark so far.
+/// The words of a slice, and of its mirrored slice if there is one. Both are dark at the start.
 struct SliceWords<'a> {
     own: &'a mut [u32],
     turned: Option<&'a mut [u32]>,
@@ -148,18 +155,18 @@ impl SliceWords<'_> {
     }
 }
 
-/// What is the same for all batches.
+/// The data that all batches of a volume share.
 struct Volume<'a> {
     commands: &'a CommandBuffer,
     config: &'a VolumeConfig,
     renderer: &'a dyn SliceRenderer,
     bins: &'a Bins,
     size: Size,
-    /// Clean targets that no batch uses.
+    /// Clean target images that are not in use.
     scratch: Mutex<Vec<SliceImage>>,
 }
 
-/// Slices that are drawn, queried and packed together, and what came of them.
+/// Slices that are drawn, queried and packed together, with their results.
 struct Batch<'a> {
     views: &'a [SliceView],
     words: Vec<SliceWords<'a>>,
@@ -191,6 +198,7 @@ impl<'a> Volume<'a> {
             let work = SliceWork { commands: self.commands, bin, coverage: self.config.coverage };
             batch.slices.push(self.renderer.render(work, view, image));
         }
+        // One query finds the tiles that are occupied in any slice of the batch.
         let grid = self.config.tiling.grid(self.size);
         batch.occupied = self.occupied(&grid, &images);
         for (image, words) in images.iter_mut().zip(&mut batch.words) {
@@ -201,6 +209,7 @@ impl<'a> Volume<'a> {
                 self.pack_tile(image, grid.rectangle(*tile), words);
             }
         }
+        // The images are clean again and can be reused.
         self.scratch.lock().unwrap_or_else(PoisonError::into_inner).append(&mut images);
     }
 
@@ -215,7 +224,8 @@ impl<'a> Volume<'a> {
         })
     }
 
-    /// The tiles of a batch that hold something: without tiles all, with a background that is not dark too.
+    /// Returns the occupied tiles of a batch. Without tiling, or with a background that is not dark, these are all
+    /// tiles.
     fn occupied(&self, grid: &TileGrid, images: &[SliceImage]) -> Vec<u32> {
         let mut marked = vec![!self.is_sparse(); grid.tiles() as usize];
         for image in images.iter().filter(|_| self.is_sparse()) {
@@ -224,17 +234,18 @@ impl<'a> Volume<'a> {
         (0..).zip(marked).filter(|(_, is_marked)| *is_marked).map(|(tile, _)| tile).collect()
     }
 
-    /// Whether what was not drawn on is dark and need not be looked at.
+    /// Returns true if pixels without fragments are dark and can be skipped.
     fn is_sparse(&self) -> bool {
         self.config.tiling.tile.is_some() && self.commands.background == [0; 3]
     }
 
-    /// Halftones and packs a rectangle, the sides of which are multiples of 8 from the left, and cleans it.
+    /// Halftones and packs a rectangle, and makes its pixels clean again. The left and right sides are multiples of 8.
     fn pack_tile(&self, image: &mut SliceImage, rectangle: [u32; 4], words: &mut SliceWords<'_>) {
         let [left, top, right, bottom] = rectangle;
         let width = image.size()[0];
         let is_sparse = self.is_sparse();
         for y in top..bottom {
+            // Skip rows and words without fragments.
             if is_sparse && !image.is_marked_between((y * width + left) as usize, (y * width + right) as usize) {
                 continue;
             }
@@ -275,6 +286,7 @@ impl<'a> Volume<'a> {
                 stats.bytes_sent += u64::from(grid.tiles().div_ceil(8));
             }
         }
+        // The sizes of a full transfer count every pixel of every drawn slice.
         stats.bytes_unpacked = stats.slices_rendered * width * height * 4;
         stats.bytes_packed = stats.slices_rendered * width * height / 2;
         stats.vertices = self.commands.vertices() as u64;
@@ -288,14 +300,14 @@ impl<'a> Volume<'a> {
     }
 }
 
-/// Primitives with a corner where the display shows nothing.
+/// Counts the primitives with a corner outside the display's volume.
 fn outside(display: &dyn SpatialDisplay, commands: &CommandBuffer) -> u64 {
     let is_shown: Vec<bool> = commands.positions.iter().map(|p| display.shows(DVec3::from_array(*p))).collect();
     let is_outside = |corners: &[u32]| corners.iter().any(|i| !is_shown[*i as usize]);
     commands.primitives.iter().filter(|primitive| is_outside(primitive.corners())).count() as u64
 }
 
-/// The pixels that were drawn on, with their colours.
+/// Returns the drawn pixels with their colours.
 fn samples(image: &SliceImage) -> Vec<ColourSample> {
     let width = image.size()[0];
     let mut samples = Vec::new();

@@ -1,4 +1,4 @@
-//! Scenes of `pxpl5-scene` as recordings: centred on the axis, the farthest corner at a given radius, spheres tessellated.
+//! Recordings of scenes from `pxpl5-scene`: centred on the axis, scaled to a given radius, with tessellated spheres.
 
 use crate::command::CommandBuffer;
 use crate::context::{Context, Light, Topology, Vertex, VertexBuffer};
@@ -6,20 +6,21 @@ use crate::error::SpatialError;
 use glam::{DMat4, DVec3};
 use pxpl5_scene::{Scene, Sphere};
 
-/// Facets of a tessellated sphere from pole to pole; twice as many around it.
+/// Number of facets of a tessellated sphere from pole to pole. Around the sphere there are twice as many.
 const SPHERE_ROWS: u32 = 12;
 
-/// Part of the display's radius at which the farthest corner of a scene lies.
+/// Distance of the farthest point of a scene from the axis, as a fraction of the display's radius.
 pub const SCENE_REACH: f64 = 0.9;
 
-/// Records a scene for a display of this radius: the middle of its box at the origin, its farthest point at
-/// [`SCENE_REACH`] of the radius, its own light if `lit`. Nothing else fills the slices: the background stays dark.
+/// Records a scene for a display of this radius. The middle of the scene's box is at the origin, and its farthest point
+/// at [`SCENE_REACH`] times the radius. The scene's own light is used if `lit`. The background stays dark.
 ///
 /// # Errors
 ///
-/// [`SpatialError`] if the scene holds what no recording can.
+/// [`SpatialError`] if the scene has vertices that a recording cannot hold.
 pub fn record_scene(scene: &Scene, radius: f64, lit: bool) -> Result<CommandBuffer, SpatialError> {
     let (centre, reach) = scene.bounding_sphere();
+    // A scene of a single point is not scaled.
     let scale = if reach > 0.0 { SCENE_REACH * radius / f64::from(reach) } else { 1.0 };
     let mut context = Context::default();
     context.model_view = DMat4::from_scale(DVec3::splat(scale)) * DMat4::from_translation(-centre.as_dvec3());
@@ -54,8 +55,8 @@ fn draw_sphere(context: &mut Context, sphere: &Sphere) -> Result<(), SpatialErro
     context.draw_indexed(&VertexBuffer::new(vertices)?, &indices, Topology::Triangles)
 }
 
-/// A sphere of `rows` x `2 rows` facets: vertices at polar angles pi a / rows from +y and azimuths pi b / rows from +x to
-/// +z, and the indices of its triangles.
+/// Returns vertices and triangle indices of a sphere with `rows` x `2 rows` facets. Vertices are at polar angles pi a /
+/// rows from +y and azimuths pi b / rows from +x to +z.
 #[must_use]
 pub fn tessellated_sphere(centre: DVec3, radius: f64, rows: u32, colour: [u8; 3]) -> (Vec<Vertex>, Vec<u32>) {
     let columns = 2 * rows;
@@ -68,6 +69,7 @@ pub fn tessellated_sphere(centre: DVec3, radius: f64, rows: u32, colour: [u8; 3]
             vertices.push(Vertex { position: centre + radius * normal, normal, colour });
         }
     }
+    // Each facet is two triangles, but only one at the poles.
     let mut indices = Vec::new();
     for a in 0..rows {
         for b in 0..columns {

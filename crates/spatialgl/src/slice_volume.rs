@@ -1,19 +1,23 @@
-//! Slice volumes: which points of the world a slice stands for.
+//! Slice volumes: the points of the world that a slice represents.
 
 use serde::{Deserialize, Serialize};
 
-/// What happens to a point on a boundary plane of a wedge, where the paper's rule "signs equal" is ambiguous.
+/// The rule for a point on a boundary plane of a wedge. The paper's rule "signs equal" is ambiguous there.
 ///
-/// `a` and `b` are the signed distances from the two boundary planes, both positive in the lobe on the +u side.
+/// The values `a` and `b` are the signed distances from the two boundary planes. Both are positive in the lobe on the
+/// +u side.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TieRule {
-    /// Each plane belongs to the slice that begins with it: space off the axis is partitioned. Ours.
+    /// Each boundary plane belongs to the slice that begins with it, so the space off the axis is partitioned. This
+    /// rule is our own.
     #[default]
     HalfOpen,
-    /// Printed: the product is positive. No slice has its planes or the axis.
+    /// As printed in the paper: the product is positive. No slice contains its boundary planes or the axis.
     ProductPositive,
-    /// Printed: equal signs, where zero counts as positive. Both planes of the + lobe, neither of the - lobe, and the axis.
+    /// As printed in the paper: the signs are equal, and zero counts as positive. A slice contains both planes of the +
+    /// lobe, no plane of the
+    /// - lobe, and the axis.
     SameSign,
     /// Both planes belong to both lobes, as with user clip planes: the product is not negative.
     Closed,
@@ -39,55 +43,55 @@ impl TieRule {
     }
 }
 
-/// The two boundary planes of a wedge: both contain the axis y, so a plane is its coefficients of x and z.
+/// The two boundary planes of a wedge. Both contain the axis y, so the coefficients of x and z define a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WedgePlanes {
-    /// Coefficients of x and z: A, positive on the + lobe's side.
+    /// Coefficients of x and z of plane A, which is positive on the side of the + lobe.
     pub a: [f64; 2],
-    /// Coefficients of x and z: B, positive on the + lobe's side.
+    /// Coefficients of x and z of plane B, which is positive on the side of the + lobe.
     pub b: [f64; 2],
-    /// Fraction bits to which both are rounded at every sample; `None` for double precision.
+    /// Fraction bits to which both planes are rounded at every sample, or `None` for double precision.
     pub fraction_bits: Option<u32>,
 }
 
-/// How the two products of a wedge decide.
+/// The test of a wedge with the distances from its two boundary planes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WedgeTest {
-    /// Two user clip planes for each lobe, one pass a lobe; what is outside is not even generated.
+    /// Two user clip planes for each lobe, with one pass per lobe. Fragments outside are not generated.
     UserPlanes(TieRule),
-    /// Both planes interpolated, and one test of their signs.
+    /// Both planes are interpolated, and one test compares their signs.
     Shader(TieRule),
-    /// Both planes moved outwards by q pixels before their product is taken.
+    /// Both planes are moved outwards by a number of pixels before the product of the distances is taken.
     Parallel(f64),
-    /// b square pixels added to the product.
+    /// A number of square pixels is added to the product of the distances.
     Hyperbolic(f64),
 }
 
-/// The part of space that a slice stands for, as a test of surface points, beside the near and far plane of its projection.
+/// The part of space that a slice represents between its near and far planes, as a test of surface points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SliceVolume {
-    /// Everything between the near and far plane.
+    /// Everything between the near and far planes.
     Frustum,
     /// A slab low <= s < high parallel to the slice, pixels.
     Slab {
-        /// First s that belongs to it.
+        /// Lower limit of the slab's s, inclusive.
         low: f64,
-        /// First s that does not any more.
+        /// Upper limit of the slab's s, exclusive.
         high: f64,
     },
     /// A double wedge around the axis y.
     Wedge(WedgePlanes, WedgeTest),
-    /// |s| <= offset + slope |u|, one pass for each side of the axis, by clip planes.
+    /// The volume |s| <= offset + slope |u|, with one pass for each side of the axis, by clip planes.
     Taper {
-        /// Half thickness at the axis, pixels.
+        /// Half thickness of the volume at the axis, pixels.
         offset: f64,
-        /// Growth of the half thickness, pixels a pixel of |u|.
+        /// Growth of the half thickness, in pixels per pixel of |u|.
         slope: f64,
     },
 }
 
 impl SliceVolume {
-    /// How often the commands are replayed for a slice.
+    /// Returns the number of times that the commands are replayed for a slice.
     #[must_use]
     pub const fn passes(&self) -> u32 {
         match self {
@@ -96,13 +100,13 @@ impl SliceVolume {
         }
     }
 
-    /// Whether clip planes keep what is outside from being generated as fragments.
+    /// Returns true if clip planes reject everything outside before fragments are generated.
     #[must_use]
     pub const fn clips_before_fragments(&self) -> bool {
         matches!(self, Self::Wedge(_, WedgeTest::UserPlanes(_)) | Self::Taper { .. } | Self::Slab { .. })
     }
 
-    /// The s of the slice's own plane: 0, or the middle of a slab.
+    /// Returns the s of the slice's own plane: 0, or the middle of a slab.
     pub(crate) const fn middle(&self) -> f64 {
         match self {
             Self::Slab { low, high } => (*low + *high) / 2.0,
@@ -110,7 +114,7 @@ impl SliceVolume {
         }
     }
 
-    /// The two values that a vertex carries for the test: linear in space, so that they can be interpolated.
+    /// Returns the two values of a vertex for the test. Both are linear in space and can be interpolated.
     #[inline(always)]
     #[must_use]
     pub(crate) fn attributes(&self, world: [f64; 3], u: f64, s: f64) -> [f64; 2] {
@@ -122,7 +126,7 @@ impl SliceVolume {
         }
     }
 
-    /// What decides in one of the passes.
+    /// Returns the test that samples must pass in a pass over the commands.
     pub(crate) fn test(&self, pass: u32) -> SampleTest {
         match *self {
             Self::Frustum => SampleTest::All,
@@ -138,7 +142,7 @@ impl SliceVolume {
         }
     }
 
-    /// Whether a point belongs to the slice, in any pass.
+    /// Returns true if a point belongs to the slice in any pass.
     #[must_use]
     pub fn contains(&self, world: [f64; 3], u: f64, s: f64) -> bool {
         let [p, q] = self.attributes(world, u, s);
@@ -151,7 +155,8 @@ fn along(plane: [f64; 2], world: [f64; 3]) -> f64 {
     world[0] * plane[0] + world[2] * plane[1]
 }
 
-/// The test of one pass at one sample, of the interpolated attributes p and q and of w, all with one positive factor.
+/// The test of one pass at one sample. The inputs of the test are the interpolated attributes p and q and w, all with
+/// one positive factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum SampleTest {
     All,
@@ -165,7 +170,7 @@ pub(crate) enum SampleTest {
 }
 
 impl SampleTest {
-    /// The literal test.
+    /// Returns true if the sample passes the test. This function is the reference model of the test.
     pub(crate) fn accepts(self, p: f64, q: f64, w: f64) -> bool {
         let (p, q, w) = self.rounded(p, q, w);
         match self {
@@ -180,7 +185,7 @@ impl SampleTest {
         }
     }
 
-    /// Fraction bits that the planes are rounded to.
+    /// Returns the fraction bits to which the planes are rounded.
     pub(crate) const fn fraction_bits(self) -> Option<u32> {
         match self {
             Self::All | Self::Slab | Self::Taper { .. } => None,
@@ -189,7 +194,7 @@ impl SampleTest {
         }
     }
 
-    /// The same test of planes that are rounded already.
+    /// Returns the same test for planes that are already rounded.
     pub(crate) const fn without_rounding(self) -> Self {
         match self {
             Self::Plus(ties, _) => Self::Plus(ties, None),

@@ -1,57 +1,56 @@
-//! What is counted while a volume is drawn; every count is exact.
+//! Exact counts of drawing a volume.
 
 use crate::raster::SliceStats;
 use serde::Serialize;
 
-/// Counts of one volume.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct VolumeStats {
-    /// Vertices that were transformed.
+    /// Number of transformed vertices.
     pub vertices: u64,
-    /// Triangles, lines and points.
+    /// Number of triangles, lines and points.
     pub primitives: u64,
-    /// Primitives with a corner where the display shows nothing.
+    /// Number of primitives with a corner outside the display's volume.
     pub outside_volume: u64,
-    /// Slices drawn; fewer than are shown, if some are mirrored.
+    /// Number of slices drawn, which is less than the number shown if slices are mirrored.
     pub slices_rendered: u64,
-    /// How often the commands are replayed for a slice.
+    /// Number of times that the commands are replayed for a slice.
     pub passes: u64,
-    /// Samples taken of each pixel.
+    /// Number of samples per pixel.
     pub samples: u64,
-    /// Primitives issued for all slices and passes.
+    /// Number of primitives issued, over all slices and passes.
     pub draws: u64,
-    /// What they would be without bins.
+    /// Number of primitives that would be issued without bins.
     pub draws_unbinned: u64,
-    /// Entries in all bins.
+    /// Number of primitives in all bins. A primitive in several bins counts in each of them.
     pub bin_memberships: u64,
-    /// Fragments that reached the fragment program.
+    /// Number of fragments that reached the fragment program.
     pub fragments_generated: u64,
-    /// Fragments that lie in their slice's volume.
+    /// Number of fragments that lie in their slice's volume.
     pub fragments_accepted: u64,
-    /// Pixels added to connect intersections; beyond the paper.
+    /// Number of pixels added to connect intersections, which is beyond the paper.
     pub fragments_added: u64,
-    /// Slices on which nothing was drawn.
+    /// Number of slices on which nothing was drawn.
     pub slices_empty: u64,
-    /// Tiles of batches that hold something, which are packed and sent for every slice of their batch.
+    /// Number of occupied tiles, summed over batches. An occupied tile is packed and sent for every slice of its batch.
     pub tiles_occupied: u64,
-    /// Occlusion queries: tiles of all batches.
+    /// Number of occlusion queries: the tiles of all batches.
     pub queries: u64,
-    /// Stencil clears: one for each batch.
+    /// Number of stencil clears: one for each batch.
     pub stencil_clears: u64,
-    /// Pixels that were halftoned and packed.
+    /// Number of halftoned and packed pixels.
     pub pixels_packed: u64,
-    /// Bytes of all slices with a word of 32 bits a pixel.
+    /// Size of all drawn slices with a 32-bit word per pixel, bytes.
     pub bytes_unpacked: u64,
-    /// Bytes of all slices packed.
+    /// Size of all drawn slices in packed form, bytes.
     pub bytes_packed: u64,
-    /// Bytes sent: the packed words of occupied tiles, and a bitmap of tiles for each batch.
+    /// Number of bytes sent: the packed words of occupied tiles, and a bitmap of tiles for each batch.
     pub bytes_sent: u64,
-    /// Counts of each slice drawn.
+    /// Counts of each drawn slice.
     pub slices: Vec<SliceStats>,
 }
 
 impl VolumeStats {
-    /// Part of the queried tiles that were occupied, percent; all of them without tiles.
+    /// Returns the percentage of queried tiles that were occupied. Without tiles the result is 100.
     #[must_use]
     pub fn tile_occupancy_percent(&self) -> f64 {
         if self.queries == 0 { 100.0 } else { 100.0 * self.tiles_occupied as f64 / self.queries as f64 }

@@ -1,17 +1,17 @@
 #![cfg(feature = "threads")]
-//! Several threads of the host.
+//! Workers on several threads of the host.
 
 use crate::workers::{Task, Workers};
 use std::num::NonZero;
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
-/// So many threads of the host, each of which takes the next task when it is done with one.
+/// Worker threads of the host. Each thread takes the next task when its current task is done.
 #[derive(Clone, Copy, Debug)]
 pub struct Threads(pub NonZero<usize>);
 
 impl Threads {
-    /// As many as the host runs at a time.
+    /// Returns as many threads as the host can execute in parallel.
     #[must_use]
     pub fn all() -> Self {
         Self(thread::available_parallelism().unwrap_or(NonZero::<usize>::MIN))

@@ -1,17 +1,17 @@
-//! Tiles and the queries that tell which of them hold anything.
+//! Tiles, and the queries that find the occupied ones.
 
 use crate::error::{SpatialError, require};
 use crate::image::SliceImage;
 use crate::projection::Size;
 use serde::{Deserialize, Serialize};
 
-/// How targets are cut into tiles, and how many slices are queried together.
+/// The division of target images into tiles, and the number of slices per query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tiling {
-    /// Side of a tile in pixels, a multiple of 8; `None` packs and sends everything.
+    /// Side of a tile in pixels, a multiple of 8. With `None`, everything is packed and sent.
     pub tile: Option<u32>,
-    /// Slices whose stencils are cleared and queried together.
+    /// Number of slices whose stencils are cleared and queried together.
     pub batch: u32,
 }
 
@@ -22,11 +22,11 @@ impl Tiling {
     /// No tiles: every pixel of every slice is packed and sent.
     pub const OFF: Self = Self { tile: None, batch: 4 };
 
-    /// Checks that tiles are whole words wide and batches not empty.
+    /// Checks that tiles are whole words wide and that batches are not empty.
     ///
     /// # Errors
     ///
-    /// [`SpatialError::Setting`] names the number, what was expected and what was found.
+    /// [`SpatialError::Setting`] names the number, the expected range and the value found.
     pub fn check(self) -> Result<(), SpatialError> {
         if let Some(tile) = self.tile {
             require((8..=4096).contains(&tile), "tile.size", "8 to 4096", tile)?;
@@ -35,7 +35,7 @@ impl Tiling {
         require(self.batch >= 1, "tile.batch", "1 or more", self.batch)
     }
 
-    /// The grid of tiles of a target; one tile of all of it when there are none.
+    /// Returns the grid of tiles of a target. Without tiles, one tile covers everything.
     #[must_use]
     pub fn grid(self, size: Size) -> TileGrid {
         let tile = self.tile.unwrap_or_else(|| size[0].max(size[1]).next_multiple_of(8));
@@ -43,7 +43,7 @@ impl Tiling {
     }
 }
 
-/// The tiles of one target, row by row from the top left; those at the right and lower edge may be cut.
+/// The tiles of a target, row by row from the top left. Tiles at the right and lower edges may be smaller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TileGrid {
     size: Size,
@@ -53,13 +53,12 @@ pub struct TileGrid {
 }
 
 impl TileGrid {
-    /// Tiles of a target.
     #[must_use]
     pub const fn tiles(&self) -> u32 {
         self.columns * self.rows
     }
 
-    /// Left, top, right and bottom of a tile in pixels, the last two excluded.
+    /// Returns left, top, right and bottom of a tile in pixels. Right and bottom are exclusive.
     #[must_use]
     pub fn rectangle(&self, tile: u32) -> [u32; 4] {
         let left = tile % self.columns * self.tile;
@@ -67,20 +66,21 @@ impl TileGrid {
         [left, top, (left + self.tile).min(self.size[0]), (top + self.tile).min(self.size[1])]
     }
 
-    /// Words of eight pixels in a tile.
+    /// Returns the number of eight-pixel words in a tile.
     #[must_use]
     pub fn words(&self, tile: u32) -> u64 {
         let [left, top, right, bottom] = self.rectangle(tile);
         u64::from((right - left) / 8) * u64::from(bottom - top)
     }
 
-    /// Notes the tiles in which any fragment was drawn.
+    /// Marks the tiles in which any fragment was drawn.
     pub(crate) fn mark(&self, image: &SliceImage, tiles: &mut [bool]) {
         let row_bytes = self.size[0] as usize / 8;
         let tile_bytes = self.tile as usize / 8;
         let rows_of_tiles = image.stencil.chunks(row_bytes * self.tile as usize);
         let mut any = vec![0u8; row_bytes];
         for (rows, tiles) in rows_of_tiles.zip(tiles.chunks_mut(self.columns as usize)) {
+            // Combine the stencil rows of one row of tiles, then look at each tile's bytes once.
             any.fill(0);
             for row in rows.chunks_exact(row_bytes) {
                 any.iter_mut().zip(row).for_each(|(any, byte)| *any |= byte);

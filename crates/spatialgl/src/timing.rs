@@ -1,4 +1,4 @@
-//! Time of a volume as a stated model of processor, GPU and bus; every number of it stands here.
+//! The time of a volume, from a model of processor, GPU and bus. All numbers of the model are in this module.
 
 use crate::projection::Size;
 use crate::stats::VolumeStats;
@@ -6,30 +6,30 @@ use parameters::{ParameterError, ParameterTable};
 use serde::Serialize;
 
 parameters::parameter_table! {
-    /// The preset `geforce-6800`: a GPU, a processor and a bus of 2005, which the SpatialGL paper does not name.
+    /// The preset `geforce-6800`: a GPU, a processor and a bus of 2005. The SpatialGL paper does not name its hardware.
     pub struct GpuTiming {
-        /// Fragments that the GPU fills a second.
+        /// Fill rate of the GPU in fragments.
         fill_mpixels: 6_400, "Mpixel/s", Published, 6400..=6400 in 1..=MAX, "GeForce 6800 Ultra (SPIE 5664 names the board)";
-        /// Texels that it reads a second.
+        /// Texel read rate of the GPU.
         texel_mtexels: 6_400, "Mtexel/s", Published, 6400..=6400 in 1..=MAX, "GeForce 6800 Ultra";
-        /// Vertices that it transforms a second.
+        /// Vertex transformation rate of the GPU.
         vertex_mvertices: 600, "Mvertex/s", Published, 600..=600 in 1..=MAX, "GeForce 6800 Ultra";
-        /// Bytes read back, and sent to the projector, a second.
+        /// Transfer rate for reading back from the GPU, and also for sending to the projector.
         readback_mb_s: 200, "MB/s", Assumed, 100..=1000 in 1..=MAX, "AGP writes back slowly";
-        /// Time of one occlusion query beside its fill.
+        /// Time of one occlusion query in addition to its fill.
         query_ns: 2_000, "ns", Assumed, 500..=10000 in 0..=MAX, "a call of the driver";
-        /// Time of the calls for one pass of one slice.
+        /// Time of the driver calls for one pass of one slice.
         call_ns: 2_000, "ns", Assumed, 500..=10000 in 0..=MAX, "a call of the driver";
-        /// Processor time for one vertex: its transformation and code.
+        /// Processor time to transform one vertex and compute its bin code.
         vertex_ns: 20, "ns", Assumed, 2..=50 in 0..=MAX, "Athlon 64";
-        /// Processor time for one primitive: its bins.
+        /// Processor time to find the bins of one primitive.
         primitive_ns: 10, "ns", Assumed, 2..=50 in 0..=MAX, "Athlon 64";
         /// Processor time to issue one primitive of a bin.
         issue_ns: 10, "ns", Assumed, 2..=50 in 0..=MAX, "indexed arrays";
     }
 }
 
-/// The model: times are linear in the counts.
+/// The time model. Times are linear in the counts:
 ///
 /// ```text
 /// CPU  vertices t_vertex + primitives t_primitive + slices passes t_call + draws t_issue
@@ -39,40 +39,40 @@ parameters::parameter_table! {
 /// bus  bytes sent / readback, and the same to the projector
 /// ```
 ///
-/// Unpacked transfers take 4 bytes a pixel, and nothing is packed.
+/// An unpacked transfer takes 4 bytes per pixel, and no packing time.
 #[derive(Clone, Copy, Debug)]
 pub struct TimeModel {
-    /// The rates and times that it is computed with.
+    /// Rates and times of the hardware.
     pub timing: GpuTiming,
 }
 
-/// Milliseconds of one volume.
+/// The time of one volume by component, milliseconds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct VolumeTime {
-    /// Processor: vertices, bins and calls.
+    /// Processor time for vertices, bins and calls.
     pub cpu_ms: f64,
-    /// GPU: vertices, fragments, clears, queries and packing.
+    /// GPU time for vertices, fragments, clears, queries and packing.
     pub gpu_ms: f64,
-    /// Bus: reading back from the GPU.
+    /// Bus time for reading back from the GPU.
     pub readback_ms: f64,
-    /// Bus: sending the same to the projector.
+    /// Bus time for sending the same bytes to the projector.
     pub projector_ms: f64,
 }
 
 impl VolumeTime {
-    /// Both ways over the bus, one after the other.
+    /// Returns the time of both transfers over the bus, one after the other.
     #[must_use]
     pub fn bus_ms(&self) -> f64 {
         self.readback_ms + self.projector_ms
     }
 
-    /// Volumes a second if one part begins when the other has ended.
+    /// Returns the volumes per second if processor, GPU and bus work one after the other.
     #[must_use]
     pub fn serial_hz(&self) -> f64 {
         1e3 / (self.cpu_ms + self.gpu_ms + self.bus_ms())
     }
 
-    /// Volumes a second if all three work at the same time on different volumes.
+    /// Returns the volumes per second if processor, GPU and bus work at the same time on different volumes.
     #[must_use]
     pub fn overlapped_hz(&self) -> f64 {
         1e3 / self.cpu_ms.max(self.gpu_ms).max(self.bus_ms())
@@ -83,17 +83,17 @@ impl TimeModel {
     /// The preset `geforce-6800`, the hardware of 2005.
     pub const GEFORCE_6800: Self = Self { timing: GpuTiming::PAPERS };
 
-    /// The model with a table.
+    /// Creates a model with this table.
     ///
     /// # Errors
     ///
-    /// [`ParameterError::OutOfLimits`] for the first number that the model cannot take.
+    /// [`ParameterError::OutOfLimits`] for the first number that the model cannot use.
     pub fn new(timing: GpuTiming) -> Result<Self, ParameterError> {
         ParameterTable::check(&timing)?;
         Ok(Self { timing })
     }
 
-    /// Time of a volume with these counts, packed and sent by tiles as counted.
+    /// Returns the time of a volume with these counts, packed and sent by tiles.
     #[must_use]
     pub fn packed(&self, stats: &VolumeStats, size: Size, tile: u32) -> VolumeTime {
         let packing_ms = millions_ms(stats.pixels_packed * stats.samples.max(1), self.timing.texel_mtexels);
@@ -101,7 +101,7 @@ impl TimeModel {
         self.with_bus(stats, gpu_ms, stats.bytes_sent)
     }
 
-    /// The same with all pixels sent as words of 32 bits, without queries.
+    /// Returns the time of a volume with all pixels sent as 32-bit words, without queries.
     #[must_use]
     pub fn unpacked(&self, stats: &VolumeStats, size: Size) -> VolumeTime {
         let unqueried = VolumeStats { queries: 0, stencil_clears: 0, ..stats.clone() };
@@ -119,6 +119,7 @@ impl TimeModel {
 
     fn gpu_ms(&self, stats: &VolumeStats, size: Size, tile: u32) -> f64 {
         let timing = &self.timing;
+        // Every pixel of a target counts once for each of its samples.
         let pixels = u64::from(size[0]) * u64::from(size[1]) * stats.samples.max(1);
         let cleared = pixels * (stats.slices_rendered + stats.stencil_clears);
         let queried = stats.queries * u64::from(tile) * u64::from(tile) * stats.samples.max(1);
@@ -133,7 +134,7 @@ impl TimeModel {
     }
 }
 
-/// Milliseconds of so many things at a rate in millions a second.
+/// Returns the milliseconds of `count` operations at a rate in millions per second.
 fn millions_ms(count: u64, millions: u64) -> f64 {
     count as f64 / (millions as f64 * 1e3)
 }

@@ -1,4 +1,4 @@
-//! What a display is to the pipeline: views and slice volumes, and nothing of its machinery.
+//! The interface between a display and the pipeline: views and slice volumes, without the display's machinery.
 
 use crate::bin::BinLayout;
 use crate::projection::{Size, window_of};
@@ -6,35 +6,36 @@ use crate::slice_volume::SliceVolume;
 use glam::{DMat4, DVec3};
 use serde::{Deserialize, Serialize};
 
-/// One slice: where it stands, how the scene is projected on it, which part of the scene is its own.
+/// One slice: its position, the projection of the scene onto it, and its part of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SliceView {
-    /// From the world to (u, v, s): along the slice, up it, off it; pixels.
+    /// Matrix from the world to (u, v, s): horizontal and vertical position in the slice, and distance from the slice,
+    /// pixels.
     pub view: DMat4,
-    /// From (u, v, s, 1) to clip coordinates, depth from 0 at the near plane to 1 at the far plane.
+    /// Matrix from (u, v, s, 1) to clip coordinates, with depth 0 at the near plane and 1 at the far plane.
     pub projection: DMat4,
-    /// The part of space that it stands for.
+    /// Part of space that the slice represents.
     pub volume: SliceVolume,
-    /// The bins that it draws, one bit for each group of regions of [`SpatialDisplay::bins`].
+    /// Bins that the slice draws, one bit for each group of regions of [`SpatialDisplay::bins`].
     pub bins: u64,
-    /// Whether the nearest surface hides others; only for a view that somebody looks at from one side.
+    /// True if the nearest surface hides others, which suits a view that is seen from one side only.
     pub hides: bool,
     pub(crate) window: [[f64; 4]; 4],
-    /// All s at which anything can be drawn, with some slack, where that is known.
+    /// Range of s in which anything can be drawn, with some slack, or `None` if the range is unknown.
     pub(crate) reach: Option<[f64; 2]>,
-    /// Samples along a pixel of the image: more than one while a supersampled image is drawn.
+    /// Number of samples along a side of a pixel, above 1 while a supersampled image is drawn.
     pub(crate) magnification: f64,
 }
 
 impl SliceView {
-    /// A view of an image of this size that draws the bins of one group, number 0.
+    /// Creates the view of an image of this size. The view draws the bins of group 0.
     #[must_use]
     pub fn new(view: DMat4, projection: DMat4, volume: SliceVolume, size: Size) -> Self {
         let window = window_of(&projection, size);
         Self { view, projection, volume, bins: 1, hides: false, window, reach: None, magnification: 1.0 }
     }
 
-    /// The same view of an image with so many samples along each pixel.
+    /// Returns the same view for an image with `factor` samples along each side of a pixel.
     pub(crate) fn magnified(&self, factor: u32) -> Self {
         let factor = f64::from(factor);
         let mut view = self.clone();
@@ -45,13 +46,13 @@ impl SliceView {
         view
     }
 
-    /// A point of the world in the coordinates of the slice: u, v, s.
+    /// Converts a point of the world to the coordinates u, v, s of the slice.
     #[must_use]
     pub fn local(&self, world: DVec3) -> DVec3 {
         self.view.transform_point3(world)
     }
 
-    /// Whether a point of the world belongs to the slice: between near and far plane and in its volume.
+    /// Returns true if a point of the world belongs to the slice: between its near and far planes and in its volume.
     #[must_use]
     pub fn accepts(&self, world: DVec3) -> bool {
         let local = self.local(world);
@@ -61,36 +62,37 @@ impl SliceView {
     }
 }
 
-/// What one pixel of a display can show.
+/// The colours that a pixel of a display can show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PixelFormat {
-    /// One bit for each of red, green and blue.
+    /// One bit each for red, green and blue.
     Rgb1,
-    /// Eight bits for each of red, green and blue.
+    /// Eight bits each for red, green and blue.
     Rgb8,
 }
 
-/// A display as the pipeline sees it. It knows no triangles, and the pipeline knows no display.
+/// A volumetric or flat display, as the pipeline sees it. A display knows no triangles, and the pipeline knows no other
+/// property of a display.
 pub trait SpatialDisplay: Send + Sync {
-    /// Its slices, in the order in which they are shown.
+    /// Returns the slices, in the order in which they are shown.
     fn views(&self) -> &[SliceView];
 
-    /// Size of every slice's image.
+    /// Returns the size of every slice's image.
     fn target_size(&self) -> Size;
 
-    /// What a pixel can show.
+    /// Returns the colours that a pixel can show.
     fn pixel_format(&self) -> PixelFormat;
 
-    /// How primitives are sorted before slices are drawn; one bin of everything, unless the display has planes for it.
+    /// Returns the planes and regions for sorting primitives. The default is a single bin for everything.
     fn bins(&self) -> BinLayout {
         BinLayout::one()
     }
 
-    /// Whether a point of the world can be shown at all.
+    /// Returns true if any slice can show this point of the world.
     fn shows(&self, point: DVec3) -> bool;
 
-    /// Whether a slice shows a point of the world.
+    /// Returns true if the slice with index `view` shows this point of the world.
     fn accepts(&self, view: usize, point: DVec3) -> bool {
         self.views().get(view).is_some_and(|view| view.accepts(point))
     }

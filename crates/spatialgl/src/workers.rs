@@ -1,20 +1,20 @@
-//! Who does the work of a volume: one thread, or those that a host hands in.
+//! Execution of the tasks of a volume, on one thread or on threads supplied by a host.
 
-/// A piece of work that depends on no other.
+/// A task that is independent of all other tasks.
 pub type Task<'a> = Box<dyn FnOnce() + Send + 'a>;
 
-/// Runs tasks, in any order and on any threads, and returns when all are done.
+/// A runner of tasks, in any order and on any threads.
 pub trait Workers: Sync {
-    /// Runs all of them.
+    /// Executes all tasks and returns when they are done.
     fn run(&self, tasks: Vec<Task<'_>>);
 
-    /// How many tasks can run at a time, 1 or more.
+    /// Returns the number of tasks that can run at a time, 1 or more.
     fn count(&self) -> usize {
         1
     }
 }
 
-/// The calling thread, one task after the other.
+/// Execution on the calling thread, one task after the other.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct OneThread;
 

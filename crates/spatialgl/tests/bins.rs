@@ -1,4 +1,5 @@
-//! Cases 12 and 21 of the specification: vertex codes, sectors, slices drawn, and what bins lose without a tolerance.
+//! Cases 12 and 21 of the specification: vertex codes, sectors, slices drawn, and fragments lost by bins without a
+//! tolerance.
 
 mod support;
 

@@ -7,7 +7,7 @@ use pxpl5_scene::builtin;
 use spatialgl::*;
 use support::*;
 
-/// The sphere of section 6: 24 x 48 facets, r = 300.
+/// Returns the sphere of section 6: 24 x 48 facets, r = 300.
 fn sphere() -> CommandBuffer {
     let (vertices, indices) = tessellated_sphere(DVec3::ZERO, 300.0, 24, [255; 3]);
     let mut context = Context::default();
@@ -22,9 +22,9 @@ fn connected_percent(clip: SliceClip, projection: Projection, coverage: Coverage
     connected(&display, &sphere(), &frame).expect("colours kept").percent()
 }
 
-/// Case 28, and the trial's table of section 6 for the sphere. The specification does not say where on a curve its samples
-/// lie; ours, in the middle of equal steps of each facet's part, find 18.3, 18.8 and 25.4 % where it has 18.7, 19.3 and
-/// 26.0. Jitter is compared as a law: other eyes, the same shares.
+/// Case 28, and the table of section 6 for the sphere. The specification does not define where the samples lie on a
+/// curve. Our samples, in the middle of equal steps of each facet's part, give 18.3, 18.8 and 25.4 %. The specification
+/// has 18.7, 19.3 and 26.0 %. With other random eyes, jitter gives the same percentages.
 #[test]
 fn case_28_connected_surfaces_of_a_sphere() {
     let jittered = Projection::Jittered(Jitter::new(1));
@@ -49,8 +49,9 @@ fn case_28_connected_surfaces_of_a_sphere() {
     }
 }
 
-/// The share of each row's samples that is shown, correlated between neighbouring slices: a sphere with as many facets
-/// around it as there are slices has the same gaps in every slice along the normal, and with eyes of their own others.
+/// The percentages of shown samples per row, correlated between neighbouring slices. A sphere with one facet per slice
+/// around it has the same gaps in every slice of an orthographic projection. With a different eye for each slice the
+/// gaps differ.
 #[test]
 fn jitter_makes_gaps_of_neighbouring_slices_unlike() {
     let (vertices, indices) = tessellated_sphere(DVec3::ZERO, 300.0, 198, [255; 3]);
@@ -67,7 +68,8 @@ fn jitter_makes_gaps_of_neighbouring_slices_unlike() {
     assert!(along > 0.95 && jittered.abs() < 0.5, "{along} along the normal, {jittered} with jitter");
 }
 
-/// Neighbouring slabs meet without a gap or an overlap: a triangle across all of them has each of its samples once.
+/// Neighbouring slabs meet without a gap or an overlap, so each sample of a triangle across all slabs is in exactly one
+/// slab.
 #[test]
 fn a_stack_of_planes_divides_a_triangle_among_its_slabs() {
     let one = PlaneStack::new([256, 256], 1, 200.0).expect("valid");
@@ -166,7 +168,7 @@ fn a_table_beyond_its_limits_is_refused() {
     assert!(error.contains("fill_mpixels"), "{error}");
 }
 
-/// Precision as a cause of the dead zone: with q bits nothing shows within 2^-(q+1) / S of the axis.
+/// Low precision causes the dead zone: with q fraction bits nothing shows within 2^-(q+1) / S of the axis.
 #[test]
 fn planes_of_few_bits_leave_a_dead_zone() {
     for (bits, radius) in [(4, 3.94), (8, 0.246)] {

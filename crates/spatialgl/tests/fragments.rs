@@ -1,4 +1,5 @@
-//! Cases 13 to 20 and 25 of the specification: fragments of every clip variant, by the oracle and by the fast path.
+//! Cases 13 to 20 and 25 of the specification: fragments of every clip variant, by the reference model and by the fast
+//! path.
 
 mod support;
 
@@ -66,8 +67,8 @@ fn case_15_a_triangle_in_a_boundary_plane_is_in_one_slice() {
     }
 }
 
-/// The half-open rule gives the triangle of case 15 to slice 50 alone, which no bin on its own side of the diagonal
-/// plane draws: bins must count a plane as both its sides even without a dilated clip.
+/// The half-open rule assigns the triangle of case 15 to slice 50 alone, whose bin is on the other side of the diagonal
+/// plane. Bins must therefore count a triangle in a plane on both sides, even without a dilated clip.
 #[test]
 fn bins_keep_a_triangle_in_a_bin_plane() {
     let triangle = [[50.0, -100.2, 50.0], [200.3, -100.2, 200.3], [50.0, 120.4, 50.0]];
@@ -140,7 +141,7 @@ fn case_25_tiles_of_a_wall() {
     }
 }
 
-/// P5: how often the commands are replayed for a slice.
+/// P5: the number of times that the commands are replayed for a slice.
 #[test]
 fn passes_are_as_published() {
     let passes = |clip| {
@@ -151,7 +152,7 @@ fn passes_are_as_published() {
     assert_eq!(SliceClip::ALL.map(passes), [1, 2, 1, 2, 1, 1]);
 }
 
-/// One-pass variants generate every fragment between near and far plane; clip planes none that they do not accept.
+/// One-pass variants generate every fragment between near and far plane. Clip planes generate only accepted fragments.
 #[test]
 fn what_is_generated_and_not_accepted() {
     let stats = |clip| volume(&swept(clip, ORTHOGRAPHIC), &recording(&[T1]), &half(VolumeConfig::plain())).stats;

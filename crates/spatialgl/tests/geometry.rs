@@ -13,7 +13,7 @@ fn close(found: f64, expected: f64, half_unit: f64) {
     assert!((found - expected).abs() <= half_unit, "{found} is not {expected}");
 }
 
-/// Slices of the first half turn that accept a point at height 0.
+/// Returns the slices of the first half turn that accept a point at height 0.
 fn planes_of(display: &SweptDisplay, x: f64, z: f64) -> Vec<usize> {
     (0..198).filter(|k| display.accepts(*k, DVec3::new(x, 0.0, z))).collect()
 }
@@ -116,7 +116,7 @@ fn case_5_planes_that_show_a_point() {
     }
 }
 
-/// Points and memberships of all integer points within a radius, and how many each plane has.
+/// Returns the number of integer points within a radius, their memberships, and the number of points of each plane.
 fn integer_points(ties: TieRule, radius: i32) -> (usize, usize, Vec<usize>) {
     let config = SweptConfig { ties, ..SweptConfig::perspecta(EXACT, Projection::Orthographic) };
     let display = SweptDisplay::new(config).expect("valid");
@@ -153,7 +153,7 @@ fn case_7_integer_points_within_384() {
     assert_eq!(integer_points(TieRule::Closed, 384).1, 464_272);
 }
 
-/// P4 as printed, at the places where it is ambiguous.
+/// P4 as printed, at the points where the rule is ambiguous.
 #[test]
 fn the_two_printed_tie_rules_treat_a_boundary_plane_as_they_say() {
     let accepting = |ties: TieRule, x: f64, z: f64| {
@@ -189,7 +189,7 @@ fn case_9_an_eye_aside_and_a_shear() {
     close(z, 0.992_405, 5.1e-7);
 }
 
-/// Area in the image of a triangle given as (u, v, s), pixels.
+/// Returns the area in the image of a triangle given as (u, v, s), pixels.
 fn area(projection: Projection, corners: Triangle) -> f64 {
     let display = swept(SliceClip::Prism, projection);
     let [a, b, c] = corners.map(|corner| {

@@ -1,4 +1,4 @@
-//! Hard cases of section 8 of the specification, and everything a user can hand in that cannot be drawn.
+//! Hard cases of section 8 of the specification, and all kinds of input that cannot be drawn.
 
 mod support;
 
@@ -12,7 +12,7 @@ fn config(slices: u32, width: u32, height: u32, clip: SliceClip, projection: Pro
     SweptConfig { slices, width, height, ..SweptConfig::perspecta(clip, projection) }
 }
 
-/// Drawn by both renderers in all variants and projections, with and without bins; the fragments of each.
+/// Draws with both renderers in all variants and projections, with and without bins, and returns the fragments of each.
 fn everywhere(triangles: &[Triangle]) -> Vec<u64> {
     let commands = recording(triangles);
     let near = Projection::Perspective { eye: [5.0, 3.0], distance: 40.0, shear: [0.0, 0.1] };
@@ -134,7 +134,7 @@ fn a_cleared_colour_fills_every_slice() {
     assert_eq!(frame.planes.pixel(3, 17, 40), 0b101);
 }
 
-/// Lit pixels of slice 0.
+/// Returns the number of lit pixels of slice 0.
 fn lit_of(frame: &VolumeFrame) -> u64 {
     let pixels = (0..768).flat_map(|y| (0..768).map(move |x| (x, y)));
     pixels.filter(|(x, y)| frame.planes.pixel(0, *x, *y) != 0).count() as u64

@@ -10,7 +10,7 @@ use support::*;
 const ORTHOGRAPHIC: Projection = Projection::Orthographic;
 const EXACT: SliceClip = SliceClip::ShaderPlanes;
 
-/// A small display, so that many can be drawn.
+/// Returns a small display, so that tests can draw many volumes.
 fn small(clip: SliceClip, projection: Projection) -> SweptDisplay {
     let config = SweptConfig { slices: 44, width: 64, height: 56, ..SweptConfig::perspecta(clip, projection) };
     SweptDisplay::new(config).expect("valid")
@@ -38,7 +38,8 @@ fn clips() -> impl Strategy<Value = SliceClip> {
     prop::sample::select(SliceClip::ALL.to_vec())
 }
 
-/// Triangles of different colours, some a line and some a point, with a way to combine them.
+/// Returns a recording of triangles of different colours, some drawn as lines or points, with a rule for combining
+/// fragments.
 fn mixed(triangles: &[Triangle], combine: Combine) -> CommandBuffer {
     let mut context = Context::default();
     context.combine = combine;
@@ -58,7 +59,7 @@ fn kept(config: VolumeConfig) -> VolumeConfig {
     VolumeConfig { keeps_colours: true, ..config }
 }
 
-/// Slice and pixel of everything that was drawn.
+/// Returns slice and pixel of every drawn voxel.
 fn drawn(frame: &VolumeFrame) -> std::collections::BTreeSet<(usize, u32)> {
     let slices = frame.colours.as_ref().expect("kept").iter().enumerate();
     slices.flat_map(|(k, samples)| samples.iter().map(move |sample| (k, sample.pixel))).collect()
@@ -157,7 +158,7 @@ proptest! {
         }
     }
 
-    /// Both triangles of a quad cover each sample between them once, wherever the common edge runs.
+    /// The two triangles of a quad together cover each sample once, wherever the common edge runs.
     #[test]
     fn a_shared_edge_is_lit_by_one_of_its_triangles(
         x in prop::array::uniform4(-28i32..28), y in prop::array::uniform4(-28i32..28),

@@ -1,11 +1,11 @@
-//! Several samples a pixel: colours by the area that is covered, counts by the number of samples.
+//! Supersampling: colours follow from the covered area, and counts from the number of samples.
 
 mod support;
 
 use spatialgl::*;
 use support::*;
 
-/// A white rectangle in slice 0, from column 400 to so far beyond it, over rows 300 to 310.
+/// Returns a white rectangle in slice 0, from column 400 to `beyond` pixels after it, in rows 300 to 310.
 fn rectangle(beyond: f64) -> CommandBuffer {
     let [left, right, top, bottom] = [16.0, 16.0 + beyond, 84.0, 74.0];
     recording(&[
@@ -62,7 +62,7 @@ fn both_rasterisers_take_the_same_samples() {
     assert_eq!(fast.stats, literal.stats);
 }
 
-/// Of a line's width nothing changes: as many lit pixels within one of each side.
+/// The width of a line stays the same: the numbers of lit pixels differ by at most one on each side.
 #[test]
 fn a_line_keeps_its_width() {
     let ends = [[20.0, -50.0, 0.0], [20.0, 50.0, 0.0]].map(|p| Vertex::new(p.into(), [255; 3]));
@@ -76,7 +76,7 @@ fn a_line_keeps_its_width() {
     assert_eq!(width, 6);
 }
 
-/// What the time model fills, clears and reads grows with the samples; what is sent does not.
+/// In the time model, fill, clears and reads grow with the number of samples, but the bytes sent do not.
 #[test]
 fn more_samples_cost_fill_and_no_bytes() {
     let size = [768, 768];

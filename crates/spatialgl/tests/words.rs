@@ -1,11 +1,11 @@
-//! Numeric cases 23 and 24: the words that the projector gets.
+//! Numeric cases 23 and 24: the words that the projector receives.
 
 use spatialgl::{
     Combine, CommandBuffer, OneThread, PlaneStack, SliceImage, SliceRenderer, SliceStats, SliceView, SliceWork, Tiling,
     VolumeConfig, render_volume,
 };
 
-/// Gives each pixel the colour of its place, and nothing else.
+/// A renderer that gives each pixel a colour determined by its position.
 struct Painted(fn(u32) -> [u8; 3]);
 
 impl SliceRenderer for Painted {
@@ -18,7 +18,7 @@ impl SliceRenderer for Painted {
     }
 }
 
-/// Bytes 0 to 3 of a word of a slice of 32 x 8 pixels, with tiles and without.
+/// Returns bytes 0 to 3 of a word of a slice of 32 x 8 pixels, with tiles and without.
 fn bytes(colours: fn(u32) -> [u8; 3], row: usize, word: usize) -> [u8; 4] {
     let display = PlaneStack::new([32, 8], 1, 4.0).expect("valid");
     let words = [Tiling::PAPER, Tiling::OFF].map(|tiling| {

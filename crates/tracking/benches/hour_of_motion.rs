@@ -1,5 +1,5 @@
-//! An hour of head motion behind a 120 Hz tracker, with a prediction 50 ms ahead for each of its 432,000 reports: to be
-//! simulated in under a second.
+//! An hour of head motion behind a 120 Hz tracker, with a prediction 50 ms ahead for each of its 432,000 reports. The
+//! goal is a simulation in under a second.
 #![allow(missing_docs, reason = "criterion's macro makes a function without a doc comment")]
 
 use std::hint::black_box;

@@ -1,15 +1,15 @@
-//! How errors of prediction grow with the interval, on synthetic motion behind the optical ceiling tracker, for several levels of
-//! its noise: what argues for the noise that its preset has.
+//! Growth of prediction errors with the interval, on synthetic motion behind the optical ceiling tracker. Several noise
+//! levels are compared, which supports the noise of the tracker's preset.
 //!
-//! Published (Azuma and Bishop 1995, on that tracker): below 80 ms the error is 2 to 3 times smaller than without prediction, and
-//! at 100 and 200 ms it is 2.3 and 9 times what it is at 50 ms.
+//! Published values (Azuma and Bishop 1995, on this tracker): below 80 ms the error is 2 to 3 times smaller than
+//! without prediction. At 100 and 200 ms the error is 2.3 and 9 times the error at 50 ms.
 
 use tracking::motion::Synthetic;
 use tracking::predict::{PredictorConfig, PredictorKind, prediction_errors, tune};
 use tracking::time::{PS_PER_MS, PS_PER_S};
 use tracking::tracker::{TrackerConfig, TrackerModel};
 
-/// Seed of the noise and of the motion that are judged.
+/// Seed of the noise and the motion of the evaluation.
 const JUDGED: u64 = 2;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

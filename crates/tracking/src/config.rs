@@ -1,35 +1,43 @@
-//! Every number of this crate with unit, source, standing and allowed range. Presets take their values from here.
+//! Every number of this crate, with unit, source, provenance and allowed range. The presets take their values from
+//! these tables.
 //!
-//! Short names of sources: PF = Polhemus Fastrak manual rev. G; VRPN = notes in UNC's VRPN library; WARD92 = Ward et
-//! al., optical ceiling tracker, 1992; TR94 = Cohen and Olano, UNC TR94-028; I3D95 = Olano, Cohen, Mine and Bishop,
-//! I3D 1995; A95 = Azuma and Bishop 1995; JITP = Mine and Bishop, UNC TR93-005; LIST83 = List 1983, cited by JITP.
+//! Short names of sources:
+//!
+//! - PF: Polhemus Fastrak manual, revision G.
+//! - VRPN: notes in UNC's VRPN library.
+//! - WARD92: Ward et al., optical ceiling tracker, 1992.
+//! - TR94: Cohen and Olano, UNC TR94-028.
+//! - I3D95: Olano, Cohen, Mine and Bishop, I3D 1995.
+//! - A95: Azuma and Bishop 1995.
+//! - JITP: Mine and Bishop, UNC TR93-005.
+//! - LIST83: List 1983, cited by JITP.
 
 use crate::time::nearest_ps;
 use parameters::{ParameterTable, parameter_table};
 
-/// A span of a table in milliseconds, in picoseconds.
+/// Converts milliseconds of a parameter table into picoseconds, rounded to the nearest.
 pub(crate) fn ms_to_ps(ms: f64) -> u64 {
     nearest_ps(ms / 1e3)
 }
 
-/// The numbers of trackers, of the host's port and of predictors, as an experiment may change them.
+/// The adjustable numbers of the trackers, of the host's serial port and of the predictors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tables {
-    /// The Polhemus Fastrak, magnetic.
+    /// Numbers of the Polhemus Fastrak, a magnetic tracker.
     pub fastrak: Fastrak,
-    /// Ascension Flock of Birds.
+    /// Numbers of the Ascension Flock of Birds, a magnetic tracker.
     pub flock: Flock,
-    /// UNC's optical ceiling tracker.
+    /// Numbers of UNC's optical ceiling tracker.
     pub optical: Optical,
-    /// The Polhemus 3Space, magnetic.
+    /// Numbers of the Polhemus 3Space, a magnetic tracker.
     pub space: ThreeSpace,
-    /// The tracker without error and delay.
+    /// Numbers of an ideal tracker without error and delay.
     pub ideal: Ideal,
-    /// The host's serial port.
+    /// Numbers of the host's serial port.
     pub host: HostPort,
-    /// What prediction filters believe.
+    /// Assumptions of the prediction filters about noise and motion.
     pub filter: Filter,
-    /// Which reports are believed.
+    /// Limits by which the predictors accept or reject reports.
     pub gate: Gate,
 }
 
@@ -46,7 +54,7 @@ impl Tables {
         gate: Gate::PAPERS,
     };
 
-    /// All tables with their names.
+    /// Returns every table with its name.
     pub fn all(&self) -> [(&'static str, &dyn ParameterTable); 8] {
         [
             ("fastrak", &self.fastrak),
@@ -60,7 +68,7 @@ impl Tables {
         ]
     }
 
-    /// The table of that name, to change its numbers; `None` if there is none.
+    /// Returns the table called `name` for changing its numbers, or `None` if no table has this name.
     pub fn named_mut(&mut self, name: &str) -> Option<&mut dyn ParameterTable> {
         Some(match name {
             "fastrak" => &mut self.fastrak,
@@ -76,8 +84,8 @@ impl Tables {
     }
 }
 
-/// Tables of facts with their names: what heads, the measuring rig, the video and the picture of the papers are. No number
-/// of them is a setting of a tracked head.
+/// Tables of fixed facts with their names: head speeds, the latency rig, NTSC video and the picture of the papers'
+/// displays. An experiment cannot change these numbers.
 pub const FACTS: [(&str, &dyn ParameterTable); 4] = [
     ("head", &HeadSpeeds::PAPERS),
     ("rig", &RigNumbers::PAPERS),
@@ -88,25 +96,26 @@ pub const FACTS: [(&str, &dyn ParameterTable); 4] = [
 parameter_table! {
     /// The Polhemus Fastrak, a magnetic tracker.
     pub struct Fastrak {
-        /// Fastrak rate over all receivers.
+        /// Measurement rate of the Fastrak, shared by all receivers.
         rate: 120, "Hz", Published, 120..=120 in 1..=10000, "PF";
-        /// Fastrak, sync to first character.
+        /// Time from the Fastrak's sync signal to the first character on its line.
         sync_to_output: f64 = 5.5, "ms", Published, 5.5..=5.5 in 0.0..=10000.0, "PF";
-        /// Fastrak effective latency, middle of the measurement to first character.
+        /// Effective latency of the Fastrak, from the middle of the measurement to the first character.
         latency: f64 = 3.75, "ms", Published, 3.75..=5.5 in 0.0..=10000.0, "PF";
-        /// Fastrak ASCII record.
+        /// Length of an ASCII record of the Fastrak.
         record: 47, "bytes", Published, 8..=200 in 1..=1000, "PF";
-        /// Fastrak line rate.
+        /// Serial line rate of the Fastrak.
         baud: 115200, "baud", Published, 300..=115200 in 300..=1000000, "PF";
-        /// Gain a of the Fastrak's filter x' = a x + (1 - a) x', which adds a delay of dt (1 - a) / a at dt between solutions; 1 is off.
+        /// Gain a of the Fastrak's filter x' = a x + (1 - a) x'. The filter adds a delay of dt (1 - a) / a, where dt is
+        /// the time between measurements. A gain of 1 turns the filter off.
         filter_gain: f64 = 1.0, "1", Assumed, 0.05..=1.0 in 0.000001..=1.0, "PF describes the filter: 4.2 ms of apparent latency at 0.95, 162 ms at 0.05; that it is off is assumed";
-        /// Fastrak position noise from report to report, rms of each axis.
+        /// Position noise of the Fastrak from report to report, rms of each axis.
         position_noise: f64 = 0.2, "mm", Assumed, 0.0..=0.8 in 0.0..=10000.0, "PF gives none: less than its static accuracy";
-        /// Fastrak orientation noise from report to report, rms about each axis.
+        /// Orientation noise of the Fastrak from report to report, rms about each axis.
         orientation_noise: f64 = 0.03, "deg", Assumed, 0.0..=0.15 in 0.0..=90.0, "PF gives none: less than its static accuracy";
-        /// Fastrak static accuracy of a position, rms of each axis: a bias, the same in every report of a run.
+        /// Static position error of the Fastrak, rms of each axis: a bias, the same in every report of a run.
         position_bias: f64 = 0.8, "mm", Published, 0.0..=2.0 in 0.0..=10000.0, "PF";
-        /// Fastrak static accuracy of an orientation, rms about each axis: a bias, the same in every report of a run.
+        /// Static orientation error of the Fastrak, rms about each axis: a bias, the same in every report of a run.
         orientation_bias: f64 = 0.15, "deg", Published, 0.0..=0.5 in 0.0..=90.0, "PF";
     }
 }
@@ -114,21 +123,22 @@ parameter_table! {
 parameter_table! {
     /// The Ascension Flock of Birds, a magnetic tracker.
     pub struct Flock {
-        /// Flock of Birds rate.
+        /// Measurement rate of the Flock of Birds.
         rate: 100, "Hz", Published, 10..=144 in 1..=10000, "VRPN";
-        /// Flock of Birds position latency, filters off.
+        /// Position latency of the Flock of Birds with its filters off.
         position_latency: f64 = 7.5, "ms", Published, 7.5..=30.0 in 0.0..=10000.0, "VRPN";
-        /// Flock of Birds orientation latency, filters off.
+        /// Orientation latency of the Flock of Birds with its filters off.
         orientation_latency: f64 = 2.0, "ms", Published, 2.0..=30.0 in 0.0..=10000.0, "VRPN";
-        /// Flock of Birds position noise from report to report, rms of each axis.
+        /// Position noise of the Flock of Birds from report to report, rms of each axis.
         position_noise: f64 = 0.5, "mm", Assumed, 0.0..=2.5 in 0.0..=10000.0, "none published: less than the static accuracy";
-        /// Flock of Birds orientation noise from report to report, rms about each axis.
+        /// Orientation noise of the Flock of Birds from report to report, rms about each axis.
         orientation_noise: f64 = 0.1, "deg", Assumed, 0.0..=0.5 in 0.0..=90.0, "none published: less than the static accuracy";
-        /// Flock of Birds static accuracy of a position, rms of each axis: a bias, the same in every report of a run.
+        /// Static position error of the Flock of Birds, rms of each axis: a bias, the same in every report of a run.
         position_bias: f64 = 2.5, "mm", Published, 0.0..=5.0 in 0.0..=10000.0, "Ascension data sheet";
-        /// Flock of Birds static accuracy of an orientation, rms about each axis: a bias, the same in every report of a run.
+        /// Static orientation error of the Flock of Birds, rms about each axis: a bias, the same in every report of a
+        /// run.
         orientation_bias: f64 = 0.5, "deg", Published, 0.0..=1.0 in 0.0..=90.0, "Ascension data sheet";
-        /// Time from the first report to the crash of a patched host with the Flock.
+        /// Time from the first report until a patched host crashes with the Flock of Birds.
         crash: f64 = 1000.0, "ms", Assumed, 0.0..=600000.0, "TR94 says that it crashes, not when";
     }
 }
@@ -136,17 +146,19 @@ parameter_table! {
 parameter_table! {
     /// UNC's optical ceiling tracker.
     pub struct Optical {
-        /// Optical ceiling tracker rate.
+        /// Measurement rate of the optical ceiling tracker.
         rate: 60, "Hz", Assumed, 20..=100 in 1..=10000, "WARD92 gives 20-100";
-        /// Optical ceiling tracker latency.
+        /// Latency of the optical ceiling tracker.
         latency: f64 = 33.0, "ms", Published, 20.0..=60.0 in 0.0..=10000.0, "I3D95; WARD92 gives 20-60";
-        /// Optical ceiling tracker position noise from report to report, rms of each axis.
+        /// Position noise of the optical ceiling tracker from report to report, rms of each axis.
         position_noise: f64 = 1.5, "mm", Assumed, 0.6..=2.0 in 0.0..=10000.0, "at most WARD92's resolution of 2 mm, at least 2/sqrt(12); between by the angle's";
-        /// Optical ceiling tracker orientation noise from report to report, rms about each axis.
+        /// Orientation noise of the optical ceiling tracker from report to report, rms about each axis.
         orientation_noise: f64 = 0.15, "deg", Assumed, 0.06..=0.2 in 0.0..=90.0, "at most WARD92's resolution of 0.2 deg, at least 0.2/sqrt(12); with 0.1 to 0.15 prediction cuts the error 2 to 3 times below 80 ms, as A95 measured on this tracker";
-        /// Optical ceiling tracker static error of a position, rms of each axis: a bias, the same in every report of a run.
+        /// Static position error of the optical ceiling tracker, rms of each axis: a bias, the same in every report of
+        /// a run.
         position_bias: f64 = 0.0, "mm", Assumed, 0.0..=5.0 in 0.0..=10000.0, "WARD92 gives none; 0 for a calibrated ceiling";
-        /// Optical ceiling tracker static error of an orientation, rms about each axis: a bias, the same in every report of a run.
+        /// Static orientation error of the optical ceiling tracker, rms about each axis: a bias, the same in every
+        /// report of a run.
         orientation_bias: f64 = 0.0, "deg", Assumed, 0.0..=0.5 in 0.0..=90.0, "WARD92 gives none; 0 for a calibrated ceiling";
     }
 }
@@ -154,83 +166,83 @@ parameter_table! {
 parameter_table! {
     /// The Polhemus 3Space, a magnetic tracker, above a steel floor.
     pub struct ThreeSpace {
-        /// 3Space rate over all receivers.
+        /// Measurement rate of the 3Space, shared by all receivers.
         rate: 60, "Hz", Assumed, 30..=60 in 1..=10000, "usual figure of the product";
-        /// 3Space latency.
+        /// Latency of the 3Space, from measurement to output.
         latency: f64 = 28.5, "ms", Assumed, 10.0..=90.0 in 0.0..=10000.0, "tens of milliseconds";
-        /// 3Space position noise from report to report, rms of each axis.
+        /// Position noise of the 3Space from report to report, rms of each axis.
         position_noise: f64 = 0.5, "mm", Assumed, 0.0..=2.5 in 0.0..=10000.0, "as the Flock";
-        /// 3Space orientation noise from report to report, rms about each axis.
+        /// Orientation noise of the 3Space from report to report, rms about each axis.
         orientation_noise: f64 = 0.1, "deg", Assumed, 0.0..=0.5 in 0.0..=90.0, "as the Flock";
-        /// 3Space static accuracy of a position, rms of each axis: a bias, the same in every report of a run.
+        /// Static position error of the 3Space, rms of each axis: a bias, the same in every report of a run.
         position_bias: f64 = 2.5, "mm", Assumed, 0.0..=5.0 in 0.0..=10000.0, "as the Flock";
-        /// 3Space static accuracy of an orientation, rms about each axis: a bias, the same in every report of a run.
+        /// Static orientation error of the 3Space, rms about each axis: a bias, the same in every report of a run.
         orientation_bias: f64 = 0.5, "deg", Assumed, 0.0..=1.0 in 0.0..=90.0, "as the Flock";
-        /// Depth of the bowl that metal makes of a plane, at 1 m from the transmitter.
+        /// Depth of the bowl into which metal distorts a measured plane, at 1 m from the transmitter.
         bowl: f64 = 20.0, "mm", Assumed, 0.0..=200.0 in 0.0..=1000.0, "TR94 describes the bowl, not its depth";
-        /// Distance at which the bowl has half the depth of its parabola.
+        /// Distance from the transmitter at which the bowl has half the depth of its parabola.
         bowl_reach: f64 = 2.0, "m", Assumed, 0.5..=10.0 in 0.001..=1000.0, "keeps the error finite out of range";
     }
 }
 
 parameter_table! {
-    /// The tracker without error and delay.
+    /// An ideal tracker without error and delay.
     pub struct Ideal {
-        /// Ideal tracker rate.
+        /// Measurement rate of the ideal tracker.
         rate: 1000, "Hz", Assumed, 1..=10000 in 1..=10000, "well above all trackers";
     }
 }
 
 parameter_table! {
-    /// How the host hears of a report.
+    /// The host's serial port, through which a report reaches the program.
     pub struct HostPort {
-        /// Bits on the line for a byte (start, 8 data, stop).
+        /// Bits on the serial line for each byte: start bit, 8 data bits, stop bit.
         byte_bits: 10, "bits", Derived, 10..=11 in 1..=100, "47 x 10 / 115200 = 4.08 ms and / 9600 = 49 ms, the times of PF";
-        /// Time between looks of the kernel at the serial line.
+        /// Interval at which the host's kernel polls the serial line.
         poll: f64 = 30.0, "ms", Published, 1.0..=100.0 in 0.001..=10000.0, "TR94";
     }
 }
 
 parameter_table! {
-    /// How heads move, by published measurements.
+    /// Published measurements of head motion.
     pub struct HeadSpeeds {
         /// Typical speed of a fast head turn.
         typical_turn: f64 = 200.0, "deg/s", Published, 0.0..=370.0, "JITP, LIST83";
         /// Peak speed of a head turn.
         peak_turn: f64 = 370.0, "deg/s", Published, 200.0..=600.0, "JITP, LIST83";
-        /// Mean angular speed of recorded headset traces.
+        /// Mean angular speed in recorded headset traces.
         mean_turn: f64 = 40.0, "deg/s", Published, 40.0..=40.0, "17 minutes of recorded use";
-        /// 95th percentile of the angular speed of those traces.
+        /// 95th percentile of the angular speed in recorded headset traces.
         turn_95: f64 = 114.0, "deg/s", Published, 114.0..=114.0, "17 minutes of recorded use";
-        /// 99.9th percentile of the angular speed of those traces.
+        /// 99.9th percentile of the angular speed in recorded headset traces.
         turn_999: f64 = 283.0, "deg/s", Published, 283.0..=283.0, "17 minutes of recorded use";
-        /// Mean translation speed of those traces.
+        /// Mean translation speed in recorded headset traces.
         mean_translation: f64 = 0.37, "m/s", Published, 0.37..=0.37, "17 minutes of recorded use";
-        /// Frequency below which 95 % of the yaw energy lies.
+        /// Frequency below which 95 % of the energy of a head's yaw lies.
         yaw_energy_95: f64 = 0.14, "Hz", Published, 0.14..=0.14, "17 minutes of recorded use";
-        /// Frequency below which practically all yaw energy lies.
+        /// Frequency below which practically all energy of a head's yaw lies.
         yaw_energy_all: f64 = 2.0, "Hz", Published, 2.0..=2.0, "17 minutes of recorded use";
     }
 }
 
 parameter_table! {
-    /// The pendulum that measures latency, and what detects its low point.
+    /// The pendulum rig that measures latency, with the detectors of the pendulum's low point.
     pub struct RigNumbers {
-        /// Arm of the measuring pendulum.
+        /// Length of the pendulum's arm.
         pendulum_arm: f64 = 0.5, "m", Assumed, 0.1..=2.0 in 0.001..=1000.0, "TR94 gives none";
-        /// Greatest angle of the measuring pendulum.
+        /// Greatest angle of the pendulum from the vertical.
         pendulum_amplitude: f64 = 20.0, "deg", Assumed, 1.0..=90.0 in 0.001..=179.0, "TR94 gives none";
         /// Standard gravity.
         gravity: f64 = 9.80665, "m/s^2", Published, 9.78..=9.84, "CGPM 1901";
         /// Width of the LED's beam at the pendulum.
         led_beam: f64 = 2.0, "mm", Assumed, 0.1..=20.0, "TR94 gives none";
-        /// Visible line of the screen under the photodiode.
+        /// Visible line of the screen that the photodiode covers.
         photodiode_line: 120, "lines", Assumed, 0..=239, "middle of a 240-line field; TR94 gives none";
     }
 }
 
 parameter_table! {
-    /// The video that heads look at.
+    /// NTSC video timing of the displays that a viewer sees.
     pub struct Ntsc {
         /// Time from one vertical retrace to the next.
         field: f64 = 16.683333333333334, "ms", Published, 16.68..=16.69, "NTSC, 1001/60000 s";
@@ -240,55 +252,55 @@ parameter_table! {
 }
 
 parameter_table! {
-    /// The picture of a head-mounted display.
+    /// The picture of the papers' head-mounted display.
     pub struct HeadMountedView {
-        /// Width of the head-mounted display.
+        /// Width of the head-mounted display's picture.
         width: 640, "px", Published, 1..=16384, "TR94";
-        /// Height of the head-mounted display.
+        /// Height of the head-mounted display's picture.
         height: 480, "px", Published, 1..=16384, "TR94";
-        /// Horizontal angle of view.
+        /// Horizontal angle of view of the head-mounted display.
         horizontal_angle: f64 = 60.0, "deg", Published, 1.0..=170.0, "JITP";
     }
 }
 
 parameter_table! {
-    /// What the prediction filters believe.
+    /// Assumptions of the prediction filters about noise and motion.
     pub struct Filter {
-        /// White jerk of the position filter, root of its spectral density.
+        /// Root of the spectral density of the white jerk that drives the position filter.
         position_jerk: f64 = 0.4, "m/s^3/sqrt(Hz)", Assumed, 0.01..=1000.0 in 0.000001..=1000000.0, "least mean error 50 ms ahead, flat from 0.2 to 0.6; used where the filter is not tuned";
-        /// White jerk of the orientation filter, root of its spectral density.
+        /// Root of the spectral density of the white jerk that drives the orientation filter.
         orientation_jerk: f64 = 14.0, "rad/s^3/sqrt(Hz)", Assumed, 0.1..=10000.0 in 0.000001..=1000000.0, "least mean error 50 ms ahead, flat from 10 to 20; used where the filter is not tuned";
-        /// Standard deviation of the speed at the start of a filter.
+        /// Standard deviation of the speed that a filter assumes at its start.
         start_speed: f64 = 1.0, "m/s", Assumed, 0.01..=10.0 in 0.000001..=1000.0, "above the mean translation speed";
-        /// Standard deviation of the acceleration at the start of a filter.
+        /// Standard deviation of the acceleration that a filter assumes at its start.
         start_acceleration: f64 = 5.0, "m/s^2", Assumed, 0.01..=100.0 in 0.000001..=10000.0, "half of gravity";
-        /// Standard deviation of the angular velocity at the start of a filter.
+        /// Standard deviation of the angular velocity that a filter assumes at its start.
         start_turn: f64 = 2.0, "rad/s", Assumed, 0.01..=20.0 in 0.000001..=1000.0, "the 95th percentile of recorded traces";
-        /// Standard deviation of the angular acceleration at the start of a filter.
+        /// Standard deviation of the angular acceleration that a filter assumes at its start.
         start_turn_acceleration: f64 = 20.0, "rad/s^2", Assumed, 0.01..=1000.0 in 0.000001..=100000.0, "100 ms to reach the above";
-        /// Reports between the points of a difference (1 takes neighbours).
+        /// Distance in reports between the two points of a difference. A value of 1 takes neighbouring reports.
         baseline: 4, "reports", Assumed, 1..=16, "noise of the velocity falls with it, delay rises";
-        /// Longest prediction; beyond it the last pose is given.
+        /// Longest prediction. Beyond this horizon the predictor returns the last pose.
         horizon: f64 = 500.0, "ms", Assumed, 1.0..=10000.0, "2.5 times the longest measured prediction";
     }
 }
 
 parameter_table! {
-    /// Which reports are believed.
+    /// Limits by which a predictor accepts or rejects reports.
     pub struct Gate {
-        /// Fastest believable translation.
+        /// Fastest translation that the gate accepts.
         speed: f64 = 8.0, "m/s", Assumed, 1.0..=100.0, "20 times the mean of recorded traces";
-        /// Fastest believable turn.
+        /// Fastest turn that the gate accepts.
         turn: f64 = 1000.0, "deg/s", Assumed, 370.0..=10000.0, "2.7 times the peak of LIST83";
-        /// Distance that noise alone may jump.
+        /// Distance between two reports that noise alone may cause.
         distance: f64 = 30.0, "mm", Assumed, 1.0..=1000.0, "40 standard deviations of a difference of two Flock reports, or 8 of one whose bias were noise";
-        /// Angle that noise alone may jump.
+        /// Angle between two reports that noise alone may cause.
         angle: f64 = 6.0, "deg", Assumed, 0.1..=90.0, "40 standard deviations of a difference of two Flock reports, or 8 of one whose bias were noise";
-        /// Rejected jumps in a row after which the new place is believed.
+        /// Number of successive rejected jumps after which the gate accepts the new position.
         patience: 5, "reports", Assumed, 1..=100, "42 ms at 120 Hz";
-        /// Silence after which velocities are forgotten.
+        /// Time without reports after which a filter restarts with unknown velocities.
         gap: f64 = 250.0, "ms", Assumed, 10.0..=10000.0, "30 reports at 120 Hz; longer than any planned prediction";
-        /// Least time between two reports.
+        /// Least time between two accepted reports.
         interval: f64 = 0.05, "ms", Assumed, 0.0..=1.0, "half the period of the fastest rate of a tracker";
     }
 }

@@ -1,21 +1,21 @@
-//! What a user can get wrong in a configuration.
+//! Errors in a configuration of a tracked head.
 
 use parameters::ParameterError;
 use thiserror::Error;
 
-/// A setting that no machine could have.
+/// An error for a setting out of range or for settings that contradict each other.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SettingError {
-    /// A number of the tables is not finite or out of range.
+    /// A number of a parameter table is not finite or out of range.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
-    /// A number that stands in no table is not finite or out of range.
+    /// A number outside the parameter tables is not finite or out of range.
     #[error("{what}: expected {low} to {high}, found {found}")]
     OutOfRange {
-        /// Which setting.
+        /// Description of the setting.
         what: &'static str,
-        /// What was given.
+        /// The value that was given.
         found: f64,
         /// Least allowed value.
         low: f64,
@@ -25,13 +25,13 @@ pub enum SettingError {
     /// Two settings contradict each other.
     #[error("settings contradict each other: {what}")]
     Contradiction {
-        /// Which settings, and how they contradict.
+        /// Description of the settings and of their contradiction.
         what: &'static str,
     },
 }
 
 impl SettingError {
-    /// `found` if it is within [low, high], which NaN never is.
+    /// Returns an error unless `found` lies within `low..=high`. NaN is always an error.
     pub(crate) fn check(what: &'static str, found: f64, low: f64, high: f64) -> Result<(), Self> {
         if (low..=high).contains(&found) {
             return Ok(());

@@ -1,4 +1,4 @@
-//! Trackers and predictors, written out as keys and values.
+//! Writes trackers and predictors as keys and values.
 
 use parameters::{Entry, ParameterTable};
 
@@ -8,7 +8,7 @@ use crate::predict::PredictorConfig;
 use crate::tracker::{HostLine, MagneticDistortion, SerialLine, TrackerConfig, TrackerFault};
 
 impl TrackerConfig {
-    /// Writes everything that the tracker is.
+    /// Writes every setting of the tracker as a key and a value to `settings`.
     pub fn identify(&self, settings: &mut SettingSink) {
         let Self {
             name,
@@ -42,7 +42,7 @@ impl TrackerConfig {
         if let Some(SerialLine { record_bytes, baud, byte_bits }) = serial {
             settings("tracker.serial.record_bytes", record_bytes);
             settings("tracker.serial.baud", baud);
-            // Names from before it could be set are those of the usual bytes.
+            // Ten bits were once fixed. An experiment with this usual value keeps its old name, so the key is left out.
             if u64::from(*byte_bits) != HostPort::PAPERS.byte_bits {
                 settings("tracker.serial.byte_bits", byte_bits);
             }
@@ -84,7 +84,7 @@ fn write_fault(settings: &mut SettingSink, fault: &TrackerFault) {
 }
 
 impl PredictorConfig {
-    /// Writes everything that the predictor is.
+    /// Writes every setting of the predictor as a key and a value to `settings`.
     pub fn identify(&self, settings: &mut SettingSink) {
         let Self {
             kind,
@@ -114,7 +114,8 @@ impl PredictorConfig {
     }
 }
 
-/// Writes a number that is not the papers'. Names from before these could be set are those of the papers' numbers.
+/// Writes a number only if it differs from the papers' value. Experiments with the papers' values keep the names from
+/// before the number became a setting.
 fn write_unusual(settings: &mut SettingSink, of: &str, entry: &Entry) {
     if entry.value != entry.info.papers {
         settings(&format!("{of}.{}", entry.info.name), &entry.value);

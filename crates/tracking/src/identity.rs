@@ -1,8 +1,8 @@
-//! What motions, trackers and predictors are, written out as keys and values: for names of experiments that must not
-//! change with the name of a type or a field.
+//! Writes motions, trackers and predictors as keys and values. The names of experiments derive from these texts and
+//! must not change with the name of a type or a field.
 //!
-//! Every number is written as [`Display`] writes it, which for an `f64` is the shortest text that reads back as the same
-//! number. Fields are taken apart one by one, so that a new one which nobody writes does not compile.
+//! [`Display`] formats every number; for an `f64` this is the shortest text that parses to the same number. The
+//! functions destructure each struct, so a new field that is not written does not compile.
 
 use core::fmt::Display;
 
@@ -10,16 +10,16 @@ use glam::DVec3;
 
 use crate::pose::Pose;
 
-/// What takes the settings, one after the other: a key and its value.
+/// A callback that receives settings one after the other, each as a key and a value.
 pub type SettingSink<'a> = dyn FnMut(&str, &dyn Display) + 'a;
 
-/// Writes the three numbers of a place or direction.
+/// Writes the three coordinates of a position or direction as one setting.
 pub(crate) fn write_vector(settings: &mut SettingSink, key: &str, vector: DVec3) {
     let [x, y, z] = vector.to_array();
     settings(key, &format_args!("{x} {y} {z}"));
 }
 
-/// Writes a position and a quaternion, real part last.
+/// Writes a pose as one setting: position, then quaternion with the real part last.
 pub(crate) fn write_pose(settings: &mut SettingSink, key: &str, pose: &Pose) {
     let Pose { position, orientation } = pose;
     let [x, y, z] = position.to_array();

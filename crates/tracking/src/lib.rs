@@ -1,4 +1,5 @@
-//! Head motion, tracker models, prediction, pixel errors, and latency measured from outside, for head-mounted displays.
+//! Head motion, tracker models and pose prediction for head-mounted displays, with the pixel errors of a wrong pose and
+//! a latency measurement from outside the machine.
 //!
 //! ```text
 //!  motion ──pose(t)──▶ tracker ──▶ cable ──▶ host port ──Report──▶ predict ──pose(t')──▶ view
@@ -8,25 +9,26 @@
 //!    └──▶ rig: pendulum, photodiodes, D/A line, oscilloscope
 //! ```
 //!
-//! # Behaviour, in the order of the signal
+//! # Modules, in the order of the signal
 //!
-//! 1. [`motion`]: where the head is, a pure function of simulated time. Still, pan, pendulum (exact, by elliptic
-//!    functions), a seeded generator fitted to recorded headset use, and replay of CSV.
-//! 2. [`tracker`]: solutions on the grid of the tracker's rate, each with the instant at which its pose was true;
-//!    metal, noise and the tracker's own filter; one record at a time on the cable, so that solutions are dropped when
-//!    a transfer outlasts the period; then the host's kernel, which polls. Faults can be injected.
-//! 3. [`predict`]: a gate that rejects and counts what cannot be true, then a filter, asked for an exact instant.
-//! 4. [`view`]: what an error of the pose is worth in pixels, and the mathematics of the dual display list, of the
-//!    raster offset and of frameless rendering.
-//! 5. [`rig`]: the pendulum that measures tracking and rendering latency from outside.
+//! 1. [`motion`]: the pose of the head as a pure function of simulated time. A head can stand still, pan, swing as a
+//!    pendulum, walk, follow a random generator fitted to recorded headset use, or replay a recorded file.
+//! 2. [`tracker`]: the tracker measures a pose at its own rate and adds noise, metal distortion and filter delay. The
+//!    serial cable sends one record at a time, so the tracker drops measurements when a transfer takes longer than its
+//!    period. The host's kernel polls the serial port. Experiments can inject faults.
+//! 3. [`predict`]: a gate rejects and counts impossible reports. A filter then predicts the pose at an exact instant.
+//! 4. [`view`]: converts a pose error into pixels, and has the mathematics of the dual display list, of the raster
+//!    offset and of frameless rendering.
+//! 5. [`rig`]: a pendulum that measures tracking latency and rendering latency from outside the machine.
 //!
 //! # Units and conventions
 //!
-//! Instants and spans are picoseconds of simulated time in `u64` (`_ps`); only differences become floating point.
-//! Metres, degrees in settings, radians in vectors. Axes are right-handed, y up; a head looks along its own -z. A
-//! quaternion turns head axes into world axes. The same seed gives the same numbers on every host: all transcendental
-//! functions come from `libm`, and random numbers are functions of (seed, index). Every number that describes hardware
-//! or people is in the tables of [`config`], with unit, source, standing and range.
+//! Instants and spans are picoseconds of simulated time in `u64` (suffix `_ps`). Only differences become floating
+//! point. Lengths are metres. Angles are degrees in settings and radians in vectors. Axes are right-handed with y up,
+//! and a head looks along its own -z axis. A quaternion rotates head axes into world axes. The same seed gives the same
+//! numbers on every host: all transcendental functions come from `libm`, and each random number is a function of (seed,
+//! index). The tables of [`config`] hold every number that describes hardware or people, with unit, source, provenance
+//! and range.
 //!
 //! ```
 //! use tracking::motion::Synthetic;
@@ -46,12 +48,14 @@
 //!
 //! # Not modelled
 //!
-//! - The field of a magnetic tracker: distortion is a smooth bowl. Nor sight lines of the optical one.
-//! - Coloured noise: all noise is white, so the tracker's filter looks better and slow wander is missing.
+//! - The field of a magnetic tracker: the distortion is a smooth bowl. The sight lines of the optical tracker are
+//!   missing too.
+//! - Coloured noise: all noise is white. The tracker's filter therefore performs better than a real one, and slow drift
+//!   is missing.
 //! - Records of other receivers: they only take time on the cable. The head's record goes first.
-//! - Clock drift between tracker and host; the phase of the host's polling is the only thing left to chance.
-//! - Inertial sensors, and statistical correlation of translation with rotation in the synthetic motion.
-//! - The neck: a pan turns the eye about itself.
+//! - Clock drift between tracker and host. Only the phase of the host's polling is random.
+//! - Inertial sensors, and the statistical correlation between translation and rotation in the synthetic motion.
+//! - The neck: a pan rotates the eye about its own position.
 //! - Damping of the pendulum, and the response times of photodiodes.
 //!
 //! # Sources

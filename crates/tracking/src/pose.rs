@@ -1,4 +1,4 @@
-//! A head's place and attitude.
+//! The pose of a head: position and orientation.
 
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
@@ -8,37 +8,38 @@ use crate::rotation;
 /// Position in metres and orientation (head to world). Right-handed, y up; the head looks along its own -z.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
-    /// Place of the head in the world, metres: the point between the eyes, or the one eye where there is one picture.
+    /// Position in the world, metres: the point between the eyes, or the eye itself if there is only one picture.
     pub position: DVec3,
-    /// Unit quaternion that turns head axes into world axes.
+    /// Unit quaternion that rotates head axes into world axes.
     pub orientation: DQuat,
 }
 
 impl Pose {
-    /// At the origin, looking along -z.
+    /// The pose at the origin that looks along -z.
     pub const IDENTITY: Self = Self { position: DVec3::ZERO, orientation: DQuat::IDENTITY };
 
-    /// A pose at `position` that looks along -z.
+    /// Creates a pose at `position` that looks along -z.
     pub fn at(position: DVec3) -> Self {
         Self { position, ..Self::IDENTITY }
     }
 
-    /// A pose at the origin with this orientation.
+    /// Creates a pose at the origin with this orientation.
     pub fn facing(orientation: DQuat) -> Self {
         Self { orientation, ..Self::IDENTITY }
     }
 
-    /// The same with every number rounded to single precision, which is what a scene's coordinates have.
+    /// Rounds every number to single precision, the precision of a scene's coordinates.
     pub fn in_single_precision(&self) -> Self {
         Self { position: self.position.as_vec3().as_dvec3(), orientation: self.orientation.as_quat().as_dquat() }
     }
 
-    /// A world point in head axes (metres, -z ahead).
+    /// Converts a world point into head axes (metres, -z ahead).
     pub fn view_of(&self, world: DVec3) -> DVec3 {
         self.orientation.conjugate() * (world - self.position)
     }
 
-    /// Between two poses: position on the straight line, orientation by slerp. 0 gives `self`, 1 gives `to`.
+    /// Interpolates between two poses: positions linearly, orientations by slerp. `s` = 0 gives `self`, and 1 gives
+    /// `to`.
     pub fn interpolate(&self, to: &Self, s: f64) -> Self {
         Self {
             position: self.position.lerp(to.position, s),
@@ -46,17 +47,17 @@ impl Pose {
         }
     }
 
-    /// Distance to another pose in metres.
+    /// Returns the distance to another pose in metres.
     pub fn distance_m(&self, other: &Self) -> f64 {
         self.position.distance(other.position)
     }
 
-    /// Angle to another pose in degrees, 0 to 180.
+    /// Returns the angle to another pose in degrees, 0 to 180.
     pub fn angle_deg(&self, other: &Self) -> f64 {
         rotation::angle_deg(self.orientation, other.orientation)
     }
 
-    /// Whether all seven numbers are finite: neither NaN nor infinite.
+    /// Returns true if none of the seven numbers is NaN or infinite.
     pub fn is_finite(&self) -> bool {
         self.position.is_finite() && self.orientation.is_finite()
     }

@@ -1,35 +1,36 @@
-//! Seeded random numbers as pure functions of (seed, index): reports and knots can be drawn in any order, on any host.
+//! Random numbers as pure functions of (seed, index). Reports and knots can be drawn in any order, on any host.
 //!
-//! The generator is SplitMix64 (Steele, Lea and Flood 2014), whose step is the kernel's [`pxpl5_sim::mix`].
+//! The generator is SplitMix64 (Steele, Lea and Flood 2014). The step of the generator is [`pxpl5_sim::mix`] of the
+//! simulation kernel.
 
 use pxpl5_sim::mix;
 
-/// How far the states of neighbouring elements are apart: the increment of SplitMix64, 2^64 / golden ratio, made odd.
+/// Increment of SplitMix64 between the states of neighbouring elements: 2^64 / golden ratio, made odd.
 const INCREMENT: u64 = 0x9E37_79B9_7F4A_7C15;
 
-/// 64 random bits for (seed, index): element `index`, from 0, of the SplitMix64 sequence that starts at `seed`.
+/// Returns 64 random bits for (seed, index): element `index`, from 0, of the SplitMix64 sequence that starts at `seed`.
 #[must_use]
 pub fn bits(seed: u64, index: u64) -> u64 {
     mix(seed.wrapping_add(index.wrapping_mul(INCREMENT)))
 }
 
-/// Seed of an independent stream. Two rounds, so that streams of neighbouring seeds do not overlap.
+/// Returns the seed of an independent stream. Two rounds prevent streams of neighbouring seeds from overlapping.
 pub(crate) fn stream(seed: u64, name: u64) -> u64 {
     bits(bits(seed, name), seed)
 }
 
-/// A number uniform in [0, 1), made of the upper 53 bits.
+/// Returns a number uniform in [0, 1), made of the upper 53 bits.
 #[must_use]
 pub fn unit(bits: u64) -> f64 {
     (bits >> 11) as f64 / (1u64 << 53) as f64
 }
 
-/// Uniform integer in [0, bound), biased by less than bound / 2^64.
+/// Returns an integer uniform in [0, bound), with a bias below bound / 2^64.
 pub(crate) fn below(bits: u64, bound: u64) -> u64 {
     ((u128::from(bits) * u128::from(bound)) >> 64) as u64
 }
 
-/// Two independent standard normal deviates (Box and Muller 1958).
+/// Returns two independent standard normal deviates (Box and Muller 1958).
 pub(crate) fn normal_pair(seed: u64, index: u64) -> (f64, f64) {
     let open = 1.0 - unit(bits(seed, 2 * index));
     let turn = unit(bits(seed, 2 * index + 1));
@@ -38,8 +39,8 @@ pub(crate) fn normal_pair(seed: u64, index: u64) -> (f64, f64) {
     (radius * cos, radius * sin)
 }
 
-/// Bell-shaped deviate of mean 0 and variance 1 in [-2 sqrt 3, 2 sqrt 3]: four 16-bit uniforms summed (Irwin-Hall).
-/// No transcendental function, hence much cheaper than [`normal_pair`].
+/// Returns a bell-shaped deviate of mean 0 and variance 1 in [-2 sqrt 3, 2 sqrt 3]: the sum of four 16-bit uniforms
+/// (Irwin-Hall). Without transcendental functions it is much cheaper than [`normal_pair`].
 pub(crate) fn bell(bits: u64) -> f64 {
     let sum = (bits & 0xFFFF) + ((bits >> 16) & 0xFFFF) + ((bits >> 32) & 0xFFFF) + (bits >> 48);
     (sum as f64 / 65_535.0 - 2.0) * SQRT_3

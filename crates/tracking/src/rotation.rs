@@ -1,14 +1,15 @@
-//! Quaternions and rotation vectors. Every transcendental function comes from `libm`, so that hosts agree bit for bit.
+//! Quaternions and rotation vectors. Every transcendental function comes from `libm`, so that all hosts agree bit for
+//! bit.
 //!
-//! Rotation vectors are in radians, in the world frame: `exp(r) * q` turns `q` by `r`. Axes are right-handed, y is up,
-//! and a view looks along -z; so positive yaw turns left, positive pitch up.
+//! Rotation vectors are in radians, in the world frame: `exp(r) * q` rotates `q` by `r`. Axes are right-handed with y
+//! up, and a view looks along -z. Positive yaw therefore turns left, and positive pitch turns up.
 
 use glam::{DQuat, DVec3};
 
-/// Below this squared half angle the series of [`exp`] and [`log`] are exact to the last bit (next term < 1e-18).
+/// Squared half angle below which the series of [`exp`] and [`log`] are exact to the last bit (next term < 1e-18).
 const SERIES_BELOW: f64 = 1e-6;
 
-/// The rotation by the vector `r` (rad). Any length is allowed.
+/// Returns the rotation by the vector `r` (rad). Any length is allowed.
 pub fn exp(r: DVec3) -> DQuat {
     let half_squared = r.length_squared() / 4.0;
     let (sinc, cos) = if half_squared < SERIES_BELOW {
@@ -22,7 +23,8 @@ pub fn exp(r: DVec3) -> DQuat {
     DQuat::from_xyzw(v.x, v.y, v.z, cos)
 }
 
-/// The shortest rotation vector (rad, length at most pi) of the unit quaternion `q`. `q` and `-q` give the same vector.
+/// Returns the shortest rotation vector (rad, length at most pi) of the unit quaternion `q`. `q` and `-q` give the same
+/// vector.
 pub fn log(q: DQuat) -> DVec3 {
     let q = if q.w < 0.0 { -q } else { q };
     let v = DVec3::new(q.x, q.y, q.z);
@@ -35,28 +37,28 @@ pub fn log(q: DQuat) -> DVec3 {
     v * (2.0 * libm::atan2(sin, q.w) / sin)
 }
 
-/// The world-frame rotation vector that turns `from` into `to` on the shorter way.
+/// Returns the world-frame rotation vector that rotates `from` into `to` the shorter way.
 pub fn difference(from: DQuat, to: DQuat) -> DVec3 {
     log(to * from.conjugate())
 }
 
-/// Angle between two orientations in degrees, 0 to 180.
+/// Returns the angle between two orientations in degrees, 0 to 180.
 pub fn angle_deg(a: DQuat, b: DQuat) -> f64 {
     difference(a, b).length().to_degrees()
 }
 
-/// Spherical linear interpolation on the shorter way: `from` at 0, `to` at 1.
+/// Interpolates spherically between two orientations the shorter way: `from` at 0, `to` at 1.
 pub fn slerp(from: DQuat, to: DQuat, s: f64) -> DQuat {
     (exp(difference(from, to) * s) * from).normalize()
 }
 
-/// Yaw about y, then pitch about the turned x, then roll about the turned z (radians).
+/// Returns the rotation by yaw about y, then pitch about the turned x, then roll about the turned z (radians).
 pub fn from_yaw_pitch_roll(yaw: f64, pitch: f64, roll: f64) -> DQuat {
     about_y(yaw) * about_x(pitch) * about_z(roll)
 }
 
-/// Yaw, pitch and roll in radians, the inverse of [`from_yaw_pitch_roll`]; pitch is within +-pi/2.
-/// Straight up or down, where yaw and roll are one, roll takes what is left after yaw 0.
+/// Returns yaw, pitch and roll in radians, the inverse of [`from_yaw_pitch_roll`]. Pitch is within +-pi/2. If the view
+/// is straight up or down, yaw and roll have the same axis. Yaw is 0 in this case, and roll is the whole angle.
 pub fn to_yaw_pitch_roll(q: DQuat) -> (f64, f64, f64) {
     let forward = q * DVec3::NEG_Z;
     let level = (forward.x * forward.x + forward.z * forward.z).sqrt();
@@ -66,19 +68,19 @@ pub fn to_yaw_pitch_roll(q: DQuat) -> (f64, f64, f64) {
     (yaw, pitch, 2.0 * libm::atan2(rest.z, rest.w))
 }
 
-/// Rotation about x by `angle` radians.
+/// Returns the rotation about x by `angle` radians.
 pub fn about_x(angle: f64) -> DQuat {
     let (sin, cos) = libm::sincos(angle / 2.0);
     DQuat::from_xyzw(sin, 0.0, 0.0, cos)
 }
 
-/// Rotation about y by `angle` radians.
+/// Returns the rotation about y by `angle` radians.
 pub fn about_y(angle: f64) -> DQuat {
     let (sin, cos) = libm::sincos(angle / 2.0);
     DQuat::from_xyzw(0.0, sin, 0.0, cos)
 }
 
-/// Rotation about z by `angle` radians.
+/// Returns the rotation about z by `angle` radians.
 pub fn about_z(angle: f64) -> DQuat {
     let (sin, cos) = libm::sincos(angle / 2.0);
     DQuat::from_xyzw(0.0, 0.0, sin, cos)

@@ -1,4 +1,4 @@
-//! Conversions between picoseconds and seconds. Instants stay integers; only differences become floating point.
+//! Conversions between picoseconds and seconds. Instants stay integers. Only differences become floating point.
 
 /// Picoseconds in a second.
 pub const PS_PER_S: u64 = 1_000_000_000_000;
@@ -6,33 +6,33 @@ pub const PS_PER_S: u64 = 1_000_000_000_000;
 /// Picoseconds in a millisecond.
 pub const PS_PER_MS: u64 = 1_000_000_000;
 
-/// An instant in seconds. Whole seconds are split off first, so an instant beyond 2^53 ps keeps its fraction.
+/// Converts an instant to seconds. Whole seconds are converted separately, so an instant beyond 2^53 ps keeps its
+/// fraction.
 pub fn seconds(t_ps: u64) -> f64 {
     (t_ps / PS_PER_S) as f64 + (t_ps % PS_PER_S) as f64 / PS_PER_S as f64
 }
 
-/// Seconds from `from_ps` to `to_ps`, negative when `to_ps` is the earlier.
+/// Returns the seconds from `from_ps` to `to_ps`, negative if `to_ps` is earlier.
 pub fn span_s(from_ps: u64, to_ps: u64) -> f64 {
     if to_ps >= from_ps { seconds(to_ps - from_ps) } else { -seconds(from_ps - to_ps) }
 }
 
-/// Instant of event `n` of a clock that ticks `rate` times in `seconds` s: floor(n x seconds / rate), so nothing
-/// drifts. `None` past the end of time (2^64 ps, 213 days).
+/// Returns the instant of tick `n` of a clock with `rate` ticks in `seconds` s: floor(n x seconds / rate), without
+/// drift. Returns `None` beyond the end of simulated time (2^64 ps, 213 days).
 pub(crate) fn tick_ps(n: u64, seconds: u32, rate: u32) -> Option<u64> {
     let ps = u128::from(n) * u128::from(PS_PER_S) * u128::from(seconds) / u128::from(rate);
     u64::try_from(ps).ok()
 }
 
-/// One NTSC field, floor(1001 / 60000 s).
+/// Duration of an NTSC field, floor(1001 / 60000 s).
 pub const NTSC_FIELD_PS: u64 = 1_001 * PS_PER_S / 60_000;
 
-/// From the first visible line of an NTSC field to line `n` of it: floor(n x 4004/63 us).
+/// Returns the time from the first visible line of an NTSC field to its line `n`: floor(n x 4004/63 us).
 pub fn ntsc_lines_ps(n: u32) -> u64 {
     u64::from(n) * 4_004_000_000 / 63
 }
 
-/// Seconds to the nearest picosecond. Negative spans and NaN give 0, spans of 2^64 ps and more
-/// the end of time.
+/// Converts seconds to the nearest picosecond. Negative spans and NaN give 0. Spans of 2^64 ps or more give `u64::MAX`.
 pub fn nearest_ps(seconds: f64) -> u64 {
     let whole = libm::floor(seconds);
     let rest_ps = libm::round((seconds - whole) * PS_PER_S as f64) as u64;

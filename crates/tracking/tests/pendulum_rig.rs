@@ -1,4 +1,4 @@
-//! The rig finds, from outside, the latencies that were put in.
+//! The rig measures from outside the latencies that were put in.
 
 use tracking::motion::Motion;
 use tracking::rig::{Detection, InsidePass, Measurement, Oscilloscope, PendulumRig, RigError, ScopeTrace, Sighting};
@@ -15,12 +15,12 @@ fn noiseless(config: TrackerConfig) -> TrackerConfig {
     noiseless.without_systematic_errors()
 }
 
-/// From the retrace to the photodiode's line, without blanking.
+/// Time from the retrace to the photodiode's line, without blanking.
 fn place_ps(rig: &PendulumRig) -> u64 {
     ntsc_lines_ps(rig.photodiode_line)
 }
 
-/// What a system that tells the truth says of itself.
+/// Returns the passes by the time stamps of a system whose time stamps are correct.
 fn inside(rig: &PendulumRig, tracker: &TrackerModel, passes: usize) -> Vec<InsidePass> {
     let sightings = rig.sightings(tracker, 1, passes).unwrap();
     let pass = |sighting: Sighting| {
@@ -49,7 +49,7 @@ fn the_low_point_is_seen_within_one_report_of_the_optical_tracker_and_33_ms_of_i
     assert!(
         measured.outside.tracking.least_s >= 0.033 && measured.outside.tracking.greatest_s <= 0.033 + period_s + 1e-9
     );
-    // Low points fall anywhere in a period, so on average half of one is added.
+    // Low points fall anywhere in a period, so half a period is added on average.
     assert!(
         (measured.outside.tracking.mean_s - 0.033 - period_s / 2.0).abs() < 1.5e-3,
         "{}",
@@ -65,7 +65,7 @@ fn rendering_is_the_inside_latency_plus_the_photodiodes_place() {
         let measured = measure(rig, noiseless(TrackerConfig::optical_ceiling()));
         let difference = measured.outside.rendering.mean_s - measured.inside.rendering.mean_s;
         assert!((difference - seconds(ntsc_lines_ps(photodiode_line))).abs() < 1e-12);
-        // 57 ms and the wait for a field.
+        // The latency is 57 ms plus the wait for a field.
         assert!(measured.inside.rendering.least_s >= 0.057 && measured.inside.rendering.greatest_s < 0.074);
     }
 }
@@ -108,7 +108,7 @@ fn with_noise_the_mean_still_agrees() {
 
 #[test]
 fn the_sign_of_the_velocity_fails_with_a_millimetre_of_noise() {
-    // Why crossing is the default: around the low point the arc is flat.
+    // Crossing is the default because the arc is flat around the low point.
     let rig = PendulumRig { detection: Detection::VelocitySign, ..PendulumRig::assumed() };
     let measured = measure(rig, TrackerConfig::fastrak());
     let passes = measured.outside_passes.iter().zip(&measured.inside_passes);
@@ -163,7 +163,8 @@ fn a_frame_whose_light_never_comes_is_an_error() {
     assert_eq!(error, RigError::NoLight { expected: 3, found: 2 });
 }
 
-/// Each side finds what is wrong with the other: by more than the bound, 8.3 and 7.6 ms here, they do not agree.
+/// Each side detects errors of the other: the two measurements disagree if they differ by more than the bounds, 8.3 and
+/// 7.6 ms here.
 #[test]
 fn an_error_of_one_side_is_found_by_the_other() {
     let rig = PendulumRig::assumed();
@@ -178,8 +179,8 @@ fn an_error_of_one_side_is_found_by_the_other() {
         truth.iter().map(shift).collect()
     };
     assert!(agree(&scope, truth.clone()));
-    // Light before the pipeline shows the frame, by less than the photodiode's place of 7.6 ms: it is only possible where the pipeline
-    // counts frames that far inside the scan.
+    // The light comes before the pipeline shows the frame, by less than the photodiode's delay of 7.6 ms. This is
+    // possible only if the pipeline counts frames inside the scan.
     let place_too_late = place_ps(&rig) as i64 + 6 * PS_PER_MS as i64;
     assert!(!agree(&scope, shifted(place_too_late)));
     let measured = rig.compare(&tracker, place_ps(&rig), &scope, shifted(place_too_late)).unwrap();

@@ -1,4 +1,4 @@
-//! Predictors on synthetic motion behind real trackers: how errors grow, and what they survive.
+//! Predictors on synthetic motion behind real trackers: growth of errors, and robustness against faults.
 
 use glam::{DQuat, DVec3};
 use tracking::Pose;
@@ -34,7 +34,7 @@ fn mean_degrees(kind: PredictorKind, tracker: fn() -> TrackerConfig) -> [f64; 4]
 
 #[test]
 fn without_prediction_errors_grow_1_93_and_3_64_times() {
-    // Published for 100 and 200 ms against 50 ms; 3 % is what the fit of the generator reaches.
+    // Published ratios of 100 and 200 ms to 50 ms. The fit of the generator reaches 3 %.
     let [_, at_50, at_100, at_200] = mean_degrees(PredictorKind::None, TrackerConfig::ideal);
     assert!((at_100 / at_50 / 1.93 - 1.0).abs() < 0.03, "{}", at_100 / at_50);
     assert!((at_200 / at_50 / 3.64 - 1.0).abs() < 0.03, "{}", at_200 / at_50);

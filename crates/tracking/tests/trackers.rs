@@ -1,4 +1,4 @@
-//! When reports are true, when they arrive, and how wrong they are.
+//! Times of measurement, times of arrival and errors of reports.
 
 use glam::DVec3;
 use tracking::Pose;
@@ -48,8 +48,8 @@ fn a_fastrak_report_arrives_a_transfer_after_5_5_ms_and_was_true_3_75_ms_before_
     }
 }
 
-/// Apparent latency of a Fastrak with a filter of this gain, ms: how far behind a slow, steady turn the pose of a report is when
-/// its first character is sent.
+/// Returns the apparent latency of a Fastrak with this filter gain, ms. It is the delay of a report's pose behind a
+/// slow, steady turn when the first character is sent.
 fn apparent_latency_ms(gain: f64) -> f64 {
     let mut tables = Tables::PAPERS;
     tables.fastrak.filter_gain = gain;
@@ -61,7 +61,7 @@ fn apparent_latency_ms(gain: f64) -> f64 {
     last.pose.angle_deg(&now) / deg_per_s * 1e3
 }
 
-/// The manual prints 4.2 and 162 ms; its closed form is 3.75 ms + dt (1 - a) / a with dt of 1/120 s.
+/// The manual prints 4.2 and 162 ms. The closed form is 3.75 ms + dt (1 - a) / a with dt = 1/120 s.
 #[test]
 fn the_fastraks_filter_has_the_latencies_of_the_manual() {
     for (gain, printed_ms, half_digit_ms) in [(0.95, 4.2, 0.05), (0.05, 162.0, 0.5)] {
@@ -73,7 +73,7 @@ fn the_fastraks_filter_has_the_latencies_of_the_manual() {
     assert!((apparent_latency_ms(1.0) - 3.75).abs() < 1e-6, "without a filter");
 }
 
-/// Every serial tracker is there with both kernels, and `host.poll` moves the polled one alone.
+/// Every serial tracker exists with both kernels, and `host.poll` affects only the polled kernel.
 #[test]
 fn a_polled_variant_is_later_by_the_wait_for_the_kernel_and_by_nothing_else() {
     let mut slow = Tables::PAPERS;
@@ -247,7 +247,7 @@ fn ideal_but_for(fault: TrackerFault) -> TrackerConfig {
     TrackerConfig { faults: vec![fault], ..TrackerConfig::ideal() }
 }
 
-/// Within five standard errors of 0.002 each.
+/// Returns true if `found` is a tenth of 20,000 within five standard errors of 0.002 each.
 fn is_a_tenth_of_20_000(found: usize) -> bool {
     (found as f64 / 20_000.0 - 0.1).abs() < 0.011
 }

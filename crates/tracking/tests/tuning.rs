@@ -1,5 +1,5 @@
-//! Tuned filters: no worse than none on a still head, near the best there is on a moving one, and the closed forms of
-//! prediction on sine waves.
+//! Tuned filters: no worse than no prediction on a still head, near the best filter on a moving head, and equal to the
+//! closed forms on sine waves.
 
 use std::f64::consts::{PI, TAU};
 
@@ -11,7 +11,7 @@ use tracking::predict::{
 use tracking::time::{PS_PER_MS, PS_PER_S};
 use tracking::tracker::{TrackerConfig, TrackerModel};
 
-/// Seed of the noise on which filters are judged here.
+/// Seed of the noise with which filters are evaluated.
 const JUDGED: u64 = 1;
 
 fn model(config: TrackerConfig) -> TrackerModel {
@@ -122,8 +122,8 @@ fn tuning_gives_the_same_every_time_and_nothing_where_there_is_nothing_to_tune()
     assert!(tune(&motion, &tracker, 80 * PS_PER_MS, &bad, 1).is_err());
 }
 
-/// Five seconds of a head that swings, written down 120 times a second: whether it stands still afterwards or no run may go on, there is
-/// nothing to learn from what comes after.
+/// Five seconds of a swinging head, recorded 120 times per second. Tuning learns nothing from the time after the last
+/// sample, whatever the end of the recording.
 #[test]
 fn a_recording_that_holds_its_end_teaches_what_moved_and_not_its_standing_still() {
     let mut text = "time_s,x,y,z,qw,qx,qy,qz\n".to_owned();
@@ -143,7 +143,7 @@ fn a_recording_that_holds_its_end_teaches_what_moved_and_not_its_standing_still(
     }
 }
 
-/// A complex number, and what it takes here.
+/// A complex number: real part and imaginary part.
 type Complex = (f64, f64);
 
 fn times(a: Complex, b: Complex) -> Complex {
@@ -154,8 +154,8 @@ fn turn(angle: f64) -> Complex {
     (angle.cos(), angle.sin())
 }
 
-/// By what a difference of reports `h` seconds apart multiplies a sine wave of `w` rad/s, predicted by `p` seconds: the
-/// Newton polynomials, with z = e^(-jwh) for a report's delay.
+/// Returns the gain of a prediction by `p` seconds for a sine wave of `w` rad/s, with differences of reports `h`
+/// seconds apart. It follows from the Newton polynomials, with z = e^(-jwh) for a report's delay.
 fn of_differences(order: u32, w: f64, h: f64, p: f64) -> Complex {
     let z = turn(-w * h);
     let slope = ((1.0 - z.0) / h, -z.1 / h);
@@ -224,6 +224,6 @@ fn growth_of_the_error_with_the_interval_is_reported_beside_azumas() {
         assert!((2.3 * 0.75..2.7 * 1.25).contains(&by_100), "{by_100}");
         assert!((7.1 * 0.75..9.0 * 1.25).contains(&by_200), "{by_200}");
     }
-    // Seeds whose lively spells training had not seen may go either way, but not by much.
+    // Training has not seen the lively spells of some seeds, so their errors may differ slightly in either direction.
     assert!(for_each[2] < 1.05 * once[2], "tuned for 200 ms: {for_each:?}, for 50 ms: {once:?}");
 }

@@ -1,7 +1,8 @@
-//! A swept-wing jet of 100 triangles: whole, closed, and light enough for Slats.
+//! A swept-wing jet with a closed surface of 100 triangles, few enough for Slats to draw in time.
 //!
-//! Its length is along z with the nose at +z, +y is up, +x its left. Lengths are about metres; the finished aircraft is scaled to the
-//! radius of `mig`, whose flight round it serves here too. Every part is a closed solid of its own that reaches into the next.
+//! The length is along z with the nose at +z. +y is up, and +x is the left of the aircraft. Lengths are roughly metres.
+//! The finished aircraft is scaled to the radius of `mig` and uses the same flight path. Every part is a closed solid
+//! that reaches into its neighbour.
 
 use glam::DVec3;
 
@@ -23,6 +24,7 @@ pub(super) fn scene() -> Scene {
     }
     add_flat(&mut mesh, fin(), RED); // 8
     add_flat(&mut mesh, canopy(), GLASS); // 8
+    // Scale the aircraft to the radius of `mig` about the origin.
     let (centre, radius) = bounding_sphere(mesh.positions.iter().map(|&place| (place, 0.0)));
     for place in &mut mesh.positions {
         *place = (*place - centre) * (RADIUS_M / radius);
@@ -40,12 +42,11 @@ pub(super) fn scene() -> Scene {
     Scene::new(parts).expect("pxpl5-scene: generators check what they make")
 }
 
-/// Sides of the fuselage.
 const SIDES: u32 = 6;
 
-/// Four rings between two points, smooth all over.
+/// Builds a fuselage of four rings between two points, with smooth normals.
 fn fuselage() -> Mesh {
-    // (z, y, half width, half height), from the tail to the nose.
+    // (z, y, half width, half height) of each ring, from the tail to the nose.
     let stations = [(-4.6, 0.12, 0.45, 0.5), (-1.6, 0.05, 0.8, 0.88), (2.2, 0.0, 0.8, 0.86), (4.6, -0.05, 0.5, 0.52)];
     let mut mesh = Mesh::default();
     for (z, y, width, height) in stations {
@@ -55,6 +56,7 @@ fn fuselage() -> Mesh {
             mesh.push(place, DVec3::ZERO, SILVER);
         }
     }
+    // Close both ends, and join each ring with the next.
     let tail = mesh.push(DVec3::new(0.0, 0.16, -5.5), DVec3::ZERO, SILVER);
     let nose = mesh.push(DVec3::new(0.0, -0.08, 6.4), DVec3::ZERO, RED);
     let last = (stations.len() as u32 - 1) * SIDES;
@@ -71,7 +73,7 @@ fn fuselage() -> Mesh {
     mesh
 }
 
-/// Where a wing is cut along the flight: leading edge, upper side, trailing edge, lower side.
+/// Returns a cross-section of a wing along the flight direction: leading edge, upper side, trailing edge, lower side.
 fn diamond(leading: DVec3, chord: f64, thickness: DVec3) -> Vec<DVec3> {
     let middle = leading - DVec3::Z * (0.4 * chord);
     vec![leading, middle + thickness, leading - DVec3::Z * chord, middle - thickness]
@@ -88,7 +90,7 @@ fn tailplane(side: f64) -> Vec<Vec<DVec3>> {
     pyramid(&root, DVec3::new(side * 2.2, 0.5, -5.6))
 }
 
-/// The section of a fin: its leading edge and the corners of its trailing edge.
+/// Returns a cross-section of a fin: the leading edge and the two corners of the trailing edge.
 fn wedge(leading: DVec3, chord: f64, half_thickness: f64) -> [DVec3; 3] {
     let trailing = [half_thickness, -half_thickness].map(|x| leading + DVec3::new(x, 0.0, -chord));
     [leading, trailing[0], trailing[1]]
@@ -100,7 +102,7 @@ fn fin() -> Vec<Vec<DVec3>> {
     prism(&root, &tip)
 }
 
-/// Two pyramids on one base, which lies in the fuselage.
+/// Returns two pyramids on one base, which lies inside the fuselage.
 fn canopy() -> Vec<Vec<DVec3>> {
     let base = [(0.0, 3.6), (0.4, 1.9), (0.0, -0.4), (-0.4, 1.9)].map(|(x, z)| DVec3::new(x, 0.62, z));
     let [above, below] = [1.35, 0.4].map(|y| DVec3::new(0.0, y, 1.9));
@@ -109,7 +111,7 @@ fn canopy() -> Vec<Vec<DVec3>> {
     sides(above).chain(lower).collect()
 }
 
-/// The faces of a solid between two sections of equally many points.
+/// Returns the faces of a solid between two sections with the same number of points.
 fn prism(root: &[DVec3], tip: &[DVec3]) -> Vec<Vec<DVec3>> {
     let count = root.len();
     let side = |side: usize| vec![root[side], root[(side + 1) % count], tip[(side + 1) % count], tip[side]];
@@ -117,7 +119,7 @@ fn prism(root: &[DVec3], tip: &[DVec3]) -> Vec<Vec<DVec3>> {
     (0..count).map(side).chain(ends).collect()
 }
 
-/// The faces of a solid between a section and a point.
+/// Returns the faces of a pyramid with the base `root`.
 fn pyramid(root: &[DVec3], tip: DVec3) -> Vec<Vec<DVec3>> {
     let count = root.len();
     let side = |side: usize| vec![root[side], root[(side + 1) % count], tip];
@@ -129,7 +131,8 @@ fn reversed(mut face: Vec<DVec3>) -> Vec<DVec3> {
     face
 }
 
-/// Adds a solid of flat faces, turned outwards: its left and right ones are mirror images.
+/// Adds a solid of flat faces with outward normals. A solid with a negative volume is a mirrored one, and its faces are
+/// reversed.
 fn add_flat(mesh: &mut Mesh, faces: Vec<Vec<DVec3>>, colour: Colour) {
     let six_volumes =
         |face: &Vec<DVec3>| -> f64 { face[1..].windows(2).map(|pair| face[0].dot(pair[0].cross(pair[1]))).sum() };

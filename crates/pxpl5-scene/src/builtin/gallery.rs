@@ -1,8 +1,8 @@
-//! A gallery to walk through: a hall whose floor, ceiling, walls and partitions are large quadrangles, as those that priority
-//! rendering cuts into segments.
+//! An art gallery with a path: a hall whose floor, ceiling, walls and partitions are large quadrangles. Priority
+//! rendering cuts such quadrangles into segments.
 //!
-//! All of it is assumed: the papers print neither size nor plan. The path runs 1 m beside the partitions, the worst case for
-//! whoever redraws only what has become wrong.
+//! All numbers are assumed, because the papers print neither size nor plan. The path runs 1 m beside the partitions.
+//! This path is the worst case for a method that redraws only outdated segments.
 
 use glam::{DVec3, Vec3};
 
@@ -12,22 +12,23 @@ use crate::motion::{HeadMotion, HeadPath};
 use crate::scene::{Lighting, Scene, SceneParts};
 use crate::sway::Sway;
 
-/// Half the length and width of the hall, metres.
+/// Half the length and half the width of the hall, metres.
 const HALF_M: f64 = 20.0;
 
-/// Height of the hall, of its partitions, and of the eyes that walk through it, metres.
+/// Heights of the hall, of its partitions, and of the eyes on the path, metres.
 const HEIGHT_M: f64 = 4.0;
 const PARTITION_M: f64 = 3.0;
 const EYE_M: f64 = 1.7;
 
-/// Distance of the path from a partition's near side, and the partition's thickness, metres.
+/// Distance of the path from a partition's near side, and thickness of a partition, metres.
 const BESIDE_M: f64 = 1.0;
 const THICKNESS_M: f64 = 0.1;
 
-/// The part of a leg of the path beside which a partition stands.
+/// Beginning and end of a partition, as fractions of the leg of the path beside it.
 const BESIDE_LEG: [f64; 2] = [0.2, 0.8];
 
-/// Corners of the path, x and z in metres: slanting legs, whose distances to the borders of cells change all the time.
+/// Corners of the path, x and z in metres. The legs are slanted, so the distances to the borders of cells change all
+/// the time.
 const CORNERS: [[f64; 2]; 10] = [
     [-16.0, -15.0],
     [-3.0, -17.0],
@@ -46,10 +47,10 @@ const FLOOR: [u8; 3] = [120, 100, 80];
 const CEILING: [u8; 3] = [225, 225, 215];
 const WALLS: [[u8; 3]; 4] = [[170, 140, 120], [120, 150, 170], [165, 165, 120], [130, 160, 130]];
 
-/// Colours of the partitions, by turns.
+/// Colours of the partitions, used in turn.
 const PARTITIONS: [[u8; 3]; 5] = [[200, 90, 80], [90, 130, 200], [210, 180, 90], [110, 180, 110], [170, 110, 180]];
 
-/// The hall with its partitions, and with frames and benches as well where `is_full`.
+/// Generates the hall with its partitions, and with picture frames and benches if `is_full`.
 pub(super) fn scene(is_full: bool) -> Scene {
     let mut solid = Solid::default();
     hall(&mut solid);
@@ -62,6 +63,7 @@ pub(super) fn scene(is_full: bool) -> Scene {
             bench(&mut solid, leg);
         }
     }
+    // The head stands at the first corner and looks along the path, unless the run chooses to walk.
     let path: Vec<Vec3> = CORNERS.map(|[x, z]| DVec3::new(x, EYE_M, z).as_vec3()).to_vec();
     let standing = HeadPath::Still { eye: path[0], target: path[1] };
     let parts = SceneParts {
@@ -70,7 +72,7 @@ pub(super) fn scene(is_full: bool) -> Scene {
         triangles: solid.mesh.triangles,
         spheres: Vec::new(),
         structures: solid.structures,
-        // Lamps all over the ceiling: little shade, or it would be black itself.
+        // Lamps cover the ceiling, so most of the light is ambient. With less, the ceiling itself would be black.
         lighting: Lighting { ambient: 0.6, diffuse: 0.4, ..Lighting::over_the_shoulder() },
         motion: HeadMotion::new(standing, Sway::none()).expect("pxpl5-scene: constants are in range"),
         path,
@@ -78,7 +80,7 @@ pub(super) fn scene(is_full: bool) -> Scene {
     Scene::new(parts).expect("pxpl5-scene: generators check what they make")
 }
 
-/// A quadrangle, its corners anticlockwise seen from where it is looked at.
+/// Adds a quadrangle, whose corners are anticlockwise seen from the visible side.
 fn quadrangle(solid: &mut Solid, corners: [DVec3; 4], colour: [u8; 3]) {
     let normal = (corners[1] - corners[0]).cross(corners[3] - corners[0]).normalize();
     let mut part = Mesh::default();
@@ -88,6 +90,7 @@ fn quadrangle(solid: &mut Solid, corners: [DVec3; 4], colour: [u8; 3]) {
 }
 
 fn hall(solid: &mut Solid) {
+    // Corners run anticlockwise seen from inside the hall.
     let corner = |x: f64, y: f64, z: f64| DVec3::new(x * HALF_M, y * HEIGHT_M, z * HALF_M);
     let sides = [
         (
@@ -127,7 +130,7 @@ fn hall(solid: &mut Solid) {
     }
 }
 
-/// A leg of the path on the floor: its beginning, its direction, its length, and the direction to its left.
+/// A leg of the path on the floor.
 struct Leg {
     from: DVec3,
     along: DVec3,
@@ -145,14 +148,14 @@ fn leg(number: usize) -> Leg {
     Leg { from, along, length, left: DVec3::Y.cross(along) }
 }
 
-/// An upright box on the floor or above it: five sides, the lower one too where it hangs.
+/// Adds an upright box with five sides. A box above the floor also gets its lower side.
 fn upright(solid: &mut Solid, middle: DVec3, along: DVec3, half: DVec3, colour: [u8; 3]) {
     let across = DVec3::Y.cross(along);
     let corner =
         |x: f64, y: f64, z: f64| middle + along * (x * half.x) + DVec3::Y * (y * half.y) + across * (z * half.z);
     let [a, b, c, d] = [(-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)].map(|(x, z)| corner(x, -1.0, z));
     let [e, f, g, h] = [a, b, c, d].map(|low| low + DVec3::Y * (2.0 * half.y));
-    // `across` is to the left of `along`: seen from above, a, b, c, d run clockwise.
+    // `across` points to the left of `along`, so a, b, c, d run clockwise seen from above.
     for side in [[b, a, e, f], [c, b, f, g], [d, c, g, h], [a, d, h, e], [h, g, f, e]] {
         quadrangle(solid, side, colour);
     }
@@ -161,7 +164,7 @@ fn upright(solid: &mut Solid, middle: DVec3, along: DVec3, half: DVec3, colour: 
     }
 }
 
-/// The middle of a leg's partition, at the height of the floor.
+/// Returns the middle of a leg's partition at floor level.
 fn partition_middle(leg: &Leg) -> DVec3 {
     leg.from + leg.along * (leg.length / 2.0) + leg.left * (BESIDE_M + THICKNESS_M / 2.0)
 }
@@ -175,7 +178,7 @@ fn partition(solid: &mut Solid, number: usize) {
     solid.end_structure(&format!("partition {number}"), None);
 }
 
-/// Frames on the near side of each partition.
+/// Number of picture frames on the near side of each partition.
 const FRAMES: usize = 3;
 
 fn frame(solid: &mut Solid, number: usize, place: usize) {
@@ -188,7 +191,7 @@ fn frame(solid: &mut Solid, number: usize, place: usize) {
     solid.end_structure(&format!("frame {number}.{place}"), None);
 }
 
-/// On the other side of the path, opposite the partition.
+/// Adds a bench on the other side of the path, opposite the partition.
 fn bench(solid: &mut Solid, number: usize) {
     let leg = leg(number);
     let middle = leg.from + leg.along * (leg.length / 2.0) - leg.left * (2.0 * BESIDE_M);
@@ -200,7 +203,7 @@ fn bench(solid: &mut Solid, number: usize) {
 mod tests {
     use super::*;
 
-    /// Distance of a point from a segment, on the floor.
+    /// Returns the distance of a point from a segment on the floor.
     fn distance(point: DVec3, from: DVec3, to: DVec3) -> f64 {
         let along = to - from;
         let share = ((point - from).dot(along) / along.length_squared()).clamp(0.0, 1.0);

@@ -1,4 +1,4 @@
-//! A human head: the surface of [`super::head_shape`] sampled on a grid of meridians and parallels.
+//! A human head: the surface of [`super::head_shape`], sampled on a grid of meridians and parallels.
 
 use glam::DVec3;
 
@@ -10,7 +10,7 @@ use crate::motion::HeadMotion;
 use crate::scene::{Lighting, Scene, SceneParts, bounding_sphere};
 use crate::trig;
 
-/// Meridians and parallels: 2 x 156 x 191 = 59,592 triangles, counting the two caps of 156.
+/// Numbers of meridians and parallels: 2 x 156 x 191 = 59,592 triangles, including the two caps of 156.
 const MERIDIANS: usize = 156;
 const PARALLELS: usize = 191;
 
@@ -23,6 +23,7 @@ const PUPIL: Colour = [18, 16, 20];
 
 pub(super) fn scene() -> Scene {
     let mut mesh = grid();
+    // Scale the head to the radius of the built-in models about the origin.
     let (centre, radius) = bounding_sphere(mesh.positions.iter().map(|&p| (p, 0.0)));
     for position in &mut mesh.positions {
         *position = (*position - centre) * (FIT_RADIUS_M / radius);
@@ -40,7 +41,7 @@ pub(super) fn scene() -> Scene {
     Scene::new(parts).expect("pxpl5-scene: generators check what they make")
 }
 
-/// A pole, the parallels from crown to neck, a pole.
+/// Samples the surface: one pole, the parallels from crown to neck, the other pole.
 fn grid() -> Mesh {
     let mut mesh = Mesh::default();
     let crown = push_hit(&mut mesh, Ray::new(0.0, 0.0));
@@ -48,6 +49,7 @@ fn grid() -> Mesh {
         push_parallel(&mut mesh, (parallel as f64 + 1.0) / (PARALLELS as f64 + 1.0));
     }
     let base = push_hit(&mut mesh, Ray::new(1.0, 0.0));
+    // Join neighbouring parallels, and close both poles with fans.
     for m in 0..MERIDIANS {
         mesh.fan(&[crown, grid_index(0, m), grid_index(0, m + 1)]);
         for p in 0..PARALLELS - 1 {
@@ -58,12 +60,12 @@ fn grid() -> Mesh {
     mesh
 }
 
-/// The vertex where a parallel meets a meridian; before all of them comes the crown.
+/// Returns the vertex where a parallel meets a meridian. Vertex 0 is the crown.
 fn grid_index(parallel: usize, meridian: usize) -> u32 {
     (1 + parallel * MERIDIANS + meridian % MERIDIANS) as u32
 }
 
-/// One half of a parallel from the back to the face, and its mirror image.
+/// Adds half of a parallel from the back to the face, and its mirror image.
 fn push_parallel(mesh: &mut Mesh, down: f64) {
     const HALF: usize = MERIDIANS / 2;
     let first = mesh.positions.len();
@@ -84,13 +86,14 @@ fn push_hit(mesh: &mut Mesh, ray: Ray) -> u32 {
     mesh.push(point, normal(point), colour(point))
 }
 
-/// From a point of the spine outwards.
+/// A ray from a point of the spine outwards.
 struct Ray {
     origin: DVec3,
     direction: DVec3,
 }
 
-/// The spine from crown to base: share of the parallels, height of the origin, degrees below the horizon.
+/// The spine from crown to base. Each row is a fraction of the parallels, the height of a ray's origin, and its degrees
+/// below the horizon.
 const SPINE: [(f64, f64, f64); 8] = [
     (0.0, 2.5, -90.0),
     (0.24, 2.5, -24.0),
@@ -103,8 +106,10 @@ const SPINE: [(f64, f64, f64); 8] = [
 ];
 
 impl Ray {
-    /// `down` from 0 at the crown to 1 at the base; `round` in turns from the back, denser in front.
+    /// Creates a ray. `down` runs from 0 at the crown to 1 at the base. `round` is in turns from the back, and rays are
+    /// denser in front.
     fn new(down: f64, round: f64) -> Self {
+        // Interpolate origin and inclination between two rows of the spine.
         let above = SPINE.windows(2).find(|pair| down <= pair[1].0);
         let pair = above.unwrap_or(&SPINE[6..]);
         let t = (down - pair[0].0) / (pair[1].0 - pair[0].0);
@@ -119,7 +124,8 @@ impl Ray {
         }
     }
 
-    /// The outermost point of the surface on the ray: steps inwards until inside, then halves the last step.
+    /// Returns the outermost point of the surface on the ray. The search steps inwards until it is inside and then
+    /// bisects the last step.
     fn hit(&self) -> DVec3 {
         let mut outside = 24.0;
         let mut inside = 24.0;
@@ -131,7 +137,7 @@ impl Ray {
             outside = inside;
             inside -= (d * 0.7).max(0.02);
         }
-        // The last step is a few millimetres at most: to a tenth of a micrometre.
+        // The last step is a few millimetres at most, so 16 halvings reach a tenth of a micrometre.
         for _ in 0..16 {
             let middle = (inside + outside) / 2.0;
             if distance(self.point(middle)) < 0.0 {
@@ -148,13 +154,14 @@ impl Ray {
     }
 }
 
-/// On the straight line from `a` to `b`, which are at 0 and 1.
+/// Interpolates linearly between `a` at 0 and `b` at 1.
 fn between(a: f64, b: f64, t: f64) -> f64 {
     a + (b - a) * t
 }
 
-/// Paint in layers with soft edges: the grid is too coarse for hard ones.
+/// Returns the colour of a point. Layers of paint have soft edges, because the grid is too coarse for hard edges.
 fn colour(point: DVec3) -> Colour {
+    // The head is symmetric, so one half is enough.
     let p = DVec3::new(point.x.abs(), point.y, point.z);
     let eye_depth = (p - EYE).length() - EYE_RADIUS - 0.05;
     let layers = [
@@ -166,6 +173,7 @@ fn colour(point: DVec3) -> Colour {
         (PUPIL, eye_depth.max(off_axis(p) - 0.27), 0.12),
     ];
     layers.into_iter().fold(SKIN, |under, (over, outside, edge)| {
+        // Blend over a soft edge of the width `edge`.
         let share = (0.5 - outside / edge / 2.0).clamp(0.0, 1.0);
         [0, 1, 2].map(|k| {
             let under = f64::from(under[k]);
@@ -175,9 +183,9 @@ fn colour(point: DVec3) -> Colour {
     })
 }
 
-// Each mask below is about the distance in centimetres by which a point lies outside of the painted patch.
+// Each mask below returns the approximate distance in centimetres of a point outside the painted patch.
 
-/// From the axis of the gaze, which is a little lowered.
+/// Returns the distance from the axis of the gaze, which is slightly lowered.
 fn off_axis(p: DVec3) -> f64 {
     DVec3::new(p.x - EYE.x, p.y - EYE.y + 0.05, 0.0).length()
 }
@@ -188,7 +196,7 @@ fn lips(p: DVec3) -> f64 {
     ((p.y + 5.85).abs() - half_height).max(7.0 - p.z)
 }
 
-/// An arch that thins outwards.
+/// Returns the mask of an eyebrow: an arch that becomes thinner outwards.
 fn brow(p: DVec3) -> f64 {
     let off_middle = (p.x - 3.2) / 2.0;
     let middle = 2.5 + 0.3 * (1.0 - off_middle * off_middle);
@@ -197,7 +205,8 @@ fn brow(p: DVec3) -> f64 {
     ((p.y - middle).abs() - half_height).max(end).max(5.0 - p.z)
 }
 
-/// Behind a line from the forehead over the temples, in front of and round the ears, to the nape.
+/// Returns the mask of the hair, whose border runs from the forehead over the temples, in front of and around the ears,
+/// to the nape.
 fn hair(p: DVec3) -> f64 {
     let hairline = 8.2 - 0.05 * p.x * p.x;
     let behind = p.z - 2.0 + (hairline - p.y).max(0.0) * 0.3;

@@ -1,7 +1,9 @@
-//! The shape of a human head as a distance function, centimetres: +x its left, +y up, +z its face.
+//! The shape of a human head as a signed distance function in centimetres. +x is the left of the head, +y is up, +z is
+//! the face.
 //!
-//! Negative inside. Proportions follow the usual rules of drawing: eyes half-way between crown and chin, the face five
-//! eyes wide, ears from brow to nose. Only arithmetic and square roots, so all hosts agree.
+//! The distance is negative inside. Proportions follow the usual rules of drawing. The eyes are half-way between crown
+//! and chin, the face is five eyes wide, and the ears reach from brow to nose. The functions use only arithmetic and
+//! square roots, so all hosts agree.
 
 use glam::DVec3;
 
@@ -9,11 +11,12 @@ const fn xyz(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)
 }
 
-/// Centre of the left eyeball, and its radius.
+/// Centre of the left eyeball, and its radius, centimetres.
 pub(super) const EYE: DVec3 = xyz(3.15, 0.75, 6.6);
 pub(super) const EYE_RADIUS: f64 = 1.3;
 
-/// Signed distance, exact near the surface to about a tenth; symmetric in x.
+/// Returns the signed distance of a point from the head, symmetric in x. Near the surface the error is about a tenth of
+/// the distance.
 pub(super) fn distance(point: DVec3) -> f64 {
     let p = xyz(point.x.abs(), point.y, point.z);
     let mut d = skull(p);
@@ -39,7 +42,7 @@ fn neck(p: DVec3) -> f64 {
     let shoulders = capsule(p, xyz(0.0, -18.2, -3.8), xyz(6.0, -19.6, -4.4), 4.6, 3.4);
     let throat = ellipsoid(p, xyz(0.0, -12.4, 1.7), xyz(1.0, 1.5, 0.9));
     let d = join(join(column, shoulders, 3.0), throat, 1.5);
-    // Cut level below, with a soft edge.
+    // Cut off level at the bottom, with a soft edge.
     meet(d, -18.0 - p.y, 1.2)
 }
 
@@ -50,7 +53,7 @@ fn nose(p: DVec3) -> f64 {
     join(join(bridge, tip, 0.5), wing, 0.9)
 }
 
-/// Brows, sockets, eyes, cheekbones, mouth: cut into and laid upon what is there.
+/// Adds brows, eye sockets, eyes, cheekbones and mouth to the distance `d` of skull, neck and nose.
 fn face(d: f64, p: DVec3) -> f64 {
     let brow = capsule(p, xyz(1.3, 2.2, 7.7), xyz(5.0, 2.3, 5.9), 0.75, 0.5);
     let cheekbone = ellipsoid(p, xyz(4.0, -2.4, 4.9), xyz(1.9, 1.4, 1.9));
@@ -62,7 +65,7 @@ fn face(d: f64, p: DVec3) -> f64 {
     mouth(d, p)
 }
 
-/// A shell round the eyeball with a slit.
+/// Returns the distance to the eyelids: a shell around the eyeball with a slit.
 fn eyelids(p: DVec3) -> f64 {
     let shell = (p - EYE).length() - (EYE_RADIUS + 0.2);
     let slit = ellipsoid(p, xyz(3.2, 0.65, 8.4), xyz(1.5, 0.5, 1.9));
@@ -81,10 +84,10 @@ fn mouth(d: f64, p: DVec3) -> f64 {
     carve(d, parting, 0.25)
 }
 
-/// A bowl whose front edge lies on the skull and whose rear edge stands off it.
+/// Adds an ear: a bowl whose front edge lies on the skull and whose rear edge stands away from it.
 fn ears(d: f64, p: DVec3) -> f64 {
     let q = p - xyz(7.35, -0.2, -1.3);
-    // Leaning back: the top is further behind than the lobe; and turned outwards to the rear.
+    // The ear leans back, so its top is further behind than its lobe. The rear of the ear is turned outwards.
     let q = xyz(q.x + 0.45 * q.z, q.y + 0.22 * q.z, q.z + 0.22 * q.y);
     let flap = ellipsoid(q, xyz(0.2, 0.0, 0.0), xyz(0.75, 3.1, 1.75));
     let bowl = ellipsoid(q, xyz(1.05, 0.35, 0.25), xyz(0.75, 2.1, 1.0));
@@ -93,23 +96,23 @@ fn ears(d: f64, p: DVec3) -> f64 {
     join(d, ear, 0.45)
 }
 
-/// The smaller distance, with a fillet of width `k`.
+/// Returns the distance to the union of two solids, with a fillet of width `k`.
 fn join(a: f64, b: f64, k: f64) -> f64 {
     let h = (k - (a - b).abs()).max(0.0) / k;
     a.min(b) - h * h * k / 4.0
 }
 
-/// The common part of both, with a fillet of width `k`.
+/// Returns the distance to the intersection of two solids, with a fillet of width `k`.
 fn meet(a: f64, b: f64, k: f64) -> f64 {
     -join(-a, -b, k)
 }
 
-/// `a` without `b`, with a fillet of width `k`.
+/// Returns the distance to `a` without `b`, with a fillet of width `k`.
 fn carve(a: f64, b: f64, k: f64) -> f64 {
     meet(a, -b, k)
 }
 
-/// First-order estimate of the distance to an ellipsoid: exact at its surface.
+/// Returns a first-order estimate of the distance to an ellipsoid, which is exact at the surface.
 fn ellipsoid(p: DVec3, centre: DVec3, radii: DVec3) -> f64 {
     let scaled = (p - centre) / radii;
     let reach = scaled.length();
@@ -117,7 +120,7 @@ fn ellipsoid(p: DVec3, centre: DVec3, radii: DVec3) -> f64 {
     if slope > 0.0 { reach * (reach - 1.0) / slope } else { -radii.min_element() }
 }
 
-/// Balls of radius `from` to `to` along a segment.
+/// Returns the distance to a capsule whose radius changes linearly from `from` to `to` along a segment.
 fn capsule(p: DVec3, a: DVec3, b: DVec3, from: f64, to: f64) -> f64 {
     let ap = p - a;
     let ab = b - a;
@@ -125,7 +128,7 @@ fn capsule(p: DVec3, a: DVec3, b: DVec3, from: f64, to: f64) -> f64 {
     (ap - ab * t).length() - (from + (to - from) * t)
 }
 
-/// Outward unit normal: central differences of the distance.
+/// Returns the outward unit normal, computed from central differences of the distance.
 pub(super) fn normal(p: DVec3) -> DVec3 {
     const STEP: f64 = 0.02;
     let differences = DVec3::AXES.map(|axis| distance(p + axis * STEP) - distance(p - axis * STEP));

@@ -1,7 +1,7 @@
-//! A swept-wing jet fighter in the manner of the MiG-17: 417 triangles.
+//! A swept-wing jet fighter similar to the MiG-17, with 417 triangles.
 //!
-//! Its length is along z with the nose at +z, +y is up, +x its left. Lengths are about metres of the real one, which is
-//! 11 m long; the finished aircraft is scaled to a radius of 2 m.
+//! The length is along z with the nose at +z. +y is up, and +x is the left of the aircraft. Lengths are roughly the
+//! metres of the real aircraft, which is 11 m long. The finished aircraft is scaled to a radius of 2 m.
 
 use glam::DVec3;
 
@@ -21,10 +21,9 @@ const DUCT: Colour = [70, 66, 66];
 const GLASS: Colour = [90, 170, 226];
 const STEEL: Colour = [140, 136, 132];
 
-/// Radius of the finished model, metres. Assumed, 0.5 to 8: a flight round it passes at several metres a second.
+/// Radius of the finished model, metres. Assumed, 0.5 to 8. A flight around it passes at several metres per second.
 pub(super) const RADIUS_M: f64 = 2.0;
 
-/// Sides of the fuselage.
 const SIDES: usize = 14;
 
 pub(super) fn scene() -> Scene {
@@ -36,6 +35,7 @@ pub(super) fn scene() -> Scene {
     ventral_fin(&mut solid); // 10
     canopy(&mut solid); // 24
     boom(&mut solid); // 3
+    // Moving control surfaces are structures of their own.
     solid.end_structure("airframe", None);
     for (name, side) in [("left aileron", 1.0), ("right aileron", -1.0)] {
         aileron(&mut solid, name, side); // 8
@@ -47,8 +47,9 @@ pub(super) fn scene() -> Scene {
     finish(solid)
 }
 
-/// Scales the aircraft and its hinges.
+/// Scales the aircraft and its hinges to [`RADIUS_M`] about the origin, and makes a scene.
 fn finish(mut solid: Solid) -> Scene {
+    // Hinges move and scale together with the vertices.
     let balls = solid.mesh.positions.iter().map(|&p| (p, 0.0));
     let (centre, radius) = bounding_sphere(balls);
     let scale = RADIUS_M / radius;
@@ -71,7 +72,8 @@ fn finish(mut solid: Solid) -> Scene {
     Scene::new(parts).expect("pxpl5-scene: generators check what they make")
 }
 
-/// From inside the span of the wings, where the aircraft overflows the view, to five radii away, where it is small.
+/// Returns a motion around the aircraft. The nearest point is within the span of the wings, where the aircraft
+/// overflows the view. The farthest point is five radii away, where the aircraft appears small.
 pub(super) fn fly_through() -> HeadMotion {
     let path = HeadPath::FlyThrough {
         target: glam::Vec3::ZERO,
@@ -82,7 +84,8 @@ pub(super) fn fly_through() -> HeadMotion {
     HeadMotion::new(path, Sway { seed: 1, scale: 1.0 }).expect("pxpl5-scene: constants are in range")
 }
 
-/// A closed section across the length: an ellipse at height `y` and station `z`, anticlockwise seen from the nose.
+/// Returns a closed cross-section of the fuselage: an ellipse at height `y` and station `z`, anticlockwise seen from
+/// the nose.
 fn ring(z: f64, y: f64, width: f64, height: f64) -> Vec<DVec3> {
     let points = (0..SIDES).map(|i| {
         let turns = (i as f64 + 0.5) / SIDES as f64;
@@ -94,7 +97,7 @@ fn ring(z: f64, y: f64, width: f64, height: f64) -> Vec<DVec3> {
 }
 
 fn fuselage(solid: &mut Solid) {
-    // (z, y, half width, half height), from the jet pipe to the intake.
+    // (z, y, half width, half height) of each ring, from the jet pipe to the intake.
     let stations = [
         (-5.6, 0.16, 0.50, 0.52),
         (-4.4, 0.12, 0.64, 0.68),
@@ -108,8 +111,10 @@ fn fuselage(solid: &mut Solid) {
     let rings: Vec<Vec<DVec3>> = stations.map(|(z, y, w, h)| ring(z, y, w, h)).into();
     solid.skin(&rings, SILVER);
     let whole = 0..solid.mesh.positions.len();
+    // Paint the belly and the nose.
     solid.paint(whole.clone(), BELLY, |p| p.y < -0.35);
     solid.paint(whole, RED, |p| p.z > 5.5);
+    // The jet pipe and the intake are hollow, each with a dark cone inside.
     let [pipe, intake] = [&rings[0], &rings[7]];
     let deep_pipe = ring(-4.9, 0.14, 0.42, 0.44);
     solid.skin(&[deep_pipe.clone(), pipe.clone()], STEEL);
@@ -119,13 +124,13 @@ fn fuselage(solid: &mut Solid) {
     solid.cone(&deep_intake, DVec3::new(0.0, -0.07, 5.35), DARK);
 }
 
-/// The same section seen from its other side.
+/// Returns the same section seen from its other side.
 fn reversed(mut section: Vec<DVec3>) -> Vec<DVec3> {
     section.reverse();
     section
 }
 
-/// Where a lifting surface is cut: leading and trailing edge, and half the thickness.
+/// A cross-section of a lifting surface: leading edge, trailing edge, and half the thickness.
 struct Cut {
     leading: DVec3,
     trailing: DVec3,
@@ -142,27 +147,27 @@ impl Cut {
         self.leading.lerp(self.trailing, 0.38)
     }
 
-    /// Leading edge, upper side, trailing edge, lower side.
+    /// Returns the corners of a diamond: leading edge, upper side, trailing edge, lower side.
     fn diamond(&self) -> Vec<DVec3> {
         let middle = self.thickest();
         vec![self.leading, middle + self.thickness, self.trailing, middle - self.thickness]
     }
 
-    /// The same with a blunt trailing edge.
+    /// Returns the corners of a diamond with a blunt trailing edge.
     fn blunt(&self) -> Vec<DVec3> {
         let middle = self.thickest();
         let edge = self.thickness * 0.3;
         vec![self.leading, middle + self.thickness, self.trailing + edge, self.trailing - edge, middle - self.thickness]
     }
 
-    /// A wedge of this chord that begins on the blunt trailing edge.
+    /// Returns a wedge of this chord that begins at the blunt trailing edge.
     fn wedge_behind(&self, chord: f64) -> Vec<DVec3> {
         let edge = self.thickness * 0.3;
         vec![self.trailing + edge, self.trailing - DVec3::Z * chord, self.trailing - edge]
     }
 }
 
-/// Sections run from root to tip; on the right side that turns them over.
+/// Adds a lifting surface from sections that run from root to tip. A surface on the right side needs `turned` sections.
 fn surface(solid: &mut Solid, sections: Vec<Vec<DVec3>>, turned: bool, colour: Colour, tip: Colour) {
     let sections: Vec<Vec<DVec3>> = if turned { sections.into_iter().map(reversed).collect() } else { sections };
     let first = solid.mesh.positions.len();
@@ -171,6 +176,7 @@ fn surface(solid: &mut Solid, sections: Vec<Vec<DVec3>>, turned: bool, colour: C
     let farthest = end[0];
     solid.face(end, tip);
     let last = solid.mesh.positions.len();
+    // Paint the tip of the surface too.
     solid.paint(first..last, tip, |p| (p - farthest).length() < 1.7 && same_span(p, farthest));
 }
 
@@ -178,9 +184,10 @@ fn same_span(a: DVec3, b: DVec3) -> bool {
     (a.x.abs() - b.x.abs()).abs() < 0.01 && (a.y - b.y).abs() < 0.1
 }
 
+// Stations of the wing from root to tip: span x, z of the leading edge, chord.
 const WING_SWEEP: [(f64, f64, f64); 3] = [(0.5, 2.3, 3.1), (2.9, -0.15, 2.25), (4.9, -2.35, 1.45)];
 
-/// Leading edge at span `x`, with a little anhedral.
+/// Returns the cross-section of the wing at a station. The wing is lowered slightly towards its tip (anhedral).
 fn wing_cut(side: f64, station: usize) -> Cut {
     let (x, z, chord) = WING_SWEEP[station];
     Cut::new([side * x, -0.05 - 0.05 * x, z], chord, [0.0, 0.17 - 0.026 * x, 0.0])
@@ -191,7 +198,8 @@ fn wing(solid: &mut Solid, side: f64) {
     surface(solid, sections, side < 0.0, SILVER, RED);
 }
 
-/// A wedge behind a blunt edge that runs from `root` to `tip`; hinged on that edge.
+/// Adds a wedge behind a blunt edge that runs from `root` to `tip`. Returns a point and the direction of its hinge,
+/// which is this edge.
 fn flap(solid: &mut Solid, cuts: [&Cut; 2], chords: [f64; 2], turned: bool) -> (DVec3, DVec3) {
     let mut sections = [cuts[0].wedge_behind(chords[0]), cuts[1].wedge_behind(chords[1])];
     if turned {
@@ -205,7 +213,7 @@ fn flap(solid: &mut Solid, cuts: [&Cut; 2], chords: [f64; 2], turned: bool) -> (
 
 fn aileron(solid: &mut Solid, name: &str, side: f64) {
     let (point, axis) = flap(solid, [&wing_cut(side, 1), &wing_cut(side, 2)], [0.5, 0.36], side < 0.0);
-    // Along the span outwards, so equal turns deflect left and right oppositely.
+    // The axis points outwards along the span, so equal turns deflect left and right in opposite directions.
     solid.end_structure(name, Some(hinge(point, axis, 20.0, 4, 0.0)));
 }
 
@@ -238,7 +246,7 @@ fn ventral_fin(solid: &mut Solid) {
     surface(solid, vec![root.diamond(), tip.diamond()], false, BELLY, BELLY);
 }
 
-/// Five points of half an ellipse that stands on height `base` at station `z`.
+/// Returns five points of half an ellipse above height `base` at station `z`.
 fn arch(z: f64, base: f64, width: f64, height: f64) -> [DVec3; 5] {
     [0.0, 1.0, 2.0, 3.0, 4.0].map(|eighths| {
         let turns = eighths / 8.0;
@@ -246,7 +254,7 @@ fn arch(z: f64, base: f64, width: f64, height: f64) -> [DVec3; 5] {
     })
 }
 
-/// A bubble of three arches between two points: 4 + 8 + 8 + 4 triangles.
+/// Adds a canopy of three arches between two points: 4 + 8 + 8 + 4 triangles.
 fn canopy(solid: &mut Solid) {
     let arches = [arch(1.0, 0.62, 0.42, 0.62), arch(2.1, 0.58, 0.48, 0.74), arch(3.0, 0.56, 0.44, 0.62)];
     let back = DVec3::new(0.0, 0.88, -0.6);
@@ -256,6 +264,7 @@ fn canopy(solid: &mut Solid) {
         part.push(point, DVec3::ZERO, GLASS);
     }
     let [back, front] = [back, front].map(|p| part.push(p, DVec3::ZERO, GLASS));
+    // Join back point, three arches and front point.
     for i in 0..4 {
         part.fan(&[back, i + 1, i]);
         part.fan(&[i, i + 1, i + 6, i + 5]);

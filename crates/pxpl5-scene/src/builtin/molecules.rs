@@ -1,6 +1,6 @@
 //! Myoglobin twice, as atoms and as a ribbon, and a water molecule.
 //!
-//! Coordinates: Protein Data Bank entry 1MBN, H. C. Watson, 1969; unchanged in `assets/1mbn.pdb`.
+//! The coordinates are Protein Data Bank entry 1MBN by H. C. Watson, 1969, unchanged in `assets/1mbn.pdb`.
 
 use glam::DVec3;
 
@@ -12,14 +12,14 @@ use crate::scene::{Lighting, Scene, SceneParts, Sphere, bounding_sphere};
 
 static MYOGLOBIN: &[u8] = include_bytes!("../../assets/1mbn.pdb");
 
-/// Cross-sections of the ribbon: (2,620 triangles - 2 ends of 2) / 8 + 1.
+/// Number of cross-sections of the ribbon: (2,620 triangles - 2 ends of 2) / 8 + 1.
 const SECTIONS: usize = 328;
 
-/// Half the distance between the two molecules' centres, Ångström: their radius is about 25.
+/// Half the distance between the centres of the two molecules, Ångström. The radius of each is about 25.
 const APART: f64 = 25.0;
 
-/// Two successive residues in the same helix have alpha carbons closer than this over three steps, Ångström: 5.0 in an
-/// ideal alpha helix, above 8 in extended chain (derived from rise 1.5, radius 2.3 and 100 degrees a residue).
+/// Greatest distance between alpha carbons three residues apart in a helix, Ångström. The distance is 5.0 in an ideal
+/// alpha helix and above 8 in an extended chain (derived from rise 1.5, radius 2.3 and 100 degrees per residue).
 const HELIX_STEP: f64 = 6.2;
 
 pub(super) fn scene() -> Scene {
@@ -40,18 +40,20 @@ fn sphere(centre: DVec3, radius: f64, colour: Colour) -> Sphere {
     Sphere { centre: centre.as_vec3(), radius: radius as f32, colour }
 }
 
-/// One oxygen and two hydrogens: bonds of 0.957 Ångström at 104.5 degrees, below and between the molecules.
+/// Returns a water molecule: one oxygen and two hydrogens with bonds of 0.957 Ångström at 104.5 degrees. The molecule
+/// lies below and between the two myoglobins.
 fn water() -> [Sphere; 3] {
     let oxygen = DVec3::new(0.0, -20.0, 6.0);
-    // 0.957 times sine and cosine of 52.25 degrees.
+    // The offsets are 0.957 times sine and cosine of 52.25 degrees.
     let [right, left] = [1.0, -1.0].map(|side| oxygen + DVec3::new(side * 0.7567, -0.5859, 0.0));
     [sphere(oxygen, 1.52, [240, 24, 24]), sphere(right, 1.20, [255, 255, 255]), sphere(left, 1.20, [255, 255, 255])]
 }
 
-/// One residue of the chain.
+/// A residue of the protein's chain.
 struct Residue {
     alpha: DVec3,
-    /// From the carbonyl carbon to its oxygen: along the axis in a helix, so the ribbon lies flat on it.
+    /// Direction from the carbonyl carbon to its oxygen. In a helix this is along the axis, so the ribbon lies flat on
+    /// the helix.
     across: DVec3,
     /// Half the width of the ribbon, Ångström.
     width: f64,
@@ -64,6 +66,7 @@ fn backbone(atoms: &[Atom], shift: DVec3) -> Vec<Residue> {
     let mut across = DVec3::X;
     let mut residues = Vec::with_capacity(alphas.len());
     for (i, &alpha) in alphas.iter().enumerate() {
+        // Successive directions must not flip, or the ribbon would twist.
         let mut direction = (oxygens[i] - carbons[i]).normalize_or(across);
         if direction.dot(across) < 0.0 {
             direction = -direction;
@@ -75,7 +78,7 @@ fn backbone(atoms: &[Atom], shift: DVec3) -> Vec<Residue> {
     residues
 }
 
-/// Places of all atoms of this name, one of each residue, Ångström.
+/// Returns the positions of all atoms with this name, one for each residue, Ångström.
 fn positions(atoms: &[Atom], name: &str, shift: DVec3) -> Vec<DVec3> {
     let named = atoms.iter().filter(|a| a.name == name);
     named.map(|a| a.position + shift).collect()
@@ -87,12 +90,12 @@ fn in_helix(alphas: &[DVec3], i: usize) -> bool {
     (first..=last.saturating_sub(3)).any(|j| (alphas[j + 3] - alphas[j]).length() < HELIX_STEP)
 }
 
-/// A band of rectangular section along the chain, blue at its beginning, red at its end.
+/// Builds a band of rectangular section along the chain, blue at its beginning and red at its end.
 fn ribbon(solid: &mut Solid, chain: &[Residue]) {
     let sections: Vec<Vec<DVec3>> = (0..SECTIONS).map(|i| section(chain, part_of_chain(i)).to_vec()).collect();
     let first = solid.mesh.positions.len();
     solid.plates(&sections, [0; 3]);
-    // Each of the four plates has two vertices a section.
+    // Each of the four plates has two vertices per section.
     for vertex in first..solid.mesh.positions.len() {
         let along = (vertex - first) / 2 % SECTIONS;
         solid.mesh.colours[vertex] = rainbow(part_of_chain(along));
@@ -103,21 +106,22 @@ fn ribbon(solid: &mut Solid, chain: &[Residue]) {
     solid.face(&sections[SECTIONS - 1], rainbow(1.0));
 }
 
-/// Where a cross-section lies, from 0 at the chain's beginning to 1 at its end.
+/// Returns the position of a cross-section, from 0 at the chain's beginning to 1 at its end.
 fn part_of_chain(section: usize) -> f64 {
     section as f64 / (SECTIONS - 1) as f64
 }
 
-/// The four corners at a place from 0 to 1 along the chain, anticlockwise seen from its end.
+/// Returns the four corners of the ribbon at a position from 0 to 1 along the chain, anticlockwise seen from its end.
 fn section(chain: &[Residue], place: f64) -> [DVec3; 4] {
     let along = place * (chain.len() - 1) as f64;
     let i = (along as usize).min(chain.len() - 2);
     let t = along - i as f64;
-    // One residue before the place, and the three that follow, held within the chain.
+    // The residue before the position and the three after it, limited to the chain.
     let near = [0, 1, 2, 3].map(|k| &chain[(i + k).saturating_sub(1).min(chain.len() - 1)]);
     let alphas = near.map(|residue| residue.alpha);
     let centre = spline(alphas, t);
     let forward = (spline(alphas, t + 0.01) - spline(alphas, t - 0.01)).normalize_or(DVec3::Z);
+    // `across` must be perpendicular to the chain.
     let across = spline(near.map(|residue| residue.across), t);
     let across = (across - forward * across.dot(forward)).normalize_or(DVec3::X);
     let width = near[1].width + (near[2].width - near[1].width) * t;
@@ -126,14 +130,14 @@ fn section(chain: &[Residue], place: f64) -> [DVec3; 4] {
     [wide + thick, thick - wide, -wide - thick, wide - thick].map(|corner| centre + corner)
 }
 
-/// Uniform cubic B-spline: it passes near its points, which irons the zigzag out of a chain.
+/// Evaluates a uniform cubic B-spline. The spline passes near its points, which smooths the zigzag of a chain.
 fn spline(p: [DVec3; 4], t: f64) -> DVec3 {
     let u = 1.0 - t;
     let weights = [u * u * u, 3.0 * t * t * t - 6.0 * t * t + 4.0, 3.0 * u * u * u - 6.0 * u * u + 4.0, t * t * t];
     p.iter().zip(weights).map(|(&p, w)| p * (w / 6.0)).sum()
 }
 
-/// Blue, cyan, green, yellow, red.
+/// Returns a colour of the sequence blue, cyan, green, yellow, red.
 fn rainbow(place: f64) -> Colour {
     const STOPS: [[f64; 3]; 5] =
         [[40.0, 70.0, 240.0], [30.0, 200.0, 230.0], [50.0, 210.0, 70.0], [250.0, 220.0, 40.0], [235.0, 40.0, 40.0]];
@@ -143,6 +147,7 @@ fn rainbow(place: f64) -> Colour {
     [0, 1, 2].map(|k| (STOPS[i][k] + (STOPS[i + 1][k] - STOPS[i][k]) * t) as u8)
 }
 
+// Scales ribbon and spheres to the radius of the built-in models, and makes a scene.
 fn fitted(mut solid: Solid, mut spheres: Vec<Sphere>) -> Scene {
     let points = solid.mesh.positions.iter().map(|&p| (p, 0.0));
     let balls = spheres.iter().map(|s| (s.centre.as_dvec3(), f64::from(s.radius)));
@@ -162,7 +167,7 @@ fn fitted(mut solid: Solid, mut spheres: Vec<Sphere>) -> Scene {
         spheres,
         structures: Vec::new(),
         lighting: Lighting::over_the_shoulder(),
-        // Half as high as wide: seen from nearer than a ball it fills the width of the view.
+        // The model is half as high as wide. Seen from nearer than a ball, it fills the width of the view.
         motion: HeadMotion::looking_at(glam::Vec3::ZERO, 0.8 * FIT_RADIUS_M),
         path: Vec::new(),
     };

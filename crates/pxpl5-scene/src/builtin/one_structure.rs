@@ -1,4 +1,4 @@
-//! Scenes of one structure that does not move, seen by a head that stands still unless a motion is chosen for it.
+//! Scenes of one structure that does not move. The head stands still unless the run chooses another motion.
 
 use glam::Vec3;
 
@@ -6,7 +6,8 @@ use crate::motion::{HeadMotion, HeadPath};
 use crate::scene::{Frame, Lighting, Scene, SceneParts, Structure, Vertex};
 use crate::sway::Sway;
 
-/// All triangles in one structure of this name, fixed to the room or to the head; the head looks along -z from the origin.
+/// Makes a scene with all triangles in one structure, fixed to the room or to the head. The head looks along -z from
+/// the origin.
 pub(super) fn scene(
     name: &str,
     structure: &str,

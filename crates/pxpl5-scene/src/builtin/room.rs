@@ -1,4 +1,4 @@
-//! A room around the viewer: the simplest scene that stands in the world and fills the view wherever the head turns.
+//! A room around the viewer: the simplest scene that is fixed in the world and fills the view in every direction.
 
 use glam::DVec3;
 
@@ -6,13 +6,13 @@ use super::one_structure;
 use crate::import::Mesh;
 use crate::scene::{Frame, Scene};
 
-/// Distance of every wall from the viewer, metres: so far that a head may walk to and fro. Assumed.
+/// Distance of every wall from the viewer, metres. Assumed: large enough for a head to walk to and fro.
 const WALL_M: f64 = 2.0;
 
-/// Corners of a regular tetrahedron, three times as far as its walls; the first behind the viewer, so that the wall of the other
-/// three is straight ahead.
+/// Returns the corners of a regular tetrahedron, three times as far away as its walls. The first corner is behind the
+/// viewer, so the wall of the other three is straight ahead.
 fn corners() -> [DVec3; 4] {
-    // On the wall ahead the three lie on a circle of sqrt(8) times the wall's distance.
+    // The three corners of the wall ahead lie on a circle with a radius of sqrt(8) times the wall's distance.
     let ring = WALL_M * 8f64.sqrt();
     let low = ring / 2.0;
     let side = ring * 0.75f64.sqrt();
@@ -24,7 +24,7 @@ fn corners() -> [DVec3; 4] {
     ]
 }
 
-/// The corners of each wall, anticlockwise seen from within, and its colour.
+/// Corners of each wall, anticlockwise seen from within, and colour of the wall.
 const WALLS: [([usize; 3], [u8; 3]); 4] =
     [([1, 2, 3], [200, 190, 160]), ([0, 2, 1], [150, 60, 60]), ([0, 1, 3], [60, 90, 150]), ([0, 3, 2], [90, 110, 70])];
 
@@ -50,7 +50,7 @@ mod tests {
         for triangle in room.triangles() {
             let [a, b, c] = triangle.map(|v| room.vertices()[v as usize].position.as_dvec3());
             let normal = (b - a).cross(c - a).normalize();
-            // Anticlockwise seen from within: the normal points to the viewer at the origin.
+            // The corners are anticlockwise seen from within, so the normal points to the viewer at the origin.
             assert!((normal.dot(a) + WALL_M).abs() < 1e-5, "{}", normal.dot(a));
             let stored = room.vertices()[triangle[0] as usize].normal.as_dvec3();
             assert!((stored - normal).length() < 1e-5);

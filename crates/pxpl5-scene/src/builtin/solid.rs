@@ -1,4 +1,4 @@
-//! Building solids from cross-sections.
+//! Construction of solids from cross-sections.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use crate::scene::{Frame, Structure};
 
 pub(super) type Colour = [u8; 3];
 
-/// A mesh that grows part by part; each part has normals of its own.
+/// A mesh that grows part by part. Each part has its own normals.
 #[derive(Default)]
 pub(super) struct Solid {
     pub(super) mesh: Mesh,
@@ -18,7 +18,7 @@ pub(super) struct Solid {
 }
 
 impl Solid {
-    /// Closes the structure that holds everything since the last one.
+    /// Ends the current structure, which holds everything added since the previous one.
     pub(super) fn end_structure(&mut self, name: &str, hinge: Option<Hinge>) {
         let (vertex, triangle) = self.structures.last().map_or((0, 0), |s| (s.vertices.end, s.triangles.end));
         self.structures.push(Structure {
@@ -32,9 +32,9 @@ impl Solid {
         });
     }
 
-    /// A skin between closed sections of equally many points, smooth along and across.
+    /// Adds a skin between closed sections with the same number of points, with smooth normals in both directions.
     ///
-    /// Points run anticlockwise as seen from the last section. 2 x points x (sections - 1) triangles.
+    /// The points run anticlockwise as seen from the last section. The skin has 2 x points x (sections - 1) triangles.
     pub(super) fn skin(&mut self, sections: &[Vec<DVec3>], colour: Colour) {
         let mut part = Mesh::default();
         for section in sections {
@@ -42,6 +42,7 @@ impl Solid {
                 part.push(point, DVec3::ZERO, colour);
             }
         }
+        // Join each section with the next, side by side.
         let sides = sections[0].len() as u32;
         for ring in 0..sections.len() as u32 - 1 {
             for side in 0..sides {
@@ -54,7 +55,8 @@ impl Solid {
         self.append(part);
     }
 
-    /// Smooth round each section, with edges where two of its sides meet: a plate for each side.
+    /// Adds one strip for each side of the sections. Normals are smooth along a strip, with sharp edges between the
+    /// strips.
     pub(super) fn plates(&mut self, sections: &[Vec<DVec3>], colour: Colour) {
         let sides = sections[0].len();
         for side in 0..sides {
@@ -64,7 +66,7 @@ impl Solid {
         }
     }
 
-    /// Quadrilaterals between successive rungs, smooth along the strip.
+    /// Adds quadrilaterals between successive rungs, with smooth normals along the strip.
     pub(super) fn strip(&mut self, rungs: &[[DVec3; 2]], colour: Colour) {
         let mut part = Mesh::default();
         for &[left, right] in rungs {
@@ -77,7 +79,7 @@ impl Solid {
         self.append(part);
     }
 
-    /// A flat polygon, anticlockwise seen from outside: points - 2 triangles.
+    /// Adds a flat polygon, anticlockwise seen from outside, as points - 2 triangles.
     pub(super) fn face(&mut self, points: &[DVec3], colour: Colour) {
         let mut part = Mesh::default();
         let corners: Vec<u32> = points.iter().map(|&p| part.push(p, DVec3::ZERO, colour)).collect();
@@ -85,7 +87,8 @@ impl Solid {
         self.append(part);
     }
 
-    /// A cone from a closed section to a point: as many triangles as points. They run anticlockwise seen from the tip.
+    /// Adds a cone from a closed section to a point, with one triangle for each point. The points run anticlockwise
+    /// seen from the tip.
     pub(super) fn cone(&mut self, section: &[DVec3], tip: DVec3, colour: Colour) {
         let mut part = Mesh::default();
         for &point in section {
@@ -99,7 +102,7 @@ impl Solid {
         self.append(part);
     }
 
-    /// Repaints the vertices of `range` that `chosen` says.
+    /// Repaints the vertices of `range` for which `chosen` returns true.
     pub(super) fn paint(&mut self, range: Range<usize>, colour: Colour, chosen: impl Fn(DVec3) -> bool) {
         for vertex in range {
             if chosen(self.mesh.positions[vertex]) {

@@ -1,4 +1,4 @@
-//! A sphere of any even number of triangles, all of about the same size.
+//! A sphere of any even number of triangles of about the same size.
 
 use glam::DVec3;
 
@@ -7,8 +7,9 @@ use crate::import::{Mesh, fitted_scene};
 use crate::scene::Scene;
 use crate::trig;
 
-/// So many triangles: even, at least [`crate::config::LEAST_SPHERE_TRIANGLES`].
+/// Generates a sphere of `count` triangles. `count` is even and at least [`crate::config::LEAST_SPHERE_TRIANGLES`].
 pub(super) fn scene(count: u32) -> Scene {
+    // Add the parallels from pole to pole, and join each with the one above.
     let rings = rings(count);
     let mut mesh = Mesh::default();
     let top = push(&mut mesh, DVec3::Y);
@@ -24,22 +25,24 @@ pub(super) fn scene(count: u32) -> Scene {
     fitted_scene(&format!("sphere:{count}"), mesh, Vec::new())
 }
 
-/// Points on a parallel.
+/// The vertices on one parallel of the sphere.
 struct Ring {
     first: u32,
     points: u32,
 }
 
-/// Points on each parallel. Between two of them lie as many triangles as both have points, so there are half as many points as
-/// triangles, the poles apart; each parallel has its share by its length.
+/// Returns the number of points on each parallel. Between two parallels lie as many triangles as both have points
+/// together. Without the poles, there are therefore half as many points as triangles. These points are distributed by
+/// the length of the parallels.
 fn rings(count: u32) -> Vec<u32> {
-    // A triangle of equal sides s has the area s^2 sqrt(3)/4, and rows of them are s sqrt(3)/2 apart.
+    // An equilateral triangle with side s has the area s^2 sqrt(3)/4, and rows of such triangles are s sqrt(3)/2 apart.
     let side = (16.0 * std::f64::consts::PI / (3f64.sqrt() * f64::from(count))).sqrt();
     let rows = (std::f64::consts::PI / (side * 3f64.sqrt() / 2.0) + 0.5) as u32;
     let rings = rows.max(2) - 1;
     let lengths: Vec<f64> =
         (1..=rings).map(|ring| trig::sin_turns(f64::from(ring) / f64::from(2 * (rings + 1)))).collect();
     let all: f64 = lengths.iter().sum();
+    // Rounding the running sum, not each share, keeps the total exact.
     let mut points = Vec::with_capacity(lengths.len());
     let mut sum = 0.0;
     let mut given = 0;
@@ -56,7 +59,7 @@ fn push(mesh: &mut Mesh, direction: DVec3) -> u32 {
     mesh.push(direction * IMPORT_RADIUS_M, direction, DEFAULT_COLOUR)
 }
 
-/// A parallel, `down` of the way from pole to pole.
+/// Adds a parallel at the fraction `down` of the way from pole to pole.
 fn push_ring(mesh: &mut Mesh, down: f64, points: u32) {
     let radius = trig::sin_turns(down / 2.0);
     let height = trig::cos_turns(down / 2.0);
@@ -67,14 +70,14 @@ fn push_ring(mesh: &mut Mesh, down: f64, points: u32) {
     }
 }
 
-/// Triangles all round between a parallel and the next lower one; a pole is a parallel of one point.
+/// Adds the triangles between a parallel and the next lower one. A pole is a parallel of one point.
 fn join(mesh: &mut Mesh, above: &Ring, below: &Ring) {
     let steps = |ring: &Ring| if ring.points == 1 { 0 } else { ring.points };
     let [upper, lower] = [above, below].map(steps);
     let [mut a, mut b] = [0, 0];
     while a < upper || b < lower {
         let corner = |ring: &Ring, index: u32| ring.first + index % ring.points;
-        // Whose next point comes first on the way round.
+        // Advance on the parallel whose next point comes first on the way round.
         let is_upper =
             b == lower || (a < upper && u64::from(a + 1) * u64::from(lower) <= u64::from(b + 1) * u64::from(upper));
         if is_upper {

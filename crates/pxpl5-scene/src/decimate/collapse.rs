@@ -1,4 +1,4 @@
-//! Which edges are collapsed, in which order.
+//! The choice and the order of the edges to collapse.
 
 use std::cmp::Ordering;
 use std::collections::{BTreeSet, BinaryHeap};
@@ -6,28 +6,30 @@ use std::collections::{BTreeSet, BinaryHeap};
 use super::quadric::Quadric;
 use super::surface::{Surface, is_degenerate};
 
-/// A triangle may turn by at most 78 degrees when one of its corners moves. Assumed, 45 to 90 degrees.
+/// Least cosine of the angle by which a triangle may turn when one of its corners moves: at most 78 degrees. Assumed,
+/// 45 to 90 degrees.
 const LEAST_COSINE: f64 = 0.2;
 
-/// Rules for a pass over all edges.
+/// The rules of a pass that collapses edges.
 #[derive(Clone, Copy)]
 pub(super) struct Rules {
-    /// Whether triangles may turn over.
+    /// True if triangles may turn over.
     pub(super) may_fold: bool,
-    /// Whether fewer triangles may be left than wanted, because an edge inside a surface takes two with it.
+    /// True if fewer triangles than wanted may remain. Collapsing an edge inside a surface removes two triangles.
     pub(super) may_overshoot: bool,
 }
 
-/// A point that may move onto another one.
+/// A possible collapse of an edge: one end moves onto the other.
 struct Candidate {
     cost: f64,
     from: u32,
     onto: u32,
-    /// How often each of them had changed when the cost was found.
+    /// Number of changes of both points at the time when the cost was computed.
     changes: [u32; 2],
 }
 
-/// The cheapest first; of equally dear ones that of the lowest points.
+/// Orders candidates by cost, the cheapest first. Equal costs are ordered by the numbers of the points, the lowest
+/// first.
 impl Ord for Candidate {
     fn cmp(&self, other: &Self) -> Ordering {
         let points = |candidate: &Self| (candidate.from, candidate.onto);
@@ -49,7 +51,7 @@ impl PartialEq for Candidate {
 
 impl Eq for Candidate {}
 
-/// A surface that loses edges, with what every point has seen.
+/// A surface during decimation, with the quadric and the number of changes of each point.
 pub(super) struct Collapsing<'s, 'a> {
     surface: &'s mut Surface<'a>,
     quadrics: Vec<Quadric>,
@@ -70,7 +72,7 @@ impl<'s, 'a> Collapsing<'s, 'a> {
                 let ends = [corners[side], corners[(side + 1) % 3]];
                 let places = ends.map(|point| surface.places[point as usize]);
                 let along = places[1] - places[0];
-                // A border stays where it is: as if a wall stood on it.
+                // A border edge gets a wall perpendicular to the surface, so that moving the border costs.
                 if surface.triangles_at(ends[0], ends[1]) != 2
                     && let Some(across) = along.cross(normal).try_normalize()
                 {
@@ -82,7 +84,7 @@ impl<'s, 'a> Collapsing<'s, 'a> {
         Self { surface, quadrics, changes: vec![0; points] }
     }
 
-    /// Collapses edges, the cheapest first, until so many triangles are left, or no edge can go.
+    /// Collapses edges, the cheapest first, until `wanted` triangles remain or no edge can be collapsed.
     pub(super) fn until(&mut self, wanted: usize, rules: Rules) {
         while self.surface.left > wanted {
             let before = self.surface.left;
@@ -103,11 +105,13 @@ impl<'s, 'a> Collapsing<'s, 'a> {
                 return;
             }
             let Candidate { from, onto, changes, .. } = candidate;
+            // An outdated cost is dropped: a newer candidate for these points is in the queue.
             let is_current = changes == [self.changes[from as usize], self.changes[onto as usize]];
             if !is_current || !self.may_go(from, onto, wanted, rules) {
                 continue;
             }
             self.surface.collapse(from, onto);
+            // The remaining point takes over the quadric, and all costs around it are renewed.
             let moved = self.quadrics[from as usize];
             self.quadrics[onto as usize] += moved;
             self.changes[from as usize] += 1;
@@ -119,7 +123,7 @@ impl<'s, 'a> Collapsing<'s, 'a> {
         }
     }
 
-    /// The ways in which a point may move along its edges.
+    /// Adds the collapses of all edges at a point to the queue.
     fn enter(&self, point: u32, queue: &mut BinaryHeap<Candidate>) {
         queue.extend(self.surface.neighbours(point).into_iter().map(|onto| self.candidate(point, onto)));
     }
@@ -130,7 +134,8 @@ impl<'s, 'a> Collapsing<'s, 'a> {
         Candidate { cost, from, onto, changes: [from, onto].map(|point| self.changes[point as usize]) }
     }
 
-    /// Whether the surface stays one: nothing closed opens, nothing is doubled, no piece vanishes.
+    /// Returns true if a collapse keeps the surface intact: nothing closed opens, no triangle is doubled, no piece
+    /// vanishes.
     fn may_go(&self, from: u32, onto: u32, wanted: usize, rules: Rules) -> bool {
         let surface = &self.surface;
         let (going, staying): (Vec<_>, Vec<_>) = surface.round(from).partition(|(_, points)| points.contains(&onto));
@@ -138,6 +143,8 @@ impl<'s, 'a> Collapsing<'s, 'a> {
         if going.is_empty() || (leaves_too_few && !rules.may_overshoot) {
             return false;
         }
+        // The collapse must remove the two points' common neighbours exactly once, or the surface would fold onto
+        // itself.
         let opposite: BTreeSet<u32> =
             going.iter().flat_map(|(_, points)| *points).filter(|point| ![from, onto].contains(point)).collect();
         let own = surface.neighbours(from);
@@ -149,14 +156,15 @@ impl<'s, 'a> Collapsing<'s, 'a> {
         staying.iter().all(|(_, points)| self.may_move(*points, from, onto, rules.may_fold))
     }
 
-    /// A point on a border moves along it only, and one where borders meet does not move.
+    /// Returns true if the borders stay in place. A point on a border may move only along it. A point where borders
+    /// meet must not move.
     fn keeps_borders(&self, from: u32, onto: u32, neighbours: &BTreeSet<u32>) -> bool {
         let on_border = |other: &&u32| self.surface.triangles_at(from, **other) != 2;
         let borders: Vec<u32> = neighbours.iter().filter(on_border).copied().collect();
         borders.is_empty() || (borders.len() == 2 && borders.contains(&onto))
     }
 
-    /// Whether a triangle survives the move of one of its points: not doubled, not folded over.
+    /// Returns true if a triangle survives the move of one of its points: it is neither doubled nor folded over.
     fn may_move(&self, points: [u32; 3], from: u32, onto: u32, may_fold: bool) -> bool {
         let moved = points.map(|point| if point == from { onto } else { point });
         let is_same = |(_, other): (u32, [u32; 3])| moved.iter().all(|point| other.contains(point));

@@ -1,9 +1,11 @@
-//! Fewer primitives for the same shape.
+//! Decimation: fewer primitives for the same shape.
 //!
-//! Edges are collapsed, the cheapest first by the quadric error metric (Garland and Heckbert, SIGGRAPH 97), each onto one of its
-//! ends, so that every vertex that is left has the place, normal and colour that it had. A surface that was closed stays
-//! closed. Where nothing can be collapsed any more, whole pieces go, the smallest first; where one piece is left, its smallest
-//! triangles. Of spheres, which have no edges, some are left out, evenly over their order.
+//! The algorithm collapses edges, the cheapest first by the quadric error metric (Garland and Heckbert, SIGGRAPH 97).
+//! Each edge collapses onto one of its ends, so every remaining vertex keeps its position, normal and colour. A closed
+//! surface stays closed.
+//!
+//! When no edge can be collapsed, whole pieces are removed, the smallest first. When one piece is left, its smallest
+//! triangles are removed. Spheres have no edges. Some of them are left out, evenly over their order.
 
 mod collapse;
 mod quadric;
@@ -18,15 +20,16 @@ use crate::error::SceneError;
 use crate::scene::{Scene, SceneParts, Structure};
 
 impl Scene {
-    /// The same scene with at most `n` primitives, and as many as its surfaces allow: a closed surface has an even number of
-    /// triangles, so of an odd number one may be missing. Spheres and triangles are kept in the proportion that they have.
+    /// Returns the same scene with at most `n` primitives, and as many as its surfaces allow. A closed surface has an
+    /// even number of triangles, so an odd number may be missed by one. The proportion of spheres and triangles stays
+    /// the same.
     ///
-    /// Structures that hold nothing any more are left out, and so are their edits. The same scene and number give the same result
-    /// on every host.
+    /// Structures without primitives are left out together with their edits. The same scene and number give the same
+    /// result on every host.
     ///
     /// # Errors
     ///
-    /// [`SceneError::Kept`] when `n` is zero or more than there are.
+    /// [`SceneError::Kept`] if `n` is zero or exceeds the number of primitives.
     pub fn decimated(&self, n: usize) -> Result<Self, SceneError> {
         let triangles = self.triangles().len();
         let spheres = self.spheres().len();
@@ -37,7 +40,7 @@ impl Scene {
         if n == all {
             return Ok(self.clone());
         }
-        // Rounded to the nearest.
+        // Rounded to the nearest integer.
         let kept_spheres = (2 * n * spheres + all) / (2 * all);
         let kept = Kept {
             triangles: triangles_kept(self, n - kept_spheres),
@@ -47,14 +50,15 @@ impl Scene {
     }
 }
 
-/// Whether an item is among so many that are spread evenly over all.
+/// Returns true if an item belongs to the `kept` items that are spread evenly over `all` items.
 const fn is_kept(index: usize, all: usize, kept: usize) -> bool {
     index * kept / all != (index + 1) * kept / all
 }
 
-/// The corners of the triangles that are left, at most `wanted`; nothing where one is gone.
+/// Returns the corners of each remaining triangle, or `None` for a removed one. At most `wanted` triangles remain.
 fn triangles_kept(scene: &Scene, wanted: usize) -> Vec<Option<[u32; 3]>> {
     let mut surface = Surface::new(scene);
+    // Later passes allow more damage: first too few triangles, then folded ones.
     let mut collapsing = Collapsing::new(&mut surface);
     let passes = [(false, false), (false, true), (true, true)];
     for (may_fold, may_overshoot) in passes {
@@ -65,7 +69,7 @@ fn triangles_kept(scene: &Scene, wanted: usize) -> Vec<Option<[u32; 3]>> {
     surface.triangles
 }
 
-/// Leaves out whole pieces, the smallest first, as long as there are others.
+/// Removes whole pieces, the smallest first, until `wanted` triangles or one piece remain.
 fn drop_pieces(surface: &mut Surface<'_>, wanted: usize) {
     if surface.left <= wanted {
         return;
@@ -81,7 +85,7 @@ fn drop_pieces(surface: &mut Surface<'_>, wanted: usize) {
     }
 }
 
-/// Leaves out the smallest triangles: only where no edge can be collapsed and one piece is left.
+/// Removes the smallest triangles, if no edge can be collapsed and only one piece is left.
 fn drop_triangles(surface: &mut Surface<'_>, wanted: usize) {
     let left: Vec<u32> = surface.all().map(|(triangle, _)| triangle).collect();
     let areas: Vec<f64> = left.iter().map(|&triangle| area(surface, triangle)).collect();
@@ -89,10 +93,10 @@ fn drop_triangles(surface: &mut Surface<'_>, wanted: usize) {
     smallest_first(&areas).into_iter().take(excess).for_each(|index| remove(surface, left[index]));
 }
 
-/// Indices by size; equal sizes, to a thousandth, in an order that takes from everywhere alike.
+/// Returns indices by rising area. Areas that agree to a thousandth get an order that spreads evenly over the surface.
 fn smallest_first(areas: &[f64]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..areas.len()).collect();
-    // The exponent and ten bits of the fraction; then the bits of the index from behind.
+    // The key is the exponent and ten bits of the fraction, followed by the bits of the index in reverse order.
     order.sort_by_key(|&index| (areas[index].to_bits() >> 42, index.reverse_bits()));
     order
 }
@@ -107,27 +111,30 @@ fn remove(surface: &mut Surface<'_>, triangle: u32) {
     }
 }
 
-/// Which primitives are left.
+/// The primitives that remain after decimation.
 struct Kept {
     triangles: Vec<Option<[u32; 3]>>,
     spheres: Vec<bool>,
 }
 
 impl Kept {
-    /// The parts of a scene without what is gone: primitives, vertices that none uses, structures without any.
+    /// Returns the parts of a scene without removed primitives, unused vertices and empty structures.
     fn of(self, mut parts: SceneParts) -> SceneParts {
+        // Count how many items remain before each index: these are the new indices.
         let mut used = vec![false; parts.vertices.len()];
         self.triangles.iter().flatten().flatten().for_each(|&corner| used[corner as usize] = true);
         let present: Vec<bool> = self.triangles.iter().map(Option::is_some).collect();
         let vertices = counts_before(&used);
         let triangles = counts_before(&present);
         let spheres = counts_before(&self.spheres);
+        // Renumber the ranges of the structures.
         for structure in &mut parts.structures {
             structure.vertices = moved(&structure.vertices, &vertices);
             structure.triangles = moved(&structure.triangles, &triangles);
             structure.spheres = moved(&structure.spheres, &spheres);
         }
         parts.structures.retain(|s: &Structure| !s.triangles.is_empty() || !s.spheres.is_empty());
+        // Renumber the corners, and keep only what remains.
         let corner = |corner: u32| vertices[corner as usize] as u32;
         parts.triangles = self.triangles.iter().flatten().map(|corners| corners.map(corner)).collect();
         parts.vertices = only(&parts.vertices, &used);
@@ -136,7 +143,7 @@ impl Kept {
     }
 }
 
-/// How many are kept before each item, and in all.
+/// Returns the number of kept items before each index, followed by the total.
 fn counts_before(kept: &[bool]) -> Vec<usize> {
     let mut count = 0;
     let mut counts = vec![0];

@@ -4,10 +4,10 @@ use std::ops::{Add, AddAssign};
 
 use glam::DVec3;
 
-/// A symmetric form: the sum over planes of weight x (normal . p + offset)^2.
+/// A symmetric quadratic form: the sum over planes of weight x (normal . p + offset)^2.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Quadric {
-    /// Upper triangle of the sum of weight x normal normal^T: xx, xy, xz, yy, yz, zz.
+    /// Upper triangle of the sum of weight x normal normal^T, in the order xx, xy, xz, yy, yz, zz.
     squares: [f64; 6],
     /// Sum of weight x offset x normal.
     linear: DVec3,
@@ -16,7 +16,7 @@ pub(super) struct Quadric {
 }
 
 impl Quadric {
-    /// Squared distances to the plane through `point` with the unit normal `normal`, times `weight`.
+    /// Returns `weight` times the squared distance to the plane through `point` with the unit normal `normal`.
     pub(super) fn of_plane(normal: DVec3, point: DVec3, weight: f64) -> Self {
         let offset = -normal.dot(point);
         let [x, y, z] = normal.to_array();
@@ -24,7 +24,7 @@ impl Quadric {
         Self { squares, linear: normal * (weight * offset), constant: weight * offset * offset }
     }
 
-    /// The sum at a point; never below zero, though rounding may say so.
+    /// Returns the weighted sum of squared distances at a point. Negative values by rounding are raised to zero.
     pub(super) fn at(&self, p: DVec3) -> f64 {
         let [xx, xy, xz, yy, yz, zz] = self.squares;
         let turned =

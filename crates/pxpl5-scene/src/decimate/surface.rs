@@ -1,4 +1,4 @@
-//! A surface whose edges can be collapsed: triangles between points, where vertices of one place are one point.
+//! A surface whose edges can be collapsed. Triangles connect points, and vertices at one position share a point.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,25 +6,26 @@ use glam::DVec3;
 
 use crate::scene::{Scene, Vertex};
 
-/// Triangles of a scene, some of them gone. Points are the different places of the vertices of one structure.
+/// The triangles of a scene during decimation. A point is a distinct position of the vertices of one structure.
 pub(super) struct Surface<'a> {
     vertices: &'a [Vertex],
-    /// Place of each point.
+    /// Position of each point.
     pub(super) places: Vec<DVec3>,
-    /// The point on which each vertex lies.
+    /// Point of each vertex.
     point_of: Vec<u32>,
-    /// The vertices that lie on each point.
+    /// Vertices at each point.
     vertices_on: Vec<Vec<u32>>,
-    /// Corners as vertices; nothing where a triangle is gone.
+    /// Vertices at the corners of each triangle, or `None` for a removed triangle.
     pub(super) triangles: Vec<Option<[u32; 3]>>,
-    /// The triangles that are left round each point, by index.
+    /// Indices of the remaining triangles around each point.
     around: Vec<Vec<u32>>,
-    /// How many triangles are left.
+    /// Number of triangles that have not been removed.
     pub(super) left: usize,
 }
 
 impl<'a> Surface<'a> {
-    /// All triangles of a scene but those that join a point with itself, which cover nothing.
+    /// Creates a surface of all triangles of a scene. Triangles with two corners at one point cover nothing and are
+    /// left out.
     pub(super) fn new(scene: &'a Scene) -> Self {
         let vertices = scene.vertices();
         let mut surface = Self {
@@ -36,6 +37,7 @@ impl<'a> Surface<'a> {
             around: Vec::new(),
             left: scene.triangles().len(),
         };
+        // Points are not shared between structures, which can move apart.
         for structure in scene.structures() {
             surface.weld(structure.vertices.clone());
         }
@@ -46,12 +48,12 @@ impl<'a> Surface<'a> {
         surface
     }
 
-    /// Makes a point of every place among these vertices.
+    /// Creates a point for every distinct position of these vertices.
     fn weld(&mut self, vertices: std::ops::Range<usize>) {
         let mut points: BTreeMap<[u32; 3], u32> = BTreeMap::new();
         for vertex in vertices {
             let position = self.vertices[vertex].position;
-            // Adding zero makes one zero of both.
+            // Adding zero turns -0 into +0, so that both have one key.
             let key = position.to_array().map(|x| (x + 0.0).to_bits());
             let point = *points.entry(key).or_insert_with(|| {
                 self.places.push(position.as_dvec3());
@@ -73,41 +75,41 @@ impl<'a> Surface<'a> {
         points.iter().for_each(|point| self.around[*point as usize].push(triangle));
     }
 
-    /// The points of a triangle that is left.
+    /// Returns the points of a triangle, or `None` if the triangle was removed.
     pub(super) fn points(&self, triangle: u32) -> Option<[u32; 3]> {
         let corners = self.triangles[triangle as usize]?;
         Some(corners.map(|vertex| self.point_of[vertex as usize]))
     }
 
-    /// Every triangle that is left, with its points.
+    /// Returns every remaining triangle with its points.
     pub(super) fn all(&self) -> impl Iterator<Item = (u32, [u32; 3])> {
         (0..self.triangles.len() as u32).filter_map(|triangle| Some((triangle, self.points(triangle)?)))
     }
 
-    /// The triangles round a point, with their points.
+    /// Returns the remaining triangles around a point, each with its points.
     pub(super) fn round(&self, point: u32) -> impl Iterator<Item = (u32, [u32; 3])> {
         let triangles = self.around[point as usize].iter();
         triangles.filter_map(|triangle| Some((*triangle, self.points(*triangle)?)))
     }
 
-    /// The points joined with a point by an edge, in order.
+    /// Returns the points connected to a point by an edge, in ascending order.
     pub(super) fn neighbours(&self, point: u32) -> BTreeSet<u32> {
         let joined = self.round(point).flat_map(|(_, points)| points);
         joined.filter(|other| *other != point).collect()
     }
 
-    /// How many triangles an edge has: two inside a surface, one at its border.
+    /// Returns the number of triangles at an edge: two inside a surface, one at its border.
     pub(super) fn triangles_at(&self, a: u32, b: u32) -> usize {
         self.round(a).filter(|(_, points)| points.contains(&b)).count()
     }
 
-    /// Normal of three points, its length twice their area.
+    /// Returns the normal of a triangle of points, with a length of twice the triangle's area.
     pub(super) fn normal(&self, points: [u32; 3]) -> DVec3 {
         let [a, b, c] = points.map(|point| self.places[point as usize]);
         (b - a).cross(c - a)
     }
 
-    /// Moves one point onto another: the triangles with both go, the others follow.
+    /// Moves one point onto another. Triangles with both points are removed, and the others follow the point.
     pub(super) fn collapse(&mut self, from: u32, onto: u32) {
         let moved: Vec<(u32, [u32; 3])> = self.round(from).collect();
         self.around[from as usize].clear();
@@ -124,7 +126,7 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// Takes a triangle away.
+    /// Removes a triangle with these points.
     pub(super) fn remove(&mut self, triangle: u32, points: [u32; 3]) {
         for point in points {
             self.around[point as usize].retain(|other| *other != triangle);
@@ -133,7 +135,7 @@ impl<'a> Surface<'a> {
         self.left -= 1;
     }
 
-    /// Of the vertices on a point the one most like a vertex: in normal, then in colour.
+    /// Returns the vertex at point `onto` that is most similar to `vertex` in normal and colour.
     fn counterpart(&self, vertex: u32, onto: u32) -> u32 {
         let wanted = self.vertices[vertex as usize];
         let likeness = |candidate: &u32| likeness(&wanted, &self.vertices[*candidate as usize]);
@@ -142,10 +144,11 @@ impl<'a> Surface<'a> {
         best.copied().unwrap_or(vertex)
     }
 
-    /// The pieces that hang together, each as its triangles in order.
+    /// Returns the connected pieces of the surface, each as its triangles in ascending order.
     pub(super) fn pieces(&self) -> Vec<Vec<u32>> {
         let mut pieces: Vec<Vec<u32>> = Vec::new();
         let mut met = vec![false; self.triangles.len()];
+        // Collect all triangles that share points with the first one, directly or through others.
         for (first, _) in self.all() {
             if std::mem::replace(&mut met[first as usize], true) {
                 continue;
@@ -168,12 +171,12 @@ impl<'a> Surface<'a> {
     }
 }
 
-/// Whether a triangle joins a point with itself.
+/// Returns true if two corners of a triangle are the same point.
 pub(super) fn is_degenerate([a, b, c]: [u32; 3]) -> bool {
     a == b || b == c || c == a
 }
 
-/// How alike two vertices are: in normal, then in colour.
+/// Returns the similarity of two vertices in normal and colour. Larger values are more similar.
 fn likeness(one: &Vertex, other: &Vertex) -> f64 {
     let shades = one.colour.iter().zip(other.colour).map(|(a, b)| f64::from(a.abs_diff(b)));
     f64::from(one.normal.dot(other.normal)) - shades.sum::<f64>() / (3.0 * 255.0)

@@ -1,4 +1,4 @@
-//! Models from the host's files: the only place in this crate that asks an operating system for something.
+//! Models from the host's files. Only this module of the crate calls the operating system.
 #![cfg(feature = "files")]
 
 use std::fs::{self, File};
@@ -8,23 +8,23 @@ use super::{Format, Placement, read_placed};
 use crate::error::LoadError;
 use crate::scene::Scene;
 
-/// Loads a model file, of the format that its extension says.
+/// Loads a model file. The extension determines the format.
 ///
-/// What becomes of the model: see [`crate::from_bytes`].
+/// [`crate::from_bytes`] describes the conversion into a scene.
 ///
 /// # Errors
 ///
 /// [`LoadError::Io`], [`LoadError::NotAFile`] and [`LoadError::UnknownFormat`] for a path that leads to no model, and
-/// all those of [`crate::from_bytes`].
+/// all errors of [`crate::from_bytes`].
 pub fn load(path: impl AsRef<Path>) -> Result<Scene, LoadError> {
     load_placed(path, Placement::Fitted)
 }
 
-/// As [`load`], with the model where `placement` says.
+/// Loads a model file as [`load`] does, with the model at the position that `placement` selects.
 ///
 /// # Errors
 ///
-/// As [`load`].
+/// The same as [`load`].
 pub fn load_placed(path: impl AsRef<Path>, placement: Placement) -> Result<Scene, LoadError> {
     let path = path.as_ref();
     let file = path.display().to_string();
@@ -41,7 +41,7 @@ pub fn load_placed(path: impl AsRef<Path>, placement: Placement) -> Result<Scene
     read_placed(opened, metadata.len(), format, &file, placement)
 }
 
-/// The most telling fault of a path without a known extension.
+/// Returns the most helpful error for a path without a known extension.
 fn not_a_model(path: &Path, file: String) -> LoadError {
     match fs::metadata(path) {
         Ok(data) if data.is_dir() => LoadError::NotAFile { file, found: "a directory" },

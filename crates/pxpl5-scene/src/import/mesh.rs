@@ -1,4 +1,5 @@
-//! Meshes of built-in models in double precision, and what all models end in: fans, normals, the fit into the view.
+//! Meshes of the built-in models in double precision, and functions for all models: triangle fans, normals, and fitting
+//! into the view.
 
 use glam::{DVec3, Vec3};
 
@@ -11,14 +12,15 @@ use crate::sway::Sway;
 #[derive(Default)]
 pub(crate) struct Mesh {
     pub(crate) positions: Vec<DVec3>,
-    /// Not yet of unit length; zero where the file gives none, and empty as long as it has given none at all.
+    /// Normals of the vertices, of any length. A zero vector marks a missing normal. The list is empty until the first
+    /// normal is given.
     pub(crate) normals: Vec<DVec3>,
     pub(crate) colours: Vec<[u8; 3]>,
     pub(crate) triangles: Vec<[u32; 3]>,
 }
 
 impl Mesh {
-    /// Adds a vertex; its normal is zero where it has none.
+    /// Adds a vertex and returns its index. A zero `normal` marks a missing normal.
     pub(crate) fn push(&mut self, position: DVec3, normal: DVec3, colour: [u8; 3]) -> u32 {
         let index = self.positions.len() as u32;
         if normal != DVec3::ZERO || !self.normals.is_empty() {
@@ -30,7 +32,7 @@ impl Mesh {
         index
     }
 
-    /// Cuts a polygon into triangles that share its first corner.
+    /// Adds a polygon as a fan of triangles that share its first corner.
     pub(crate) fn fan(&mut self, corners: &[u32]) {
         if let [first, rest @ ..] = corners {
             let fan = rest.windows(2).map(|pair| [*first, pair[0], pair[1]]);
@@ -38,8 +40,8 @@ impl Mesh {
         }
     }
 
-    /// Gives a unit normal to every vertex without one: the mean over its triangles, weighted by area; +z if it has
-    /// only triangles without area.
+    /// Computes a unit normal for every vertex without one: the mean over its triangles, weighted by area. A vertex
+    /// whose triangles have no area gets +z.
     pub(crate) fn complete_normals(&mut self) {
         let sums = self.sums_of_areas();
         self.normals.resize(self.positions.len(), DVec3::ZERO);
@@ -48,7 +50,7 @@ impl Mesh {
         }
     }
 
-    /// The sum of the areas around each vertex, as vectors.
+    /// Returns the sum of the area vectors of the triangles around each vertex.
     fn sums_of_areas(&self) -> Vec<DVec3> {
         let mut sums = vec![DVec3::ZERO; self.positions.len()];
         for triangle in &self.triangles {
@@ -58,7 +60,7 @@ impl Mesh {
         sums
     }
 
-    /// The vertices of a scene, rounded to single precision.
+    /// Returns the vertices of a scene, rounded to single precision.
     pub(crate) fn vertices(&self) -> Vec<Vertex> {
         let positions = self.positions.iter().zip(&self.normals).zip(&self.colours);
         positions
@@ -71,35 +73,35 @@ impl Mesh {
     }
 }
 
-/// The vector with length 1; `None` of one without length. Its largest component is brought near 1 first, by a power of two that
-/// changes no bit: squares of the smallest and the largest numbers of a file would leave the range of f64.
+/// Returns the vector scaled to length 1, or `None` for a zero vector. A power of two first brings the largest
+/// component near 1 without rounding. Otherwise squares of very small or large numbers would leave the range of f64.
 pub(super) fn unit(v: DVec3) -> Option<DVec3> {
     let (_, exponent) = libm::frexp(v.abs().max_element());
     DVec3::from_array(v.to_array().map(|x| libm::ldexp(x, -exponent))).try_normalize()
 }
 
-/// The area of a triangle twice, along its normal.
+/// Returns twice the area of a triangle as a vector along its normal.
 pub(super) fn area([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// The scene of a model already fitted to the default view.
+/// Makes a scene of a model that is already fitted to the default view.
 pub(crate) fn fitted_scene(name: &str, mesh: Mesh, spheres: Vec<Sphere>) -> Scene {
     seen_by(seeing_fitted(), name, mesh.vertices(), mesh.triangles, spheres)
 }
 
-/// How the head moves that looks at a fitted model.
+/// Returns the motion of a head that looks at a fitted model.
 pub(super) fn seeing_fitted() -> HeadMotion {
     HeadMotion::seeing_whole(Vec3::ZERO, IMPORT_RADIUS_M)
 }
 
-/// A head that stands at the origin of a model's coordinates.
+/// Returns the motion of a head that stands at the origin of a model's coordinates.
 pub(super) fn standing_at_the_origin() -> HeadMotion {
     let path = HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z };
     HeadMotion::new(path, Sway::none()).expect("pxpl5-scene: constants are in range")
 }
 
-/// The scene of a model of one structure before a head.
+/// Makes a scene of a model with one structure and a head motion.
 pub(super) fn seen_by(
     motion: HeadMotion,
     name: &str,
@@ -120,14 +122,14 @@ pub(super) fn seen_by(
     Scene::new(parts).expect("pxpl5-scene: readers check what they make")
 }
 
-/// Moves the centre of a model to the origin and scales its radius to [`IMPORT_RADIUS_M`].
+/// A transformation that moves the centre of a model to the origin and scales its radius to [`IMPORT_RADIUS_M`].
 pub(crate) struct Fit {
     centre: DVec3,
     pub(crate) scale: f64,
 }
 
 impl Fit {
-    /// From all balls (centre, radius) of the model. A model without extent is only moved.
+    /// Creates a fit from all balls (centre, radius) of the model. A model of a single point is only moved.
     pub(crate) fn new(balls: impl Iterator<Item = (DVec3, f64)> + Clone) -> Self {
         let (centre, radius) = bounding_sphere(balls);
         let scale = IMPORT_RADIUS_M / radius;
@@ -135,7 +137,7 @@ impl Fit {
         Self { centre, scale }
     }
 
-    /// Everything stays where it is.
+    /// Returns a fit that changes nothing.
     pub(crate) const fn none() -> Self {
         Self { centre: DVec3::ZERO, scale: 1.0 }
     }

@@ -1,4 +1,4 @@
-//! Readers of model files: PLY, OBJ, PDB.
+//! Readers of model files in the formats PLY, OBJ and PDB.
 
 #[cfg(feature = "files")]
 mod files;
@@ -31,7 +31,7 @@ use crate::motion::HeadMotion;
 use crate::scene::Scene;
 
 impl Placement {
-    /// What is done to the coordinates of balls (centre, radius) that the model consists of.
+    /// Returns the transformation of a model that consists of balls (centre, radius).
     fn fit(self, balls: impl Iterator<Item = (DVec3, f64)> + Clone) -> Fit {
         match self {
             Self::Fitted => Fit::new(balls),
@@ -39,7 +39,7 @@ impl Placement {
         }
     }
 
-    /// How the head moves that looks at a model placed so.
+    /// Returns the motion of a head that looks at a model with this placement.
     fn motion(self) -> HeadMotion {
         match self {
             Self::Fitted => mesh::seeing_fitted(),
@@ -48,28 +48,30 @@ impl Placement {
     }
 }
 
-/// A file format that can be read.
+/// A file format that the importers can read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
-    /// Polygon file: ASCII, binary little-endian or binary big-endian; element `vertex` with `x y z`, optionally
-    /// `nx ny nz` and `red green blue`; element `face`, perhaps with `red green blue`, or `tristrips`, with `vertex_indices` or `vertex_index`.
+    /// Polygon file: ASCII, binary little-endian or binary big-endian. The element `vertex` has `x y z`, and optionally
+    /// `nx ny nz` and `red green blue`. The element `face` (optionally with `red green blue`) or `tristrips` has
+    /// `vertex_indices` or `vertex_index`.
     Ply,
-    /// Wavefront object: `v` with or without colours, `vn`, `f`, `s`; everything else is passed over. A line that ends in `\` goes on
-    /// in the next one.
+    /// Wavefront object with the statements `v` (with or without colours), `vn`, `f` and `s`. All other statements are
+    /// ignored. A line that ends in `\` continues in the next line.
     Obj,
-    /// Protein Data Bank: `ATOM` and `HETATM` of the first model become spheres; of an atom's alternate locations the first.
+    /// Protein Data Bank: `ATOM` and `HETATM` records of the first model become spheres. Of an atom's alternate
+    /// locations, only the first is used.
     Pdb,
 }
 
 impl Format {
-    /// The format of a file name, by its extension in any case; `None` for one that no reader knows. Looks at the name
-    /// only.
+    /// Returns the format for a file name by its extension in upper or lower case, or `None` for an unknown extension.
+    /// The file itself is not read.
     #[must_use]
     pub fn of_path(path: &Path) -> Option<Self> {
         Self::of_extension(path.extension()?.to_str()?)
     }
 
-    /// The format that an extension without its dot stands for, in any case; `None` for one that no reader knows.
+    /// Returns the format for an extension without its dot in upper or lower case, or `None` for an unknown extension.
     #[must_use]
     pub fn of_extension(extension: &str) -> Option<Self> {
         match extension.to_ascii_lowercase().as_str() {
@@ -81,22 +83,22 @@ impl Format {
     }
 }
 
-/// Reads a model to the end of `reader`; `name` stands for it in errors and as the name of the scene.
+/// Reads a model to the end of `reader`. `name` identifies the model in errors and becomes the name of the scene.
 ///
-/// What becomes of the model: see [`from_bytes`].
+/// [`from_bytes`] describes the conversion into a scene.
 ///
 /// # Errors
 ///
-/// [`LoadError::Io`] if the reader fails, and all those of [`from_bytes`].
+/// [`LoadError::Io`] if the reader fails, and all errors of [`from_bytes`].
 pub fn from_reader(reader: impl Read, format: Format, name: &str) -> Result<Scene, LoadError> {
     placed_from_reader(reader, format, name, Placement::Fitted)
 }
 
-/// As [`from_reader`], with the model where `placement` says.
+/// Reads a model as [`from_reader`] does, with the model at the position that `placement` selects.
 ///
 /// # Errors
 ///
-/// As [`from_reader`].
+/// The same as [`from_reader`].
 pub fn placed_from_reader(
     reader: impl Read,
     format: Format,
@@ -106,7 +108,7 @@ pub fn placed_from_reader(
     read_placed(reader, 0, format, name, placement)
 }
 
-/// As [`placed_from_reader`], of something that has about `size` bytes.
+/// Reads a model of about `size` bytes as [`placed_from_reader`] does.
 fn read_placed(
     reader: impl Read,
     size: u64,
@@ -114,12 +116,14 @@ fn read_placed(
     name: &str,
     placement: Placement,
 ) -> Result<Scene, LoadError> {
+    // Read one byte beyond the limit, so that a larger file can be detected.
     let mut bytes = Vec::with_capacity(size.min(MAX_FILE_BYTES) as usize + 1);
     let mut limited = reader.take(MAX_FILE_BYTES + 1);
     limited.read_to_end(&mut bytes).map_err(|source| LoadError::Io { file: name.to_owned(), source })?;
     match read(&bytes, format, name, placement)? {
         Content::Scene(scene) => Ok(*scene),
         Content::Mesh(model) => {
+            // Free the file's bytes before the scene is made.
             let size = bytes.len();
             drop(bytes);
             model.into_scene(name, size, placement)
@@ -127,27 +131,29 @@ fn read_placed(
     }
 }
 
-/// Reads a model from memory; `name` stands for it in errors and as the name of the scene.
+/// Reads a model from memory. `name` identifies the model in errors and becomes the name of the scene.
 ///
-/// Polygons are cut into triangles, concave ones too. Missing normals become the mean of the adjacent triangles, weighted by area; in
-/// OBJ files only within a smoothing group, and faces without one are flat. The model
-/// is moved so that the centre of its box is the origin, and scaled so that its farthest point is
-/// [`crate::config::IMPORT_RADIUS_M`] away: so both eyes see all of it under [`Scene::motion`], whatever the units of the file.
-/// Its axes stay: +y is up, +z faces the viewer.
+/// Polygons are cut into triangles, concave ones too. A missing normal becomes the mean of the adjacent triangles,
+/// weighted by area. In OBJ files the mean covers only a smoothing group, and faces without a smoothing group are flat.
+///
+/// The model is moved so that the centre of its box is the origin. The scale puts the farthest point of the model at a
+/// distance of [`crate::config::IMPORT_RADIUS_M`]. Both eyes then see all of it under [`Scene::motion`], whatever the
+/// units of the file. The axes stay: +y is up, and +z faces the viewer.
 ///
 /// # Errors
 ///
-/// [`LoadError`] says what is wrong, and where. No bytes make it panic, or take more than [`crate::config::MEMORY_TIMES_FILE`]
-/// times their size, their own included.
+/// [`LoadError`] states the error and its position. No input causes a panic. Reading takes at most
+/// [`crate::config::MEMORY_TIMES_FILE`] times the size of the file, including the file, plus
+/// [`crate::config::MEMORY_FLOOR_BYTES`].
 pub fn from_bytes(bytes: &[u8], format: Format, name: &str) -> Result<Scene, LoadError> {
     placed_from_bytes(bytes, format, name, Placement::Fitted)
 }
 
-/// As [`from_bytes`], with the model where `placement` says.
+/// Reads a model from memory as [`from_bytes`] does, with the model at the position that `placement` selects.
 ///
 /// # Errors
 ///
-/// As [`from_bytes`].
+/// The same as [`from_bytes`].
 pub fn placed_from_bytes(bytes: &[u8], format: Format, name: &str, placement: Placement) -> Result<Scene, LoadError> {
     match read(bytes, format, name, placement)? {
         Content::Mesh(model) => model.into_scene(name, bytes.len(), placement),
@@ -155,9 +161,9 @@ pub fn placed_from_bytes(bytes: &[u8], format: Format, name: &str, placement: Pl
     }
 }
 
-/// What a file has been read to.
+/// The result of reading a file.
 enum Content {
-    /// Not a scene yet: making it takes memory, for which the file's bytes can be given up.
+    /// A mesh that is not yet a scene. The file's bytes can be freed before the scene is made.
     Mesh(Model),
     Scene(Box<Scene>),
 }

@@ -1,4 +1,5 @@
-//! What the readers of meshes end in: columns that hold no more than the file says, so that a model takes at most seven times its file.
+//! The common result of the mesh readers. The columns of a model hold only the data of its file, so a model takes at
+//! most seven times the memory of its file.
 
 use std::hash::{BuildHasher, RandomState};
 
@@ -12,7 +13,7 @@ use crate::config::{DEFAULT_COLOUR, MEMORY_FLOOR_BYTES, MEMORY_TIMES_FILE};
 use crate::error::LoadError;
 use crate::scene::{Scene, Vertex};
 
-/// Places of points, in the least precision that holds them exactly.
+/// Positions of points, in the lowest precision that holds them exactly.
 pub(super) enum Places {
     Single(Vec<Vec3>),
     Double(Vec<DVec3>),
@@ -54,7 +55,8 @@ impl Places {
         }
     }
 
-    /// Height of the flattest triangle that is none by rounding alone, relative to its longest edge.
+    /// Returns the least height of a triangle relative to its longest edge. A flatter triangle may have its area from
+    /// rounding alone.
     const fn least_height(&self) -> f64 {
         match self {
             Self::Single(_) => 1e-6,
@@ -70,20 +72,21 @@ impl Places {
     }
 }
 
-/// A point, and what else makes a vertex of it ([`Detail`]). Short, since a file can have many times more of them than points.
+/// A point and the detail that distinguishes vertices at this point ([`Detail`]). The type is short, because a file can
+/// have many times more corners than points.
 pub(super) type Corner = (u32, u32);
 
-/// The second number of a [`Corner`].
+/// The meaning of the second number of a [`Corner`].
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Detail {
-    /// A normal counted from 1, or else the group of faces (0, or from 2^31 on) that the corner is shaded smoothly with.
+    /// A normal, counted from 1, or a smoothing group of faces (0, or from 2^31 on) for a corner without a normal.
     Normal,
-    /// Red, green and blue of a face, the lowest byte first.
+    /// Red, green and blue of a face, packed with red in the lowest byte.
     Colour,
 }
 
-/// The vertices by their corners, in 5 bytes each: the corners themselves are the model's. Looked up only, never walked, so its
-/// order shows nowhere.
+/// A table from corners to vertices, with 5 bytes per vertex. The model holds the corners themselves. The table is only
+/// searched, never iterated, so its order has no effect.
 #[derive(Default)]
 pub(super) struct Vertices {
     table: HashTable<u32>,
@@ -91,7 +94,7 @@ pub(super) struct Vertices {
 }
 
 impl Vertices {
-    /// The vertex of a corner: a new one where there is none yet.
+    /// Returns the vertex of a corner, and creates one if the corner is new.
     pub(super) fn of(&mut self, corners: &mut Vec<Corner>, corner: Corner) -> u32 {
         let hash = self.hasher.hash_one(corner);
         if let Some(&known) = self.table.find(hash, |&vertex| corners[vertex as usize] == corner) {
@@ -105,7 +108,7 @@ impl Vertices {
     }
 }
 
-/// Adds an item to a list that grows by an eighth, not twice: a file can consist of such items.
+/// Adds an item to a list that grows by an eighth instead of doubling, because a file can consist mostly of such items.
 pub(super) fn push_slowly<T>(list: &mut Vec<T>, item: T) {
     if list.len() == list.capacity() {
         list.reserve_exact(list.len() / 8 + 1024);
@@ -113,24 +116,24 @@ pub(super) fn push_slowly<T>(list: &mut Vec<T>, item: T) {
     list.push(item);
 }
 
-/// A mesh as its file has it.
+/// A mesh in the form in which its file contains it, before scaling.
 pub(super) struct Model {
     pub(super) places: Places,
-    /// Of unit length; zero where the file gives none; empty as long as it has given none at all.
+    /// Unit normals, with zero vectors for missing ones. The list is empty until the first normal is read.
     pub(super) normals: Vec<Vec3>,
-    /// Of each point; empty where all have [`DEFAULT_COLOUR`].
+    /// Colours of the points. The list is empty if all have [`DEFAULT_COLOUR`].
     pub(super) colours: Vec<[u8; 3]>,
-    /// The vertices; empty where each point is a vertex, with the normal of its number.
+    /// Corners of the vertices. The list is empty if each point is a vertex, with the normal of the same number.
     pub(super) corners: Vec<Corner>,
     pub(super) detail: Detail,
     pub(super) triangles: Vec<[u32; 3]>,
-    /// What was read otherwise than its writer may have meant.
+    /// Warnings about content that may be read otherwise than its writer intended.
     pub(super) warnings: Vec<String>,
-    /// Polygons with a notch that were too long for ears.
+    /// Number of concave polygons with too many corners for cutting.
     too_long: usize,
 }
 
-/// A direction of a file with length 1, as a vertex has it; zero for one without length.
+/// Returns a direction of a file scaled to length 1, or a zero vector for a direction without length.
 pub(super) fn direction(v: DVec3) -> Vec3 {
     unit(v).map_or(Vec3::ZERO, |unit| unit.as_vec3())
 }
@@ -149,7 +152,8 @@ impl Model {
         }
     }
 
-    /// Cuts the polygon whose fan are the last triangles, from `first` on, into others where the fan would fill a notch.
+    /// Replaces the fan of a concave polygon with triangles that do not fill its notches. The fan consists of the
+    /// triangles from `first` on.
     pub(super) fn cut_polygon(&mut self, first: usize) {
         match polygon::cut(&self.triangles[first..], |vertex| self.places.at(self.point(vertex as usize))) {
             Cut::Fan => {}
@@ -161,12 +165,13 @@ impl Model {
         }
     }
 
-    /// The normal of the polygon whose fan are the last triangles, from `first` on; zero for one without area.
+    /// Returns the normal of the polygon whose fan consists of the triangles from `first` on, or zero for a polygon
+    /// without area.
     pub(super) fn polygon_normal(&self, first: usize) -> Vec3 {
         direction(polygon::normal(&self.triangles[first..], |vertex| self.places.at(self.point(vertex as usize))))
     }
 
-    /// Refuses a model, while it is read, that no file of this size needs: as it is, and with triangles that are to come.
+    /// Returns an error if the model, with `more_triangles` to come, takes too much memory for the size of its file.
     pub(super) fn check_reading(&self, source: &Source<'_>, more_triangles: usize) -> Result<(), LoadError> {
         let found = source.bytes.len()
             + self.lists_bytes()
@@ -187,7 +192,7 @@ impl Model {
         triangle.map(|vertex| self.places.at(self.point(vertex as usize)))
     }
 
-    /// Refuses a model of which nothing can be seen.
+    /// Returns an error if no triangle has a visible area.
     fn check_areas(&self, name: &str) -> Result<(), LoadError> {
         let least = self.places.least_height();
         if self.triangles.iter().any(|&t| has_area(self.corner_places(t), least)) {
@@ -197,7 +202,7 @@ impl Model {
         Err(LoadError::NothingToDraw { file: name.to_owned(), expected })
     }
 
-    /// A fitted scene of the mesh. The file's own bytes are not needed any more.
+    /// Makes a scene of the mesh. The file's bytes are not needed for this.
     pub(super) fn into_scene(
         mut self,
         name: &str,
@@ -211,9 +216,11 @@ impl Model {
             ));
         }
         let warnings = std::mem::take(&mut self.warnings);
+        // Unused vertices would change the fit.
         if self.corners.is_empty() {
             self.drop_unused();
         }
+        // Check memory and content before the scene is made.
         self.check_memory(name, file_bytes)?;
         self.check_areas(name)?;
         let points = (0..self.vertices()).map(|vertex| (self.places.at(self.point(vertex)), 0.0));
@@ -226,12 +233,12 @@ impl Model {
         if self.corners.is_empty() { self.places.len() } else { self.corners.len() }
     }
 
-    /// The point of a vertex.
+    /// Returns the index of the point at which a vertex lies.
     fn point(&self, vertex: usize) -> usize {
         self.corners.get(vertex).map_or(vertex, |corner| corner.0 as usize)
     }
 
-    /// The normal that the file gives a vertex; zero where it gives none.
+    /// Returns the normal that the file gives a vertex, or zero if it gives none.
     fn given_normal(&self, vertex: usize) -> Vec3 {
         let number = match (self.corners.get(vertex), self.detail) {
             (Some(corner), Detail::Normal) => corner.1 as usize,
@@ -247,8 +254,8 @@ impl Model {
         }
     }
 
-    /// The vertices of a scene, rounded to single precision. Where the file gives no normal it is the mean over the triangles that
-    /// share the corner, weighted by area; +z if there are only triangles without area.
+    /// Returns the vertices of the scene, rounded to single precision. A missing normal becomes the mean over the
+    /// triangles that share the corner, weighted by area. If these triangles have no area, the normal is +z.
     fn fitted_vertices(&self, fit: &Fit) -> Vec<Vertex> {
         let mut vertices = Vec::with_capacity(self.vertices());
         vertices.extend((0..self.vertices()).map(|vertex| Vertex {
@@ -259,6 +266,7 @@ impl Model {
         if vertices.iter().all(|vertex| vertex.normal != Vec3::ZERO) {
             return vertices;
         }
+        // Compute missing normals in parts, to limit the memory for the sums.
         let step = self.summed_at_once();
         for first in (0..self.shaded()).step_by(step) {
             self.complete_normals(&mut vertices, fit, first, step);
@@ -266,23 +274,24 @@ impl Model {
         vertices
     }
 
-    /// The number of what a vertex shares its shading with: vertices of one number have one mean normal. Faces of different colours
-    /// share the points between them; faces of different groups do not.
+    /// Returns the shading number of a vertex. Vertices with one shading number get one mean normal. Faces of different
+    /// colours share the points between them, but faces of different smoothing groups do not.
     fn shading(&self, vertex: usize) -> usize {
         if self.detail == Detail::Colour { self.point(vertex) } else { vertex }
     }
 
-    /// How many numbers [`Self::shading`] gives.
+    /// Returns the number of values that [`Self::shading`] can take.
     fn shaded(&self) -> usize {
         if self.detail == Detail::Colour { self.places.len() } else { self.vertices() }
     }
 
-    /// Numbers whose areas are summed up at a time: sums are in double precision, and all at once would be as much as the places.
+    /// Returns the number of shadings whose areas are summed at a time. Sums are in double precision, and all at once
+    /// would take as much memory as the positions.
     fn summed_at_once(&self) -> usize {
         (self.shaded() / 8).max(1 << 16)
     }
 
-    /// Gives a normal to every vertex without one whose shading is one of `count` numbers from `first` on.
+    /// Computes a normal for every vertex without one whose shading is among `count` numbers from `first` on.
     fn complete_normals(&self, vertices: &mut [Vertex], fit: &Fit, first: usize, count: usize) {
         let mut sums = vec![DVec3::ZERO; count.min(self.shaded() - first)];
         for triangle in &self.triangles {
@@ -290,7 +299,7 @@ impl Model {
             if shadings.iter().all(|shading| shading.wrapping_sub(first) >= sums.len()) {
                 continue;
             }
-            // Of places that are fitted already: the areas of the tiniest models would leave the range of f64.
+            // Areas are computed from fitted positions: the areas of very small models would leave the range of f64.
             let area = area(self.corner_places(*triangle).map(|place| fit.place(place)));
             for shading in shadings {
                 if let Some(sum) = sums.get_mut(shading.wrapping_sub(first)) {
@@ -305,7 +314,8 @@ impl Model {
         }
     }
 
-    /// Keeps the vertices that triangles use: others must not decide on the fit, nor cost time in every frame.
+    /// Removes the vertices that triangles do not use. Unused vertices would affect the fit and cost time in every
+    /// frame.
     fn drop_unused(&mut self) {
         let mut used = vec![false; self.places.len()];
         for &corner in self.triangles.iter().flatten() {
@@ -314,6 +324,7 @@ impl Model {
         if used.iter().all(|&used| used) {
             return;
         }
+        // Compute the new index of each point, and renumber the corners.
         let mut moved = Vec::with_capacity(used.len());
         let mut kept = 0;
         for &is_used in &used {
@@ -329,36 +340,36 @@ impl Model {
         retain(&mut self.colours, &used);
     }
 
-    /// What the model takes while its scene is made, besides the file.
+    /// Returns an error if the model takes too much memory while its scene is made. The file itself is not counted.
     fn check_memory(&self, name: &str, file_bytes: usize) -> Result<(), LoadError> {
         let sums = self.summed_at_once().min(self.shaded()) * size_of::<DVec3>();
         check_memory(name, self.lists_bytes() + sums + self.vertices() * size_of::<Vertex>(), file_bytes)
     }
 }
 
-/// The colour of a [`Corner`] of [`Detail::Colour`].
+/// Unpacks the colour in the second number of a [`Corner`] of [`Detail::Colour`].
 fn packed_colour(packed: u32) -> [u8; 3] {
     let [red, green, blue, _] = packed.to_le_bytes();
     [red, green, blue]
 }
 
-/// A number with its noun in the right form.
+/// Returns a number with its noun in singular or plural.
 pub(super) fn counted(count: usize, noun: &str) -> String {
     if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
 }
 
-/// Refuses what takes more than [`MEMORY_TIMES_FILE`] times its file.
+/// Returns an error if a model takes more than [`MEMORY_TIMES_FILE`] times its file plus [`MEMORY_FLOOR_BYTES`].
 fn check_memory(name: &str, found: usize, file_bytes: usize) -> Result<(), LoadError> {
     let expected = MEMORY_TIMES_FILE * file_bytes as u64 + MEMORY_FLOOR_BYTES;
     let found = found as u64;
     if found <= expected { Ok(()) } else { Err(LoadError::TooMuchMemory { file: name.to_owned(), expected, found }) }
 }
 
-/// Bytes of a table of vertices for each of them at most: five, of places of which between 7/16 and 7/8 are taken, and half as many more
-/// while it grows.
+/// Most bytes of a table of vertices for each vertex. A slot takes five bytes, and between 7/16 and 7/8 of the slots
+/// are used. The table needs half as much again while it grows.
 const TABLE_BYTES: usize = 17;
 
-/// Keeps what is to be kept, and no room for the rest; of an empty list there is nothing to keep.
+/// Keeps the items whose `keep` is true, and frees the rest of the memory. An empty list stays empty.
 fn retain<T>(items: &mut Vec<T>, keep: &[bool]) {
     let mut keep = keep.iter();
     items.retain(|_| keep.next() == Some(&true));

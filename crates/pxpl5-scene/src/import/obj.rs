@@ -1,6 +1,7 @@
 //! Wavefront OBJ.
 //!
-//! Read here and not by a library: the well-kept one, tobj, reports no line, no expectation and no finding.
+//! This crate has its own reader. The maintained library tobj reports neither the line of an error nor the expected and
+//! found content.
 
 use glam::{DVec3, Vec3};
 
@@ -12,7 +13,7 @@ use crate::error::{FilePlace, LoadError};
 
 pub(super) fn read(source: &Source<'_>) -> Result<Model, LoadError> {
     let mut reader = Reader::new(source)?;
-    // Faces may stand before the points that they refer to.
+    // Faces may come before the points that they refer to, so points are read first.
     for (number, line) in statements(source) {
         reader.point(FilePlace::Line(number), line)?;
     }
@@ -25,30 +26,31 @@ pub(super) fn read(source: &Source<'_>) -> Result<Model, LoadError> {
 struct Reader<'a> {
     source: &'a Source<'a>,
     counts: Counts,
-    /// Points and normals up to the line that is read: negative indices count back from them.
+    /// Numbers of points and normals up to the current line, from which negative indices count back.
     points: usize,
     normals: usize,
-    /// Normals of the file that are no numbers, and the line of the first.
+    /// Number of normals in the file that are NaN, and the position of the first.
     not_numbers: Option<(usize, FilePlace)>,
-    /// The group of faces that are shaded smoothly together, [`Corner`](super::model::Corner)'s second number; `None` for flat faces.
+    /// Smoothing group of the current faces as the second number of a [`Corner`](super::model::Corner), or `None` for
+    /// flat faces.
     smoothing: Option<u32>,
     vertices: Vertices,
     model: Model,
 }
 
-/// How many of what there are in a file: the lists of a model are as long from the begin, since lists that grow are copied.
+/// Numbers of items in a file. The lists of a model get their final lengths at once, because growing lists are copied.
 #[derive(Default)]
 struct Counts {
     points: usize,
     normals: usize,
     triangles: usize,
-    /// The largest number of a colour: fractions go to 1, bytes to 255.
+    /// Largest component of a colour. Fractions go up to 1, bytes up to 255.
     brightest: f64,
     has_materials: bool,
 }
 
 impl Counts {
-    /// Looks at the words of all lines, and at the numbers of colours only.
+    /// Counts the items of a file. Only words and the numbers of colours are examined.
     fn of(source: &Source<'_>) -> Self {
         let mut counts = Self::default();
         for (_, line) in statements(source) {
@@ -69,8 +71,8 @@ impl Counts {
     }
 }
 
-/// The statements of a file with the numbers of their first lines: a line that ends in `\` goes on in the next one. A comment does
-/// not, since paths of folders end so too.
+/// Returns the statements of a file with the numbers of their first lines. A line that ends in `\` continues in the
+/// next line. A comment never continues, because paths of folders can end in `\`.
 fn statements<'a>(source: &Source<'a>) -> impl Iterator<Item = (u64, &'a [u8])> {
     let mut lines = source.lines();
     let bytes = source.bytes;
@@ -83,20 +85,20 @@ fn statements<'a>(source: &Source<'a>) -> impl Iterator<Item = (u64, &'a [u8])> 
                 None => break,
             }
         }
-        // All lines lie in the file, one behind the other.
+        // The lines follow each other in the file, so a statement is one slice.
         let begin = first.as_ptr() as usize - bytes.as_ptr() as usize;
         let end = last.as_ptr() as usize - bytes.as_ptr() as usize + last.len();
         Some((number, &bytes[begin..end]))
     })
 }
 
-/// What stands in front of a comment; in `1.#QNAN` there is none.
+/// Returns the text before a comment. The `#` in `1.#QNAN` does not begin a comment.
 fn code(line: &[u8]) -> &[u8] {
     let is_comment = |at: &usize| line[*at] == b'#' && (*at == 0 || line[at - 1] != b'.');
     &line[..(0..line.len()).find(is_comment).unwrap_or(line.len())]
 }
 
-/// The words of a statement in front of its comment, without the `\` between its lines.
+/// Returns the words of a statement before its comment, without the `\` between its lines.
 fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     code(line)
         .split(u8::is_ascii_whitespace)
@@ -136,7 +138,7 @@ impl<'a> Reader<'a> {
         model
     }
 
-    /// Reads points and normals.
+    /// Reads a statement that defines a point or a normal.
     fn point(&mut self, at: FilePlace, line: &[u8]) -> Result<(), LoadError> {
         let mut words = words(line);
         match words.next() {
@@ -154,7 +156,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reads faces, and how they are shaded. Texture coordinates, groups, objects, materials and curves are passed over.
+    /// Reads a statement that defines faces or their shading. Texture coordinates, groups, objects, materials and
+    /// curves are ignored.
     fn surface(&mut self, at: FilePlace, line: &[u8]) -> Result<(), LoadError> {
         let mut words = words(line);
         match words.next() {
@@ -167,14 +170,15 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Cuts a polygon into triangles.
+    /// Reads a face and cuts it into triangles.
     fn face<'w>(&mut self, at: FilePlace, line: &[u8], words: impl Iterator<Item = &'w [u8]>) -> Result<(), LoadError> {
         let first = self.model.triangles.len();
-        // The normal of a flat face is known when its corners are.
+        // The normal of a flat face is computed after its corners are read, and will get this number.
         let flat = self.model.normals.len() as u32 + 1;
         let mut needs_normal = false;
         let mut known = [0; 2];
         let mut count = 0;
+        // Add a fan of triangles around the first corner.
         for word in words {
             let (point, normal) = self.corner(at, word)?;
             needs_normal |= normal.is_none() && self.smoothing.is_none();
@@ -193,6 +197,7 @@ impl<'a> Reader<'a> {
             let found = format!("{count} in {}", excerpt(&String::from_utf8_lossy(code(line))));
             return Err(self.source.syntax(at, "a face of at least 3 corners", found));
         }
+        // Add the normal of a flat face, and replace the fan if the polygon is concave.
         if needs_normal {
             let normal = self.model.polygon_normal(first);
             push_slowly(&mut self.model.normals, normal);
@@ -216,7 +221,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A direction; zero for one that is no number, which is computed as if it was not there.
+    /// Reads a direction. If it is NaN, the result is zero, and the normal is computed as if the file had none.
     fn normal<'w>(&mut self, at: FilePlace, mut words: impl Iterator<Item = &'w [u8]>) -> Result<Vec3, LoadError> {
         let normal = DVec3::from_array(self.vector(at, &mut words)?);
         if normal.is_finite() {
@@ -226,7 +231,7 @@ impl<'a> Reader<'a> {
         Ok(Vec3::ZERO)
     }
 
-    /// The colour behind a point, if there is one: a single number there is a weight.
+    /// Reads the colour after a point, if there is one. A single number in its place is a weight and is ignored.
     fn colour<'w>(&mut self, at: FilePlace, mut words: impl Iterator<Item = &'w [u8]>) -> Result<(), LoadError> {
         let found = [words.next(), words.next(), words.next()];
         let colour = match found {
@@ -241,6 +246,7 @@ impl<'a> Reader<'a> {
             _ if self.model.colours.is_empty() => return Ok(()),
             _ => DEFAULT_COLOUR,
         };
+        // Points before the first coloured one get the default colour.
         if self.model.colours.is_empty() {
             self.model.colours.reserve_exact(self.counts.points);
             self.model.colours.resize(self.model.places.len() - 1, DEFAULT_COLOUR);
@@ -249,7 +255,8 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// A corner is point, point/texture, point//normal or point/texture/normal; the normal counts from 1.
+    /// Reads a corner in one of the forms point, point/texture, point//normal or point/texture/normal. The normal
+    /// counts from 1.
     fn corner(&self, at: FilePlace, word: &[u8]) -> Result<(u32, Option<u32>), LoadError> {
         let mut fields = text(word).splitn(3, '/');
         let point = fields.next().unwrap_or_default();
@@ -262,7 +269,7 @@ impl<'a> Reader<'a> {
         Ok((point, is_given.then_some(normal)))
     }
 
-    /// 1 is the first of the file; -1 the last so far.
+    /// Parses an index. 1 is the first item of the file, and -1 is the last item so far.
     fn index(
         &self,
         at: FilePlace,
@@ -277,12 +284,12 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The group that `s` names; `None` where it turns smoothing off.
+/// Returns the group named by an `s` statement, or `None` if the statement turns smoothing off.
 fn smoothing_group(word: &[u8]) -> Option<u32> {
     let group = match text(word).parse::<u64>() {
         Ok(group) => group,
         Err(_) => u64::from(!word.eq_ignore_ascii_case(b"off")),
     };
-    // From 2^31 on there are no numbers of normals.
+    // Numbers from 2^31 on are not used for normals.
     (group > 0).then_some(1 << 31 | group as u32)
 }

@@ -1,4 +1,4 @@
-//! Protein Data Bank files: fixed columns, counted from 1 as in the format's guide, version 3.3.
+//! Protein Data Bank files. Columns are fixed and counted from 1, as in the format's guide, version 3.3.
 
 use std::collections::{HashMap, HashSet};
 
@@ -10,22 +10,22 @@ use super::{Placement, Source};
 use crate::error::{FilePlace, LoadError};
 use crate::scene::{Scene, Sphere};
 
-/// One atom of a file.
+/// An atom of a file.
 pub(crate) struct Atom {
-    /// Such as "CA": the name within its residue.
+    /// Name within the residue, such as "CA".
     pub(crate) name: String,
-    /// Place in the coordinates of the file, Ångström.
+    /// Position in the coordinates of the file, Ångström.
     pub(crate) position: DVec3,
     pub(crate) element: Element,
 }
 
-/// How an element is drawn.
+/// The appearance of an element.
 #[derive(Clone, Copy)]
 pub(crate) struct Element {
     symbol: &'static str,
     /// Van der Waals radius, Ångström.
     pub(crate) radius: f64,
-    /// After the colours of Corey, Pauling and Koltun's models.
+    /// Colour in the tradition of the models by Corey, Pauling and Koltun.
     pub(crate) colour: [u8; 3],
 }
 
@@ -33,8 +33,8 @@ const fn element(symbol: &'static str, radius: f64, colour: [u8; 3]) -> Element 
     Element { symbol, radius, colour }
 }
 
-/// Radii: published, Bondi 1964, for H to I; metals assumed 2.0 (1.4 to 2.5), as Bondi gives none for Fe, Ca, Mn and Co.
-/// Colours: the custom of molecular graphics; assumed, any.
+/// The known elements. Radii from H to I are published by Bondi 1964. Bondi gives none for Fe, Ca, Mn and Co: 2.0 is
+/// assumed (1.4 to 2.5). Colours follow the custom of molecular graphics: assumed, any.
 const ELEMENTS: [Element; 20] = [
     element("H", 1.20, [255, 255, 255]),
     element("D", 1.20, [255, 255, 255]),
@@ -58,7 +58,7 @@ const ELEMENTS: [Element; 20] = [
     element("CO", 2.00, [240, 144, 160]),
 ];
 
-/// Any other element. Assumed: within the range of the table.
+/// Appearance of any other element. Assumed: within the range of the table.
 const OTHER: Element = element("?", 1.80, [255, 20, 147]);
 
 pub(super) fn read(source: &Source<'_>, placement: Placement) -> Result<Scene, LoadError> {
@@ -72,7 +72,7 @@ pub(super) fn read(source: &Source<'_>, placement: Placement) -> Result<Scene, L
 }
 
 impl Atom {
-    /// The atom as a sphere, moved to `position` (Ångström).
+    /// Returns the atom as a sphere, moved to `position` (Ångström).
     pub(crate) fn sphere(&self, position: DVec3, fit: &Fit) -> Sphere {
         Sphere {
             centre: fit.place(position).as_vec3(),
@@ -82,7 +82,8 @@ impl Atom {
     }
 }
 
-/// The atoms of the first model, in the order of the file; of an atom's alternate locations the first.
+/// Reads the atoms of the first model, in the order of the file. Of an atom's alternate locations, only the first is
+/// kept.
 pub(crate) fn read_atoms(source: &Source<'_>) -> Result<Vec<Atom>, LoadError> {
     let mut atoms = Vec::new();
     let mut alternates = Alternates::default();
@@ -97,18 +98,18 @@ pub(crate) fn read_atoms(source: &Source<'_>) -> Result<Vec<Atom>, LoadError> {
     Ok(atoms)
 }
 
-/// Alternate locations that were met. Looked up only, never walked, so that no order shows anywhere.
+/// The alternate locations read so far. The tables are only searched, never iterated, so their order has no effect.
 #[derive(Default)]
 struct Alternates<'a> {
-    /// Name of the first residue at a place of the chain (columns 22 to 27) that has alternates: others there are another
-    /// molecule's.
+    /// First residue name at each position of the chain (columns 22 to 27) with alternates. Other residue names at the
+    /// position belong to another molecule.
     residues: HashMap<&'a [u8], &'a [u8]>,
-    /// Place and name of every atom that has alternates.
+    /// Position and name of every atom with alternates.
     atoms: HashSet<(&'a [u8], &'a [u8])>,
 }
 
 impl<'a> Alternates<'a> {
-    /// Whether an atom has one location only, or this is the first of them.
+    /// Returns true if an atom has only one location, or if this is its first location.
     fn is_first(&mut self, line: &'a [u8]) -> bool {
         if columns(line, 17, 17).is_empty() {
             return true;
@@ -135,23 +136,23 @@ fn atom(source: &Source<'_>, at: FilePlace, line: &[u8]) -> Result<Atom, LoadErr
     })
 }
 
-/// Symbols of two letters that are in no residue of [`RESIDUES`], and are not in [`ELEMENTS`]. H with a second letter is left out:
-/// in a molecule it is a hydrogen with the name of its place.
+/// Symbols of two letters that occur in no residue of [`RESIDUES`] and are not in [`ELEMENTS`]. Symbols that begin with
+/// H are left out: H with a second letter is a hydrogen with the name of its position.
 const OTHER_SYMBOLS: [&str; 48] = [
     "LI", "BE", "NE", "AL", "SI", "AR", "SC", "TI", "CR", "NI", "CU", "GA", "GE", "AS", "KR", "RB", "SR", "ZR", "NB",
     "MO", "RU", "RH", "PD", "AG", "CD", "IN", "SN", "SB", "TE", "XE", "CS", "BA", "LA", "CE", "PR", "SM", "EU", "GD",
     "TB", "YB", "LU", "TA", "RE", "OS", "IR", "PT", "AU", "PB",
 ];
 
-/// Residues that consist of H, D, C, N, O, S and P alone: amino acids, nucleotides and water.
+/// Residues that consist only of H, D, C, N, O, S and P: amino acids, nucleotides and water.
 const RESIDUES: [&str; 38] = [
     "ALA", "ARG", "ASN", "ASP", "ASX", "CYS", "GLN", "GLU", "GLX", "GLY", "HIS", "ILE", "LEU", "LYS", "MET", "PHE",
     "PRO", "SER", "THR", "TRP", "TYR", "VAL", "A", "C", "G", "U", "I", "T", "DA", "DC", "DG", "DT", "DU", "DI", "HOH",
     "DOD", "WAT", "ACE",
 ];
 
-/// Columns 77 and 78 where they hold an element; other files have nothing there, or a number of the line, and name the atom in
-/// columns 13 to 16.
+/// Returns the element of an atom. Columns 77 and 78 hold it in most files. Other files have a line number or nothing
+/// there, and the element follows from the atom's name in columns 13 to 16.
 fn element_of(line: &[u8]) -> Element {
     let symbol = text(columns(line, 77, 78));
     if !symbol.is_empty() && symbol.bytes().all(|byte| byte.is_ascii_alphabetic()) {
@@ -167,8 +168,8 @@ fn known(symbol: &str) -> Element {
     known.copied().unwrap_or(OTHER)
 }
 
-/// The symbol in the four columns of an atom's name: its element stands to the right in the first two of them, unless the name takes
-/// all four.
+/// Returns the element's symbol in the four columns of an atom's name. The symbol is right-aligned in the first two
+/// columns, unless the name takes all four.
 fn symbol_of_name<'n>(name: &'n str, residue: &str) -> &'n str {
     let letters = name.trim().trim_start_matches(|c: char| c.is_ascii_digit());
     let first = letters.get(..1).unwrap_or_default();
@@ -180,7 +181,7 @@ fn symbol_of_name<'n>(name: &'n str, residue: &str) -> &'n str {
         Some(two) if two == residue => two,
         _ if RESIDUES.contains(&residue) => first,
         Some(two @ ("CL" | "BR" | "FE")) => two,
-        // Column 13 is empty, or holds the number of a hydrogen: the symbol is one letter.
+        // Column 13 is empty or holds the number of a hydrogen, so the symbol has one letter.
         _ if is_single && !name.starts_with(|c: char| c.is_ascii_alphabetic()) => first,
         _ if matches!(first, "H" | "D") => first,
         Some(two) if name.trim().len() == 4 && is_single && !matches!(two, "SE" | "SI") => first,
@@ -189,7 +190,7 @@ fn symbol_of_name<'n>(name: &'n str, residue: &str) -> &'n str {
     }
 }
 
-/// Columns `first` to `last` without white space around; empty beyond the line's end.
+/// Returns columns `first` to `last` without white space around them. The result is empty beyond the line's end.
 fn columns(line: &[u8], first: usize, last: usize) -> &[u8] {
     let end = last.min(line.len());
     line.get(first - 1..end).unwrap_or_default().trim_ascii()

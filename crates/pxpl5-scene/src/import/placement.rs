@@ -1,11 +1,13 @@
-//! Where a model stands.
+//! The placement of an imported model.
 
-/// Where a model stands.
+/// The placement of an imported model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Placement {
-    /// Moved to the origin and scaled so that both eyes see all of it, from wherever [`Scene::motion`](crate::Scene::motion) takes the head.
+    /// The model is moved to the origin and scaled. Both eyes see all of it wherever
+    /// [`Scene::motion`](crate::Scene::motion) takes the head.
     #[default]
     Fitted,
-    /// Where its file says: a unit of the file is a metre, and the head stands at the origin and looks along -z.
+    /// The model keeps the coordinates of its file. A unit of the file is a metre. The head stands at the origin and
+    /// looks along -z.
     AsInFile,
 }

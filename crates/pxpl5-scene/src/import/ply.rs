@@ -1,4 +1,5 @@
-//! PLY: the library reads header and rows; here is what rows mean, and where a faulty one stands.
+//! PLY files. A library reads the header and binary rows. This module interprets the rows, reads ASCII rows and finds
+//! the positions of errors.
 
 use std::io::{Cursor, ErrorKind};
 use std::str::FromStr;
@@ -19,11 +20,12 @@ pub(super) fn read(source: &Source<'_>) -> Result<Model, LoadError> {
     let mut rows = Rows::after_header(source)?;
     let mut mesh = Model::new(Places::Single(Vec::new()));
     let elements: Vec<ElementDef> = rows.header.elements.values().cloned().collect();
+    // The longest legal list depends on the number of vertices.
     let last_vertices = elements.iter().rposition(|element| element.name == "vertex").unwrap_or_default();
     let announced = elements.iter().filter(|element| element.name == "vertex");
     rows.longest_list =
         announced.fold(LIST, |numbers, e| numbers.saturating_add(e.count.saturating_mul(LIST_PER_VERTEX)));
-    // Elements may come in any order: faces before vertices are passed over and read at the end.
+    // Elements may come in any order. Faces before the last vertices are skipped and read at the end.
     let mut passed_over = Vec::new();
     for (number, element) in elements.iter().enumerate() {
         rows.check_length(element)?;
@@ -38,6 +40,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<Model, LoadError> {
             _ => rows.skip(element)?,
         }
     }
+    // Read the faces and strips that were skipped.
     rows.check_end()?;
     for (element, position, line) in passed_over {
         rows.cursor.set_position(position);
@@ -51,42 +54,44 @@ pub(super) fn read(source: &Source<'_>) -> Result<Model, LoadError> {
     Ok(mesh)
 }
 
-/// The rows of all elements, one after the other.
+/// A reader of the rows of all elements, one after the other.
 struct Rows<'a> {
     source: &'a Source<'a>,
     header: Header,
     cursor: Cursor<&'a [u8]>,
-    /// What ends a line, in an ASCII file.
+    /// Byte that ends a line of an ASCII file.
     end: u8,
-    /// Number of the next line, in an ASCII file.
+    /// Number of the next line of an ASCII file.
     line: u64,
     text: &'a str,
-    /// Most numbers that a list may have: of so many vertices no face and no strips need more.
+    /// Greatest number of items in a list. Faces and strips never need longer lists for this number of vertices.
     longest_list: usize,
-    /// Normals of the file that are no numbers, and the place of the first.
+    /// Number of normals in the file that are NaN, and the position of the first.
     not_numbers: Option<(usize, FilePlace)>,
-    /// Set where the colours of faces are passed over for those of vertices.
+    /// True if the colours of faces are ignored because vertices have colours too.
     has_both_colours: bool,
-    /// The vertices of faces with colours.
+    /// Vertices of faces with colours.
     coloured: Vertices,
 }
 
-/// Numbers that a list may have whatever the file, and for each vertex on top of that. Assumed: strips of single triangles take 8
-/// corners for each vertex of a closed surface.
+/// Greatest length of a list in any file, and additional length for each vertex. Assumed: strips of single triangles
+/// take 8 corners for each vertex of a closed surface.
 const LIST: usize = 1 << 16;
 const LIST_PER_VERTEX: usize = 8;
 
-/// Bytes in which a header without end is looked for its fault. Assumed, from a few lines upwards.
+/// Bytes in which the error of a header without end is searched. Assumed, a few lines or more.
 const HEADER: usize = 1 << 16;
 
-/// The header as text with lines that end in LF, the place behind it, and what ends its lines. Bytes that are no ASCII, which only
-/// comments and names have, become underscores.
+/// Returns the header with LF line ends, the position after it, and the byte that ends its lines. Bytes that are not
+/// ASCII occur only in comments and names, and become underscores.
 fn header_of(bytes: &[u8]) -> (String, usize, u8) {
     let begin = if bytes.starts_with(MARK) { MARK.len() } else { 0 };
+    // A file with CR but no LF after it has lines that end in CR alone.
     let end = match bytes[begin..].iter().position(|byte| matches!(byte, b'\r' | b'\n')) {
         Some(at) if bytes[begin + at] == b'\r' && bytes.get(begin + at + 1) != Some(&b'\n') => b'\r',
         _ => b'\n',
     };
+    // Find the line `end_header`.
     let mut length = 0;
     let whole = bytes[begin..].split_inclusive(|byte| *byte == end).any(|line| {
         length += line.len();
@@ -104,6 +109,7 @@ fn header_of(bytes: &[u8]) -> (String, usize, u8) {
 impl<'a> Rows<'a> {
     fn after_header(source: &'a Source<'a>) -> Result<Self, LoadError> {
         let (text, behind, end) = header_of(source.bytes);
+        // Let the library parse the cleaned header, and find the line of an error.
         let mut reader = Reader::new(Cursor::new(text.as_bytes()));
         let parsed = Parser::<VertexRow>::new().read_header(&mut reader);
         let line = reader.line() as u64;
@@ -113,6 +119,7 @@ impl<'a> Rows<'a> {
         })?;
         check_header(source, &text)?;
         let mut cursor = Cursor::new(source.bytes);
+        // Rows are read from the original bytes.
         cursor.set_position(behind as u64);
         Ok(Self {
             source,
@@ -135,7 +142,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Refuses a count that the rest of the file cannot hold, before anything is read or allocated for it.
+    /// Returns an error for a count that the rest of the file cannot hold, before any memory is allocated for it.
     fn check_length(&self, element: &ElementDef) -> Result<(), LoadError> {
         let left = self.source.bytes.len() as u64 - self.cursor.position();
         let row = least_row_bytes(element, self.header.encoding);
@@ -165,17 +172,18 @@ impl<'a> Rows<'a> {
     fn row_fault(&self, at: FilePlace, element: &ElementDef, error: &ParseError) -> LoadError {
         match error.kind() {
             ErrorKind::UnexpectedEof => self.source.truncated(at, row_of(element), "the end of the file"),
-            // The numbers are there, but the header gives a property a type that it cannot have.
+            // The numbers exist, but the header gives a property a type that it cannot have.
             _ => self.source.syntax(at, row_of(element), message(error)),
         }
     }
 
-    /// Reads the numbers of a line. The library's own reader takes neither `.5` nor `nan`.
+    /// Parses the numbers of a line. The library's own reader accepts neither `.5` nor `nan`.
     fn ascii_row<E: PropertyAccess>(&self, at: FilePlace, element: &ElementDef) -> Result<E, LoadError> {
         let wrong = || self.source.syntax(at, row_of(element), excerpt(self.text));
         let mut words = self.text.split_ascii_whitespace();
         let mut row = E::new();
         for (name, property) in &element.properties {
+            // A list begins with its length.
             let value = match &property.data_type {
                 PropertyType::Scalar(kind) => words.next().and_then(|word| scalar(kind, word)),
                 PropertyType::List(_, kind) => {
@@ -189,15 +197,17 @@ impl<'a> Rows<'a> {
                 return Err(self.source.syntax(at, row_of(element), found));
             }
         }
+        // A row must not have more numbers than properties.
         match words.next() {
             None => Ok(row),
             Some(surplus) => Err(self.source.syntax(at, format!("the end of {}", row_of(element)), excerpt(surplus))),
         }
     }
 
-    /// Blank lines are passed over.
+    /// Reads the next line that is not blank.
     fn next_line(&mut self, element: &ElementDef) -> Result<(), LoadError> {
         loop {
+            // Take the text up to the next line end, or to the end of the file.
             let begin = self.cursor.position() as usize;
             let rest = &self.source.bytes[begin..];
             if rest.is_empty() {
@@ -215,7 +225,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Refuses a list before it is held twice: corners of a byte or two that go round and round take many times the file.
+    /// Returns an error for a list that is too long, before a second copy of it is made. Repeated corners of one or two
+    /// bytes would take many times the memory of the file.
     fn check_list(&self, at: FilePlace, length: usize) -> Result<(), LoadError> {
         if length <= self.longest_list {
             return Ok(());
@@ -226,6 +237,7 @@ impl<'a> Rows<'a> {
     }
 
     fn vertices(&mut self, element: &ElementDef, mesh: &mut Model) -> Result<(), LoadError> {
+        // All three coordinates are required. Normals and colours are optional.
         for axis in ["x", "y", "z"] {
             if !element.properties.contains_key(axis) {
                 let expected = format!("a property {axis:?} of \"vertex\"");
@@ -239,6 +251,7 @@ impl<'a> Rows<'a> {
         let has = |names: [&str; 3]| names.iter().any(|name| element.properties.contains_key(*name));
         let has_normals = has(["nx", "ny", "nz"]);
         let has_colours = has_colours(element);
+        // Reserve the announced number of rows, which was checked against the file's length.
         mesh.places.reserve_exact(element.count);
         mesh.normals.reserve_exact(if has_normals { element.count } else { 0 });
         mesh.colours.reserve_exact(if has_colours { element.count } else { 0 });
@@ -259,7 +272,7 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
-    /// Cuts polygons into triangles.
+    /// Reads faces and cuts them into triangles.
     fn faces(&mut self, element: &ElementDef, mesh: &mut Model) -> Result<(), LoadError> {
         let has_colours = has_colours(element);
         self.has_both_colours |= has_colours && !mesh.colours.is_empty();
@@ -272,6 +285,7 @@ impl<'a> Rows<'a> {
             }
             self.check_list(at, row.len())?;
             mesh.check_reading(self.source, row.len() - 2)?;
+            // Add a fan of triangles around the first corner, and replace it if the polygon is concave.
             let fan = mesh.triangles.len();
             let colour = has_colours.then_some(row.colour);
             let first = self.vertex(at, &row, 0, colour, mesh)?;
@@ -286,7 +300,7 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
-    /// The vertex at a corner: the point itself, or with the colour of its face.
+    /// Returns the vertex at a corner: the point itself, or the point with the colour of its face.
     fn vertex(
         &mut self,
         at: FilePlace,
@@ -316,7 +330,8 @@ impl<'a> Rows<'a> {
         self.source.index(at, "vertices", corner, mesh.places.len(), corner)
     }
 
-    /// Corners of strips, which -1 parts: each but the first two of a strip ends a triangle, of which every other one is turned.
+    /// Reads strips of corners, separated by -1. Every corner after the first two of a strip completes a triangle.
+    /// Every second triangle is turned over.
     fn strips(&mut self, element: &ElementDef, mesh: &mut Model) -> Result<(), LoadError> {
         for _ in 0..element.count {
             let (at, row) = self.next::<FaceRow>(element)?;
@@ -325,12 +340,14 @@ impl<'a> Rows<'a> {
             let mut strip = Vec::with_capacity(3);
             let mut turned = 0;
             for n in 0..row.len() {
+                // -1 begins a new strip.
                 if row.corner(n) == -1 {
                     strip.clear();
                     turned = 0;
                     continue;
                 }
                 strip.push(self.corner(at, &row, n, mesh)?);
+                // Swapping the first two corners of every second triangle keeps the orientation.
                 if let [_, _, last] = strip[..] {
                     push_slowly(&mut mesh.triangles, [strip[turned], strip[1 - turned], last]);
                     strip.remove(0);
@@ -341,7 +358,7 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
-    /// Behind the last row there is nothing but white space.
+    /// Returns an error if anything except white space follows the last row.
     fn check_end(&self) -> Result<(), LoadError> {
         let rest = &self.source.bytes[self.cursor.position() as usize..];
         if rest.iter().all(u8::is_ascii_whitespace) {
@@ -358,7 +375,7 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// Names of the three parts of a colour.
+/// Names of the three components of a colour.
 const COLOURS: [[&str; 3]; 3] =
     [["red", "green", "blue"], ["diffuse_red", "diffuse_green", "diffuse_blue"], ["r", "g", "b"]];
 
@@ -366,7 +383,7 @@ fn has_colours(element: &ElementDef) -> bool {
     COLOURS.as_flattened().iter().any(|name| element.properties.contains_key(*name))
 }
 
-/// Sets the part of a colour that a property is: integers from 0 to 255 or fractions from 0 to 1.
+/// Sets one component of a colour from a property: an integer from 0 to 255 or a fraction from 0 to 1.
 fn set_colour(colour: &mut [u8; 3], name: &str, property: &Property) -> PropertyAccessResult {
     let Some(part) = COLOURS.iter().find_map(|names| names.iter().position(|known| *known == name)) else {
         return PropertyAccessResult::Ignored;
@@ -379,7 +396,7 @@ fn set_colour(colour: &mut [u8; 3], name: &str, property: &Property) -> Property
     PropertyAccessResult::Set
 }
 
-/// Whether single precision holds the places of an element's rows exactly.
+/// Returns true if single precision holds the positions in an element's rows exactly.
 fn has_single_places(element: &ElementDef) -> bool {
     let is_double = |axis: &str| {
         let kind = element.properties.get(axis).map(|property| &property.data_type);
@@ -388,17 +405,18 @@ fn has_single_places(element: &ElementDef) -> bool {
     !["x", "y", "z"].into_iter().any(is_double)
 }
 
-/// Such as: a row of "vertex" (x y z).
+/// Returns a description such as: a row of "vertex" (x y z).
 fn row_of(element: &ElementDef) -> String {
     let properties: Vec<&str> = element.properties.keys().map(String::as_str).collect();
     let properties: String = properties.join(" ").chars().take(80).collect();
     format!("a row of {:?} ({properties})", element.name)
 }
 
-/// What the library lets pass: a version that nobody has defined, and a property that an element has twice.
+/// Checks two rules that the library ignores: the version must be 1.0, and an element must not have a property twice.
 fn check_header(source: &Source<'_>, header: &str) -> Result<(), LoadError> {
     let mut known = Vec::new();
     for (number, line) in (1..).zip(header.lines()) {
+        // `known` collects the properties of the current element.
         let words: Vec<&str> = line.split_whitespace().collect();
         match words.as_slice() {
             ["format", _, version, ..] if *version != "1.0" => {
@@ -416,7 +434,7 @@ fn check_header(source: &Source<'_>, header: &str) -> Result<(), LoadError> {
     Ok(())
 }
 
-/// A number of a type, written in digits.
+/// Parses a number of a scalar type.
 fn scalar(kind: &ScalarType, word: &str) -> Option<Property> {
     Some(match kind {
         ScalarType::Char => Property::Char(word.parse().ok()?),
@@ -432,7 +450,7 @@ fn scalar(kind: &ScalarType, word: &str) -> Option<Property> {
     })
 }
 
-/// So many numbers of a type.
+/// Parses `length` numbers of a scalar type as a list property.
 fn list<'w>(kind: &ScalarType, words: &mut impl Iterator<Item = &'w str>, length: usize) -> Option<Property> {
     Some(match kind {
         ScalarType::Char => Property::ListChar(numbers(words, length)?),
@@ -464,16 +482,17 @@ fn header_fault(source: &Source<'_>, text: &str, line: u64, error: &ParseError) 
     }
 }
 
-/// The library's message on one line, cut.
+/// Returns the library's message on one line, cut to 200 characters.
 fn message(error: &ParseError) -> String {
     let words: Vec<String> = error.to_string().split_whitespace().map(str::to_owned).collect();
     words.join(" ").chars().take(200).collect()
 }
 
-/// At least one, so that rows without properties cannot be announced without end.
+/// Returns the least size of a row in bytes. The size is at least one, so that a header cannot announce any number of
+/// rows without properties.
 fn least_row_bytes(element: &ElementDef, encoding: Encoding) -> u64 {
     let widths = element.properties.values().map(|p| match (&p.data_type, encoding) {
-        // A digit, and a space or the line's end.
+        // A digit, and a space or the end of the line.
         (_, Encoding::Ascii) => 2,
         (PropertyType::Scalar(scalar) | PropertyType::List(scalar, _), _) => scalar_bytes(scalar),
     });
@@ -532,7 +551,8 @@ fn number(property: &Property) -> Option<f64> {
     })
 }
 
-/// Corners as the file has them: in a file of a byte each, another list of them would be many times as long.
+/// The corners of a face in the type that the file has. A conversion of one-byte corners would take many times more
+/// memory.
 struct FaceRow {
     corners: Property,
     colour: [u8; 3],

@@ -1,29 +1,29 @@
-//! Polygons of a file as triangles: a fan where they are convex, ears where they have a notch.
+//! Polygons of a file as triangles: a fan for convex polygons, ear cutting for concave ones.
 
 use earcut::Earcut;
 use glam::{DVec2, DVec3};
 
-/// Corners that a polygon with a notch may have. Derived: cutting ears off takes about 136 bytes a corner, so that this many stay
-/// near [`crate::config::MEMORY_FLOOR_BYTES`].
+/// Greatest number of corners of a concave polygon. Derived: ear cutting takes about 136 bytes per corner, so this
+/// number stays near [`crate::config::MEMORY_FLOOR_BYTES`].
 pub(super) const MOST_CORNERS: usize = 1 << 15;
 
-/// Least sine of the angle at which an edge counts as turning back. Assumed, 1e-7 to 1e-4: single precision keeps points of a straight
-/// line straight to 6e-8.
+/// Least sine of the angle at which an edge counts as turning back. Assumed, 1e-7 to 1e-4: single precision keeps
+/// points of a straight line straight to 6e-8.
 const STRAIGHT: f64 = 1e-6;
 
-/// Triangles for a polygon.
+/// The result of cutting a polygon into triangles.
 pub(super) enum Cut {
-    /// The fan covers it.
+    /// The fan of triangles covers the polygon, which is convex.
     Fan,
-    /// These cover it, turned as the polygon is.
+    /// These triangles cover the polygon, with the orientation of the polygon.
     Ears(Vec<[u32; 3]>),
-    /// It has a notch, and more corners than [`MOST_CORNERS`].
+    /// The polygon is concave and has more than [`MOST_CORNERS`] corners.
     TooLong,
 }
 
-/// Returns how to cut the polygon whose fan about its first corner is given; `place` gives the place of a corner.
+/// Cuts a polygon that is given as a fan about its first corner. `place` returns the position of a corner.
 pub(super) fn cut(fan: &[[u32; 3]], place: impl Fn(u32) -> DVec3) -> Cut {
-    // A triangle has no notch.
+    // A triangle is always convex.
     if fan.len() < 2 {
         return Cut::Fan;
     }
@@ -32,7 +32,7 @@ pub(super) fn cut(fan: &[[u32; 3]], place: impl Fn(u32) -> DVec3) -> Cut {
     if is_convex(fan, flat) {
         return Cut::Fan;
     }
-    // Corners on top of the one before add no area; without them fewer have to be looked at.
+    // Successive corners at one position add no area. Leaving them out makes the search shorter.
     let mut ring: Vec<u32> = Vec::new();
     for corner in corners(fan) {
         if ring.last().is_none_or(|&before| flat(before) != flat(corner)) {
@@ -45,7 +45,7 @@ pub(super) fn cut(fan: &[[u32; 3]], place: impl Fn(u32) -> DVec3) -> Cut {
     ears(&ring, flat)
 }
 
-/// The corners of a polygon, from its fan.
+/// Returns the corners of a polygon, from its fan.
 fn corners(fan: &[[u32; 3]]) -> impl Iterator<Item = u32> + Clone {
     let first = fan.iter().take(1).flat_map(|triangle| [triangle[0], triangle[1]]);
     first.chain(fan.iter().map(|triangle| triangle[2]))
@@ -55,7 +55,7 @@ fn ears(ring: &[u32], flat: impl Fn(u32) -> DVec2) -> Cut {
     let places: Vec<[f64; 2]> = ring.iter().map(|&corner| flat(corner).to_array()).collect();
     let mut indices: Vec<u32> = Vec::new();
     Earcut::new().earcut_slice(&places, &[], &mut indices);
-    // The projection sees the polygon anticlockwise; so must be its triangles.
+    // The polygon is anticlockwise in the projection, so its triangles must be too.
     let turned = |[a, b, c]: [u32; 3]| {
         let (a2, b2, c2) = (flat(a), flat(b), flat(c));
         if (b2 - a2).perp_dot(c2 - a2) < 0.0 { [a, c, b] } else { [a, b, c] }
@@ -65,9 +65,9 @@ fn ears(ring: &[u32], flat: impl Fn(u32) -> DVec2) -> Cut {
     if triangles.is_empty() { Cut::Fan } else { Cut::Ears(triangles) }
 }
 
-/// Returns true if no corner of a polygon turns clockwise, and no edge runs back over the one before.
+/// Returns true if no corner of a polygon turns clockwise, and no edge runs back over the previous edge.
 fn is_convex(fan: &[[u32; 3]], flat: impl Fn(u32) -> DVec2) -> bool {
-    // The first two edges come again at the end: the turns at the last and the first corner.
+    // The first two corners come again at the end, so that the turns at the last and the first corner are tested too.
     let again = corners(fan).take(2);
     let mut points = corners(fan).chain(again).map(flat);
     let Some(mut before) = points.next() else { return true };
@@ -87,17 +87,18 @@ fn is_convex(fan: &[[u32; 3]], flat: impl Fn(u32) -> DVec2) -> bool {
     true
 }
 
-/// The view of a polygon along the axis nearest to its normal, from the side where it runs anticlockwise.
+/// A projection of a polygon along the axis nearest to its normal, from the side where the polygon is anticlockwise.
 struct Projection {
     origin: DVec3,
-    /// Brings the farthest corner near 1: squares of the smallest and the largest numbers of a file would leave the range of f64.
+    /// Scale that brings the farthest corner near 1. Otherwise squares of very small or large numbers would leave the
+    /// range of f64.
     scale: f64,
-    /// The axes that remain.
+    /// Indices of the two axes of the projection.
     axes: [usize; 2],
 }
 
 impl Projection {
-    /// `None` for a polygon without area.
+    /// Creates the projection of a polygon, or returns `None` for a polygon without area.
     fn of(fan: &[[u32; 3]], place: impl Fn(u32) -> DVec3) -> Option<Self> {
         let (origin, scale) = near_one(fan, &place)?;
         let area = area(fan, |corner| (place(corner) - origin) * scale);
@@ -115,26 +116,28 @@ impl Projection {
     }
 }
 
-/// The power of two that brings a length near 1; `None` for 0.
+/// Returns the power of two that brings a length near 1, or `None` for 0.
 fn scale_to_one(length: f64) -> Option<f64> {
     let (_, exponent) = libm::frexp(length);
-    // A power above the range of f64 would be needed for the smallest numbers; they come near enough to 1.
+    // The smallest numbers would need a power above the range of f64. The largest power brings them near enough to 1.
     (length > 0.0).then(|| libm::ldexp(1.0, -exponent.max(-1022)))
 }
 
-/// The first corner, and the scale that brings the farthest one from it near 1; `None` for a polygon that is a point.
+/// Returns the first corner, and the scale that brings the farthest corner near a distance of 1 from it. Returns `None`
+/// if all corners coincide.
 fn near_one(fan: &[[u32; 3]], place: impl Fn(u32) -> DVec3) -> Option<(DVec3, f64)> {
     let origin = place(fan.first()?[0]);
     let farthest = corners(fan).map(|corner| (place(corner) - origin).abs().max_element()).fold(0.0, f64::max);
     Some((origin, scale_to_one(farthest)?))
 }
 
-/// The area of a polygon twice, along its normal, of places that count from the first corner.
+/// Returns twice the area of a polygon as a vector along its normal. `from_first` returns positions relative to the
+/// first corner.
 fn area(fan: &[[u32; 3]], from_first: impl Fn(u32) -> DVec3) -> DVec3 {
     fan.iter().map(|&[_, b, c]| from_first(b).cross(from_first(c))).sum()
 }
 
-/// Returns the normal of a polygon, of any length; zero for one without area.
+/// Returns the normal of a polygon, of any length, or zero for a polygon without area.
 pub(super) fn normal(fan: &[[u32; 3]], place: impl Fn(u32) -> DVec3) -> DVec3 {
     match near_one(fan, &place) {
         Some((origin, scale)) => area(fan, |corner| (place(corner) - origin) * scale),

@@ -1,4 +1,4 @@
-//! Figures that are counted or measured in views of the display and in volumes that are drawn.
+//! Figures that are counted or measured in views of the display and in drawn volumes.
 
 use super::printed::{TRIANGLE, display, recording, row};
 use crate::error::VolumeError;
@@ -9,7 +9,7 @@ use spatialgl::{
     SweptDisplay, Tiling, Topology, Vertex, VertexBuffer, VolumeConfig, VolumeStats, Workers, render_volume,
 };
 
-/// All rows of this module.
+/// Returns all figures that are counted or measured.
 pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError> {
     let exact = display(SliceClip::ShaderPlanes, Projection::Orthographic)?;
     let mut rows = passes(workers)?;
@@ -20,10 +20,11 @@ pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError>
     Ok(rows)
 }
 
-/// Width and height of the small slices on which passes are counted, pixels: at the rim thicker than the taper of half a pixel to each side.
+/// Width and height of the small slices on which passes are counted, pixels. At the rim such a slice is thicker than
+/// the taper of half a pixel on each side.
 const SMALL: u64 = 192;
 
-/// P5: draws of one triangle without bins, over the slices.
+/// Returns P5: the draws of one triangle per slice, without bins.
 fn passes(workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError> {
     let published = [
         (SliceClip::UserPlanes, 2.0, "draws of a triangle for a slice with user clip planes"),
@@ -42,7 +43,7 @@ fn passes(workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError> {
     published.into_iter().map(count).collect()
 }
 
-/// The usual triangle, on slices of [`SMALL`] pixels.
+/// Returns a recording of [`TRIANGLE`], scaled to slices of [`SMALL`] pixels.
 fn small_triangle() -> Result<CommandBuffer, VolumeError> {
     let scale = SMALL as f64 / PerspectaConfig::PAPERS.width as f64;
     let corner = |corner: [f64; 3]| Vertex::new(corner.map(|coordinate| coordinate * scale).into(), [255; 3]);
@@ -52,9 +53,10 @@ fn small_triangle() -> Result<CommandBuffer, VolumeError> {
     Ok(context.present())
 }
 
-/// D8, P9 and D7: queries and clears of a volume with and without batches, and the words that one of its slices takes.
+/// Returns D8, P9 and D7: queries and clears of a volume with and without batches, and the number of words in a slice.
 fn batches(display: &SweptDisplay, workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError> {
     let drawn = |batch| {
+        // The same triangle is drawn with batches of one slice and of four slices.
         let tiling = Tiling { batch, ..Tiling::PAPER };
         let config = VolumeConfig { tiling, binning: Binning::AllPlanes, ..VolumeConfig::paper() };
         render_volume(display, &recording()?, &config, &HostRenderer, workers).map_err(VolumeError::from)
@@ -74,14 +76,16 @@ fn batches(display: &SweptDisplay, workers: &dyn Workers) -> Result<Vec<Figure>,
     ])
 }
 
-/// D1, D2 and D5 from the matrices of the views and the instants of the strobes.
+/// Returns D1, D2 and D5 from the matrices of the views and the instants of the strobes.
 fn planes(views: &[SliceView]) -> Vec<Figure> {
     let across = |k: usize| views[k].view.transpose().x_axis.truncate();
     let angle = |k: usize| {
         let [this, next] = [across(k), across(k + 1)];
         this.cross(next).length().atan2(this.dot(next)).to_degrees()
     };
+    // D1: the angle between neighbouring slices.
     let pitch = (0..views.len() - 1).map(angle).fold(0.0, f64::max);
+    // D2: after how many slices the plane of slice 0 comes again, and how many planes are distinct.
     let mut distinct: Vec<_> = views.iter().map(plane).collect();
     let again = distinct.iter().skip(1).position(|other| *other == distinct[0]).map_or(0, |k| k as u64 + 1);
     distinct.sort_unstable();
@@ -105,14 +109,15 @@ fn planes(views: &[SliceView]) -> Vec<Figure> {
     ]
 }
 
-/// The plane of a slice: its normal's bits, the same for both directions of the normal.
+/// Returns the plane of a slice as the bits of its normal, the same for both directions of the normal.
 fn plane(view: &SliceView) -> [u64; 2] {
     let normal = view.view.transpose().z_axis;
     let sign = if normal.x < 0.0 || (normal.x == 0.0 && normal.z < 0.0) { -1.0 } else { 1.0 };
     [normal.x, normal.z].map(|coordinate| (sign * coordinate + 0.0).to_bits())
 }
 
-/// D3 and D4: the end of slice 0 at the rim, and the radius at which it is half a pixel to each side, by bisection.
+/// Returns D3 and D4 by bisection: the half thickness of slice 0 at the rim, and the radius at which it is half a
+/// pixel.
 fn slab(views: &[SliceView]) -> Vec<Figure> {
     let radius = PerspectaConfig::PAPERS.width as f64 / 2.0;
     let has = |u: f64, s: f64| views[0].volume.contains([u, 0.0, s], u, s);
@@ -124,7 +129,7 @@ fn slab(views: &[SliceView]) -> Vec<Figure> {
     ]
 }
 
-/// The place between two numbers at which something ceases to hold.
+/// Returns the position between two numbers at which a condition ceases to hold.
 fn bisect([mut low, mut high]: [f64; 2], holds: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..60 {
         let middle = f64::midpoint(low, high);
@@ -133,10 +138,11 @@ fn bisect([mut low, mut high]: [f64; 2], holds: impl Fn(f64) -> bool) -> f64 {
     low
 }
 
-/// Steps of a walk around the axis; half a step off, none of them is in a bin plane.
+/// Number of steps of a walk around the axis. The walk starts half a step off, so no step lies in a bin plane.
 const STEPS: u32 = 3_600;
 
-/// P14: of each region, planes whose sign changes where a walk around the axis enters and leaves it and by which it says that it is bounded.
+/// Returns P14: for each region, the number of planes that bound it. A plane counts if its sign changes where a walk
+/// around the axis enters or leaves the region, and if the layout lists it as a bound.
 fn bounds() -> Vec<Figure> {
     let layout = BinLayout::double_wedges(0.0);
     let code = |step: u32| {
@@ -147,6 +153,7 @@ fn bounds() -> Vec<Figure> {
         .regions
         .iter()
         .map(|region| {
+            // A step between two different codes crosses a plane.
             let changes = (0..STEPS).map(|step| (code(step), code((step + 1) % STEPS)));
             let ends = changes.filter(|(here, next)| here != next && [*here, *next].contains(&region.signs));
             (ends.fold(0, |planes, (here, next)| planes | (here ^ next)) & region.bounds).count_ones()

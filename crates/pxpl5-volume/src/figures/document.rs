@@ -1,4 +1,4 @@
-//! The figures as a document.
+//! The figures as a Markdown document.
 
 use super::row::{DefinitionRow, FigureRow, Figures, MeasuredScene};
 use super::shown::Shown;
@@ -6,7 +6,8 @@ use crate::settings::VolumeSettings;
 use parameters::Entry;
 use std::fmt::Write as _;
 
-/// docs/volumetric.md: every figure, then what is stated without numbers, the scenes, and our own numbers with their ranges.
+/// Returns the text of docs/volumetric.md: every figure, the definitions, statements without numbers, the scenes, and
+/// our own numbers with their ranges.
 #[must_use]
 pub fn markdown(figures: &Figures) -> String {
     let mut text = String::new();
@@ -61,7 +62,7 @@ fn standing(row: &FigureRow) -> String {
     if row.scene.is_some() { format!("{standing}, measured") } else { standing.to_string() }
 }
 
-/// The value, or the interval where the paper says "over", "about" or "most".
+/// Returns the value, with its interval if the paper says "over", "about" or "most".
 fn expected([low, high]: [f64; 2], value: f64) -> String {
     let is_wide = high - low > 0.02 * value.abs().max(1e-12) + 1e-9;
     if is_wide { format!("{} ({} to {})", number(value), number(low), number(high)) } else { number(value) }
@@ -89,7 +90,7 @@ fn missed(text: &mut String, rows: &[FigureRow]) {
     }
 }
 
-/// What is known of why a row is missed.
+/// Returns the known cause for which the model misses a figure.
 fn cause(id: &str) -> &'static str {
     match id {
         "P17" => {
@@ -166,7 +167,7 @@ fn pictures(text: &mut String) {
     );
 }
 
-/// Numbers of ours, which the paper leaves open, with their ranges.
+/// Writes the numbers that the paper leaves open, with their ranges.
 fn numbers(text: &mut String) {
     let _ = write!(
         text,
@@ -183,7 +184,7 @@ fn numbers(text: &mut String) {
     }
 }
 
-/// At most nine significant digits, without trailing zeros.
+/// Formats a number with at most nine significant digits, without trailing zeros.
 fn number(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();

@@ -1,6 +1,7 @@
-//! Figures 4 to 12 of the paper drawn anew: every pixel of them asks the model.
+//! Figures 4 to 12 of the paper, drawn again. Every pixel of the drawings is computed by the model.
 //!
-//! Plans are seen from above, +x to the right and +z up, on a display of few slices, so that a slice can be seen.
+//! Plans are seen from above, with +x to the right and +z up. The display of the plans has few slices, so that a single
+//! slice is visible.
 
 use crate::choices::{ClipKind, ProjectionKind};
 use crate::error::VolumeError;
@@ -14,12 +15,12 @@ use spatialgl::{
     BinLayout, BinTolerance, Context, SpatialDisplay, SweptDisplay, Tiling, Topology, Vertex, VertexBuffer, Workers,
 };
 
-/// One figure of the paper.
+/// A figure of the paper, drawn again.
 #[derive(Clone, Debug)]
 pub struct Drawing {
-    /// Its number in the paper.
+    /// Number of the figure in the paper.
     pub number: u32,
-    /// What the paper's caption is about, and what the pixels mean.
+    /// Subject of the paper's caption, and meaning of the pixels.
     pub about: &'static str,
     /// The drawing itself.
     pub picture: RgbImage,
@@ -28,7 +29,7 @@ pub struct Drawing {
 /// Width and height of each drawing, pixels.
 const SIDE: u32 = 256;
 
-/// Slices of a turn of the plans' display.
+/// Number of slices per turn of the display in the plans.
 const FEW_SLICES: u64 = 12;
 
 const DARK: Rgb<u8> = Rgb([16, 16, 24]);
@@ -46,7 +47,7 @@ const COLOURS: [[u8; 3]; 8] = [
     [150, 150, 150],
 ];
 
-/// All nine; the tile query is one of a scene.
+/// Returns all nine drawings. The tile query uses `scene`.
 ///
 /// # Errors
 ///
@@ -79,7 +80,7 @@ pub fn drawings(scene: &Scene, workers: &dyn Workers) -> Result<Vec<Drawing>, Vo
 }
 
 impl Drawing {
-    /// All drawings on one sheet, three in a row.
+    /// Returns all drawings on one sheet, three in a row.
     #[must_use]
     pub fn sheet(all: &[Self]) -> RgbImage {
         let framed: Vec<RgbImage> = all.iter().map(|drawing| framed(&drawing.picture)).collect();
@@ -94,7 +95,7 @@ fn framed(picture: &RgbImage) -> RgbImage {
     })
 }
 
-/// A display of 12 slices, 64 px in radius, with offsets of 8 px and the bias of 64 px^2 that they stand for.
+/// Returns a display of 12 slices with a radius of 64 px, offsets of 8 px and the corresponding bias of 64 px^2.
 fn few(clip: ClipKind) -> Result<SweptDisplay, VolumeError> {
     let mut settings = VolumeSettings { clip, projection: ProjectionKind::Orthographic, ..VolumeSettings::paper() };
     settings.display.slices = FEW_SLICES;
@@ -105,14 +106,14 @@ fn few(clip: ClipKind) -> Result<SweptDisplay, VolumeError> {
     settings.swept_display()
 }
 
-/// A place of the plan in the world.
+/// Returns the world position of a pixel of the plan.
 fn place(x: u32, y: u32) -> [f64; 3] {
     let half = f64::from(SIDE) / 2.0;
     let scale = 80.0 / half;
     [(f64::from(x) + 0.5 - half) * scale, 0.0, (half - f64::from(y) - 0.5) * scale]
 }
 
-/// Slice 1 bright, its neighbours darker, so that what dilated volumes share is seen.
+/// Draws the volume of slice 1 bright and its neighbours darker. Overlaps of dilated volumes are white.
 fn plan(clip: ClipKind) -> Result<RgbImage, VolumeError> {
     let display = few(clip)?;
     let views = display.views();
@@ -130,7 +131,8 @@ fn plan(clip: ClipKind) -> Result<RgbImage, VolumeError> {
     }))
 }
 
-/// Red where the first plane's distance is positive, green where the second's is; yellow is the + lobe, dark the - lobe.
+/// Draws red where the distance from the first plane is positive, and green where the second is. The + lobe is yellow,
+/// the - lobe dark.
 fn orientation() -> Result<RgbImage, VolumeError> {
     let display = few(ClipKind::Exact)?;
     let spatialgl::SliceVolume::Wedge(planes, _) = display.views()[1].volume else {
@@ -143,7 +145,8 @@ fn orientation() -> Result<RgbImage, VolumeError> {
     }))
 }
 
-/// The wall z = 20 in slices 20, 50, 70 and 90 of 396: ever fewer pixels are within the exact volume.
+/// Draws the wall z = 20 in slices 20, 50, 70 and 90 of 396. From slice to slice, fewer pixels are within the exact
+/// volume.
 fn sliver(workers: &dyn Workers) -> Result<RgbImage, VolumeError> {
     let wall = [[-380.0, -64.0, 20.0], [380.0, -64.0, 20.0], [380.0, 64.0, 20.0], [-380.0, 64.0, 20.0]];
     let mut columns = Vec::new();
@@ -159,6 +162,7 @@ fn sliver(workers: &dyn Workers) -> Result<RgbImage, VolumeError> {
             columns.push(imageops::resize(&part, SIDE, SIDE / 8, FilterType::Nearest));
         }
     }
+    // Draw a line between the rows.
     let mut picture = grid(&columns, 1);
     for row in 1..8 {
         for x in 0..SIDE {
@@ -171,6 +175,7 @@ fn sliver(workers: &dyn Workers) -> Result<RgbImage, VolumeError> {
 fn bin_plan() -> RgbImage {
     let layout = BinLayout::double_wedges(0.0);
     RgbImage::from_fn(SIDE, SIDE, |x, y| {
+        // The signs of a point determine its sector.
         let code = layout.code(place(x, y));
         let sector = layout.regions.iter().position(|region| region.signs == code);
         sector.map_or(DARK, |sector| {
@@ -180,7 +185,8 @@ fn bin_plan() -> RgbImage {
     })
 }
 
-/// Rows are sectors; a triangle over sectors 0, 1 and 7 (the specification's T5) marks those that it touches.
+/// Draws a row for each sector. A triangle over sectors 0, 1 and 7 (T5 of the specification) marks the sectors that it
+/// touches.
 fn outcodes() -> RgbImage {
     let layout = BinLayout::double_wedges(0.0);
     let triangle = [[3.3, -50.2, 2.1], [9.7, -50.2, -4.4], [5.1, 60.6, 6.3]];
@@ -191,6 +197,7 @@ fn outcodes() -> RgbImage {
         let column = x / cell;
         let is_gap = x % cell < 2 || y % cell < 2;
         let is_touched = touched >> sector & 1 == 1;
+        // Four columns of signs, a gap, then three columns for touched sectors.
         match column {
             _ if is_gap => DARK,
             0..=3 => Rgb([if layout.regions[sector].signs >> (3 - column) & 1 == 1 { 240 } else { 60 }; 3]),

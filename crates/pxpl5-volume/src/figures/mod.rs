@@ -1,4 +1,5 @@
-//! The SpatialGL paper's figures beside the model's: rows with standings, what it says without numbers, its drawings anew.
+//! The figures of the SpatialGL paper and the results of the model: rows with provenance, statements without numbers,
+//! and drawings.
 
 mod counted;
 mod document;
@@ -22,13 +23,15 @@ use row::order;
 use spatialgl::Workers;
 use std::sync::Arc;
 
-/// Measures everything; P17 and the draws that bins leave on each of the scenes. `finished` hears how many steps are done.
+/// Measures all figures. P17 and the draws with bins are measured on each of the scenes. `finished` is called with the
+/// number of finished and of all steps.
 ///
 /// # Errors
 ///
 /// [`VolumeError`] if a scene cannot be drawn.
 pub fn all(scenes: &[Arc<Scene>], workers: &dyn Workers, finished: impl Fn(u64, u64)) -> Result<Figures, VolumeError> {
     let steps = scenes.len() as u64 + 2;
+    // Figures that need no scene come first.
     let mut without_scene = formulas();
     without_scene.extend(packing());
     without_scene.extend(printed::figures(workers)?);

@@ -1,9 +1,10 @@
-//! The settings of what is measured.
+//! The settings for measured figures.
 
 use crate::choices::ProjectionKind;
 use crate::settings::VolumeSettings;
 
-/// The paper's settings for what it measures: its hyperbola, along the normal, so that jitter decides nothing.
+/// Returns the paper's settings with its hyperbolic clip and an orthographic projection, so that jitter has no
+/// influence.
 pub(super) fn plain() -> VolumeSettings {
     VolumeSettings { projection: ProjectionKind::Orthographic, ..VolumeSettings::paper() }
 }

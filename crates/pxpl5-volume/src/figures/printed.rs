@@ -1,4 +1,4 @@
-//! Figures that need slices to be asked or drawn: rules of the clip, bits of a pixel, stencil, jitter.
+//! Figures that need single slices: rules of the clip, bits of a pixel, stencil, jitter.
 
 use crate::error::VolumeError;
 use parameters::Standing;
@@ -13,13 +13,14 @@ use spatialgl::{
 const P: Standing = Standing::Published;
 const D: Standing = Standing::Derived;
 
-/// A triangle that stands upright beside the axis, pixels: the first of the specification's.
+/// A triangle that stands upright beside the axis, pixels: the first triangle of the specification.
 pub(super) const TRIANGLE: [[f64; 3]; 3] = [[-200.3, -150.2, 40.1], [200.4, -150.2, 40.1], [0.6, 200.7, 40.1]];
 
-/// The slice of the triangle that is looked at: 209 pixels of it are in the exact volume (derived: the intersection's area).
+/// The slice in which the triangle is examined. The exact volume contains 209 pixels of it (derived: the area of the
+/// intersection).
 const SLICE: usize = 13;
 
-/// All rows of this module.
+/// Returns all figures that need single slices.
 pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError> {
     let exact = display(SliceClip::ShaderPlanes, Projection::Orthographic)?;
     let frame = draw(&exact, workers)?;
@@ -62,7 +63,7 @@ fn draw(display: &SweptDisplay, workers: &dyn Workers) -> Result<VolumeFrame, Vo
     Ok(render_volume(display, &recording()?, &config, &HostRenderer, workers)?)
 }
 
-/// P2: a walk around the axis meets each plane on both sides; whoever is on the axis is in both planes.
+/// Returns P2: a walk around the axis meets each plane on both sides, and points on the axis are in both planes.
 fn boundaries(display: &SweptDisplay) -> Vec<Figure> {
     let view = &display.views()[7];
     let steps = 100_000;
@@ -79,7 +80,8 @@ fn boundaries(display: &SweptDisplay) -> Vec<Figure> {
     ]
 }
 
-/// Whether a slice that has its boundary planes has a point of the axis, and none beside it in all directions.
+/// Returns true if the closed volume of a slice contains a point of the axis, but not a point beside the axis off the
+/// slice.
 fn has_axis(view: &SliceView) -> bool {
     let SliceVolume::Wedge(planes, _) = view.volume else { return false };
     let closed = SliceVolume::Wedge(planes, WedgeTest::Shader(TieRule::Closed));
@@ -87,7 +89,7 @@ fn has_axis(view: &SliceView) -> bool {
     closed.contains([0.0, 33.0, 0.0], 0.0, 0.0) && !closed.contains([1e-6 * across.x, 33.0, 1e-6 * across.z], 0.0, 1e-6)
 }
 
-/// Points on a grid that has places in many planes, off the axis.
+/// Returns points of a grid, off the axis. Many of them lie in boundary planes.
 fn grid() -> impl Iterator<Item = [f64; 3]> {
     let side = -60..=60i32;
     let places = side.clone().flat_map(move |x| side.clone().map(move |z| [f64::from(x), 7.0, f64::from(z)]));
@@ -98,7 +100,8 @@ fn percent(total: usize, agreeing: usize) -> f64 {
     100.0 * agreeing as f64 / total as f64
 }
 
-/// P3 by the codes of bins, P4 by the printed product against the clip, for the normals of figure 5 left and right.
+/// Returns P3 by the codes of bins. P4 compares the printed product with the clip, for the normals of figure 5 left and
+/// right.
 fn signs() -> Vec<Figure> {
     let layout = BinLayout::double_wedges(0.0);
     let rule = |plane: &[f64; 4], p: [f64; 3]| plane[0] * p[0] + plane[1] * p[1] + plane[2] * p[2] + plane[3] >= 0.0;
@@ -117,8 +120,9 @@ fn signs() -> Vec<Figure> {
     ]
 }
 
-/// Whether slice 50 has a point just if the product of its signed distances is positive, or negative where the second
-/// normal is turned round (`orientation` -1).
+/// Returns true if slice 50 agrees with the printed rule at a point. The slice must contain the point exactly if the
+/// product of the signed distances is positive. With `orientation` -1 the second normal is reversed, and the product
+/// must be negative.
 fn agrees(p: [f64; 3], orientation: f64) -> bool {
     let (sin, cos) = spatialgl::sin_cos_of_turn(99, 792);
     let (next_sin, next_cos) = spatialgl::sin_cos_of_turn(101, 792);
@@ -130,17 +134,18 @@ fn agrees(p: [f64; 3], orientation: f64) -> bool {
     volume.contains(p, 0.0, 0.0) == printed
 }
 
-/// P7: bits of a word of eight white pixels that the projector can tell apart.
+/// Returns P7: the bits of each pixel that the projector can distinguish, from a word of eight white pixels.
 fn pixels() -> Figure {
     let white = packed_word(0xFF, 0xFF, 0xFF);
     let projector = (0..8).map(|pixel| pixel_of_word(white, pixel).count_ones()).sum::<u32>();
     row("P7", "bits of a pixel on the projector", "bits", 3.0, 0.0, f64::from(projector) / 8.0)
 }
 
-/// P15: marks of a slice on which something is drawn, and of one on which nothing is.
+/// Returns P15: the marked pixels of a slice on which something is drawn, and of a slice on which nothing is drawn.
 fn stencil(frame: &VolumeFrame) -> Vec<Figure> {
     let marked = |slice: usize| frame.colours.as_ref().map_or(0, |colours| colours[slice].len()) as f64;
     let queries = Tiling::PAPER.grid(frame.planes.size()).tiles();
+    // Every batch is cleared once and queried tile by tile.
     let per_batch = frame.stats.queries as f64 / frame.stats.stencil_clears.max(1) as f64;
     vec![
         row(
@@ -159,7 +164,7 @@ fn stencil(frame: &VolumeFrame) -> Vec<Figure> {
     ]
 }
 
-/// P19: the largest shift that any slice's shear makes at the face of its slab, and how many eyes there are.
+/// Returns P19: the largest shift by a slice's shear at the face of its slab, and the number of distinct eyes.
 fn jitter() -> Result<Vec<Figure>, VolumeError> {
     let clip = SliceClip::Hyperbolic(0.25);
     let wedge = HalfWedge::new(396, 384.0);
@@ -168,6 +173,7 @@ fn jitter() -> Result<Vec<Figure>, VolumeError> {
     let eyes: Vec<_> = (0..396).map(|slice| projection.eye(slice, wedge.radius, reach)).collect();
     let shift = eyes.iter().map(|eye| reach * (eye.shear[0].powi(2) + eye.shear[1].powi(2)).sqrt());
     let largest = shift.fold(0.0, f64::max);
+    // Count distinct eyes and distinct projection matrices.
     let mut places: Vec<_> = eyes.iter().filter_map(|eye| eye.eye.map(|place| place.map(f64::to_bits))).collect();
     places.sort_unstable();
     places.dedup();
@@ -186,7 +192,7 @@ fn jitter() -> Result<Vec<Figure>, VolumeError> {
     ])
 }
 
-/// D10 and D11 by asking slices: how many planes have each of some points spread evenly over the disc.
+/// Returns D10 and D11: the mean number of planes that contain a point, over points spread evenly over the disc.
 fn means() -> Result<Vec<Figure>, VolumeError> {
     let prism = mean_planes(SliceClip::Prism)?;
     let hyperbola = mean_planes(SliceClip::Hyperbolic(0.25))?;
@@ -205,7 +211,7 @@ fn mean_planes(clip: SliceClip) -> Result<f64, VolumeError> {
     let golden = (5f64.sqrt() - 1.0) / 2.0;
     let accepted: usize = (0..points)
         .map(|i| {
-            // A sunflower: equal areas, angles that never line up.
+            // The points form a sunflower pattern: equal areas, and angles that never coincide.
             let radius = 384.0 * ((f64::from(i) + 0.5) / f64::from(points)).sqrt();
             let angle = std::f64::consts::TAU * (f64::from(i) * golden).fract();
             let point = [radius * angle.cos(), 0.0, radius * angle.sin()];

@@ -1,33 +1,33 @@
-//! What the figures are: rows, scenes, and all of them together.
+//! The data of the figures: rows, scenes, and the complete record.
 
 use super::shown::Shown;
 use crate::experiment::Volume;
 use perspecta::figures::{Definition, Figure};
 use serde::Serialize;
 
-/// A figure, and on which scene it was measured.
+/// A figure with the scene on which it was measured.
 #[derive(Clone, Debug, Serialize)]
 pub struct FigureRow {
-    /// What is printed or derived, and what the model has.
+    /// Figure with its printed or derived value and the value of the model.
     #[serde(flatten)]
     pub figure: Figure,
-    /// Where the paper prints it; "derived" for what follows from what it prints.
+    /// Section of the paper that prints the figure, or "derived" for figures that follow from printed values.
     pub source: &'static str,
-    /// The scene that was drawn for it; none where nothing was.
+    /// Scene that was drawn for the figure, or `None` if no scene was needed.
     pub scene: Option<String>,
-    /// (computed - published) / published, in percent.
+    /// Error of the model, (computed - published) / published, percent.
     pub error_percent: f64,
-    /// Whether the model agrees.
+    /// True if the model agrees with the figure.
     pub is_met: bool,
 }
 
-/// A number that no run could change, and where the paper prints it.
+/// A definition with its section of the paper. No run of the model can change such a number.
 #[derive(Clone, Debug, Serialize)]
 pub struct DefinitionRow {
-    /// The number.
+    /// Definition with its value.
     #[serde(flatten)]
     pub definition: Definition,
-    /// Where the paper prints it; "derived" for what follows from what it prints.
+    /// Section of the paper that prints the number, or "derived" for numbers that follow from printed values.
     pub source: &'static str,
 }
 
@@ -37,39 +37,39 @@ impl DefinitionRow {
     }
 }
 
-/// Everything that the paper says, beside what the model has.
+/// All figures of the paper with the results of the model.
 #[derive(Clone, Debug, Serialize)]
 pub struct Figures {
     /// Name and version of this record's layout.
     pub schema: &'static str,
-    /// A row for each figure that code computes or counts: printed ones by number, then derived ones.
+    /// One row for each figure that the code computes or counts: printed figures by number, then derived ones.
     pub figures: Vec<FigureRow>,
-    /// Inputs of the model and what follows from them by arithmetic alone; they have no verdict.
+    /// Inputs of the model, and numbers that follow from inputs by arithmetic alone, all without a verdict.
     pub definitions: Vec<DefinitionRow>,
-    /// What the paper states without numbers.
+    /// Statements of the paper without numbers.
     pub shown: Vec<Shown>,
-    /// The scenes on which measured rows were measured.
+    /// Scenes on which figures were measured.
     pub scenes: Vec<MeasuredScene>,
 }
 
-/// Counts of a scene drawn with the hyperbola along the normal.
+/// Counts of a scene drawn with the hyperbolic clip and an orthographic projection.
 #[derive(Clone, Debug, Serialize)]
 pub struct MeasuredScene {
     /// Name of the scene that was drawn.
     pub scene: String,
-    /// Triangles that it has.
+    /// Number of triangles in the scene.
     pub triangles: u64,
-    /// Draws that bins leave of all, percent.
+    /// Draws with bins as a percentage of the draws without bins.
     pub draws_percent: f64,
-    /// Part of the queried tiles that holds something, percent.
+    /// Percentage of queried tiles that are occupied.
     pub tile_occupancy_percent: f64,
-    /// Bytes of a volume unpacked, packed and sent.
+    /// Size of a volume in bytes: unpacked, packed and sent.
     pub bytes: [u64; 3],
-    /// Milliseconds of the model: processor, GPU, bus.
+    /// Time of the model in milliseconds: processor, GPU, bus.
     pub model_ms: [f64; 3],
-    /// Volumes a second of the model, one after the other and overlapped.
+    /// Volumes per second of the model: one part after the other, and overlapped.
     pub volumes_hz: [f64; 2],
-    /// A number that any other bit of the volume would change.
+    /// Hash of all bits of the volume.
     pub volume_hash: String,
 }
 
@@ -98,7 +98,7 @@ impl FigureRow {
     }
 }
 
-/// Printed figures first, then derived ones, then those that have no number.
+/// Returns a sort key: printed figures first, then derived ones, then figures without a number.
 pub(super) fn order(id: &str) -> (u8, u32) {
     let number = id.get(1..).and_then(|digits| digits.parse().ok());
     match (id.chars().next(), number) {
@@ -108,7 +108,7 @@ pub(super) fn order(id: &str) -> (u8, u32) {
     }
 }
 
-/// The section of the paper that prints a figure.
+/// Returns the section of the paper that prints a figure.
 fn source(id: &str) -> &'static str {
     match id {
         "P1" => "SpatialGL Graphics Pipeline; Slice View Volume",

@@ -1,4 +1,4 @@
-//! What the paper states without numbers, each with a number that shows it or does not.
+//! Statements of the paper without numbers, each with measurements that confirm or refute it.
 
 use super::plain::plain;
 use crate::choices::{ClipKind, ProjectionKind};
@@ -13,18 +13,18 @@ use spatialgl::{
 };
 use std::sync::Arc;
 
-/// A statement of the paper, and what the model does.
+/// A statement of the paper, and the result of the model.
 #[derive(Clone, Debug, Serialize)]
 pub struct Shown {
-    /// What the paper states, in words.
+    /// Statement of the paper, in words.
     pub statement: &'static str,
-    /// The numbers by which it was looked at.
+    /// Numbers that confirm or refute the statement.
     pub evidence: String,
-    /// Whether they show it.
+    /// True if the numbers confirm the statement.
     pub holds: bool,
 }
 
-/// Every statement, looked at on the first of the scenes where one is needed.
+/// Tests every statement. Statements that need a scene are tested on the first of the scenes.
 pub(super) fn all(scenes: &[Arc<Scene>], workers: &dyn Workers) -> Result<Vec<Shown>, VolumeError> {
     let mut shown = vec![dead_zone(), dilation()];
     if let Some(scene) = scenes.first() {
@@ -38,7 +38,7 @@ pub(super) fn all(scenes: &[Arc<Scene>], workers: &dyn Workers) -> Result<Vec<Sh
     Ok(shown)
 }
 
-/// Lit pixels of the prism over those of the exact clip, in rings of 8 px.
+/// Compares the lit pixels of the prism with those of the exact clip, in rings of 8 px.
 fn prism(scene: &Scene, workers: &dyn Workers) -> Result<Shown, VolumeError> {
     let rings = |clip| {
         let volume = Volume::draw(&VolumeSettings { clip, ..plain() }, scene, workers)?;
@@ -50,6 +50,7 @@ fn prism(scene: &Scene, workers: &dyn Workers) -> Result<Shown, VolumeError> {
         let sum = |rings: &[u64]| rings[from..to].iter().sum::<u64>() as f64;
         sum(&prism) / sum(&exact).max(1.0)
     };
+    // Rings 1 to 3 are near the axis, rings 36 to 42 near the rim.
     let near = ratio(1, 4);
     let far = ratio(36, 43);
     Ok(Shown {
@@ -62,10 +63,12 @@ fn prism(scene: &Scene, workers: &dyn Workers) -> Result<Shown, VolumeError> {
     })
 }
 
-/// Radius within which no point is accepted when planes have few bits: 2^-(bits + 1) / S (derived).
+/// Measures the radius within which no point is accepted if planes have few bits. The derived value is 2^-(bits + 1) /
+/// S.
 fn dead_zone() -> Shown {
     let radius = |bits: u32| {
         let wedge = HalfWedge::new(396, 384.0);
+        // Walk along u in the middle of a wedge until a point is accepted.
         let planes = WedgePlanes { a: [wedge.sin, wedge.cos], b: [wedge.sin, -wedge.cos], fraction_bits: Some(bits) };
         let volume = SliceVolume::Wedge(planes, WedgeTest::Shader(TieRule::HalfOpen));
         let steps = (1..=10_000).map(|i| f64::from(i) * 1e-3);
@@ -99,7 +102,7 @@ fn dilation() -> Shown {
     }
 }
 
-/// A triangle in a plane perpendicular to the axis: the third of the specification's.
+/// A triangle in a plane perpendicular to the axis: the third triangle of the specification.
 const LEVEL: [[f64; 3]; 3] = [[-200.3, 10.2, -100.4], [250.6, 10.2, -150.3], [30.7, 10.2, 260.9]];
 
 fn orthographic(workers: &dyn Workers) -> Result<Shown, VolumeError> {
@@ -125,10 +128,11 @@ fn recording(vertices: Vec<spatialgl::Vertex>, indices: &[u32]) -> Result<Comman
     Ok(context.present())
 }
 
-/// A sphere of 198 x 396 facets with a radius of 300 px: every slice meets the same facets, so that along the normal all have
-/// the same gaps.
+/// Compares the gaps of a sphere with and without jitter. The sphere has 198 x 396 facets and a radius of 300 px. Every
+/// slice meets the same facets, so all slices have the same gaps in an orthographic projection.
 fn noise(workers: &dyn Workers) -> Result<Shown, VolumeError> {
     let likeness = |projection| {
+        // As many facets around the sphere as slices make the gaps of all slices equal.
         let (vertices, indices) = tessellated_sphere(glam::DVec3::ZERO, 300.0, 198, [255; 3]);
         let settings = VolumeSettings { projection, ..VolumeSettings::paper() };
         let volume = Volume::draw_commands(&settings, "sphere", recording(vertices, &indices)?, workers)?;
@@ -146,13 +150,14 @@ fn noise(workers: &dyn Workers) -> Result<Shown, VolumeError> {
     })
 }
 
-/// The parts of the model's GPU time, and of the bus without packing and tiles.
+/// Compares the parts of the model's GPU time, and the bus time without packing and tiles.
 fn limits(volume: &Volume) -> Shown {
     let stats = &volume.frame.stats;
     let model = volume.settings.time_model();
     let size = volume.frame.planes.size();
     let time = volume.time();
     let unpacked = model.unpacked(stats, size);
+    // A volume with draws alone gives the time of the vertices, and the rest is fill.
     let vertices_only = VolumeStats { draws: stats.draws, ..VolumeStats::default() };
     let vertices_ms = model.unpacked(&vertices_only, size).gpu_ms;
     let fill_ms = unpacked.gpu_ms - vertices_ms;
@@ -177,6 +182,7 @@ fn tiles(scene: &Scene, workers: &dyn Workers) -> Result<Shown, VolumeError> {
         settings.tile.size = size;
         let volume = Volume::draw(&settings, scene, workers)?;
         let stats = &volume.frame.stats;
+        // Smaller tiles pack fewer pixels but need more queries.
         let queries_ms = (stats.queries * settings.gpu.query_ns) as f64 / 1e6;
         let share = 100.0 * stats.pixels_packed as f64 / (stats.bytes_unpacked / 4) as f64;
         found.push((size, share, queries_ms));

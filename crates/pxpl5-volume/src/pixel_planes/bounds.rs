@@ -1,4 +1,4 @@
-//! Volumes a second against renderers and graphics processors: the bound of each part by itself.
+//! Volumes per second as a function of the numbers of renderers and graphics processors: the bound of each part alone.
 
 use super::renderer::RendererWork;
 use super::traffic::SliceTraffic;
@@ -10,7 +10,7 @@ use pxpl5_wire::MAX_MESSAGE_WORDS;
 use serde::Serialize;
 use spatialgl::{Tiling, VolumeFrame};
 
-/// Milliseconds that each part needs for a volume if it has nothing to wait for.
+/// The times that each part needs for a volume if it never waits, milliseconds.
 ///
 /// ```text
 /// renderers   (clocks of clears, triangles and halftones + copies x backing block) / 40 MHz / renderers
@@ -20,38 +20,39 @@ use spatialgl::{Tiling, VolumeFrame};
 /// processors  (slice triangles t_triangle + commands t_bin_entry) / processors
 /// ```
 ///
-/// A slice triangle costs a processor what a triangle of a frame does (assumed: the hyperbola's six coefficients in place
-/// of depth).
+/// A slice triangle costs a processor the same as a triangle of a frame (assumed: the six coefficients of the hyperbola
+/// replace depth).
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct SliceBounds {
-    /// What the renderers did for the volume.
+    /// Work of the renderers for the volume.
     pub work: RendererWork,
-    /// Tiles sent, each with its words.
+    /// Number of tiles sent. Each tile is sent with its words.
     pub tiles: u64,
-    /// Words of a tile.
+    /// Number of words of a tile.
     pub tile_words: u64,
-    /// Regions of which any tile is sent: each moves to the backing store first, where its renderer waits for it.
+    /// Number of regions with at least one tile to send. Each moves to the backing store first, and its renderer waits
+    /// for this move.
     pub copies: u64,
 }
 
-/// The bounds with so many boards.
+/// The bounds for certain numbers of boards.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BoundRow {
-    /// Renderers that share the slices.
+    /// Number of renderers that share the slices.
     pub renderers: u64,
-    /// Graphics processors that share the triangles.
+    /// Number of graphics processors that share the triangles.
     pub processors: u64,
-    /// Milliseconds: renderers, ring (both ways), the display's port, processors.
+    /// Bounds in milliseconds: renderers, ring (both directions), the display's port, processors.
     pub ms: [f64; 4],
-    /// Volumes a second if nothing but the slowest of them limits.
+    /// Volumes per second if only the slowest part limits the rate.
     pub volumes_hz: f64,
-    /// The slowest: `renderers`, `ring`, `port` or `processors`; of equals the first.
+    /// Slowest part: `renderers`, `ring`, `port` or `processors`. Of equal parts, the first.
     pub limited_by: &'static str,
 }
 
 impl SliceBounds {
-    /// Those of a volume that renderers drew: its occupied tiles are sent for every slice of their batch. Without traffic (tiles
-    /// that cannot be sent) nothing is copied.
+    /// Computes the bounds of a volume that renderers drew. Occupied tiles are sent for every slice of their batch.
+    /// Without `traffic`, when the tiles cannot be sent, no region is copied.
     #[must_use]
     pub fn of(work: RendererWork, frame: &VolumeFrame, tiling: Tiling, traffic: Option<&SliceTraffic>) -> Self {
         let tile_words = tiling.grid(frame.planes.size()).words(0);
@@ -60,7 +61,7 @@ impl SliceBounds {
         Self { work, tiles, tile_words, copies: traffic.map_or(0, SliceTraffic::copies) }
     }
 
-    /// The bounds with so many renderers and graphics processors, each 1 or more.
+    /// Returns the bounds for these numbers of renderers and graphics processors, each 1 or more.
     #[must_use]
     pub fn with(&self, renderers: u64, processors: u64) -> BoundRow {
         let clocks = self.work.clocks + self.copies * RendererTiming::PAPERS.backing_block_clocks;
@@ -74,7 +75,7 @@ impl SliceBounds {
         BoundRow { renderers, processors, ms, volumes_hz: 1e3 / ms[slowest], limited_by: names[slowest] }
     }
 
-    /// Commands and tiles share the ring's channels, of which renderers may hold six at a time.
+    /// Returns the bound of the ring. Commands and tiles share its channels, of which renderers may hold six at a time.
     fn ring_ms(&self) -> f64 {
         let ring = RingTiming::PAPERS;
         let messages = self.work.command_words.div_ceil(u64::from(MAX_MESSAGE_WORDS)).max(self.work.regions);
@@ -84,12 +85,12 @@ impl SliceBounds {
         alone.max(together)
     }
 
-    /// The display has one port, at which one message at a time arrives.
+    /// Returns the bound of the display's port, which receives one message at a time.
     fn port_ms(&self) -> f64 {
         milliseconds(self.words_out())
     }
 
-    /// Words of the occupied tiles, and of what goes before each.
+    /// Returns the number of words of all occupied tiles, including the overhead of each message.
     fn words_out(&self) -> u64 {
         self.tiles * (self.tile_words + RingTiming::PAPERS.overhead_words)
     }

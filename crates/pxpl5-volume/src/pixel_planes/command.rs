@@ -1,4 +1,5 @@
-//! The command of a slice's triangle, which the renderers' trees evaluate whole: three edges, the hyperbola, three colours.
+//! The command of a slice's triangle: three edges, the hyperbola and three colours, all evaluated by the renderers'
+//! trees.
 
 use pxpl5_renderer::Layout;
 use pxpl5_renderer::isa::{ArrayInstruction, Expression, ExpressionUse};
@@ -6,8 +7,8 @@ use pxpl5_wire::format::{COLOUR_FRACTION_BITS, SUBPIXEL_BITS};
 use pxpl5_wire::{Linear, Quadratic, Word};
 use spatialgl::{ClipQuadratic, HalfWedge, Size};
 
-/// Fraction bits of the hyperbola's coefficients: with the format's 16, S^2 would be 4 units; with 26 it is 4,224 and the values
-/// inside a display of 768 px stay within 48 bits (derived).
+/// Fraction bits of the hyperbola's coefficients. With the usual 16 bits, S^2 would be only 4 units. With 26 bits it is
+/// 4,224, and values inside a display of 768 px stay within 48 bits (derived).
 pub const CLIP_FRACTION_BITS: u32 = 26;
 
 /// A corner on the sub-pixel grid of the machine.
@@ -15,32 +16,33 @@ pub const CLIP_FRACTION_BITS: u32 = 26;
 pub struct SliceCorner {
     /// Column and row from the top left of the image, in sixteenths of a pixel.
     pub place: [i32; 2],
-    /// Distance off the slice, pixels.
+    /// Distance of the corner from the slice, pixels.
     pub off: f64,
     /// Red, green and blue, 0 to 255.
     pub colour: [f64; 3],
 }
 
-/// A triangle of one slice: drawn where it is inside all edges and the hyperbola is not negative. There is no depth.
+/// A triangle of one slice, without depth. The triangle covers the pixels inside all edges at which the hyperbola is
+/// not negative.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SliceTriangle {
-    /// Inside where all are `>= 0`; the tie rule is folded in.
+    /// Edge functions, all `>= 0` inside, with the tie rule included.
     pub edges: [Linear; 3],
-    /// A B + b on the triangle's plane, with [`CLIP_FRACTION_BITS`].
+    /// The hyperbola A B + b on the triangle's plane, with [`CLIP_FRACTION_BITS`].
     pub clip: Quadratic,
-    /// Red, green and blue, with the wire's fraction bits of colours.
+    /// Red, green and blue, with the fraction bits of colours on the ring.
     pub colour: [Linear; 3],
 }
 
-/// Steps of the sub-pixel grid in a pixel.
+/// Number of steps of the sub-pixel grid per pixel.
 const STEPS: f64 = (1 << SUBPIXEL_BITS) as f64;
 
-/// Largest coefficient of the hyperbola in units: beyond it double precision has no unit left to round to.
+/// Largest coefficient of the hyperbola in units. Beyond this limit double precision cannot represent single units.
 const LARGEST_COEFFICIENT: f64 = (1u64 << 53) as f64;
 
 impl SliceTriangle {
-    /// The command of three corners in the image of a slice. `None` of a triangle without area, and of one whose planes do not
-    /// fit the machine's words.
+    /// Creates the command of three corners in the image of a slice. Returns `None` for a triangle without area, or if
+    /// its planes do not fit the machine's words.
     #[must_use]
     pub fn of_corners(corners: [SliceCorner; 3], size: Size, wedge: HalfWedge, bias: f64) -> Option<Self> {
         let [a, b, c] = corners.map(|corner| corner.place.map(i64::from));
@@ -55,7 +57,7 @@ impl SliceTriangle {
         Some(Self { edges, clip, colour: [colour(0), colour(1), colour(2)] })
     }
 
-    /// Its program, in the order of the signal.
+    /// Returns the program of the command, in the order of execution.
     #[must_use]
     pub fn program(&self, layout: &Layout) -> Vec<ArrayInstruction> {
         let mut program = vec![ArrayInstruction::EnableAll { label: 0 }];
@@ -70,13 +72,13 @@ impl SliceTriangle {
         program
     }
 
-    /// Clocks in which an array is busy with it, whatever its operands.
+    /// Returns the clocks that an array needs for the command, with any operands.
     #[must_use]
     pub fn clocks(layout: &Layout) -> u32 {
         Self::default().program(layout).iter().map(ArrayInstruction::clocks).sum()
     }
 
-    /// Words that it takes on the ring.
+    /// Returns the number of words of the command on the ring.
     #[must_use]
     pub fn words(layout: &Layout) -> usize {
         let mut words = Vec::new();
@@ -84,13 +86,13 @@ impl SliceTriangle {
         words.len()
     }
 
-    /// Appends its words.
+    /// Appends the words of the command.
     pub fn encode(&self, layout: &Layout, out: &mut Vec<Word>) {
         self.program(layout).iter().for_each(|instruction| instruction.encode(out));
     }
 
-    /// How far the hyperbola's value at any pixel of an image may be from the exact one, square pixels: half a unit for
-    /// each of its six coefficients.
+    /// Returns a bound of the rounding error of the hyperbola's value at any pixel of an image, square pixels. The
+    /// bound is half a unit for each of the six coefficients.
     #[must_use]
     pub fn clip_rounding_px2([width, height]: Size) -> f64 {
         let [x, y] = [width, height].map(f64::from);
@@ -98,8 +100,8 @@ impl SliceTriangle {
     }
 }
 
-/// The edge from one corner to the next, exact: in units of 1/256 px^2 at the middle of each pixel, less one unit where the
-/// samples on it belong to the neighbour.
+/// Returns the exact edge function from one corner to the next, in units of 1/256 px^2 at the middle of each pixel. The
+/// function is one unit less if samples on the edge belong to the neighbour.
 fn edge(from: [i64; 2], to: [i64; 2], orientation: i64, [width, height]: Size) -> Option<Linear> {
     let steps = 1i64 << SUBPIXEL_BITS;
     let middle = steps / 2;
@@ -112,7 +114,7 @@ fn edge(from: [i64; 2], to: [i64; 2], orientation: i64, [width, height]: Size) -
     fits.then_some(Linear { a: (a * steps) as i32, b: (b * steps) as i32, c: c as i32 })
 }
 
-/// The quadratic of the triangle's plane, from the coordinates of the slice to those of pixels.
+/// Returns the quadratic of the triangle's plane, converted from coordinates of the slice to pixels.
 fn clip(corners: &[SliceCorner; 3], size: Size, wedge: HalfWedge, bias: f64) -> Option<Quadratic> {
     let [half_width, half_height] = size.map(|side| f64::from(side) / 2.0);
     let local = corners.map(|corner| {
@@ -120,7 +122,7 @@ fn clip(corners: &[SliceCorner; 3], size: Size, wedge: HalfWedge, bias: f64) -> 
         [x - half_width, half_height - y, corner.off]
     });
     let q = ClipQuadratic::of_corners(local, wedge, bias)?;
-    // u = x + p and v = r - y at the middle of pixel (x, y).
+    // Substitute u = x + p and v = r - y at the middle of pixel (x, y).
     let p = 0.5 - half_width;
     let r = half_height - 0.5;
     let coefficients = [
@@ -131,6 +133,7 @@ fn clip(corners: &[SliceCorner; 3], size: Size, wedge: HalfWedge, bias: f64) -> 
         -q.uv * p - 2.0 * q.vv * r - q.v,
         q.uu * p * p + q.uv * p * r + q.vv * r * r + q.u * p + q.v * r + q.one,
     ];
+    // Round to units of the fixed-point format.
     let units = coefficients.map(|value| (value * f64::from(1 << CLIP_FRACTION_BITS)).round());
     if units.iter().any(|value| value.is_nan() || value.abs() > LARGEST_COEFFICIENT) {
         return None;
@@ -139,8 +142,8 @@ fn clip(corners: &[SliceCorner; 3], size: Size, wedge: HalfWedge, bias: f64) -> 
     Some(Quadratic { xx, xy, yy, x, y, one })
 }
 
-/// A channel over the triangle, with half a level more, so that leaving out the fraction rounds. Where a gradient does not fit
-/// (slivers), the mean of the corners.
+/// Returns a colour channel over the triangle. Half a level is added, so that truncation of the fraction rounds to the
+/// nearest. A gradient that does not fit the words (slivers) is replaced by the mean of the corners.
 fn gradient(corners: &[SliceCorner; 3], area: f64, channel: usize) -> Linear {
     let one = f64::from(1 << COLOUR_FRACTION_BITS);
     let value = corners.map(|corner| corner.colour[channel]);
@@ -149,6 +152,7 @@ fn gradient(corners: &[SliceCorner; 3], area: f64, channel: usize) -> Linear {
     let rise = [value[1] - value[0], value[2] - value[0]];
     let x = along(0);
     let y = along(1);
+    // Solve for the plane through the three values.
     let area_px = area / (STEPS * STEPS);
     let a = (rise[0] * y[1] - rise[1] * y[0]) / area_px;
     let b = (rise[1] * x[0] - rise[0] * x[1]) / area_px;

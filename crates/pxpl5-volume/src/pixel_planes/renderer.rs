@@ -1,4 +1,4 @@
-//! Slices region by region on the emulated pixel arrays.
+//! Drawing of slices on the emulated pixel arrays, region by region.
 
 use super::command::{SliceCorner, SliceTriangle};
 use super::halftone::{halftone_clocks, halftone_words};
@@ -13,35 +13,38 @@ use spatialgl::{Combine, HalfWedge, SliceImage, SliceRenderer, SliceStats, Slice
 use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
 
-/// Which of the two pixel arrays draws.
+/// The pixel array that draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArrayKind {
-    /// Values of the pixels that a command touches: the fast one.
+    /// The fast array, which computes whole values of the pixels that a command touches.
     Lanes,
-    /// One bit of one instruction after the other: the definition, without what cannot change anything.
+    /// The reference model, which executes one bit of one instruction at a time. The array skips only steps that cannot
+    /// change a result.
     BitSerial,
 }
 
-/// What renderers did for a volume, whoever of them did it.
+/// Work of all renderers for a volume.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct RendererWork {
-    /// Regions that were cleared and drawn.
+    /// Number of regions that were cleared and drawn.
     pub regions: u64,
-    /// Slice triangles, counted once for each slice that draws them.
+    /// Number of slice triangles, counted once for each slice that draws them.
     pub triangles: u64,
-    /// Commands of slice triangles, counted once for each region that they touch.
+    /// Number of triangle commands, counted once for each region that they touch.
     pub commands: u64,
-    /// Triangles without area on the sub-pixel grid, which no pixel can have, and those whose planes fit no word.
+    /// Number of omitted triangles: those without area on the sub-pixel grid, and those whose planes do not fit the
+    /// words.
     pub left_out: u64,
     /// Clocks of clears, triangles and halftones.
     pub clocks: u64,
-    /// Words of commands on the ring.
+    /// Number of words of commands on the ring.
     pub command_words: u64,
 }
 
-/// Draws slices with a hyperbolic clip along the normal, the colours of the last triangle on top.
+/// A renderer of slices with a hyperbolic clip and an orthographic projection. The last triangle of a pixel determines
+/// its colour.
 ///
-/// A pixel is marked where its colour is not black: the arrays keep no stencil.
+/// A pixel is marked if its colour is not black, because the arrays have no stencil.
 #[derive(Debug)]
 pub struct PixelPlanesRenderer {
     layout: Layout,
@@ -52,27 +55,27 @@ pub struct PixelPlanesRenderer {
     loads: Mutex<HashMap<ViewKey, SliceLoad>>,
 }
 
-/// What a slice asks of a renderer.
+/// The load that a slice puts on a renderer.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SliceLoad {
-    /// Triangles that anything of the slice can have.
+    /// Number of triangles that can have pixels in the slice.
     pub triangles: u64,
-    /// Commands of triangles in each region, row by row from the top left.
+    /// Number of triangle commands in each region, row by row from the top left.
     pub commands: Vec<u32>,
 }
 
-/// The numbers of a slice's view: what tells it from the display's other slices.
+/// The view matrix of a slice as bits, which distinguishes the slice from the display's other slices.
 type ViewKey = [u64; 16];
 
 fn key_of(view: &SliceView) -> ViewKey {
     view.view.to_cols_array().map(f64::to_bits)
 }
 
-/// Checks that these settings are what the renderers draw.
+/// Checks that the renderers can draw with these settings.
 ///
 /// # Errors
 ///
-/// [`VolumeError::Missing`] names the setting that they cannot draw.
+/// [`VolumeError::Missing`] names the setting that the renderers do not support.
 pub fn supported(settings: &VolumeSettings) -> Result<(), VolumeError> {
     let rules = [
         (settings.clip == ClipKind::Hyperbolic, "--clip", "hyperbolic, which is one quadratic", settings.clip_text()),
@@ -86,6 +89,7 @@ pub fn supported(settings: &VolumeSettings) -> Result<(), VolumeError> {
         (settings.draw.samples == 1, "draw.samples", "1", settings.draw.samples.to_string()),
         (settings.coverage == spatialgl::Coverage::Sampled, "draw.coverage", "sampled", "connected".to_owned()),
     ];
+    // Report the first setting that is not supported.
     match rules.into_iter().find(|(holds, ..)| !holds) {
         None => Ok(()),
         Some((_, what, expected, found)) => {
@@ -95,11 +99,11 @@ pub fn supported(settings: &VolumeSettings) -> Result<(), VolumeError> {
 }
 
 impl PixelPlanesRenderer {
-    /// Renderers for a display with these settings.
+    /// Creates renderers for a display with these settings.
     ///
     /// # Errors
     ///
-    /// As [`supported`].
+    /// The same as [`supported`].
     pub fn new(settings: &VolumeSettings, kind: ArrayKind) -> Result<Self, VolumeError> {
         supported(settings)?;
         let wedge = HalfWedge::new(settings.display.slices as u32, settings.radius());
@@ -109,20 +113,21 @@ impl PixelPlanesRenderer {
         Ok(Self { layout, wedge, bias: settings.clip_numbers.bias_px2, kind, work, loads })
     }
 
-    /// What was done since it was made.
+    /// Returns the work that these renderers have done so far.
     #[must_use]
     pub fn work(&self) -> RendererWork {
         *self.work.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// What these slices asked for when they were drawn last; nothing of one that was not.
+    /// Returns the loads of these slices when they were last drawn. A slice that was never drawn has an empty load.
     #[must_use]
     pub fn loads(&self, views: &[SliceView]) -> Vec<SliceLoad> {
         let loads = self.loads.lock().unwrap_or_else(PoisonError::into_inner);
         views.iter().map(|view| loads.get(&key_of(view)).cloned().unwrap_or_default()).collect()
     }
 
-    /// The slice's triangles that anything of the slice can have, as commands with the pixels that they can touch.
+    /// Returns commands for the triangles that can have pixels in the slice, each with the pixels that it can touch.
+    /// The second value is the number of omitted triangles.
     fn commands(&self, work: SliceWork<'_>, view: &SliceView, size: [u32; 2]) -> (Vec<Placed>, u64) {
         let mut placed = Vec::new();
         let mut left_out = 0;
@@ -130,6 +135,7 @@ impl PixelPlanesRenderer {
         for primitive in work.bin.primitives() {
             let Some(triangle) = work.commands.triangle(*primitive) else { continue };
             let local = triangle.corners.map(|corner| view.local(corner.into()));
+            // Triangles on one side of the slab have no pixels.
             if local.iter().all(|p| p.z > reach) || local.iter().all(|p| p.z < -reach) {
                 continue;
             }
@@ -142,18 +148,19 @@ impl PixelPlanesRenderer {
         (placed, left_out)
     }
 
-    /// Half the slab at the rim, where it is thickest, with some slack.
+    /// Returns half the thickness of the slab at the rim, where it is thickest, with some slack.
     fn half_thickness(&self) -> f64 {
         spatialgl::SliceClip::Hyperbolic(self.bias).reach(self.wedge) + 1e-6
     }
 
-    /// Runs a region on an array and puts what it has into the image.
+    /// Executes a region on an array and draws its colours into the image.
     fn region(&self, [left, top]: [u32; 2], placed: &[Placed], image: &mut SliceImage) -> RendererWork {
         let [width, height] = image.size();
         let within = [REGION_SIZE.min(width - left), REGION_SIZE.min(height - top)];
         let mut words = Vec::new();
         self.encode(Command::SelectRegion(SelectRegion { context: 0, left: left as u16, top: top as u16 }), &mut words);
         self.encode(Command::Clear(Clear { colour: 0 }), &mut words);
+        // Only the triangles that touch the region are sent.
         let touching = placed.iter().filter(|one| one.touches([left, top]));
         let mut commands = 0;
         for one in touching {
@@ -162,12 +169,14 @@ impl PixelPlanesRenderer {
         }
         let mut work = RendererWork { regions: 1, commands, ..RendererWork::default() };
         work.command_words = (words.len() + halftone_words(&self.layout).len()) as u64;
+        // An empty region needs no execution.
         if commands == 0 {
             work.clocks = self.empty_clocks();
             return work;
         }
         let (clocks, colours) = self.execute(&words, within);
         work.clocks = clocks + halftone_clocks(&self.layout);
+        // Draw every pixel that is not black.
         for (at, colour) in (0u32..).zip(colours.iter()).filter(|(_, colour)| **colour != 0) {
             let [_, red, green, blue] = colour.to_be_bytes();
             image.draw_pixel(left + at % within[0], top + at / within[0], [red, green, blue], Combine::Last);
@@ -182,7 +191,7 @@ impl PixelPlanesRenderer {
         }
     }
 
-    /// Clocks of a region on which nothing is drawn: it is selected, cleared and halftoned all the same.
+    /// Returns the clocks of a region without triangles, which is still selected, cleared and halftoned.
     fn empty_clocks(&self) -> u64 {
         self.clocks(CommandKind::SelectRegion) + self.clocks(CommandKind::Clear) + halftone_clocks(&self.layout)
     }
@@ -196,13 +205,14 @@ impl PixelPlanesRenderer {
     }
 }
 
-/// Clocks and colours of a list; the commands are ours, so that none of them is illegal.
+/// Executes a list of commands and returns its clocks and colours. The commands come from this crate, so none is
+/// illegal.
 fn run(array: &mut impl PixelArray, words: &[Word], width: u32, height: u32) -> (u64, std::sync::Arc<[Word]>) {
     let clocks = array.execute(words).expect("pxpl5-volume: commands of our own").clocks;
     (clocks, array.read_colour(width, height))
 }
 
-/// A command and the pixels that it can touch: left, top, right, bottom, the last two included.
+/// A command and the pixels that it can touch: left, top, right, bottom, with both ends included.
 struct Placed {
     command: SliceTriangle,
     bounds: [i32; 4],
@@ -224,7 +234,7 @@ fn bounds(corners: &[SliceCorner; 3]) -> [i32; 4] {
     [least(along(0)), least(along(1)), most(along(0)), most(along(1))]
 }
 
-/// A corner of a slice (u, v, s) on the sub-pixel grid of its image.
+/// Snaps a corner (u, v, s) of a slice to the sub-pixel grid of its image.
 fn snapped([u, v, s]: [f64; 3], colour: [f64; 3], size: [u32; 2]) -> SliceCorner {
     let steps = f64::from(1 << SUBPIXEL_BITS);
     let [half_width, half_height] = size.map(|side| f64::from(side) / 2.0);
@@ -238,6 +248,7 @@ impl SliceRenderer for PixelPlanesRenderer {
         let (placed, left_out) = self.commands(work, view, size);
         let mut done = RendererWork { triangles: placed.len() as u64, left_out, ..RendererWork::default() };
         let mut load = SliceLoad { triangles: done.triangles, commands: Vec::new() };
+        // Every region is cleared and halftoned, even without triangles.
         for top in (0..size[1]).step_by(REGION_SIZE as usize) {
             for left in (0..size[0]).step_by(REGION_SIZE as usize) {
                 let region = self.region([left, top], &placed, image);
@@ -246,6 +257,7 @@ impl SliceRenderer for PixelPlanesRenderer {
             }
         }
         self.loads.lock().unwrap_or_else(PoisonError::into_inner).insert(key_of(view), load);
+        // Slices are drawn on several threads, and their work is added up.
         let mut total = self.work.lock().unwrap_or_else(PoisonError::into_inner);
         *total = total.and(done);
         let drawn = image.marked();

@@ -1,5 +1,6 @@
-//! One volume, event by event: the ring, the renderers' FIFOs, controllers and backing stores, and the display's frame stores are the
-//! boards themselves; a processor is its times and its port.
+//! Simulation of one volume, event by event. The ring, the display's frame stores and the renderers with FIFO,
+//! controller and backing store are complete board models. A graphics processor consists only of its times and its
+//! port.
 //!
 //! ```text
 //!  GP k mod G --commands of slice k, region by region--> ring --> renderer k mod R --packed tiles--> ring --> Perspecta
@@ -7,16 +8,18 @@
 //!
 //! # Behaviour
 //!
-//! - The slices are dealt to the processors and to the renderers in turn. A processor makes the commands of a slice and hands them to
-//!   its port as one transfer, which keeps the renderer's port until its last word; it makes the next slice's meanwhile, and no more.
-//! - A renderer is the board: its input FIFO holds words back when it is full, its controller takes the clocks of the programs, a
-//!   region with any tile goes through the backing store and leaves beside the next region's commands.
-//! - In place of 32-bit pixels, the tiles of the region leave, a message each, as the display takes them.
+//! - The slices are assigned to the processors and to the renderers in turn. A processor makes the commands of a slice
+//!   and hands them to its port as one transfer, which keeps the renderer's port until its last word. Meanwhile the
+//!   processor makes at most one more slice.
+//! - A renderer is a complete board. Its input FIFO holds words back when it is full, and its controller takes the
+//!   clocks of the programs. A region with at least one tile goes through the backing store and leaves while the next
+//!   region's commands arrive.
+//! - Instead of 32-bit pixels, the tiles of the region are sent, one message each, in the format of the display.
 //!
 //! # Not modelled
 //!
-//! Who tells a renderer which tiles to send, and the packing of eight pixels' bits into a word: the backing store hands out blocks
-//! of 32 bits a pixel. The processors' programs are times ([`GpTiming`]) and no code.
+//! The decision which tiles a renderer sends, and the packing of eight pixels' bits into a word: the backing store
+//! holds blocks of 32 bits per pixel. The processors' programs are times ([`GpTiming`]) without code.
 
 use super::bounds::{BoundRow, SliceBounds};
 use super::command::SliceTriangle;
@@ -37,41 +40,41 @@ use serde::Serialize;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// What came of the events of one volume on a machine with so many boards.
+/// The result of simulating one volume on a machine with certain numbers of boards.
 #[derive(Clone, Debug, Serialize)]
 pub struct SimulatedRow {
-    /// Renderers that share the slices.
+    /// Number of renderers that share the slices.
     pub renderers: u64,
-    /// Graphics processors that share the slices.
+    /// Number of graphics processors that share the slices.
     pub processors: u64,
-    /// Milliseconds from the first command's making to the last tile's arrival.
+    /// Time from the start of the first command to the arrival of the last tile, milliseconds.
     pub ms: f64,
-    /// Volumes a second if each begins when the one before has arrived.
+    /// Volumes per second if each volume begins after the previous one has arrived.
     pub volumes_hz: f64,
-    /// The slowest part's bound for the same messages.
+    /// Bound of the slowest part for the same messages.
     pub bound: BoundRow,
-    /// By how much the simulated time is longer than the bound, percent.
+    /// Excess of the simulated time over the bound, percent.
     pub over_bound_percent: f64,
-    /// Part of the time in which renderers execute commands, on the mean, percent.
+    /// Mean fraction of the time in which renderers execute commands, percent.
     pub renderers_busy_percent: f64,
-    /// Part of the time in which processors make commands, on the mean, percent.
+    /// Mean fraction of the time in which processors make commands, percent.
     pub processors_busy_percent: f64,
-    /// Part of the time in which the ring's channels are taken, on the mean, percent.
+    /// Mean fraction of the time in which the ring's channels are occupied, percent.
     pub channels_busy_percent: f64,
-    /// Messages that the display did not understand or did not expect.
+    /// Number of messages that the display rejected, plus one if the volume was not shown.
     pub faults: u64,
-    /// Events of the simulation.
+    /// Number of events in the simulation.
     pub events: u64,
 }
 
-/// The number of words that [`CopyTarget`] takes in a command.
+/// Number of words of a [`CopyTarget`] in a command.
 const COPY_WORDS: u32 = 9;
 
-/// Sends a volume's messages through a machine of so many boards, each 1 or more.
+/// Simulates the messages of a volume on a machine with these numbers of boards, each 1 or more.
 ///
 /// # Errors
 ///
-/// [`VolumeError::Missing`] for more boards than a ring has ports.
+/// [`VolumeError::Missing`] if there are more boards than ports on a ring.
 pub fn simulate(
     traffic: &SliceTraffic,
     bounds: &SliceBounds,
@@ -81,22 +84,22 @@ pub fn simulate(
     Ok(Machine::new(traffic, renderers, processors)?.run(bounds))
 }
 
-/// What can happen.
+/// The events of the simulation.
 #[derive(Debug)]
 enum Event {
     Ring(RingEvent),
     FromRing(RingOutput),
     Renderer(usize, RendererEvent),
-    /// A processor has made the commands of the slice that it works on.
+    /// A processor has finished the commands of its current slice.
     Made(usize),
 }
 
-/// A processor: the slices that it still has to make, and those that it has made and not sent.
+/// A graphics processor with the slices that it still has to make.
 #[derive(Debug, Default)]
 struct Processor {
     slices: VecDeque<usize>,
     working_on: Option<usize>,
-    /// A slice that waits for the one on the ring.
+    /// A finished slice that waits until the previous one has left.
     waiting: Option<usize>,
     is_sending: bool,
     busy: Span,
@@ -125,6 +128,7 @@ impl<'a> Machine<'a> {
             found: boards.to_string(),
         })?;
         let layout = Layout::rendering_control_phong();
+        // Processors come first on the ring, then the renderers, then the display.
         let timing = slice_timing(&layout);
         let first = processors.max(1) as u16;
         let is_elastic = |node: NodeId| node.0 < first || node.0 + 1 == nodes;
@@ -140,6 +144,7 @@ impl<'a> Machine<'a> {
             expected: "one that takes the volume".to_owned(),
             found: error.to_string(),
         })?;
+        // Assign the slices to the processors in turn.
         let mut dealt: Vec<Processor> = (0..first).map(|_| Processor::default()).collect();
         for slice in 0..traffic.slices.len() {
             dealt[slice % usize::from(first)].slices.push_back(slice);
@@ -168,6 +173,7 @@ impl<'a> Machine<'a> {
     }
 
     fn run(mut self, bounds: &SliceBounds) -> SimulatedRow {
+        // The maps leave at time zero, and all processors start.
         self.send_maps();
         for processor in 0..self.processors.len() {
             self.begin_next(processor, Time::ZERO);
@@ -184,7 +190,7 @@ impl<'a> Machine<'a> {
         self.row(bounds)
     }
 
-    /// All maps first: a tile must not overtake its own.
+    /// Sends all maps first, because a tile must not overtake its map.
     fn send_maps(&mut self) {
         let destination = self.display_node();
         let maps: Vec<Body> = self.traffic.maps.iter().map(|map| Body::Words(Arc::clone(map))).collect();
@@ -217,7 +223,7 @@ impl<'a> Machine<'a> {
         self.send_waiting(number, now);
     }
 
-    /// Hands the slice that is made to the port, if the one before it has left.
+    /// Hands the finished slice to the port if the previous one has left.
     fn send_waiting(&mut self, number: usize, now: Time) {
         if self.processors[number].is_sending {
             return;
@@ -227,6 +233,7 @@ impl<'a> Machine<'a> {
         let destination = self.renderer_node(slice % self.renderers.len());
         let lists = self.lists(slice);
         let last = lists.len().saturating_sub(1);
+        // `hold` keeps the connection until the last message of the slice.
         for (i, list) in lists.into_iter().enumerate() {
             let message =
                 Message { source: NodeId(number as u16), destination, words: list.words(), body: Body::Commands(list) };
@@ -236,7 +243,7 @@ impl<'a> Machine<'a> {
         self.begin_next(number, now);
     }
 
-    /// The commands of a slice, region by region, in lists of a message each.
+    /// Returns the commands of a slice, region by region, in lists of one message each.
     fn lists(&self, slice: usize) -> Vec<CommandList> {
         let load = &self.traffic.slices[slice].load;
         let regions = load.commands.iter().enumerate();
@@ -246,6 +253,7 @@ impl<'a> Machine<'a> {
     fn lists_of_region(&self, slice: usize, region: usize, commands: u32) -> Vec<CommandList> {
         let run = |kind: CommandKind, words_each, count| CommandRun { opcode: kind as u8, words_each, count };
         let each = SliceTriangle::words(&self.layout) as u32;
+        // The halftone and the triangles use the codes of existing commands.
         let mut runs = VecDeque::from([run(CommandKind::SelectRegion, 2, 1), run(CommandKind::Clear, 5, 1)]);
         runs.extend((0..commands).map(|_| run(CommandKind::Triangle, each, 1)));
         runs.push_back(run(CommandKind::Shade, halftone_words(&self.layout).len() as u32, 1));
@@ -254,6 +262,7 @@ impl<'a> Machine<'a> {
             runs.push_back(run(CommandKind::CopyRegion, COPY_WORDS, 1));
         }
         let mut lists = vec![CommandList { runs: Vec::new(), context: 0, copies: Vec::new(), content: None }];
+        // Start a new list when a message would exceed the limit.
         for run in runs {
             let list = lists.last_mut().expect("there is one");
             if list.words() + run.words_each > MAX_MESSAGE_WORDS {
@@ -268,7 +277,7 @@ impl<'a> Machine<'a> {
         lists
     }
 
-    /// One message for the board, which [`Self::send_tiles`] takes the place of.
+    /// Returns the copy order of a region as a single message. [`Self::send_tiles`] replaces this message.
     fn copy(&self, slice: usize, region: usize) -> CopyOrder {
         let [columns, rows] = self.traffic.size.map(|side| side.div_ceil(REGION_SIZE));
         let side = 32;
@@ -298,10 +307,12 @@ impl<'a> Machine<'a> {
         let first = self.processors.len();
         match output {
             RingOutput::Announce { message, first_word_at, .. } => {
+                // Only renderers receive announced messages: their FIFOs may hold the words back.
                 let board = usize::from(message.destination.0) - first;
                 self.renderer_event(now, board, RendererEvent::Announce { message, first_word_at });
             }
             RingOutput::Delivered(message) => {
+                // Messages from renderers are tiles, and messages from processors are maps.
                 if usize::from(message.source.0) >= first {
                     self.last_tile_at = now;
                 }
@@ -343,7 +354,7 @@ impl<'a> Machine<'a> {
         }
     }
 
-    /// The tiles of a region in place of its pixels.
+    /// Sends the tiles of a region instead of its pixels.
     fn send_tiles(&mut self, at: Time, message: &Message) {
         let Body::Pixels(pixels) = &message.body else { return };
         let slice = pixels.target.picture.0 as usize;
@@ -359,7 +370,7 @@ impl<'a> Machine<'a> {
         }
     }
 
-    /// Shows what has arrived, at the first strobe 0 after it.
+    /// Requests a swap, and shows the volume at the first strobe 0 after the last tile.
     fn swap(&mut self) {
         let body = Body::Words(swap_request(1));
         self.deliver(self.last_tile_at, body);
@@ -376,6 +387,7 @@ impl<'a> Machine<'a> {
         self.ring.settle(self.last_tile_at);
         let bound = bounds.with(renderers, processors);
         let slowest = bound.ms.iter().copied().fold(0.0, f64::max);
+        // Mean busy time of the boards of a kind, relative to the total time.
         let share = |spans: Vec<Span>| {
             let sum: f64 = spans.iter().map(|span| span.as_ms()).sum();
             100.0 * sum / (ms * spans.len() as f64).max(f64::MIN_POSITIVE)
@@ -407,8 +419,8 @@ fn words_of(body: &Body) -> u32 {
     if let Body::Words(words) = body { words.len() as u32 } else { 0 }
 }
 
-/// The board's times with the programs of slices in place of the commands whose codes they travel under: a slice triangle as a
-/// triangle, the halftone as deferred shading.
+/// Returns the renderer's times with the slice programs in place of the commands whose codes they use: a slice triangle
+/// as a triangle, the halftone as deferred shading.
 fn slice_timing(layout: &Layout) -> RendererTiming {
     RendererTiming {
         triangle_clocks: u64::from(SliceTriangle::clocks(layout)),
@@ -417,7 +429,7 @@ fn slice_timing(layout: &Layout) -> RendererTiming {
     }
 }
 
-/// Time in which a processor makes the commands of a slice, and hands them over.
+/// Returns the time in which a processor makes the commands of a slice and hands them over.
 fn making(load: &super::renderer::SliceLoad) -> Span {
     let gp = GpTiming::PAPERS;
     let commands: u64 = load.commands.iter().map(|count| u64::from(*count)).sum();

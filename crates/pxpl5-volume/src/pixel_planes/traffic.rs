@@ -1,4 +1,4 @@
-//! What a volume sends over the ring: commands of every region of every slice, and the packed tiles that come of them.
+//! The ring messages of a volume: the commands of every region of every slice, and the resulting packed tiles.
 
 use super::renderer::{PixelPlanesRenderer, SliceLoad};
 use perspecta::batch_messages;
@@ -6,28 +6,29 @@ use pxpl5_wire::{REGION_SIZE, Word};
 use spatialgl::{Size, SliceView, Tiling, VolumeFrame};
 use std::sync::Arc;
 
-/// The messages of one volume. Which tiles hold something is taken as known when a region is copied: the machine has no query.
+/// The messages of one volume. The occupied tiles are assumed to be known when a region is copied, because the machine
+/// has no query.
 #[derive(Clone, Debug)]
 pub struct SliceTraffic {
     /// Width and height of a slice, pixels.
     pub(super) size: Size,
-    /// Maps of tiles, a message each.
+    /// Maps of tiles, one message each.
     pub(super) maps: Vec<Arc<[Word]>>,
-    /// The slices in their order.
+    /// Messages of the slices, in their order.
     pub(super) slices: Vec<SliceMessages>,
 }
 
-/// What one slice sends.
+/// The messages of one slice.
 #[derive(Clone, Debug)]
 pub(super) struct SliceMessages {
     pub(super) load: SliceLoad,
-    /// The tiles of each region, a message each.
+    /// Tiles of each region, one message each.
     pub(super) tiles: Vec<Vec<Arc<[Word]>>>,
 }
 
 impl SliceTraffic {
-    /// The messages of a volume that a renderer has drawn, of the slices that it has drawn. `None` if its tiles cannot be sent (see
-    /// [`perspecta::volume_messages`]).
+    /// Returns the messages of a volume for the slices that a renderer has drawn. Returns `None` if the tiles cannot be
+    /// sent (see [`perspecta::volume_messages`]).
     #[must_use]
     pub fn of(
         renderer: &PixelPlanesRenderer,
@@ -46,7 +47,7 @@ impl SliceTraffic {
         for batch in batches {
             maps.push(batch.map);
             for tile in batch.tiles {
-                // A tile that lies in two regions leaves with the one that has its corner.
+                // A tile that overlaps two regions is sent with the region of its upper left corner.
                 let [left, top, ..] = tiling.grid(size).rectangle(tile.tile);
                 let region = top / REGION_SIZE * columns + left / REGION_SIZE;
                 slices[tile.slice as usize].tiles[region as usize].push(tile.words);
@@ -55,13 +56,13 @@ impl SliceTraffic {
         Some(Self { size, maps, slices })
     }
 
-    /// Tiles that are sent, for all slices.
+    /// Returns the number of tiles that are sent, for all slices.
     #[must_use]
     pub fn tiles(&self) -> u64 {
         self.slices.iter().flat_map(|slice| &slice.tiles).map(|region| region.len() as u64).sum()
     }
 
-    /// Regions of which any tile is sent: each goes through the backing store.
+    /// Returns the number of regions with at least one tile. Each of them goes through the backing store.
     #[must_use]
     pub fn copies(&self) -> u64 {
         self.slices.iter().flat_map(|slice| &slice.tiles).filter(|region| !region.is_empty()).count() as u64

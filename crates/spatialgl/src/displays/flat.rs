@@ -1,4 +1,4 @@
-//! A flat screen: one view, the whole frustum, hidden surfaces removed.
+//! A flat screen: one view of the whole frustum, with hidden surfaces removed.
 
 use crate::error::{SpatialError, require};
 use crate::projection::Size;
@@ -6,7 +6,7 @@ use crate::slice_volume::SliceVolume;
 use crate::view::{PixelFormat, SliceView, SpatialDisplay};
 use glam::{DMat4, DVec3};
 
-/// The canonical pipeline: one picture of the scene from an eye, with depth.
+/// A flat screen with the usual graphics pipeline: one picture of the scene from one eye, with depth.
 #[derive(Clone, Debug)]
 pub struct FlatDisplay {
     size: Size,
@@ -14,11 +14,11 @@ pub struct FlatDisplay {
 }
 
 impl FlatDisplay {
-    /// A screen with any view matrix and any projection to clip coordinates of depth 0 to 1.
+    /// Creates a screen with any view matrix and any projection to clip coordinates of depth 0 to 1.
     ///
     /// # Errors
     ///
-    /// [`SpatialError::Setting`] if the size is zero or its width no multiple of 8.
+    /// [`SpatialError::Setting`] if a side of the size is out of range, or if the width is not a multiple of 8.
     pub fn new(size: Size, view: DMat4, projection: DMat4) -> Result<Self, SpatialError> {
         check_size(size)?;
         let mut only = SliceView::new(view, projection, SliceVolume::Frustum, size);
@@ -26,12 +26,12 @@ impl FlatDisplay {
         Ok(Self { size, views: [only] })
     }
 
-    /// A screen behind an eye that looks at the origin from azimuth `azimuth` (from +z to +x) and elevation `elevation`,
-    /// radians, at a distance and with a focal length in pixels.
+    /// Creates a screen for an eye that looks at the origin. Azimuth (from +z to +x) and elevation are in radians,
+    /// distance and focal length in pixels.
     ///
     /// # Errors
     ///
-    /// As [`Self::new`].
+    /// The same as [`Self::new`].
     pub fn around(size: Size, azimuth: f64, elevation: f64, distance: f64, focal: f64) -> Result<Self, SpatialError> {
         let (sin_a, cos_a) = libm::sincos(azimuth);
         let (sin_e, cos_e) = libm::sincos(elevation);
@@ -50,7 +50,6 @@ impl FlatDisplay {
     }
 }
 
-/// Checks the size of an image.
 pub(super) fn check_size(size: Size) -> Result<(), SpatialError> {
     let [width, height] = size;
     require((8..=4096).contains(&width), "display.width", "8 to 4096", width)?;

@@ -1,4 +1,4 @@
-//! Three displays as views and slice volumes: a swept screen, a flat one, a stack of planes.
+//! Three displays, each defined by views and slice volumes: a swept screen, a flat screen and a stack of planes.
 
 mod flat;
 mod stack;

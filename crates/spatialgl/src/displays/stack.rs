@@ -1,4 +1,4 @@
-//! A stack of planes: n pictures one behind the other, each of which stands for a slab of space.
+//! A stack of planes: n pictures one behind the other, each of which represents a slab of space.
 
 use super::flat::check_size;
 use crate::error::{SpatialError, require};
@@ -7,7 +7,7 @@ use crate::slice_volume::SliceVolume;
 use crate::view::{PixelFormat, SliceView, SpatialDisplay};
 use glam::{DMat4, DVec3};
 
-/// Parallel planes perpendicular to z, from the farthest (least z) to the nearest, their slabs touching.
+/// Parallel planes perpendicular to z, from the farthest (least z) to the nearest, with slabs that touch.
 #[derive(Clone, Debug)]
 pub struct PlaneStack {
     size: Size,
@@ -16,11 +16,11 @@ pub struct PlaneStack {
 }
 
 impl PlaneStack {
-    /// So many planes that divide a depth in pixels around z = 0 among them.
+    /// Creates a stack of `planes` that divide a depth in pixels around z = 0 into equal slabs.
     ///
     /// # Errors
     ///
-    /// [`SpatialError::Setting`] names the number, what was expected and what was found.
+    /// [`SpatialError::Setting`] names the number, the expected range and the value found.
     pub fn new(size: Size, planes: u32, depth: f64) -> Result<Self, SpatialError> {
         check_size(size)?;
         require((1..=65_536).contains(&planes), "display.slices", "1 to 65536", planes)?;
@@ -30,7 +30,7 @@ impl PlaneStack {
     }
 }
 
-/// Where slab `i` begins. Neighbours ask for the same number, so that no point lies between them.
+/// Returns the s at which slab `i` begins. Neighbouring slabs use the same number, so no point lies between them.
 fn face(planes: u32, depth: f64, i: u32) -> f64 {
     depth * (f64::from(i) / f64::from(planes) - 0.5)
 }
@@ -46,6 +46,7 @@ fn plane(size: Size, planes: u32, depth: f64, i: u32) -> SliceView {
         [0.0, 0.0, 0.0, 1.0],
     ]);
     let mut view = SliceView::new(DMat4::IDENTITY, clip, SliceVolume::Slab { low, high }, size);
+    // A little slack keeps rounding from rejecting primitives that touch the slab.
     let slack = depth * 1e-9;
     view.reach = Some([low - slack, high + slack]);
     view

@@ -1,4 +1,4 @@
-//! A screen that spins about the axis y and shows a slice at each of N angles.
+//! A screen that rotates about the axis y and shows a slice at each of N angles.
 
 use crate::angle::sin_cos_of_turn;
 use crate::bin::BinLayout;
@@ -10,43 +10,42 @@ use crate::view::{PixelFormat, SliceView, SpatialDisplay};
 use glam::{DMat4, DVec3};
 use serde::{Deserialize, Serialize};
 
-/// Which way the screen turns.
+/// The direction in which the screen turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rotation {
-    /// From +x to +z.
+    /// The screen turns from +x to +z.
     #[default]
     XToZ,
-    /// From +z to +x.
+    /// The screen turns from +z to +x.
     ZToX,
 }
 
-/// What a swept display is made of.
+/// The settings of a swept display.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SweptConfig {
-    /// Slices of one turn, even.
+    /// Number of slices per turn, even.
     pub slices: u32,
-    /// Width of an image in pixels, a multiple of 8; half of it is the radius of the display.
+    /// Width of an image in pixels, a multiple of 8. Half of it is the radius of the display.
     pub width: u32,
-    /// Height of an image in pixels.
     pub height: u32,
     /// Angle of slice 0, radians.
     pub phase: f64,
-    /// Which way the screen turns.
     pub rotation: Rotation,
-    /// How the scene is clipped to a slice.
+    /// Method of clipping the scene to a slice.
     pub clip: SliceClip,
-    /// What becomes of points in the planes between slices.
+    /// Rule for points in the planes between slices.
     pub ties: TieRule,
-    /// Fraction bits of the evaluated boundary planes; `None` for double precision.
+    /// Fraction bits of the evaluated boundary planes, or `None` for double precision.
     pub plane_fraction_bits: Option<u32>,
-    /// How what lies off a slice reaches it.
+    /// Projection of points off the slice onto its image.
     pub projection: Projection,
 }
 
 impl SweptConfig {
-    /// The display of the paper with a clip and a projection: 396 slices (published) of 768 x 768 pixels (assumed).
+    /// Returns the display of the paper with this clip and projection: 396 slices (published) of 768 x 768 pixels
+    /// (assumed).
     #[must_use]
     pub const fn perspecta(clip: SliceClip, projection: Projection) -> Self {
         Self {
@@ -62,13 +61,13 @@ impl SweptConfig {
         }
     }
 
-    /// Half the width of the image, which is the radius of the display: pixels.
+    /// Returns the radius of the display in pixels, which is half the width of the image.
     #[must_use]
     pub fn radius(&self) -> f64 {
         f64::from(self.width) / 2.0
     }
 
-    /// The wedge that one of its slices stands for.
+    /// Returns the half wedge of one slice.
     #[must_use]
     pub fn half_wedge(&self) -> HalfWedge {
         HalfWedge::new(self.slices, self.radius())
@@ -91,7 +90,7 @@ impl SweptConfig {
     }
 }
 
-/// Slices around an axis as views: the published display, or one of other numbers.
+/// A display of slices around an axis: the published one, or one with other numbers.
 #[derive(Clone, Debug)]
 pub struct SweptDisplay {
     config: SweptConfig,
@@ -100,11 +99,11 @@ pub struct SweptDisplay {
 }
 
 impl SweptDisplay {
-    /// Makes the views of all slices, with their volumes, eyes and bins.
+    /// Creates the views of all slices, with their volumes, eyes and bins.
     ///
     /// # Errors
     ///
-    /// [`SpatialError::Setting`] names the number, what was expected and what was found.
+    /// [`SpatialError::Setting`] names the number, the expected range and the value found.
     pub fn new(config: SweptConfig) -> Result<Self, SpatialError> {
         config.check()?;
         let bins = BinLayout::double_wedges(config.clip.tolerance(config.half_wedge()));
@@ -112,7 +111,6 @@ impl SweptDisplay {
         Ok(Self { config, views, bins })
     }
 
-    /// What it was made of.
     #[must_use]
     pub const fn config(&self) -> &SweptConfig {
         &self.config
@@ -147,9 +145,11 @@ fn view(config: &SweptConfig, k: u32) -> SliceView {
     let size = [config.width, config.height];
     let wedge = config.half_wedge();
     let reach = config.clip.reach(wedge);
+    // The rows rotate the world by the angle of slice k about y.
     let (sin, cos) = direction(config, 2 * i64::from(k));
     let rows = [[cos, 0.0, sin, 0.0], [0.0, 1.0, 0.0, 0.0], [-sin, 0.0, cos, 0.0], [0.0, 0.0, 0.0, 1.0]];
     let eye = config.projection.eye(k, wedge.radius, reach);
+    // A little slack keeps rounding from rejecting primitives that touch the slice.
     let slack = reach * (1.0 + 1e-9) + 1e-6;
     let volume = config.clip.volume(boundaries(config, k), config.ties, wedge);
     let view: DMat4 = matrix_of_rows(rows);
@@ -165,9 +165,9 @@ fn view(config: &SweptConfig, k: u32) -> SliceView {
     }
 }
 
-/// Sine and cosine of the angle of so many half slices from slice 0.
+/// Returns sine and cosine of the angle that lies `half_slices` half slices after slice 0.
 ///
-/// Of two opposite angles one is computed and the other its exact negative, whatever the phase.
+/// Of two opposite angles, one is computed and the other is its exact negative, for any phase.
 fn direction(config: &SweptConfig, half_slices: i64) -> (f64, f64) {
     let signed = if config.rotation == Rotation::XToZ { half_slices } else { -half_slices };
     if config.phase == 0.0 {
@@ -181,7 +181,8 @@ fn direction(config: &SweptConfig, half_slices: i64) -> (f64, f64) {
     if is_turned { (-sin, -cos) } else { (sin, cos) }
 }
 
-/// A = L_k and B = -L_(k+1), where L_k(p) = z cos b_k - x sin b_k and b_k lies half a slice before slice k.
+/// Returns the boundary planes A = L_k and B = -L_(k+1), where L_k(p) = z cos b_k - x sin b_k and b_k lies half a slice
+/// before slice k.
 fn boundaries(config: &SweptConfig, k: u32) -> WedgePlanes {
     let (sin, cos) = direction(config, 2 * i64::from(k) - 1);
     let (next_sin, next_cos) = direction(config, 2 * i64::from(k) + 1);
@@ -192,7 +193,7 @@ fn boundaries(config: &SweptConfig, k: u32) -> WedgePlanes {
     }
 }
 
-/// The double wedges of 45 degrees that the slice's own wedge overlaps, as bits.
+/// Returns the double wedges of 45 degrees, one bit each, that the wedge of slice `k` overlaps.
 fn double_wedges(config: &SweptConfig, k: u32) -> u64 {
     let slices = f64::from(config.slices);
     let centre = if config.rotation == Rotation::XToZ { f64::from(k) } else { -f64::from(k) };

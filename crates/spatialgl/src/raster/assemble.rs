@@ -1,14 +1,14 @@
-//! From world vertices to the window of one slice; points and lines become triangles.
+//! Transformation of world vertices to the window of a slice. Points and lines become triangles.
 
 use super::setup::{Corner, Place, along};
 use crate::command::{CommandBuffer, Primitive, Shape};
 use crate::slice_volume::SliceVolume;
 use crate::view::SliceView;
 
-/// Triangles that the round end of a line is made of.
+/// Number of triangles in the round end of a line.
 const CAP_TRIANGLES: usize = 12;
 
-/// A view as rows of numbers.
+/// The transformation of a view, with its matrices as rows of numbers.
 #[derive(Clone, Debug)]
 pub(super) struct SliceTransform {
     pub(super) rows: [[f64; 4]; 3],
@@ -24,7 +24,7 @@ impl SliceTransform {
         Self { rows, window: view.window, volume: view.volume, magnification: view.magnification }
     }
 
-    /// A point of the world in the coordinates of the slice.
+    /// Converts a point of the world to the coordinates of the slice.
     #[inline(always)]
     pub(super) fn local(&self, world: [f64; 3]) -> [f64; 3] {
         [along(&self.rows[0], world), along(&self.rows[1], world), along(&self.rows[2], world)]
@@ -41,14 +41,14 @@ impl SliceTransform {
         Corner { place: self.place(local), p, q, colour }
     }
 
-    /// Homogeneous window coordinates of a point of the slice.
+    /// Returns the homogeneous window coordinates of a point of the slice.
     #[inline(always)]
     pub(super) fn place(&self, local: [f64; 3]) -> Place {
         let [x, y, z, w] = &self.window;
         Place { x: along(x, local), y: along(y, local), z: along(z, local), w: along(w, local) }
     }
 
-    /// The triangles of a primitive, in the order of drawing.
+    /// Calls `draw` with the triangles of a primitive, in the order of drawing.
     pub(super) fn triangles(
         &self,
         commands: &CommandBuffer,
@@ -62,6 +62,7 @@ impl SliceTransform {
             Shape::Triangle => draw(&[a, b, c].map(|i| self.corner(world(i), colour(i)))),
             Shape::Point(size) => self.square(world(a), size / 2.0, colour(a), draw),
             Shape::Line(width) => {
+                // A line needs the position at which it crosses the slice.
                 let middle = self.volume.middle();
                 let off = [a, b].map(|i| self.local(world(i))[2] - middle);
                 let ends = [a, b].map(|i| self.corner(world(i), colour(i)));
@@ -70,7 +71,7 @@ impl SliceTransform {
         }
     }
 
-    /// A square in the plane parallel to the slice at the point's own distance from it.
+    /// Draws a square parallel to the slice at the point's distance from the slice.
     fn square(&self, world: [f64; 3], half: f64, colour: [f64; 3], draw: &mut dyn FnMut(&[Corner; 3])) {
         let local = self.local(world);
         let corner = |du: f64, dv: f64| {
@@ -85,14 +86,17 @@ impl SliceTransform {
     }
 }
 
-/// Where a line of these distances from the slice crosses it, if it does, as a part of its length.
+/// Returns the position at which a line with these distances from the slice crosses the slice, as a fraction of its
+/// length.
 fn crossing([from, to]: [f64; 2]) -> Option<f64> {
     (from * to < 0.0).then(|| from / (from - to))
 }
 
-/// A quad of the width around what lies between near and far plane, a round end where an end lies there too, and a dot
-/// where the line crosses the slice, so that one perpendicular to it is seen.
+/// Draws a line. The part between the near and far planes becomes a quad of the line's width. Each end between these
+/// planes gets a round cap. Another cap marks the crossing with the slice, so that a line perpendicular to the slice is
+/// visible.
 fn line(from: &Corner, to: &Corner, crossing: Option<f64>, half: f64, draw: &mut dyn FnMut(&[Corner; 3])) {
+    // Cut the line at the near and far planes.
     let Some([begin, end]) = between_planes(from, to) else { return };
     let first = from.mixed(to, begin);
     let last = from.mixed(to, end);
@@ -101,6 +105,7 @@ fn line(from: &Corner, to: &Corner, crossing: Option<f64>, half: f64, draw: &mut
     if begin_place.w <= 0.0 || end_place.w <= 0.0 {
         return;
     }
+    // The direction of the line in the window gives the sides of the quad.
     let across = [
         end_place.x / end_place.w - begin_place.x / begin_place.w,
         end_place.y / end_place.w - begin_place.y / begin_place.w,
@@ -119,7 +124,7 @@ fn line(from: &Corner, to: &Corner, crossing: Option<f64>, half: f64, draw: &mut
     }
 }
 
-/// The part of a line between near and far plane, as a range of 0..1; `None` if nothing of it lies there.
+/// Returns the part of a line between the near and far planes as a range within 0..1, or `None` if no part lies there.
 fn between_planes(from: &Corner, to: &Corner) -> Option<[f64; 2]> {
     let mut range = [0.0f64, 1.0f64];
     let from = &from.place;
@@ -138,7 +143,7 @@ fn between_planes(from: &Corner, to: &Corner) -> Option<[f64; 2]> {
     (range[0] <= range[1]).then_some(range)
 }
 
-/// A disc around a point of a line; all of it lies where the point does.
+/// Draws a disc around a point of a line. The whole disc has the depth of the point.
 fn cap(centre: &Corner, radius: f64, draw: &mut dyn FnMut(&[Corner; 3])) {
     let rim: Vec<Corner> = (0..CAP_TRIANGLES)
         .map(|i| {

@@ -1,29 +1,30 @@
-//! The primitives of a bin in clusters with a sphere around each, so that most are rejected without being looked at.
+//! Clusters of the primitives of a bin, each with a bounding sphere, so that most primitives are rejected without a
+//! test of their own.
 
 use super::setup::along;
 use crate::command::CommandBuffer;
 
-/// Primitives of one cluster; neighbours in a mesh are mostly neighbours in its list.
+/// Number of primitives in a cluster. Neighbours in a mesh are mostly neighbours in its list.
 const CLUSTER: usize = 8;
 
-/// Pixels by which a sphere is larger than it must be, against rounding.
+/// Pixels by which a sphere is enlarged against rounding.
 const SLACK: f64 = 1e-6;
 
-/// A ball around everything that some primitives can draw.
+/// A sphere around everything that some primitives can draw.
 #[derive(Clone, Copy, Debug)]
 struct Ball {
     centre: [f64; 3],
     radius: f64,
 }
 
-/// Balls around each primitive of a cluster, side by side, so that one test takes all of them.
+/// The spheres around each primitive of a cluster, stored side by side so that one loop tests all of them.
 #[derive(Clone, Copy, Debug, Default)]
 struct BallLanes {
     centre: [[f64; CLUSTER]; 3],
     radius: [f64; CLUSTER],
 }
 
-/// A cluster of a bin: primitives that follow each other.
+/// A cluster of a bin: consecutive primitives.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cluster<'a> {
     ball: &'a Ball,
@@ -32,9 +33,11 @@ pub(crate) struct Cluster<'a> {
 }
 
 impl<'a> Cluster<'a> {
-    /// The primitives that can reach any s of a range, given the row of a view that makes s of a point; those left out cannot.
+    /// Returns the primitives that can reach any s in a range. `row` is the row of the view matrix that computes s.
+    /// Omitted primitives cannot reach the range.
     #[inline(always)]
     pub(crate) fn reaching(&self, row: &[f64; 4], [low, high]: [f64; 2]) -> Reaching<'a> {
+        // First test the sphere around the whole cluster, then the spheres of its primitives.
         let distance = along(row, self.ball.centre);
         if (distance - self.ball.radius > high) | (distance + self.ball.radius < low) {
             return Reaching { rest: 0, primitives: self.primitives };
@@ -51,7 +54,7 @@ impl<'a> Cluster<'a> {
     }
 }
 
-/// Some primitives of a cluster, in their order.
+/// An iterator over the selected primitives of a cluster, in their order.
 pub(crate) struct Reaching<'a> {
     rest: u64,
     primitives: &'a [u32],
@@ -78,7 +81,7 @@ pub struct Bin {
 }
 
 impl Bin {
-    /// A bin of these primitives, given by their numbers in the recording in rising order.
+    /// Creates a bin of primitives, given by their indices in the recording in ascending order.
     ///
     /// # Panics
     /// If the recording has no such primitive.
@@ -89,13 +92,13 @@ impl Bin {
         Self { primitives, balls, each }
     }
 
-    /// Numbers of the primitives.
+    /// Returns the indices of the primitives in the recording.
     #[must_use]
     pub fn primitives(&self) -> &[u32] {
         &self.primitives
     }
 
-    /// The primitives cluster by cluster.
+    /// Returns the primitives cluster by cluster.
     #[inline(always)]
     pub(crate) fn clusters(&self) -> impl Iterator<Item = Cluster<'_>> {
         let balls = self.balls.iter().zip(&self.each);
@@ -118,6 +121,7 @@ fn balls_of_each(commands: &CommandBuffer, cluster: &[u32]) -> BallLanes {
 fn ball(commands: &CommandBuffer, cluster: &[u32]) -> Ball {
     let used = |i: &u32| commands.primitives[*i as usize].corners();
     let corners = || cluster.iter().flat_map(used).map(|vertex| commands.positions[*vertex as usize]);
+    // The sphere is centred in the box around all corners.
     let mut low = [f64::INFINITY; 3];
     let mut high = [f64::NEG_INFINITY; 3];
     for corner in corners() {

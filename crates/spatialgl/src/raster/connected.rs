@@ -1,4 +1,5 @@
-//! Connected rasterisation, which is **beyond the paper**: pixels that touch each other along triangle and slice plane.
+//! Connected rasterization, which is **beyond the paper**: adjacent pixels along the intersection of a triangle with
+//! the slice plane.
 
 use super::SliceWork;
 use super::assemble::SliceTransform;
@@ -7,14 +8,14 @@ use crate::command::Shape;
 use crate::curve::plane_curve;
 use crate::image::SliceImage;
 
-/// A point of a triangle's curve: window coordinates and colour.
+/// A point on the curve of a triangle: window coordinates and colour.
 #[derive(Clone, Copy)]
 struct CurvePoint {
     at: [f64; 2],
     colour: [f64; 3],
 }
 
-/// Fills the gaps that sampling left along every triangle's curve; how many pixels that were.
+/// Fills the gaps that sampling left along every triangle's curve. Returns the number of pixels added.
 pub(super) fn draw(work: SliceWork<'_>, transform: &SliceTransform, image: &mut SliceImage) -> u64 {
     let mut added = 0;
     for primitive in work.bin.primitives().iter().map(|i| &work.commands.primitives[*i as usize]) {
@@ -23,6 +24,7 @@ pub(super) fn draw(work: SliceWork<'_>, transform: &SliceTransform, image: &mut 
         }
         let local = primitive.vertices.map(|i| transform.local(work.commands.positions[i as usize]));
         let colours = primitive.vertices.map(|i| work.commands.colours[i as usize]);
+        // Only triangles that cross the slice have a curve.
         let Some((ends, weights)) = plane_curve(local, transform.volume.middle()) else { continue };
         let point = |i: usize| {
             let Place { x, y, w, .. } = transform.place(ends[i]);
@@ -34,7 +36,7 @@ pub(super) fn draw(work: SliceWork<'_>, transform: &SliceTransform, image: &mut 
     added
 }
 
-/// Lights unlit pixels on the way from one point to another, one a column or row, whichever are more.
+/// Lights unlit pixels on the way from one point to another, one for each step along the longer axis.
 fn line(from: CurvePoint, to: CurvePoint, image: &mut SliceImage) -> u64 {
     let Some([begin, end]) = inside(from.at, to.at, image.size()) else { return 0 };
     let mix = |a: f64, b: f64, t: f64| a * (1.0 - t) + b * t;
@@ -51,7 +53,7 @@ fn line(from: CurvePoint, to: CurvePoint, image: &mut SliceImage) -> u64 {
     added
 }
 
-/// The part of a line, as a range of 0..1, that lies in the image.
+/// Returns the part of a line inside the image, as a range within 0..1.
 fn inside(from: [f64; 2], to: [f64; 2], size: [u32; 2]) -> Option<[f64; 2]> {
     let mut range = [0.0f64, 1.0f64];
     for axis in 0..2 {

@@ -1,4 +1,5 @@
-//! The fast rasteriser of the host: whole triangles rejected by their distance from the slice, eight pixels at a time.
+//! The fast rasterizer of the host, which rejects whole triangles by their distance from the slice and draws eight
+//! pixels at a time.
 
 use super::assemble::SliceTransform;
 use super::connected;
@@ -10,10 +11,10 @@ use crate::image::SliceImage;
 use crate::view::SliceView;
 use multiversion::multiversion;
 
-/// Draws what [`OracleRenderer`](super::OracleRenderer) draws, in every voxel and with the same counts, as fast as this
-/// computer can with one thread.
+/// A fast renderer on one thread with the same voxels and the same counts as [`OracleRenderer`](super::OracleRenderer).
 ///
-/// The loops are compiled once for each vector unit (see [`mod@multiversion`]); there is nothing in which they could differ.
+/// The loops are compiled once for each vector unit (see [`mod@multiversion`]), all from the same code and with the
+/// same results.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct HostRenderer;
 
@@ -54,6 +55,7 @@ fn render_pass(
     let [low, high] = view.reach.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
     let positions = &work.commands.positions;
     stats.draws += work.bin.primitives().len() as u64;
+    // Clusters and triangles away from the slice are rejected before their set-up.
     for cluster in work.bin.clusters() {
         for primitive in cluster.reaching(&transform.rows[2], [low, high]) {
             let primitive = &work.commands.primitives[primitive as usize];
@@ -78,7 +80,7 @@ fn render_pass(
     }
 }
 
-/// Set-up of a triangle that looks at what its corners carry only when something of it can be seen.
+/// Sets up a triangle. The values of its corners are read only if a part of it is visible.
 #[inline(always)]
 fn triangle(
     transform: &SliceTransform,
@@ -97,7 +99,7 @@ fn triangle(
     Setup::within(&[corner(0, a), corner(1, b), corner(2, c)], bounds)
 }
 
-/// Whether all corners lie on one side of all that the slice can show.
+/// Returns true if all corners lie on one side of the range that the slice can show.
 #[inline(always)]
 fn is_off_slice(row: &[f64; 4], corners: [&[f64; 3]; 3], low: f64, high: f64) -> bool {
     let a = along(row, *corners[0]);

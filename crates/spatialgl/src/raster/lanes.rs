@@ -1,38 +1,39 @@
 //! The inner loops of the fast path: eight pixels of a row at a time, in plain Rust.
 //!
-//! Every lane computes what the oracle computes for one pixel, with the same operations in the same order. What is left out
-//! cannot change anything: pixels outside a conservative range of a row, and sums of which every term has one sign.
+//! Every lane computes the same as the reference model for one pixel, with the same operations in the same order. The
+//! optimizations cannot change a result. The loops omit pixels outside a conservative range of a row, and sums whose
+//! terms all have the same sign.
 
 use super::setup::{Edge, Setup, channel};
 use crate::command::Combine;
 use crate::image::SliceImage;
 use crate::slice_volume::{SampleTest, hyperbolic, parallel, taper};
 
-/// Pixels in a vector, which is also the pixels of a byte of the stencil.
+/// Number of pixels in a vector, which is also the number in a byte of the stencil.
 const LANES: usize = 8;
 
-/// One value a pixel.
+/// A value for each pixel of a vector.
 type EachLane = [f64; LANES];
 
-/// Pixels of the bounds up to which their rows are taken as one.
+/// Greatest number of pixels in the bounds of a triangle for which all rows are treated as one sequence.
 const SMALL: u32 = 64;
 
-/// Width in pixels from which on the range of each row is computed before its pixels are.
+/// Least width in pixels for which the range of each row is computed before its pixels.
 const WIDE: u32 = 24;
 
-/// Fragments of a triangle: those generated and those accepted.
+/// The numbers of generated and accepted fragments of a triangle.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Fragments {
     pub(super) generated: u64,
     pub(super) accepted: u64,
 }
 
-/// What is the same for all fragments of a draw.
+/// Settings that are the same for all fragments of a draw.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mode {
     pub(super) test: SampleTest,
     pub(super) combine: Combine,
-    /// Whether only accepted fragments are generated.
+    /// True if rejected fragments do not count as generated.
     pub(super) clips_first: bool,
     pub(super) hides: bool,
 }
@@ -43,6 +44,7 @@ pub(super) fn draw(setup: &Setup, mode: Mode, image: &mut SliceImage) -> Fragmen
         let scale = libm::ldexp(1.0, bits as i32);
         return draw_rounded(setup, mode, scale, image);
     }
+    // Each test gets its own copy of the loops, so that the test is inlined.
     match mode.test {
         SampleTest::All => rows(setup, mode, image, |_, _, _| true),
         SampleTest::Slab => rows(setup, mode, image, |p, q, _| (p >= 0.0) & (q > 0.0)),
@@ -57,7 +59,7 @@ pub(super) fn draw(setup: &Setup, mode: Mode, image: &mut SliceImage) -> Fragmen
     }
 }
 
-/// The same with planes of few bits, which need a division for every pixel.
+/// Draws with planes of few bits, which need a division for every pixel.
 fn draw_rounded(setup: &Setup, mode: Mode, scale: f64, image: &mut SliceImage) -> Fragments {
     let round = |x: f64, w: f64| (x / w * scale).round_ties_even() / scale;
     let exact = mode.test.without_rounding();
@@ -74,6 +76,7 @@ fn rows(setup: &Setup, mode: Mode, image: &mut SliceImage, accepts: impl Fn(f64,
         small(setup, mode, image, checks, &accepts, &mut fragments);
         return fragments;
     }
+    // Computing the range of a row pays off only for wide triangles.
     let is_wide = right - left > WIDE;
     for y in top..bottom {
         let centre = f64::from(y) + 0.5;
@@ -90,7 +93,7 @@ fn rows(setup: &Setup, mode: Mode, image: &mut SliceImage, accepts: impl Fn(f64,
     fragments
 }
 
-/// A triangle of few pixels: those of all its rows fill vectors one after the other.
+/// Draws a triangle of few pixels. All its pixels are numbered row by row and processed eight at a time.
 #[inline(always)]
 fn small(
     setup: &Setup,
@@ -105,6 +108,7 @@ fn small(
     let width = right - left;
     let area = width * (bottom - top);
     let mut first = 0;
+    // The last vector may hold fewer than eight pixels.
     while first < area {
         let weights = setup.weights_of_block(first, width);
         let pixels = Pixels { weights, count: area - first, x: left + first, y: top, width };
@@ -116,16 +120,16 @@ fn small(
 /// Eight pixels, and the weights of the corners at each.
 struct Pixels {
     weights: [EachLane; 3],
-    /// How many of them there are, if less than eight.
+    /// Number of valid pixels if there are fewer than eight.
     count: u32,
-    /// Column of the first, in the block's top row.
+    /// Column of the first pixel, in the block's top row.
     x: u32,
     y: u32,
-    /// Width of a block whose rows follow each other.
+    /// Width of a block whose rows follow each other, or `u32::MAX` for pixels of one row.
     width: u32,
 }
 
-/// Which of the two planes some corner lies beyond.
+/// The planes (near, far) that need a test, because some corner lies beyond the plane.
 #[derive(Clone, Copy)]
 struct Checks {
     near: bool,
@@ -160,7 +164,7 @@ fn weighted_lanes(weights: &[EachLane; 3], values: [f64; 3]) -> EachLane {
 }
 
 impl Pixels {
-    /// Column and row of a pixel; `left` is the block's first column.
+    /// Returns column and row of a pixel. `left` is the block's first column.
     #[inline(always)]
     const fn place(&self, lane: u32, left: u32) -> [u32; 2] {
         if self.width == u32::MAX {
@@ -183,12 +187,14 @@ fn chunk(
 ) {
     let weights = &pixels.weights;
     let [a, b, c] = weights;
+    // Test the edges first, since most vectors end here.
     let least = setup.least;
     let there = if pixels.count < LANES as u32 { (1 << pixels.count) - 1 } else { u8::MAX };
     let mut inside = there & bits(|i| (a[i] >= least[0]) & (b[i] >= least[1]) & (c[i] >= least[2]));
     if inside == 0 {
         return;
     }
+    // Test near and far plane only if a corner lies beyond the plane.
     if checks.near {
         let near = weighted_lanes(weights, setup.near);
         inside &= bits(|i| near[i] >= 0.0);
@@ -197,6 +203,7 @@ fn chunk(
         let far = weighted_lanes(weights, setup.far);
         inside &= bits(|i| far[i] >= 0.0);
     }
+    // Interpolate the attributes of the slice's volume, and test them.
     let p = weighted_lanes(weights, setup.p);
     let q = weighted_lanes(weights, setup.q);
     let mut sum = [0.0; LANES];
@@ -206,6 +213,7 @@ fn chunk(
     let accepted = inside & bits(|i| accepts(p[i], q[i], sum[i]));
     fragments.generated += u64::from(if mode.clips_first { accepted } else { inside }.count_ones());
     fragments.accepted += u64::from(accepted.count_ones());
+    // Draw the accepted pixels one by one.
     let mut rest = accepted;
     while rest != 0 {
         let i = rest.trailing_zeros() as usize;
@@ -240,7 +248,8 @@ impl Setup {
         weights
     }
 
-    /// The weights at eight pixels of the bounds, numbered row by row, from `first` on.
+    /// Returns the weights at eight pixels from index `first` on. The pixels of the triangle's bounds are numbered row
+    /// by row.
     #[inline(always)]
     fn weights_of_block(&self, first: u32, width: u32) -> [EachLane; 3] {
         let columns = f64::from(width);
@@ -251,7 +260,8 @@ impl Setup {
         let mut y = [0.0; LANES];
         for i in 0..LANES {
             let number = f64::from(first) + i as f64;
-            // Whole numbers below 72: half a column more keeps the rounding of both away from a whole number.
+            // The numbers are integers below 72. Adding half a column keeps the product away from an integer, so
+            // rounding cannot change the row.
             let row = ((number + 0.5) * per_column).floor();
             x[i] = left + (number - row * columns);
             y[i] = top + row;
@@ -266,7 +276,8 @@ impl Setup {
         weights
     }
 
-    /// The pixels of a row that can be inside and between near and far plane, a pixel more on both sides.
+    /// Returns the range of pixels of a row that can be inside the triangle and between the near and far planes, with
+    /// one pixel more on both sides.
     fn row_range(&self, row: [f64; 3], checks: Checks) -> [u32; 2] {
         let mut range = self.bounds.x.map(f64::from);
         for (Edge { a, b, x, c, .. }, row) in self.edges.iter().zip(row) {
@@ -284,7 +295,7 @@ impl Setup {
         [range[0] as u32, range[1].max(range[0]) as u32]
     }
 
-    /// Narrows a range by where a weighted sum is not negative, if rounding cannot move that by a pixel.
+    /// Narrows a range to the part where a weighted sum is not negative, if rounding cannot move the limit by a pixel.
     fn narrow_by(&self, range: &mut [f64; 2], row: [f64; 3], values: [f64; 3]) {
         let mut slope = 0.0;
         let mut constant = 0.0;

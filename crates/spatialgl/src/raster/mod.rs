@@ -1,4 +1,5 @@
-//! From primitives to fragments: set-up, the literal rasteriser and the fast one, which agree in every voxel.
+//! Conversion of primitives to fragments: set-up, the reference model and the fast rasterizer, which agree in every
+//! voxel.
 
 mod assemble;
 mod cluster;
@@ -19,48 +20,46 @@ use crate::image::SliceImage;
 use crate::view::SliceView;
 use serde::{Deserialize, Serialize};
 
-/// What of a primitive is drawn on a slice.
+/// The pixels of a slice that a primitive covers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Coverage {
-    /// The samples at pixel centres that it covers.
+    /// The pixels whose centres lie inside the primitive.
     #[default]
     Sampled,
-    /// Those, and a line of touching pixels along its intersection with the slice. **Beyond the paper**, which wants this
-    /// and finds that GPUs refuse it.
+    /// The same pixels, plus a line of adjacent pixels along the intersection with the slice. **Beyond the paper**,
+    /// which wants this coverage and finds that GPUs do not offer it.
     Connected,
 }
 
-/// What was drawn on one slice.
+/// Counts of drawing one slice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SliceStats {
-    /// Primitives issued, in all passes.
+    /// Number of primitives issued, in all passes.
     pub draws: u64,
-    /// Fragments that reach the fragment program.
+    /// Number of fragments that reach the fragment program.
     pub generated: u64,
-    /// Fragments that lie in the slice's volume.
+    /// Number of fragments that lie in the slice's volume.
     pub accepted: u64,
-    /// Pixels added to make intersections connected; beyond the paper.
+    /// Number of pixels added to connect intersections, which is beyond the paper.
     pub added: u64,
 }
 
-/// One slice's share of a recording: the primitives of its bin, in their order.
+/// The part of a recording that one slice draws: the primitives of its bin, in their order.
 #[derive(Clone, Copy, Debug)]
 pub struct SliceWork<'a> {
-    /// The recording whose primitives are drawn.
+    /// Recording whose primitives are drawn.
     pub commands: &'a CommandBuffer,
-    /// The primitives to draw.
     pub bin: &'a Bin,
-    /// What of them is drawn.
     pub coverage: Coverage,
 }
 
-/// Whoever draws slices. The image is as [`SliceImage::clear`] left it.
+/// A renderer of slices, which receives an image in the state after [`SliceImage::clear`].
 pub trait SliceRenderer: Send + Sync {
     /// Draws one slice in all its passes.
     fn render(&self, work: SliceWork<'_>, view: &SliceView, image: &mut SliceImage) -> SliceStats;
 
-    /// How many samples it takes of each pixel, all of which are counted as fragments.
+    /// Returns the number of samples per pixel. Each sample counts as a fragment.
     fn samples(&self) -> u32 {
         1
     }

@@ -1,4 +1,5 @@
-//! The literal rasteriser: one primitive, one pixel, one test after the other, as the specification says it.
+//! The reference rasterizer, which follows the specification literally: one primitive, one pixel and one test at a
+//! time.
 
 use super::assemble::SliceTransform;
 use super::connected;
@@ -9,7 +10,7 @@ use crate::image::SliceImage;
 use crate::slice_volume::SampleTest;
 use crate::view::SliceView;
 
-/// The definition of what every other renderer must draw; it saves nothing.
+/// The reference model, without optimizations: the definition of the voxels that every other renderer must draw.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct OracleRenderer;
 
@@ -45,6 +46,7 @@ fn draw(
     let clips_first = view.volume.clips_before_fragments();
     for y in setup.bounds.y[0]..setup.bounds.y[1] {
         for x in setup.bounds.x[0]..setup.bounds.x[1] {
+            // Test the pixel centre against edges and planes, then against the slice's volume.
             let Some(weights) = setup.weights(f64::from(x) + 0.5, f64::from(y) + 0.5) else { continue };
             let sum = weights[0] + weights[1] + weights[2];
             let is_accepted = test.accepts(weighted(weights, setup.p), weighted(weights, setup.q), sum);
@@ -52,6 +54,7 @@ fn draw(
             if is_accepted {
                 stats.accepted += 1;
                 let colour = setup.colour.map(|values| channel(weights, values, 1.0 / sum));
+                // Views that hide surfaces also need the depth test.
                 let is_seen = !view.hides || image.is_nearest(x, y, weighted(weights, setup.near) / sum);
                 if is_seen {
                     image.put(x, y, colour, combine);
@@ -62,7 +65,8 @@ fn draw(
 }
 
 impl Setup {
-    /// The weights of the corners at a sample that is inside and between near and far plane.
+    /// Returns the weights of the corners at a sample, or `None` unless the sample is inside and between the near and
+    /// far planes.
     fn weights(&self, x: f64, y: f64) -> Option<[f64; 3]> {
         let weights = self.edges.map(|edge| edge.a * (x - edge.x) + edge.row(y));
         let is_inside = (0..3).all(|i| weights[i] >= self.least[i]);

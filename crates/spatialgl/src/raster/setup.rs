@@ -1,10 +1,11 @@
-//! Set-up of one triangle in the window of a slice, in homogeneous coordinates (Olano and Greer 1997).
+//! Set-up of a triangle in the window of a slice, in homogeneous coordinates (Olano and Greer 1997).
 //!
-//! Nothing is clipped and nothing divided: each edge is a linear function of the window, positive inside, and the three of
-//! them are the weights of the corners at every sample, up to one positive factor; behind the eye all are negative. What a
-//! vertex carries is interpolated by these weights, so corners behind the eye or 10^6 px away need no case of their own.
+//! The triangle needs neither clipping nor a division. Each edge is a linear function of the window, positive inside.
+//! The three functions are the weights of the corners at every sample, up to one positive factor, and all are negative
+//! behind the eye. Vertex attributes are interpolated by these weights. Corners behind the eye or 10^6 px away
+//! therefore need no special case.
 
-/// A place in homogeneous window coordinates.
+/// A position in homogeneous window coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     pub(super) x: f64,
@@ -13,7 +14,7 @@ pub(super) struct Place {
     pub(super) w: f64,
 }
 
-/// A corner, with what it carries for the test of the slice's volume, and its colour.
+/// A corner with its attributes p and q for the test of the slice's volume, and its colour.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner {
     pub(super) place: Place,
@@ -23,7 +24,7 @@ pub(super) struct Corner {
 }
 
 impl Corner {
-    /// The point at `t` of the way to another.
+    /// Returns the interpolation between this corner and another: `self` at t = 0, `other` at 1.
     pub(super) fn mixed(&self, other: &Self, t: f64) -> Self {
         let mix = |a: f64, b: f64| a * (1.0 - t) + b * t;
         let from = &self.place;
@@ -37,14 +38,14 @@ impl Corner {
         }
     }
 
-    /// The corner moved in the window by so many pixels.
+    /// Returns the corner moved in the window by this many pixels.
     pub(super) fn moved(&self, [dx, dy]: [f64; 2]) -> Self {
         let Place { x, y, z, w } = self.place;
         Self { place: Place { x: x + dx * w, y: y + dy * w, z, w }, ..*self }
     }
 }
 
-/// Row of a matrix times (p, 1).
+/// Returns the product of a matrix row and (p, 1).
 #[inline(always)]
 pub(super) fn along(row: &[f64; 4], p: [f64; 3]) -> f64 {
     row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3]
@@ -52,8 +53,8 @@ pub(super) fn along(row: &[f64; 4], p: [f64; 3]) -> f64 {
 
 /// A linear function of the window, a (x - x0) + (b (y - y0) + c).
 ///
-/// The anchor (x0, y0) is a vertex, the same one whichever triangle asks: the function is exactly zero there, and that of
-/// the neighbour on the same edge is its exact negative.
+/// The anchor (x0, y0) is a vertex, and both triangles of an edge use the same vertex. The function is exactly zero
+/// there, and the function of the neighbouring triangle is its exact negative.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Edge {
     pub(super) a: f64,
@@ -80,13 +81,13 @@ impl Edge {
         self.a * (x - self.x) + self.row(y)
     }
 
-    /// What is the same for all of a row.
+    /// Returns the part of the function that is constant along a row.
     #[inline(always)]
     pub(super) fn row(&self, y: f64) -> f64 {
         self.b * (y - self.y) + self.c
     }
 
-    /// Value at a homogeneous point.
+    /// Returns the value of the function at a homogeneous point.
     #[inline(always)]
     fn dot(&self, corner: &Place) -> f64 {
         if corner.w > 0.0 {
@@ -100,8 +101,8 @@ impl Edge {
         Self { a: -self.a, b: -self.b, c: -self.c, ..self }
     }
 
-    /// The least value with which a sample is inside: zero for left edges and upper horizontal ones, which have the
-    /// samples on them, and else just above it.
+    /// Returns the least value of the function for a sample inside. The value is zero for left edges and horizontal
+    /// upper edges, which include the samples on them. For other edges it is the smallest number above zero.
     #[inline(always)]
     fn least(&self) -> f64 {
         let has_its_samples = self.a > 0.0 || (self.a == 0.0 && self.b > 0.0);
@@ -109,7 +110,7 @@ impl Edge {
     }
 }
 
-/// The end of an edge that both its triangles measure from: the left one, of two above each other the upper one.
+/// Returns the end of an edge from which both its triangles measure: the left end, or the upper end of a vertical edge.
 #[inline(always)]
 fn anchor(from: &Place, to: &Place) -> [f64; 2] {
     if from.w == 1.0 && to.w == 1.0 {
@@ -121,36 +122,36 @@ fn anchor(from: &Place, to: &Place) -> [f64; 2] {
     if one < other { one } else { other }
 }
 
-/// Rows and columns of pixels, ends excluded.
+/// Ranges of columns and rows of pixels, with exclusive ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Bounds {
     pub(super) x: [u32; 2],
     pub(super) y: [u32; 2],
 }
 
-/// A triangle ready to be sampled.
+/// A triangle that is ready for sampling.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Setup {
-    /// Opposite the corners, in their order.
+    /// Edges opposite to the corners, in the order of the corners.
     pub(super) edges: [Edge; 3],
-    /// The least value with which a sample is inside: zero, or just above it.
+    /// Least value of each edge for a sample inside: zero, or the smallest number above zero.
     pub(super) least: [f64; 3],
-    /// Distance from the near plane.
+    /// Distances of the corners from the near plane.
     pub(super) near: [f64; 3],
-    /// Distance from the far plane.
+    /// Distances of the corners from the far plane.
     pub(super) far: [f64; 3],
     pub(super) p: [f64; 3],
     pub(super) q: [f64; 3],
-    /// By channel, then by corner.
+    /// Colours by channel, then by corner.
     pub(super) colour: [[f64; 3]; 3],
     pub(super) bounds: Bounds,
 }
 
-/// Pixels by which bounds are wider than the corners, against rounding.
+/// Pixels by which bounds are enlarged against rounding.
 const MARGIN: f64 = 1e-3;
 
 impl Setup {
-    /// `None` if the triangle's plane contains the eye, or as [`bounds`] has none.
+    /// Sets up a triangle. Returns `None` if the triangle's plane contains the eye, or if [`bounds`] returns `None`.
     #[inline(always)]
     pub(super) fn new(corners: &[Corner; 3], size: [u32; 2]) -> Option<Self> {
         let [a, b, c] = corners;
@@ -158,7 +159,7 @@ impl Setup {
         Self::within(corners, bounds)
     }
 
-    /// The same with the bounds that [`bounds`] has found.
+    /// Sets up a triangle with bounds from [`bounds`].
     #[inline(always)]
     pub(super) fn within(corners: &[Corner; 3], bounds: Bounds) -> Option<Self> {
         let [a, b, c] = corners;
@@ -168,6 +169,7 @@ impl Setup {
         let opposite_b = Edge::between(&c.place, &a.place);
         let opposite_c = Edge::between(&a.place, &b.place);
         let edges = [opposite_a, opposite_b, opposite_c];
+        // The weights must be positive inside. A triangle seen from behind gets all signs reversed.
         let area = opposite_a.dot(&a.place);
         let edges = match area {
             area if area > 0.0 => edges,
@@ -186,8 +188,8 @@ fn all_negative(values: [f64; 3]) -> bool {
     values[0] < 0.0 && values[1] < 0.0 && values[2] < 0.0
 }
 
-/// The pixels whose centres the triangle can cover; all of them if a corner is behind the eye. `None` if there are none
-/// or if it lies beyond the near or far plane.
+/// Returns the pixels whose centres the triangle can cover, or all pixels if a corner is behind the eye. Returns `None`
+/// if no pixel can be covered, or if the triangle lies beyond the near or far plane.
 #[inline(always)]
 pub(super) fn bounds([a, b, c]: [&Place; 3], size: [u32; 2]) -> Option<Bounds> {
     if all_negative([a.z, b.z, c.z]) || all_negative([a.w - a.z, b.w - b.z, c.w - c.z]) {
@@ -195,10 +197,12 @@ pub(super) fn bounds([a, b, c]: [&Place; 3], size: [u32; 2]) -> Option<Bounds> {
     }
     let width = f64::from(size[0]);
     let height = f64::from(size[1]);
+    // With a corner behind the eye, the projected corners give no bounds.
     if !(a.w > 0.0 && b.w > 0.0 && c.w > 0.0) {
         let is_behind = a.w <= 0.0 && b.w <= 0.0 && c.w <= 0.0;
         return (!is_behind).then_some(Bounds { x: [0, size[0]], y: [0, size[1]] });
     }
+    // Without perspective the divisions are not needed.
     let is_flat = a.w == 1.0 && b.w == 1.0 && c.w == 1.0;
     let xs = if is_flat { [a.x, b.x, c.x] } else { [a.x / a.w, b.x / b.w, c.x / c.w] };
     let ys = if is_flat { [a.y, b.y, c.y] } else { [a.y / a.w, b.y / b.w, c.y / c.w] };
@@ -217,13 +221,13 @@ fn extent(values: [f64; 3], most: f64) -> [u32; 2] {
     [first as u32, end as u32]
 }
 
-/// The sum of what corners carry by their weights.
+/// Returns the sum of the corners' values, weighted by `weights`.
 #[inline(always)]
 pub(super) fn weighted(weights: [f64; 3], values: [f64; 3]) -> f64 {
     weights[0] * values[0] + weights[1] * values[1] + weights[2] * values[2]
 }
 
-/// An interpolated channel as 8 bits.
+/// Returns an interpolated colour channel as 8 bits.
 #[inline(always)]
 pub(super) fn channel(weights: [f64; 3], values: [f64; 3], inverse_sum: f64) -> u8 {
     (weighted(weights, values) * inverse_sum + 0.5) as u8

@@ -1,4 +1,4 @@
-//! Several samples of each pixel, which the paper rejects as too dear: for comparison with jitter.
+//! Supersampling for comparison with jitter. The paper rejects supersampling as too expensive.
 
 use super::{Coverage, SliceRenderer, SliceStats, SliceWork};
 use crate::command::Combine;
@@ -7,30 +7,31 @@ use crate::image::SliceImage;
 use crate::view::SliceView;
 use std::sync::{Mutex, PoisonError};
 
-/// Draws each slice with 4 or 16 samples a pixel and hands on their mean; samples are counted as fragments.
+/// A renderer that draws each slice with 4 or 16 samples per pixel and returns their mean. Samples are counted as
+/// fragments.
 ///
-/// A pixel with any sample drawn on is marked. Samples on which nothing was drawn have the background's colour, so that a
-/// pixel that a surface covers in part is darker. Pixels that [`Coverage::Connected`] adds are whole pixels, added last.
+/// A pixel is marked if any of its samples was drawn. Samples without a fragment have the background's colour, so a
+/// partly covered pixel is darker. [`Coverage::Connected`] adds whole pixels after the mean.
 #[derive(Debug)]
 pub struct Supersampled<R> {
     inner: R,
     factor: u32,
-    /// Large images that no slice uses, with the colour that they are clean in.
+    /// Large images that are not in use.
     scratch: Mutex<Vec<SliceImage>>,
 }
 
 impl<R: SliceRenderer> Supersampled<R> {
-    /// A renderer that draws with so many samples of each pixel.
+    /// Creates a renderer with this number of samples per pixel.
     ///
     /// # Errors
     ///
-    /// [`SpatialError::Setting`] unless there are 4 or 16.
+    /// [`SpatialError::Setting`] unless `samples` is 4 or 16.
     pub fn new(inner: R, samples: u32) -> Result<Self, SpatialError> {
         require([4, 16].contains(&samples), "draw.samples", "4 or 16", samples)?;
         Ok(Self { inner, factor: samples.isqrt(), scratch: Mutex::new(Vec::new()) })
     }
 
-    /// The mean of every pixel that has a sample.
+    /// Computes the mean of every pixel with at least one sample.
     fn resolve(&self, large: &SliceImage, image: &mut SliceImage) {
         let [width, height] = image.size();
         let samples = self.factor * self.factor;
@@ -39,6 +40,7 @@ impl<R: SliceRenderer> Supersampled<R> {
                 if !self.is_marked(large, x, y) {
                     continue;
                 }
+                // Half of the divisor in the sum rounds the mean to the nearest.
                 let mut sums = [samples / 2; 3];
                 for (sx, sy) in self.places(x, y) {
                     for (sum, value) in sums.iter_mut().zip(large.pixel(sx, sy)) {
@@ -59,7 +61,7 @@ impl<R: SliceRenderer> Supersampled<R> {
         self.places(x, y).any(|(sx, sy)| large.is_marked(sx, sy))
     }
 
-    /// Columns and rows of a pixel's samples.
+    /// Returns columns and rows of a pixel's samples.
     fn places(&self, x: u32, y: u32) -> impl Iterator<Item = (u32, u32)> + use<R> {
         let factor = self.factor;
         (0..factor * factor).map(move |i| (x * factor + i % factor, y * factor + i / factor))

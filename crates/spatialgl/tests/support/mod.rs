@@ -1,4 +1,4 @@
-//! The triangles of the specification's section 8 and what draws them.
+//! The triangles of the specification's section 8, and functions that draw them.
 #![allow(dead_code, reason = "each test uses some of it")]
 
 use glam::DVec3;
@@ -17,7 +17,7 @@ pub(crate) const T8: Triangle = [[0.1, -20.0, 5.0], [0.3, -20.0, 6.0], [0.2, 20.
 pub(crate) const ASIDE: Projection =
     Projection::Perspective { eye: [100.0, -150.0], distance: 1536.0, shear: [0.05, 0.1] };
 
-/// A recording of white triangles.
+/// Returns a recording of white triangles.
 pub(crate) fn recording(triangles: &[Triangle]) -> CommandBuffer {
     let vertices = triangles.iter().flatten().map(|p| Vertex::new(DVec3::from_array(*p), [255; 3])).collect();
     let buffer = VertexBuffer::new(vertices).expect("finite");
@@ -30,7 +30,7 @@ pub(crate) fn swept(clip: SliceClip, projection: Projection) -> SweptDisplay {
     SweptDisplay::new(SweptConfig::perspecta(clip, projection)).expect("valid")
 }
 
-/// Only the first half of the slices, which are all there are without jitter.
+/// Keeps only the first half of the slices, which are all distinct slices without jitter.
 pub(crate) fn half(config: VolumeConfig) -> VolumeConfig {
     VolumeConfig { strobes: Strobes::Mirror, ..config }
 }
@@ -39,7 +39,7 @@ pub(crate) fn volume(display: &dyn SpatialDisplay, commands: &CommandBuffer, con
     render_volume(display, commands, config, &HostRenderer, &OneThread).expect("valid")
 }
 
-/// As [`volume`], and the oracle draws and counts the same.
+/// Draws as [`volume`] does, and checks that the reference model gives the same voxels and counts.
 pub(crate) fn both(display: &dyn SpatialDisplay, commands: &CommandBuffer, config: &VolumeConfig) -> VolumeFrame {
     let fast = volume(display, commands, config);
     let literal = render_volume(display, commands, config, &OracleRenderer, &Threads::all()).expect("valid");
@@ -49,8 +49,8 @@ pub(crate) fn both(display: &dyn SpatialDisplay, commands: &CommandBuffer, confi
     fast
 }
 
-/// Fragments of slices 0 to 197 without bins, and the slices that are not empty. The fast path alone: where the oracle is to
-/// draw the same at full size, tests say [`both`].
+/// Returns the number of fragments in slices 0 to 197 without bins, and the number of slices that are not empty. Only
+/// the fast path is used. Tests that compare with the reference model at full size call [`both`].
 pub(crate) fn fragments(triangles: &[Triangle], clip: SliceClip, projection: Projection) -> (u64, u64) {
     let frame = volume(&swept(clip, projection), &recording(triangles), &half(VolumeConfig::plain()));
     (frame.stats.fragments_accepted, frame.stats.slices_rendered - frame.stats.slices_empty)

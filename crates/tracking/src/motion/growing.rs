@@ -1,4 +1,4 @@
-//! A head that somebody moves while a run goes on.
+//! A head motion that receives new samples while a run goes on.
 
 use super::{End, Motion, Recording};
 use crate::identity::SettingSink;
@@ -7,35 +7,37 @@ use glam::DVec3;
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 use thiserror::Error;
 
-/// A recording that grows: what is known of a motion so far. Clones are the same motion.
+/// A recorded motion that can grow while a run uses it. Clones share the same recording.
 ///
-/// Behind its last sample it stands still until more come. Whoever simulates with it keeps it ahead: an instant that has been asked for
-/// must lie between two samples, or the answer was not that of the recording which it becomes.
+/// After its last sample the head stands still until more samples arrive. The caller must keep the recording ahead of
+/// the simulation: every instant that the simulation reads must lie between two samples. Otherwise later samples would
+/// change a pose that has already been used.
 #[derive(Clone, Debug)]
 pub struct Growing(Arc<RwLock<Recording>>);
 
-/// Samples that do not go on where the motion has come to.
+/// The error for added samples that do not come after the last sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("expected samples after {last_ps} ps, found one at {found_ps} ps")]
 pub struct GrowthError {
-    /// The last sample so far.
+    /// Time of the last sample of the motion.
     pub last_ps: u64,
-    /// The first one of those that were to follow.
+    /// Time of the first added sample.
     pub found_ps: u64,
 }
 
 impl Growing {
-    /// Begins as a recording does.
+    /// Creates a growing motion that begins with the samples of `begin`.
     #[must_use]
     pub fn new(begin: Recording) -> Self {
         Self(Arc::new(RwLock::new(begin.ending(End::Hold))))
     }
 
-    /// Goes on with the samples of another recording.
+    /// Appends the samples of another recording.
     ///
     /// # Errors
     ///
-    /// [`GrowthError`] unless its first sample is later than the last one so far; nothing is added then.
+    /// [`GrowthError`] unless the first new sample is later than the last existing sample. Nothing is appended in this
+    /// case.
     pub fn extend(&self, more: &Recording) -> Result<(), GrowthError> {
         let mut known = self.0.write().unwrap_or_else(PoisonError::into_inner);
         let (last_ps, found_ps) = (known.span_ps().1, more.span_ps().0);
@@ -46,7 +48,7 @@ impl Growing {
         Ok(())
     }
 
-    /// What is known of it so far.
+    /// Returns a copy of the samples received so far.
     #[must_use]
     pub fn recorded(&self) -> Recording {
         self.known().clone()

@@ -1,4 +1,4 @@
-//! Where the head is at any instant: closed forms, a seeded generator, and replay of recorded traces.
+//! The pose of the head at any instant: closed forms, a random generator with a seed, and replay of recorded traces.
 
 mod growing;
 mod pan;
@@ -32,22 +32,24 @@ use crate::pose::Pose;
 use crate::rotation;
 use crate::time::{PS_PER_S, span_s};
 
-/// Half the step of the default central differences: 50 us, at which a 2 Hz motion is off by 2 parts in 10^8.
+/// Half the step of the default central differences: 50 us. At this step the error for a 2 Hz motion is 2 parts in
+/// 10^8.
 const HALF_STEP_PS: u64 = 50_000_000;
 
-/// Time between the poses by which a motion that does not say what it is is told from others, and their number.
+/// Interval of the poses that the default [`Motion::identify`] writes; `SAMPLES` is the number of poses.
 const SAMPLE_PS: u64 = PS_PER_S / 8;
 const SAMPLES: u64 = 512;
 
-/// A motion of the head (or of a pendulum's bob): a pure function of simulated time.
+/// A motion of the head (or of a pendulum's bob) as a pure function of simulated time.
 pub trait Motion: Debug {
-    /// Pose of the head in the world at `t_ps`, ps of simulated time.
+    /// Returns the pose of the head in the world at `t_ps` (ps of simulated time).
     fn pose(&self, t_ps: u64) -> Pose;
 
-    /// Writes what tells it from every other motion: names of experiments rest on it.
+    /// Writes settings that distinguish this motion from every other motion. The names of experiments derive from these
+    /// settings.
     ///
-    /// By default its poses at every eighth of a second of the first 64. Motions that differ only between these instants or
-    /// after them must say themselves what they are.
+    /// The default writes the poses at every eighth of a second of the first 64 seconds. A motion type must override
+    /// this method if two of its motions can differ only between or after these instants.
     fn identify(&self, settings: &mut SettingSink) {
         settings("motion", &"sampled");
         for sample in 0..SAMPLES {
@@ -55,47 +57,50 @@ pub trait Motion: Debug {
         }
     }
 
-    /// When it ends, ps, if no run may go on after that; `None` where it goes on for ever, or stands still at its end.
+    /// Returns the end of the motion (ps) if runs must not continue after it. Returns `None` if the motion continues
+    /// for ever or stands still at its end.
     fn ends_ps(&self) -> Option<u64> {
         None
     }
 
-    /// The first stretch before `until_ps` of which nothing is known, ps: from its last pose to its next. No run may need it. `None`
-    /// where there is none, or where the head is to stand still there.
+    /// Returns the first gap before `until_ps`: the times (ps) of the last pose before the gap and of the first pose
+    /// after it. A run must not read poses within a gap. Returns `None` if the motion has no such gap, or if the head
+    /// stands still during the gap.
     fn gap_ps(&self, _until_ps: u64) -> Option<(u64, u64)> {
         None
     }
 
-    /// What is to be said of the file that it was read from, a sentence each.
+    /// Returns warnings about the file of this motion, one sentence each.
     fn warnings(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// When it has moved for the last time, ps, as far as that is known: a filter that is tuned on it learns nothing from a head that
-    /// stands still for ever. By default its end, if it has one.
+    /// Returns the last known time of movement, ps. Tuning a filter needs only the motion up to this time. The default
+    /// is the end of the motion, if the motion has one.
     fn moves_until_ps(&self) -> Option<u64> {
         self.ends_ps()
     }
 
-    /// Whether it is only known as far as a run has come ([`Growing`]): then nobody may ask ahead.
+    /// Returns true if the motion is known only up to the present of a run ([`Growing`]). Later poses must not be read
+    /// then.
     fn grows(&self) -> bool {
         false
     }
 
-    /// Another motion of the same kind, drawn with other random numbers: filters are tuned on it, so that they do not know
-    /// the motion on which they are judged. `None` where there is only this one.
+    /// Returns another motion of the same kind with different random numbers, or `None` if the motion has no variants.
+    /// Filters are tuned on the sibling, so that the evaluation uses a motion unknown to the filter.
     fn sibling(&self) -> Option<Box<dyn Motion + Send + Sync>> {
         None
     }
 
-    /// Velocity in m/s, world frame. By default a central difference.
+    /// Returns the velocity in the world frame, m/s. The default is a central difference.
     fn velocity(&self, t_ps: u64) -> DVec3 {
         let before = t_ps.saturating_sub(HALF_STEP_PS);
         let after = t_ps.saturating_add(HALF_STEP_PS);
         (self.pose(after).position - self.pose(before).position) / span_s(before, after)
     }
 
-    /// Angular velocity in rad/s, world frame. By default a central difference.
+    /// Returns the angular velocity in the world frame, rad/s. The default is a central difference.
     fn angular_velocity(&self, t_ps: u64) -> DVec3 {
         let before = t_ps.saturating_sub(HALF_STEP_PS);
         let after = t_ps.saturating_add(HALF_STEP_PS);
@@ -104,7 +109,7 @@ pub trait Motion: Debug {
     }
 }
 
-/// What points to a motion is that motion.
+/// Implements [`Motion`] for pointers to a motion by forwarding every call.
 macro_rules! forward {
     ($($pointer:ty),*) => {$(
         impl<M: Motion + ?Sized> Motion for $pointer {

@@ -11,12 +11,12 @@ use crate::time::seconds;
 pub struct Pan {
     /// Pose of the head at time 0.
     pub start: Pose,
-    /// Yaw rate, positive to the left. 200 is a fast turn, 370 the peak (LIST83).
+    /// Yaw rate in degrees per second, positive to the left. 200 is a fast turn and 370 the peak of a head (LIST83).
     pub deg_per_s: f64,
 }
 
 impl Pan {
-    /// A pan from the identity pose.
+    /// Creates a pan that starts from the identity pose.
     pub fn at(deg_per_s: f64) -> Self {
         Self { start: Pose::IDENTITY, deg_per_s }
     }

@@ -11,22 +11,27 @@ use crate::pose::Pose;
 use crate::rotation;
 use crate::time::{nearest_ps, seconds};
 
-/// An undamped pendulum that swings in the x-y plane, released at rest from `+amplitude` at time 0, in closed form.
+/// An undamped pendulum that swings in the x-y plane, in closed form. At time 0 it is released at rest from
+/// `+amplitude`.
 ///
-/// With k = sin(amplitude / 2) and w = sqrt(g / arm): sin(angle / 2) = k cd(w t, k), cd being Jacobi's elliptic
-/// function. The exact period is 4 K(k) / w; the small-angle period 2 pi / w is shorter, by 0.77 % at 20 degrees.
-/// The bob hangs `arm` below the origin and turns with the arm.
+/// With k = sin(amplitude / 2) and w = sqrt(g / arm): sin(angle / 2) = k cd(w t, k), where cd is Jacobi's elliptic
+/// function. The exact period is 4 K(k) / w. The small-angle period 2 pi / w is shorter, by 0.77 % at 20 degrees. The
+/// bob hangs `arm` below the origin and turns with the arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pendulum {
     arm_m: f64,
     modulus: f64,
-    /// sqrt(g / arm): the angular frequency of a small swing.
+    /// Angular frequency sqrt(g / arm) of a small swing.
     natural_rad_per_s: f64,
     period_s: f64,
 }
 
 impl Pendulum {
-    /// A pendulum with an arm in metres (above 0) and an amplitude in degrees (above 0, below 180).
+    /// Creates a pendulum with an arm in metres (above 0) and an amplitude in degrees (above 0, below 180).
+    ///
+    /// # Errors
+    ///
+    /// [`SettingError`] if the arm or the amplitude is outside the limits of [`table::RigNumbers`].
     pub fn new(arm_m: f64, amplitude_deg: f64) -> Result<Self, SettingError> {
         table::RigNumbers { pendulum_arm: arm_m, pendulum_amplitude: amplitude_deg, ..table::RigNumbers::PAPERS }
             .check()?;
@@ -36,33 +41,33 @@ impl Pendulum {
         Ok(Self { arm_m, modulus, natural_rad_per_s, period_s })
     }
 
-    /// The measuring pendulum: arm 0.5 m, amplitude 20 degrees, both assumed.
+    /// Returns the pendulum of the measuring rig: arm 0.5 m, amplitude 20 degrees. Both values are assumed.
     pub fn rig() -> Self {
         Self::new(table::RigNumbers::PAPERS.pendulum_arm, table::RigNumbers::PAPERS.pendulum_amplitude)
             .expect("the table's values are in range")
     }
 
-    /// Exact period of the swing, seconds.
+    /// Returns the exact period of the swing in seconds.
     pub fn period_s(&self) -> f64 {
         self.period_s
     }
 
-    /// Period of an infinitely small swing, 2 pi sqrt(arm / g), in seconds.
+    /// Returns the period of an infinitely small swing, 2 pi sqrt(arm / g), in seconds.
     pub fn small_angle_period_s(&self) -> f64 {
         TAU / self.natural_rad_per_s
     }
 
-    /// Speed of the bob at the low point, m/s: 2 k sqrt(g arm), from the conservation of energy.
+    /// Returns the speed of the bob at the low point, m/s: 2 k sqrt(g arm), from the conservation of energy.
     pub fn low_point_speed(&self) -> f64 {
         2.0 * self.modulus * self.natural_rad_per_s * self.arm_m
     }
 
-    /// Instant of low point `n` (0 is the first): (2 n + 1) quarter periods.
+    /// Returns the instant of low point `n`, which comes after (2 n + 1) quarter periods. Low point 0 is the first.
     pub fn low_point_ps(&self, n: u64) -> u64 {
         nearest_ps((2.0 * n as f64 + 1.0) * self.period_s / 4.0)
     }
 
-    /// Angle from the vertical (rad, positive towards +x) and its rate (rad/s).
+    /// Returns the angle from the vertical (rad, positive towards +x) and its rate of change (rad/s).
     pub fn angle(&self, t_ps: u64) -> (f64, f64) {
         let u = self.natural_rad_per_s * libm::fmod(seconds(t_ps), self.period_s);
         let (sn, cn, dn) = jacobi(u, self.modulus);
@@ -74,7 +79,7 @@ impl Pendulum {
 }
 
 impl Motion for Pendulum {
-    /// Frequency and period follow from the arm and the modulus.
+    /// Writes the arm and the modulus. Frequency and period follow from these two numbers.
     fn identify(&self, settings: &mut SettingSink) {
         settings("motion", &"pendulum");
         settings("motion.arm_m", &self.arm_m);
@@ -95,15 +100,16 @@ impl Motion for Pendulum {
     }
 }
 
-/// Levels of the arithmetic-geometric mean; it converges quadratically, 8 suffice for every modulus below 0.99999.
+/// Levels of the arithmetic-geometric mean. The mean converges quadratically, so 8 levels suffice for every modulus
+/// below 0.99999.
 const LEVELS: usize = 8;
 
-/// Complete elliptic integral K(k) = pi / (2 agm(1, k')).
+/// Returns the complete elliptic integral K(k) = pi / (2 agm(1, k')).
 fn quarter_period(modulus: f64) -> f64 {
     FRAC_PI_2 / mean_ladder(modulus).0
 }
 
-/// Limit of the arithmetic-geometric mean of 1 and k', and the ratios c_n / a_n of its levels.
+/// Returns the arithmetic-geometric mean of 1 and k', and the ratio c_n / a_n of each level.
 fn mean_ladder(modulus: f64) -> (f64, [f64; LEVELS]) {
     let mut a = 1.0;
     let mut b = (1.0 - modulus * modulus).sqrt();
@@ -117,7 +123,7 @@ fn mean_ladder(modulus: f64) -> (f64, [f64; LEVELS]) {
     (a, ratios)
 }
 
-/// Jacobi's sn, cn and dn by the descending ladder of Abramowitz and Stegun 16.4.
+/// Returns Jacobi's sn, cn and dn, computed by the descending sequence of Abramowitz and Stegun 16.4.
 fn jacobi(u: f64, modulus: f64) -> (f64, f64, f64) {
     let (mean, ratios) = mean_ladder(modulus);
     let top = (1u32 << LEVELS) as f64 * mean * u;
@@ -133,7 +139,7 @@ mod tests {
     use crate::time::PS_PER_S;
     use glam::DVec2;
 
-    /// Runge-Kutta of order 4 on angle'' = -(g / arm) sin(angle): an independent model.
+    /// Integrates angle'' = -(g / arm) sin(angle) with a Runge-Kutta method of order 4: an independent model.
     fn integrate(arm: f64, amplitude_deg: f64, until_s: f64) -> f64 {
         let steps = 20_000;
         let h = until_s / steps as f64;
@@ -148,7 +154,7 @@ mod tests {
         state.x
     }
 
-    /// Derivative of (angle, rate) of a pendulum with this arm.
+    /// Returns the derivative of (angle, rate) of a pendulum with this arm.
     fn slope(arm: f64, state: DVec2) -> DVec2 {
         DVec2::new(state.y, -table::RigNumbers::PAPERS.gravity / arm * state.x.sin())
     }

@@ -4,12 +4,12 @@ use super::Motion;
 use crate::identity::SettingSink;
 use crate::pose::Pose;
 
-/// Another motion, so much later in its course at every instant.
+/// A motion that runs ahead of another motion by a constant time: the pose at t is the other's pose at t + `by_ps`.
 #[derive(Clone, Copy, Debug)]
 pub struct Shifted<M> {
-    /// The motion that is looked at later.
+    /// Original motion, which runs `by_ps` behind.
     pub motion: M,
-    /// How far ahead of it this one is, ps.
+    /// Time by which the original motion is advanced, ps.
     pub by_ps: u64,
 }
 

@@ -15,7 +15,7 @@ pub struct Slide {
 }
 
 impl Slide {
-    /// To the right from the identity pose.
+    /// Creates a motion to the right from the identity pose.
     pub fn right_at(m_per_s: f64) -> Self {
         Self { start: Pose::IDENTITY, m_per_s: DVec3::X * m_per_s }
     }

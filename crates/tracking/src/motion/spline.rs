@@ -1,4 +1,5 @@
-//! Uniform quintic B-splines with random coefficients: smooth noise with random access, no memory and no period.
+//! Uniform quintic B-splines with random coefficients: smooth noise that is not periodic and can be evaluated at any
+//! instant without stored state.
 
 use glam::DVec3;
 
@@ -6,14 +7,14 @@ use crate::identity::SettingSink;
 use crate::random::{bell, bits, stream, unit};
 use crate::time::seconds;
 
-/// Integral of the squared quintic B-spline: the variance of a spline with independent coefficients of variance 1.
-/// It is the centre value of the B-spline of degree 11, 655177 / 1663200.
+/// Variance of a spline with independent coefficients of variance 1: the integral of the squared quintic B-spline. This
+/// integral equals the centre value of the B-spline of degree 11, 655177 / 1663200.
 const VARIANCE: f64 = 655_177.0 / 1_663_200.0;
 
-/// Knots that share one level of activity, so that calm and lively spells last some seconds.
+/// Number of successive knots with the same activity level, so that calm and lively spells last some seconds.
 const KNOTS_PER_SPELL: u64 = 8;
 
-/// How lively spells are spread: gain = calm + (1 - calm) u^power, u uniform, scaled to a mean square of 1.
+/// The distribution of activity levels: gain = calm + (1 - calm) u^power with u uniform, scaled to a mean square of 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Activity {
     pub(super) calm: f64,
@@ -45,13 +46,14 @@ pub(super) struct Spline {
 }
 
 impl Spline {
-    /// Splines of these standard deviations. `spells` is shared by those that get lively together.
+    /// Creates splines with these standard deviations. Splines with the same `spells` have their lively spells at the
+    /// same times.
     pub(super) fn new(spacing_ps: u64, deviation: DVec3, activity: Activity, seed: u64, spells: u64) -> Self {
         let seeds = core::array::from_fn(|axis| stream(seed, axis as u64));
         Self { spacing_ps, scale: deviation / VARIANCE.sqrt(), activity, seeds, spells }
     }
 
-    /// Writes its numbers as one setting.
+    /// Writes the spline's parameters as one setting.
     pub(super) fn identify(&self, key: &str, settings: &mut SettingSink) {
         let Self { spacing_ps, scale, activity, seeds, spells } = self;
         let Activity { calm, power } = activity;
@@ -60,7 +62,7 @@ impl Spline {
         settings(key, &format_args!("{spacing_ps} {x} {y} {z} {calm} {power} {a} {b} {c} {spells}"));
     }
 
-    /// Values and rates (per second).
+    /// Returns the values at `t_ps` and their rates per second.
     pub(super) fn at(&self, t_ps: u64) -> (DVec3, DVec3) {
         let knot = t_ps / self.spacing_ps;
         let u = (t_ps % self.spacing_ps) as f64 / self.spacing_ps as f64;
@@ -82,11 +84,13 @@ impl Spline {
     }
 }
 
-/// The six quintic B-splines that overlap a knot interval, and their derivatives, at fraction `u` of it.
+/// Returns the weights of the six quintic B-splines that overlap a knot interval, and their derivatives. `u` is the
+/// fraction of the interval.
 fn basis(u: f64) -> ([f64; 6], [f64; 6]) {
     let v = 1.0 - u;
     let u2 = u * u;
     let v2 = v * v;
+    // Polynomials of the six B-splines in Horner form, times 120.
     let weights = [
         v2 * v2 * v,
         26.0 + u * (-50.0 + u * (20.0 + u * (20.0 + u * (-20.0 + 5.0 * u)))),
@@ -95,6 +99,7 @@ fn basis(u: f64) -> ([f64; 6], [f64; 6]) {
         1.0 + u * (5.0 + u * (10.0 + u * (10.0 + u * (5.0 - 5.0 * u)))),
         u2 * u2 * u,
     ];
+    // Derivatives of these polynomials.
     let slopes = [
         -5.0 * v2 * v2,
         -50.0 + u * (40.0 + u * (60.0 + u * (-80.0 + 25.0 * u))),

@@ -10,8 +10,8 @@ use crate::random::stream;
 use crate::rotation;
 use crate::time::nearest_ps;
 
-/// One band of the generator: three quintic B-splines with random coefficients. Its power falls as sinc^12(f spacing),
-/// so 99.9 % of it lies below 0.53 / spacing.
+/// One frequency band of the motion generator: three quintic B-splines with random coefficients. The power falls as
+/// sinc^12(f spacing), so 99.9 % of the power lies below the frequency 0.53 / spacing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Band {
@@ -19,22 +19,22 @@ pub struct Band {
     pub spacing_s: f64,
     /// Standard deviations: yaw, pitch and roll in degrees, or x, y and z in metres.
     pub deviation: [f64; 3],
-    /// Level of the calmest spell against the liveliest, 0 to 1; 1 makes all spells alike.
+    /// Ratio of the calmest spell's level to the liveliest, 0 to 1. A value of 1 makes all spells alike.
     pub calm: f64,
-    /// How rare lively spells are: level = calm + (1 - calm) u^power with u uniform; 1 to 16.
+    /// Exponent that makes lively spells rare, 1 to 16: level = calm + (1 - calm) u^power with u uniform.
     pub power: u32,
 }
 
-/// The stream of a seed from which a sibling's seed is drawn.
+/// Number of the random stream from which a sibling's seed is drawn.
 const SIBLING: u64 = 10;
 
-/// Settings of [`Synthetic`]: one band for each kind of movement, and the place about which the head walks.
+/// Settings of [`Synthetic`]: one band for each kind of movement, and the mean position of the head.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SyntheticConfig {
-    /// Slow turns of the body: nearly all of the angle.
+    /// Slow turns of the body, which make up nearly all of the angle.
     pub turn: Band,
-    /// Glances: nearly all of the angular speed.
+    /// Quick glances, which make up nearly all of the angular speed.
     pub glance: Band,
     /// Translation of the head about `centre_m`.
     pub walk: Band,
@@ -43,8 +43,8 @@ pub struct SyntheticConfig {
 }
 
 impl SyntheticConfig {
-    /// Fitted to recorded headset traces: see [`crate::config::HeadSpeeds`]. The deviations are
-    /// assumed; the statistics that they give are published, and tested.
+    /// Returns settings fitted to recorded headset traces ([`crate::config::HeadSpeeds`]). The deviations are assumed.
+    /// The resulting statistics are published, and tests check them.
     pub fn recorded_use() -> Self {
         Self {
             turn: Band { spacing_s: 2.6, deviation: [47.0, 4.0, 1.0], calm: 0.6, power: 1 },
@@ -55,8 +55,8 @@ impl SyntheticConfig {
     }
 }
 
-/// Seeded, band-limited head motion, without period and without drift: yaw, pitch, roll and position are sums of
-/// random splines, so any instant is found in constant time and memory.
+/// Random, band-limited head motion from a seed, without period and without drift. Yaw, pitch, roll and position are
+/// sums of random splines, so the pose at any instant takes constant time and memory.
 #[derive(Clone, Debug)]
 pub struct Synthetic {
     config: SyntheticConfig,
@@ -68,7 +68,11 @@ pub struct Synthetic {
 }
 
 impl Synthetic {
-    /// A generator. One (config, seed) gives one motion on every host.
+    /// Creates a generator. The same settings and seed give the same motion on every host.
+    ///
+    /// # Errors
+    ///
+    /// [`SettingError`] if a number is out of range.
     pub fn new(config: &SyntheticConfig, seed: u64) -> Result<Self, SettingError> {
         for metres in config.centre_m {
             SettingError::check("centre of the motion", metres, -1e6, 1e6)?;
@@ -84,12 +88,12 @@ impl Synthetic {
         })
     }
 
-    /// Head motion as in recorded headset use.
+    /// Creates a generator fitted to recorded headset use.
     pub fn recorded_use(seed: u64) -> Self {
         Self::new(&SyntheticConfig::recorded_use(), seed).expect("the preset is in range")
     }
 
-    /// Yaw (without wrap), pitch and roll in radians, and their rates in rad/s.
+    /// Returns yaw (not wrapped), pitch and roll in radians, and their rates in rad/s.
     pub fn yaw_pitch_roll(&self, t_ps: u64) -> (DVec3, DVec3) {
         let turn = self.turn.at(t_ps);
         let glance = self.glance.at(t_ps);

@@ -9,31 +9,32 @@ use crate::identity::{SettingSink, write_vector};
 use crate::pose::Pose;
 use crate::time::seconds;
 
-/// How far ahead on the path the eyes rest, m. Assumed: a corner is turned to before it is reached, at up to 76 degrees a second
-/// and 1 m/s where it is square, well within what a head does.
+/// Distance on the path from the head to the point at which it looks, m. Assumed. A head turns towards a corner before
+/// it reaches the corner, at up to 76 degrees per second for a square corner at 1 m/s. A real head can turn this fast.
 const AHEAD_M: f64 = 1.5;
 
-/// Least way between two corners, m: shorter ones have no direction.
+/// Least distance between two successive corners, m. A shorter leg has no reliable direction.
 const LEAST_LEG_M: f64 = 1e-3;
 
-/// A head that walks at a steady speed along a closed path, from its first corner at time 0, and looks at the point of the path that
-/// it will reach next; or looks around as it goes.
+/// A head that walks at constant speed along a closed path, from the first corner at time 0. The head looks at a point
+/// of the path ahead, or also looks around if [`Self::looking_around`] was called.
 #[derive(Clone, Debug)]
 pub struct Walk {
     corners: Arc<[DVec3]>,
-    /// Way from the first corner to each, and at last the whole way round, m.
+    /// Distance along the path from the first corner to each corner, followed by the length of the path, m.
     ways: Vec<f64>,
     m_per_s: f64,
     glances: Option<Synthetic>,
 }
 
 impl Walk {
-    /// Along these corners and back to the first, at -100 to 100 m/s; negative speeds walk the other way round.
+    /// Creates a walk along these corners and back to the first, at -100 to 100 m/s. A negative speed reverses the
+    /// direction.
     ///
     /// # Errors
     ///
-    /// [`SettingError`] for a speed beyond those, a coordinate beyond 1e6 m, or a way from one corner to the next of less than 1 mm,
-    /// as a path of fewer than two corners has.
+    /// [`SettingError`] if the speed is out of range or a coordinate exceeds 1e6 m. A path of fewer than two corners,
+    /// or with successive corners less than 1 mm apart, is an error too.
     pub fn new(corners: &[DVec3], m_per_s: f64) -> Result<Self, SettingError> {
         SettingError::check("speed of the walk", m_per_s, -100.0, 100.0)?;
         for coordinate in corners.iter().flat_map(DVec3::to_array) {
@@ -49,36 +50,39 @@ impl Walk {
         Ok(Self { corners: corners.into(), ways, m_per_s, glances: None })
     }
 
-    /// The same walk, on which the head turns away from its path as [`Synthetic::recorded_use`] of this seed turns.
+    /// Returns the same walk with a head that also looks around, as [`Synthetic::recorded_use`] of this seed does.
     #[must_use]
     pub fn looking_around(mut self, seed: u64) -> Self {
         self.glances = Some(Synthetic::recorded_use(seed));
         self
     }
 
-    /// The whole way round, m.
+    /// Returns the length of the closed path, m.
     #[must_use]
     pub fn length_m(&self) -> f64 {
         self.ways[self.corners.len()]
     }
 
-    /// The place so far from the first corner, m; rounds without end, in both directions.
+    /// Returns the position at a distance along the path from the first corner, m. Distances beyond one round and
+    /// negative distances wrap.
     #[must_use]
     pub fn place(&self, way_m: f64) -> DVec3 {
         let way = rounded(way_m, self.length_m());
+        // Find the leg of the path and the fraction of this leg.
         let leg = self.ways.partition_point(|begin| *begin <= way).clamp(1, self.corners.len()) - 1;
         let share = ((way - self.ways[leg]) / (self.ways[leg + 1] - self.ways[leg])).clamp(0.0, 1.0);
         self.corners[leg].lerp(self.corners[(leg + 1) % self.corners.len()], share)
     }
 }
 
-/// A way within one round.
+/// Reduces a distance to one round of the path.
 fn rounded(way: f64, round: f64) -> f64 {
     let rest = libm::fmod(way, round);
     if rest < 0.0 { rest + round } else { rest }
 }
 
-/// Upright, looking at a point; along -z from the point itself.
+/// Returns the orientation of an upright head at `eye` that looks at `point`. If the two coincide, the head looks along
+/// -z.
 fn looking_at(eye: DVec3, point: DVec3) -> DQuat {
     let back = (eye - point).normalize_or(DVec3::Z);
     let right = DVec3::Y.cross(back).normalize_or(DVec3::X);
@@ -130,10 +134,10 @@ mod tests {
         let gaze = |t_ps: u64| walk.pose(t_ps).orientation * DVec3::NEG_Z;
         assert!(gaze(PS_PER_S).distance(DVec3::X) < 1e-12);
         assert!(gaze(4 * PS_PER_S).distance(DVec3::Z) < 1e-12);
-        // 0.75 m before a square corner the point ahead is as far behind it: half of the turn is done.
+        // 0.75 m before a square corner, the point ahead is 0.75 m beyond the corner: half of the turn is done.
         let half = DVec3::new(1.0, 0.0, 1.0).normalize();
         assert!(gaze(13 * PS_PER_S / 4).distance(half) < 1e-12);
-        // At most 2 v / AHEAD_M rad/s, where half of the turn is done: 0.0222 rad in a frame.
+        // The fastest turn is 2 v / AHEAD_M rad/s, when half of the turn is done: 0.0222 rad per frame.
         for frame in 0..960_u64 {
             let [before, after] = [frame, frame + 1].map(|n| gaze(n * PS_PER_S / 60));
             assert!(before.angle_between(after) < 2.0 / AHEAD_M / 60.0 * 1.01, "{frame}");

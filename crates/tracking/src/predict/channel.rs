@@ -2,21 +2,21 @@ use glam::{DQuat, DVec3};
 
 use crate::rotation;
 
-/// A filter of one quantity, position or orientation. Updates come with rising times; the gate sees to that.
+/// A filter of one quantity: position or orientation. Updates come with rising times, which the gate ensures.
 pub(super) trait Channel<T>: Send {
-    /// Forgets everything but this value.
+    /// Forgets all past values and starts from this value.
     fn restart(&mut self, t_ps: u64, value: T);
-    /// Takes a measured value.
+    /// Adds a measured value.
     fn update(&mut self, t_ps: u64, value: T);
-    /// The value `dt_s` after the last one, or before it if negative.
+    /// Returns the value `dt_s` after the last update, or before it for a negative `dt_s`.
     fn extrapolate(&self, dt_s: f64) -> T;
 }
 
 /// Values whose differences are vectors: positions (m) and orientations (rotation vectors, rad).
 pub(super) trait Movable: Copy + Send {
-    /// The vector from `origin` to `self`.
+    /// Returns the vector from `origin` to `self`.
     fn since(self, origin: Self) -> DVec3;
-    /// `self`, moved by a vector.
+    /// Returns `self` moved by a vector.
     fn moved(self, by: DVec3) -> Self;
 }
 

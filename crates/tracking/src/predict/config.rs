@@ -11,14 +11,14 @@ use crate::config as table;
 use crate::error::SettingError;
 use crate::tracker::TrackerConfig;
 
-/// Least noise a Kalman filter may believe in; 0 would make its covariance singular.
+/// Least noise that a Kalman filter may assume. A noise of 0 would make the covariance singular.
 const LEAST_NOISE_M: f64 = 1e-6;
 const LEAST_NOISE_DEG: f64 = 1e-4;
 
-/// A way to predict: the filter that turns reports into a pose at another instant.
+/// A prediction method: the filter that turns reports into a pose at another instant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PredictorKind {
-    /// The last report, as it is.
+    /// No prediction: the pose of the last report.
     None,
     /// Last report plus velocity x time.
     ConstantVelocity,
@@ -29,10 +29,10 @@ pub enum PredictorKind {
 }
 
 impl PredictorKind {
-    /// All kinds, the simplest first.
+    /// All prediction methods, the simplest first.
     pub const ALL: [Self; 4] = [Self::None, Self::ConstantVelocity, Self::ConstantAcceleration, Self::Kalman];
 
-    /// Its name in experiment files and tables.
+    /// Returns the name of the method in experiment files and tables.
     pub const fn name(self) -> &'static str {
         match self {
             Self::None => "none",
@@ -43,45 +43,45 @@ impl PredictorKind {
     }
 }
 
-/// Settings of a predictor: the filter, and what it believes about the noise of reports and motion.
+/// Settings of a predictor: the filter, and its assumptions about the noise of reports and about the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PredictorConfig {
-    /// The filter that is built from these settings.
+    /// Prediction method that is built from these settings.
     pub kind: PredictorKind,
-    /// Reports between the points of a difference of positions, 1 to 16. Kalman filters do not use it.
+    /// Distance in reports between the points of a position difference, 1 to 16. Kalman filters do not use it.
     pub position_baseline: u32,
-    /// The same of orientations.
+    /// Distance in reports between the points of an orientation difference, 1 to 16. Kalman filters do not use it.
     pub orientation_baseline: u32,
-    /// Noise of each axis of a report, rms, m.
+    /// Assumed position noise of a report, rms of each axis, m.
     pub position_noise_m: f64,
-    /// Noise about each axis of a report, rms, degrees.
+    /// Assumed orientation noise of a report, rms about each axis, degrees.
     pub orientation_noise_deg: f64,
     /// Root of the spectral density of the white jerk of positions, m/s^3/sqrt(Hz).
     pub position_jerk: f64,
-    /// The same of orientations, rad/s^3/sqrt(Hz).
+    /// Root of the spectral density of the white jerk of orientations, rad/s^3/sqrt(Hz).
     pub orientation_jerk: f64,
-    /// Longest prediction, ps; beyond it the last pose is given.
+    /// Longest prediction, ps. Beyond this horizon the predictor returns the last pose.
     pub horizon_ps: u64,
-    /// What Kalman filters believe of the head before the first report.
+    /// Assumptions of Kalman filters about the motion before the first report.
     #[serde(default)]
     pub start: Start,
-    /// Which reports are believed.
+    /// Limits by which the predictor accepts or rejects reports.
     #[serde(default = "usual_gate")]
     pub gate: table::Gate,
 }
 
-/// Standard deviations at the start of a filter, of a head at rest.
+/// Standard deviations that a Kalman filter assumes at its start, about a mean of rest.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Start {
-    /// Of the speed, m/s.
+    /// Standard deviation of the speed, m/s.
     pub speed: f64,
-    /// Of the acceleration, m/s^2.
+    /// Standard deviation of the acceleration, m/s^2.
     pub acceleration: f64,
-    /// Of the angular velocity, rad/s.
+    /// Standard deviation of the angular velocity, rad/s.
     pub turn: f64,
-    /// Of the angular acceleration, rad/s^2.
+    /// Standard deviation of the angular acceleration, rad/s^2.
     pub turn_acceleration: f64,
 }
 
@@ -107,12 +107,12 @@ const fn usual_gate() -> table::Gate {
 }
 
 impl PredictorConfig {
-    /// A filter that knows the noise of this tracker.
+    /// Returns settings of a predictor that assumes the noise of this tracker.
     pub fn for_tracker(kind: PredictorKind, tracker: &TrackerConfig) -> Self {
         Self::for_tracker_by(&table::Tables::PAPERS, kind, tracker)
     }
 
-    /// The same with the numbers of these tables.
+    /// Returns the settings of [`Self::for_tracker`] with numbers from these tables.
     pub fn for_tracker_by(tables: &table::Tables, kind: PredictorKind, tracker: &TrackerConfig) -> Self {
         let filter = &tables.filter;
         Self {
@@ -129,7 +129,11 @@ impl PredictorConfig {
         }
     }
 
-    /// Checks the settings and builds the filter.
+    /// Checks the settings and builds the predictor.
+    ///
+    /// # Errors
+    ///
+    /// [`SettingError`] if a setting is out of range.
     pub fn build(&self) -> Result<Box<dyn Predictor>, SettingError> {
         self.check()?;
         Ok(match self.kind {
@@ -148,7 +152,7 @@ impl PredictorConfig {
         Ok(())
     }
 
-    /// The numbers of the table, as they are set here, with one of the baselines.
+    /// Returns these settings as a parameter table, with one of the two baselines.
     pub(crate) fn filter(&self, baseline: u32) -> table::Filter {
         table::Filter {
             position_jerk: self.position_jerk,
@@ -172,6 +176,7 @@ impl PredictorConfig {
     }
 
     fn kalman(&self) -> Box<dyn Predictor> {
+        // Settings have standard deviations, filters need variances.
         let position = Belief {
             measurement: square(self.position_noise_m),
             jerk: square(self.position_jerk),
@@ -191,7 +196,7 @@ impl PredictorConfig {
     }
 }
 
-/// A product, not a power: how those are rounded is left to the host.
+/// Returns `x * x`. Hosts may round a power function differently, but not a product.
 fn square(x: f64) -> f64 {
     x * x
 }

@@ -4,10 +4,10 @@ use crate::motion::Motion;
 use crate::pose::Pose;
 use crate::tracker::TrackerModel;
 
-/// How far predictions were from the truth.
+/// Errors of predicted poses against the true motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PredictionError {
-    /// Number of predictions that the other figures are over.
+    /// Number of evaluated predictions.
     pub n: u64,
     /// Mean distance between predicted and true position, m.
     pub mean_m: f64,
@@ -31,8 +31,12 @@ impl PredictionError {
     }
 }
 
-/// Errors of a predictor for each of `horizons_ps`, counted from the instant at which the last report was true, over
-/// the reports true in [from, until).
+/// Computes the errors of a predictor for each horizon, over the reports whose orientation was true in [from, until). A
+/// horizon counts from the instant at which the last report was true.
+///
+/// # Errors
+///
+/// [`SettingError`] if a setting of `config` is out of range.
 pub fn prediction_errors<M: Motion + ?Sized>(
     motion: &M,
     tracker: &TrackerModel,
@@ -43,6 +47,7 @@ pub fn prediction_errors<M: Motion + ?Sized>(
 ) -> Result<Vec<PredictionError>, SettingError> {
     let mut predictor: Box<dyn Predictor> = config.build()?;
     let mut errors = vec![PredictionError::default(); horizons_ps.len()];
+    // Reports before `from_ps` only warm up the filter.
     for report in tracker.reports(motion, seed).take_while(|r| r.measured_ps < until_ps) {
         predictor.observe(&report);
         if report.measured_ps < from_ps {

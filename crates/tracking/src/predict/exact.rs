@@ -7,10 +7,10 @@ use crate::motion::Motion;
 use crate::pose::Pose;
 use crate::tracker::TrackerReport;
 
-/// Knows how the head moves, but not where it is: the newest report, carried on by the true motion.
+/// A predictor that knows the true motion but not the true pose: it moves the newest report along the true motion.
 ///
-/// No machine has it. It is what all other predictors are measured against: what is wrong with its poses is wrong with the
-/// report, not with the prediction.
+/// No real machine has this knowledge. The predictor is a reference for all others: the errors of its poses come from
+/// the reports alone, not from the prediction.
 #[derive(Clone, Debug)]
 pub struct ExactPredictor<M> {
     motion: M,
@@ -19,7 +19,7 @@ pub struct ExactPredictor<M> {
 }
 
 impl<M: Motion> ExactPredictor<M> {
-    /// For a head that moves so, believing the reports that a gate lets through.
+    /// Creates a predictor for this motion, with the limits of a gate for the reports.
     pub fn new(motion: M, gate: table::Gate) -> Self {
         Self { motion, gate: Gate::new(gate), newest: None }
     }
@@ -37,6 +37,7 @@ impl<M: Motion + Send> Predictor for ExactPredictor<M> {
         let moved = self.motion.pose(at_ps);
         let place = self.motion.pose(report.position_measured_ps).position;
         let attitude = self.motion.pose(report.measured_ps).orientation;
+        // The errors of the report stay constant along the true motion.
         let wrong: DQuat = report.pose.orientation * attitude.conjugate();
         Pose {
             position: moved.position + (report.pose.position - place),

@@ -5,24 +5,24 @@ use glam::DVec3;
 use super::channel::{Channel, Movable};
 use crate::time::span_s;
 
-/// Highest derivative that an extrapolation uses.
+/// The highest derivative that an extrapolation uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Order {
-    /// None: the last value is the prediction.
+    /// No derivative: the prediction is the last value.
     Zeroth,
-    /// The first: the velocity stays.
+    /// The first derivative: velocity stays constant.
     First,
-    /// The second: the acceleration stays.
+    /// The second derivative: acceleration stays constant.
     Second,
 }
 
-/// The Newton polynomial through the last value and one or two earlier ones, `baseline` reports apart. It is exact for
-/// motions of its order, whatever the times of the reports.
+/// The Newton polynomial through the last value and one or two earlier values, `baseline` reports apart. The
+/// extrapolation is exact for motions of its order, even if the reports are not evenly spaced.
 #[derive(Clone, Debug)]
 pub(super) struct Extrapolation<T> {
     order: Order,
     baseline: usize,
-    /// Newest first, never empty.
+    /// Past times (ps) and values, the newest first. The queue is never empty.
     past: VecDeque<(u64, T)>,
 }
 
@@ -31,7 +31,7 @@ impl<T: Movable> Extrapolation<T> {
         Self { order, baseline, past: VecDeque::from([(0, start)]) }
     }
 
-    /// Time (s, negative) and offset of an earlier value, both from the newest.
+    /// Returns time (s, negative) and offset of an earlier value, relative to the newest value.
     fn point(&self, age: usize) -> (f64, DVec3) {
         let (newest_ps, newest) = self.past[0];
         let (t_ps, value) = self.past[age];
@@ -47,6 +47,7 @@ impl<T: Movable> Extrapolation<T> {
         let oldest = (2 * self.baseline).min(self.past.len() - 1);
         let (t1, offset1) = self.point(oldest / 2);
         let (t2, offset2) = self.point(oldest);
+        // Newton's divided differences with the newest value at the origin.
         let slope = offset1 / t1;
         let curvature = ((offset2 - offset1) / (t2 - t1) - slope) / t2;
         slope * dt_s + curvature * (dt_s * (dt_s - t1))
@@ -81,7 +82,7 @@ mod tests {
     use crate::time::PS_PER_MS;
     use glam::DQuat;
 
-    /// Uneven times, in ms.
+    /// Uneven times of reports, ms.
     const TIMES: [u64; 7] = [0, 3, 11, 12, 20, 31, 33];
 
     fn fed<T: Movable>(order: Order, baseline: usize, value: impl Fn(f64) -> T) -> Extrapolation<T> {

@@ -1,52 +1,54 @@
-//! What prediction by derivatives does to a sinusoidal motion, in closed form.
+//! The effect of prediction by derivatives on a sinusoidal motion, in closed form.
 //!
-//! Predicting x = e^(j w t) by p seconds with exact derivatives multiplies it by a gain G(w p); perfect prediction would
-//! multiply it by e^(j w p). The arguments below are w p in radians: 2 pi x frequency x prediction time.
+//! A prediction of x = e^(j w t) by p seconds with exact derivatives multiplies x by a gain G(w p). A perfect
+//! prediction multiplies it by e^(j w p). The arguments of the functions are w p in radians: 2 pi x frequency x
+//! prediction time.
 
-/// The complex number by which a prediction multiplies a sinusoid e^(j w t); without unit.
+/// The complex number by which a prediction multiplies a sinusoid e^(j w t), without unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gain {
-    /// Real part: what stays in phase with the motion.
+    /// Real part: the component in phase with the motion.
     pub re: f64,
-    /// Imaginary part: what leads the motion by a quarter of its period.
+    /// Imaginary part: the component that leads the motion by a quarter of its period.
     pub im: f64,
 }
 
 impl Gain {
-    /// How many times larger the predicted amplitude is than the true one.
+    /// Returns the ratio of the predicted amplitude to the true amplitude.
     pub fn magnitude(self) -> f64 {
         libm::hypot(self.re, self.im)
     }
 
-    /// By how much the prediction leads the motion, radians, -pi to pi.
+    /// Returns the phase by which the prediction leads the motion, radians, -pi to pi.
     pub fn phase(self) -> f64 {
         libm::atan2(self.im, self.re)
     }
 }
 
-/// Perfect prediction, e^(j w p).
+/// Returns the gain of a perfect prediction, e^(j w p).
 pub fn perfect(wp: f64) -> Gain {
     let (im, re) = libm::sincos(wp);
     Gain { re, im }
 }
 
-/// No prediction: 1 for every w p, since the last report is shown as it is.
+/// Returns the gain without prediction: 1 for every w p, because the last report is shown unchanged.
 pub fn none(_wp: f64) -> Gain {
     Gain { re: 1.0, im: 0.0 }
 }
 
-/// x + v p: 1 + j w p.
+/// Returns the gain of x + v p: 1 + j w p.
 pub fn constant_velocity(wp: f64) -> Gain {
     Gain { re: 1.0, im: wp }
 }
 
-/// x + v p + a p^2 / 2: 1 + j w p - (w p)^2 / 2, magnitude sqrt(1 + (w p)^4 / 4).
+/// Returns the gain of x + v p + a p^2 / 2: 1 + j w p - (w p)^2 / 2. The magnitude of this gain is sqrt(1 + (w p)^4 /
+/// 4).
 pub fn constant_acceleration(wp: f64) -> Gain {
     Gain { re: 1.0 - wp * wp / 2.0, im: wp }
 }
 
-/// Error relative to the motion's amplitude, |e^(j w p) - G|: 2 sin(w p / 2) without prediction, about (w p)^2 / 2 and
-/// (w p)^3 / 6 with the first and the second order.
+/// Returns the error relative to the motion's amplitude, |e^(j w p) - G|. Without prediction it is 2 sin(w p / 2). The
+/// first order gives about (w p)^2 / 2, and the second order about (w p)^3 / 6.
 pub fn relative_error(gain: fn(f64) -> Gain, wp: f64) -> f64 {
     let wanted = perfect(wp);
     let got = gain(wp);
@@ -58,7 +60,7 @@ mod tests {
     use super::*;
     use core::f64::consts::TAU;
 
-    /// Frequency (Hz), prediction (s), published errors of no, first-order and second-order prediction.
+    /// Frequency (Hz), prediction (s), and the published errors of no, first-order and second-order prediction.
     const PUBLISHED: [(f64, f64, [f64; 3]); 4] = [
         (1.0, 0.05, [0.313, 0.049, 0.005]),
         (1.0, 0.10, [0.618, 0.195, 0.041]),

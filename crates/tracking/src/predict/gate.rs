@@ -3,25 +3,27 @@ use crate::pose::Pose;
 use crate::time::span_s;
 use crate::tracker::TrackerReport;
 
-/// How far the squared length of a reported quaternion may be from 1.
+/// Greatest difference between the squared length of a reported quaternion and 1.
 const LENGTH_TOLERANCE: f64 = 1e-3;
 
-/// What became of the reports that a predictor was given.
+/// Counts of the reports that a predictor received, by its decision.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ReportCounts {
-    /// Believed, and given to the filters.
+    /// Accepted reports, which reached the filters.
     pub accepted: u64,
-    /// Rejected: NaN, infinite, or not a unit quaternion.
+    /// Rejected reports with NaN, infinity or a quaternion that is not of unit length.
     pub malformed: u64,
-    /// Rejected: not newer than the report before, or nearer to it than 50 us.
+    /// Rejected reports that are not newer than the report before, or follow it by less than [`table::Gate`]'s
+    /// `interval`.
     pub untimely: u64,
-    /// Rejected: faster than a head moves.
+    /// Rejected reports that imply a motion faster than a head can move.
     pub jumps: u64,
-    /// Starts afresh: the first report, the first after a gap of 250 ms, and the one that confirmed a jump.
+    /// Accepted reports that restarted the filters: the first report, the first after a gap, and one that confirmed a
+    /// jump.
     pub restarts: u64,
 }
 
-/// What to do with a report.
+/// The gate's decision about a report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
     Reject,
@@ -29,7 +31,7 @@ pub(super) enum Verdict {
     Restart,
 }
 
-/// Decides which reports can be true. It keeps no secrets: every decision is counted.
+/// The gate that decides which reports are possible and counts every decision.
 #[derive(Clone, Debug)]
 pub(super) struct Gate {
     limits: table::Gate,
@@ -60,6 +62,7 @@ impl Gate {
             return Verdict::Reject;
         }
         let Some(last) = self.last else { return Verdict::Restart };
+        // Position and orientation have times of their own. The shorter of the two spans limits the possible motion.
         let dt_s = span_s(last.measured_ps, report.measured_ps)
             .min(span_s(last.position_measured_ps, report.position_measured_ps));
         if dt_s < self.limits.interval / 1e3 {

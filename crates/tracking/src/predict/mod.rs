@@ -1,4 +1,4 @@
-//! Where the head will be: predictors that are told the exact time to predict for.
+//! Prediction of the head's pose at an exact future instant.
 
 mod channel;
 mod config;
@@ -21,15 +21,15 @@ pub use tune::{Training, Tuned, training_seed, tune};
 use crate::pose::Pose;
 use crate::tracker::TrackerReport;
 
-/// Something that turns late reports into a pose at a wanted instant.
+/// A predictor, which turns late reports into a pose at a wanted instant.
 pub trait Predictor: Send {
-    /// Takes a report in order of arrival. Reports that cannot be true are rejected and counted, never an error.
+    /// Adds a report, in order of arrival. Impossible reports are rejected and counted, and cause no error.
     fn observe(&mut self, report: &TrackerReport);
 
-    /// The pose at `at_ps`. Before the first accepted report it is [`Pose::IDENTITY`]; farther from the last report
-    /// than the horizon of the configuration it is the last pose, as when the tracker has fallen silent.
+    /// Returns the predicted pose at `at_ps`. Before the first accepted report the result is [`Pose::IDENTITY`]. If the
+    /// last report is farther away than the horizon of the settings, the result is the last pose.
     fn predict(&self, at_ps: u64) -> Pose;
 
-    /// What became of the reports so far.
+    /// Returns the counts of accepted and rejected reports so far.
     fn counts(&self) -> ReportCounts;
 }

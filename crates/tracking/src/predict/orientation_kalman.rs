@@ -5,11 +5,12 @@ use super::position_kalman::{Belief, symmetric, white_jerk};
 use crate::rotation;
 use crate::time::span_s;
 
-/// Longest turn between two reports, rad, for which the first order of a turn stands for the turn. A peak turn (LIST83)
-/// at 120 Hz is 0.05.
+/// Longest turn between two reports, rad, for which a first-order approximation of the turn is used. A peak turn
+/// (LIST83) at 120 Hz is 0.05 rad.
 const LARGEST_LINEAR_TURN: f64 = 1.0;
 
-/// The covariance of (rotation error, angular velocity, angular acceleration), 9 x 9, as its six different blocks.
+/// The covariance of (rotation error, angular velocity, angular acceleration): 9 x 9, stored as its six distinct
+/// blocks.
 #[derive(Clone, Copy, Debug)]
 struct Covariance {
     angle: DMat3,
@@ -22,8 +23,8 @@ struct Covariance {
 
 /// Extended Kalman filter with state [q, omega, domega], driven by white angular jerk.
 ///
-/// The error of the quaternion is a world-frame rotation vector (the multiplicative form), so the covariance is 9 x 9
-/// and regular, and the quaternion keeps its length. omega (rad/s) and domega (rad/s^2) are in the world frame.
+/// The error of the quaternion is a world-frame rotation vector (the multiplicative form). The covariance is therefore
+/// 9 x 9 and regular, and the quaternion keeps its length. omega (rad/s) and domega (rad/s^2) are in the world frame.
 #[derive(Clone, Debug)]
 pub(super) struct OrientationKalman {
     belief: Belief,
@@ -46,8 +47,8 @@ impl OrientationKalman {
         }
     }
 
-    /// The rotation vector of `dt` seconds of steady angular acceleration: the first two terms of Magnus' series. The
-    /// second is there because the axis turns.
+    /// Returns the rotation vector after `dt` seconds of constant angular acceleration: the first two terms of the
+    /// Magnus series. The second term accounts for the turning axis.
     fn turn(&self, dt: f64) -> DVec3 {
         let sideways = self.rate.cross(self.acceleration) * (dt * dt * dt / 12.0);
         self.rate * dt + self.acceleration * (dt * dt / 2.0) - sideways
@@ -83,13 +84,14 @@ impl Covariance {
         }
     }
 
-    /// F P F^T + Q with F = [R, A, B; 0, 1, dt; 0, 0, 1]: R turns old errors along with the head; A and B are the
-    /// integrals of the errors of rate and acceleration, turned by what is left of `turn`, to its first order.
+    /// Computes F P F^T + Q with F = [R, A, B; 0, 1, dt; 0, 0, 1]. R rotates old errors with the head. A and B
+    /// integrate the errors of rate and acceleration, rotated by the rest of `turn`, to first order in `turn`.
     fn predict(&mut self, turn: DVec3, dt: f64, jerk: f64) {
         let r = DMat3::from_quat(rotation::exp(turn));
         let small = turn.clamp_length_max(LARGEST_LINEAR_TURN);
         let a = (DMat3::IDENTITY + cross(small / 2.0)) * dt;
         let b = (DMat3::IDENTITY + cross(small / 3.0)) * (dt * dt / 2.0);
+        // The first block row of F P. The other two rows follow from rate and acceleration alone.
         let to_angle = r * self.angle + a * self.angle_rate.transpose() + b * self.angle_acceleration.transpose();
         let to_rate = r * self.angle_rate + a * self.rate + b * self.rate_acceleration.transpose();
         let to_acceleration = r * self.angle_acceleration + a * self.rate_acceleration + b * self.acceleration;
@@ -104,12 +106,13 @@ impl Covariance {
         self.acceleration += isotropic(q.z_axis.z);
     }
 
-    /// S^-1 times a surprise; S = P + r 1.
+    /// Returns S^-1 times a surprise, with S = P + r 1.
     fn weigh(&self, surprise: DVec3, measurement: f64) -> DVec3 {
         (self.angle + isotropic(measurement)).inverse() * surprise
     }
 
-    /// P - P H^T S^-1 H P. In the rows of the angle 1 - P S^-1 is written as r S^-1, which cannot lose its sign.
+    /// Computes P - P H^T S^-1 H P. In the rows of the angle, 1 - P S^-1 is written as r S^-1, which keeps its sign
+    /// under rounding.
     fn correct(&mut self, measurement: f64) {
         let inverse = symmetric((self.angle + isotropic(measurement)).inverse());
         let rate_gain = self.angle_rate.transpose() * inverse;
@@ -140,12 +143,12 @@ impl Channel<DQuat> for OrientationKalman {
     }
 }
 
-/// The covariance of three independent axes of this variance.
+/// Returns the covariance of three independent axes with this variance.
 fn isotropic(variance: f64) -> DMat3 {
     DMat3::from_diagonal(DVec3::splat(variance))
 }
 
-/// The matrix of a cross product with `v` on the left.
+/// Returns the matrix of the cross product with `v` on the left.
 fn cross(v: DVec3) -> DMat3 {
     DMat3::from_cols(DVec3::new(0.0, v.z, -v.y), DVec3::new(-v.z, 0.0, v.x), DVec3::new(v.y, -v.x, 0.0))
 }

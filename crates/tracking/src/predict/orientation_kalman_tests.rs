@@ -7,7 +7,7 @@ type Matrix9 = SMatrix<f64, 9, 9>;
 
 const BELIEF: Belief = Belief { measurement: 6.9e-6, jerk: 1e4, start: (4.0, 400.0) };
 
-/// The blocks as one dense matrix of another library.
+/// Returns the covariance as one dense matrix of another library.
 fn dense(c: &Covariance) -> Matrix9 {
     let blocks = [
         [c.angle, c.angle_rate, c.angle_acceleration],
@@ -34,7 +34,8 @@ fn turning() -> OrientationKalman {
     filter
 }
 
-/// The state after `dt`, by many small steps of the differential equation: an independent propagation.
+/// Returns the orientation after `dt`, computed by many small steps of the differential equation: an independent
+/// propagation.
 fn integrate(filter: &OrientationKalman, dt: f64) -> DQuat {
     let n = 20_000;
     let h = dt / f64::from(n);
@@ -57,7 +58,7 @@ fn extrapolation_solves_the_differential_equation_of_a_turning_axis() {
     assert!(rotation::angle_deg(without, integrate(&filter, 0.1)) > 0.1, "the second term is needed");
 }
 
-/// F by differences of the propagation itself.
+/// Returns the matrix F, computed by differences of the propagation.
 fn jacobian(filter: &OrientationKalman, dt: f64) -> Matrix9 {
     let step = 1e-6;
     let end = filter.extrapolate(dt);
@@ -137,7 +138,7 @@ proptest! {
     }
 }
 
-/// A pan of 3.5 rad/s, `t` in seconds.
+/// Returns the orientation of a pan at 3.5 rad/s. `t` is in seconds.
 fn pan(t: f64) -> DQuat {
     rotation::about_y(3.5 * t)
 }
@@ -146,7 +147,7 @@ fn pan(t: f64) -> DQuat {
 fn a_pan_through_180_degrees_is_followed_for_turns() {
     let mut filter = OrientationKalman::new(Belief { measurement: 1e-10, ..BELIEF });
     for i in 1..=1200u64 {
-        // Alternate signs: the double cover must not matter.
+        // The signs of the quaternions alternate, which must not matter.
         let q = pan(i as f64 / 120.0);
         filter.update(i * PS_PER_S / 120, if i % 2 == 0 { -q } else { q });
         if i > 120 {

@@ -3,19 +3,19 @@ use glam::{DMat3, DVec3};
 use super::channel::Channel;
 use crate::time::span_s;
 
-/// What the filter believes about noise.
+/// Assumptions of a filter about noise.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Belief {
-    /// Variance of each axis of a measurement.
+    /// Variance of the measurement noise of each axis.
     pub(super) measurement: f64,
-    /// Spectral density of the white jerk.
+    /// Spectral density of the white jerk of the motion.
     pub(super) jerk: f64,
     /// Variances of velocity and acceleration at the start.
     pub(super) start: (f64, f64),
 }
 
-/// Growth over `dt` of the covariance of value, velocity and acceleration under white jerk of density 1:
-/// the integral of (s^2/2, s, 1)(s^2/2, s, 1)^T over s.
+/// Returns the growth over `dt` of the covariance of value, velocity and acceleration under white jerk of density 1.
+/// The growth is the integral of (s^2/2, s, 1)(s^2/2, s, 1)^T over s.
 pub(super) fn white_jerk(dt: f64) -> DMat3 {
     let d2 = dt * dt;
     let d3 = dt * dt * dt;
@@ -26,8 +26,8 @@ pub(super) fn white_jerk(dt: f64) -> DMat3 {
     )
 }
 
-/// Linear Kalman filter with state [p, v, a] for each axis, driven by white jerk. The axes share noise and times and
-/// so one covariance.
+/// Linear Kalman filter with state [p, v, a] for each axis, driven by white jerk. The axes have the same noise and
+/// times, so they share one covariance.
 #[derive(Clone, Debug)]
 pub(super) struct PositionKalman {
     belief: Belief,
@@ -54,7 +54,7 @@ impl PositionKalman {
         self.covariance = symmetric(step * self.covariance * step.transpose() + white_jerk(dt) * self.belief.jerk);
     }
 
-    /// In Joseph's form, which keeps the covariance positive definite whatever the rounding.
+    /// Corrects state and covariance in Joseph's form, which keeps the covariance positive definite under any rounding.
     fn correct(&mut self, measured: DVec3) {
         let column = self.covariance.x_axis;
         let gain = column / (column.x + self.belief.measurement);
@@ -89,7 +89,7 @@ impl Channel<DVec3> for PositionKalman {
     }
 }
 
-/// The symmetric part of a covariance: takes away what rounding has made unsymmetric.
+/// Returns the symmetric part of a covariance, which removes the asymmetry caused by rounding.
 pub(super) fn symmetric(m: DMat3) -> DMat3 {
     (m + m.transpose()) * 0.5
 }
@@ -168,8 +168,8 @@ mod tests {
 
     #[test]
     fn after_an_hour_the_error_is_still_that_of_the_covariance() {
-        // A still head: errors over the last minute have the deviation that the filter claims, or less, since it
-        // expects jerks that do not come.
+        // The head is still. Errors over the last minute have at most the deviation that the filter claims, because the
+        // filter expects jerks that do not occur.
         let mut filter = PositionKalman::new(BELIEF);
         let mut squares = 0.0;
         for i in 1..=432_000u64 {

@@ -14,7 +14,7 @@ pub(super) struct GatedFilters<P, O> {
     gate: Gate,
     position: P,
     orientation: O,
-    /// Stamps of position and orientation; `None` before the first report.
+    /// Time stamps of the newest position and orientation, or `None` before the first report.
     newest_ps: Option<(u64, u64)>,
     horizon_s: f64,
 }
@@ -24,7 +24,8 @@ impl<P, O> GatedFilters<P, O> {
         Self { gate: Gate::new(limits), position, orientation, newest_ps: None, horizon_s }
     }
 
-    /// Seconds to extrapolate; beyond the horizon none, since the last pose is the best guess then.
+    /// Returns the seconds to extrapolate. Beyond the horizon the result is 0, because the last pose is the best
+    /// estimate then.
     fn ahead(&self, newest_ps: u64, at_ps: u64) -> f64 {
         let dt_s = span_s(newest_ps, at_ps);
         if dt_s.abs() <= self.horizon_s { dt_s } else { 0.0 }
@@ -34,6 +35,7 @@ impl<P, O> GatedFilters<P, O> {
 impl<P: Channel<DVec3>, O: Channel<DQuat>> Predictor for GatedFilters<P, O> {
     fn observe(&mut self, report: &TrackerReport) {
         let stamps = (report.position_measured_ps, report.measured_ps);
+        // The gate accepts quaternions of nearly unit length.
         let orientation = report.pose.orientation.normalize();
         match self.gate.judge(report) {
             Verdict::Reject => return,

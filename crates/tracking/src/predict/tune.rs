@@ -9,67 +9,72 @@ use crate::pose::Pose;
 use crate::time::{PS_PER_S, span_s};
 use crate::tracker::{TrackerModel, TrackerReport};
 
-/// Seconds of motion that a filter is tuned on, and of these the first that are not judged. Lively spells are rare: with 20 seconds
-/// a filter tuned for 200 ms was worse there, on other motion, than one tuned for 50 ms.
+/// Seconds of motion for tuning a filter, and the length of its beginning that is not evaluated. Lively spells are
+/// rare: with 20 seconds, a filter tuned for 200 ms was worse at 200 ms on another motion than a filter tuned for 50
+/// ms.
 const TRAINING_S: u64 = 100;
 const SETTLING_S: u64 = 1;
 
-/// Most reports that it is tuned on: all of a tracker of 120 Hz; a faster one is heard for a shorter time.
+/// Greatest number of reports for tuning: all reports of a 120 Hz tracker in the training time. A faster tracker gets
+/// less time.
 const MOST_REPORTS: usize = 12_000;
 
-/// Seed of the noise in training; the next one where this is the seed that is judged.
+/// Seed of the noise in training. If the evaluated run uses this seed, training uses the next seed.
 const TRAINING_SEED: u64 = 0x7475_6e65;
 
-/// Decimal logarithms between which the white jerk is searched, and the values tried in each round of the search: a step of the
-/// last round is 0.2 decades, 8 % of the filter's time constant, which goes with the sixth root.
+/// Range of the decimal logarithm in the search for the white jerk, and the number of values in each round. A step of
+/// the last round is 0.2 decades or less. This is 8 % of the filter's time constant, which varies with the sixth root
+/// of the jerk.
 const JERK_DECADES: (f64, f64) = (-6.0, 6.0);
 const JERKS_A_ROUND: usize = 13;
 const ROUNDS: usize = 2;
 
-/// Most reports between the points of a difference.
+/// Greatest distance in reports between the points of a difference.
 const LONGEST_BASELINE: u32 = 16;
 
-/// On what a filter was tuned.
+/// The conditions under which a filter was tuned, and the remaining errors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Training {
-    /// How far ahead it was asked, ps, from the instant at which a report was true.
+    /// Prediction interval, ps, from the instant at which a report was true.
     pub interval_ps: u64,
-    /// Whether it was another motion of the same kind; else the motion itself.
+    /// True if another motion of the same kind was used, false if the motion itself was used.
     pub sibling: bool,
-    /// Seconds of motion, the first of them to settle.
+    /// Length of the motion, seconds. The first second at most is not evaluated.
     pub seconds: f64,
-    /// Reports whose predictions were judged.
+    /// Number of reports whose predictions were evaluated.
     pub reports: u64,
-    /// Seed of the tracker's noise, never the one that is judged.
+    /// Seed of the tracker's noise, which always differs from the seed of the evaluated run.
     pub seed: u64,
-    /// Mean distance between prediction and truth that is left, m.
+    /// Remaining mean distance between prediction and truth, m.
     pub mean_m: f64,
-    /// Mean angle between prediction and truth that is left, degrees.
+    /// Remaining mean angle between prediction and truth, degrees.
     pub mean_deg: f64,
 }
 
-/// A predictor with the numbers that were found, and on what.
+/// A tuned predictor, with the conditions of the tuning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuned {
-    /// The predictor with the numbers that were found.
+    /// Settings of the predictor with the tuned numbers.
     pub config: PredictorConfig,
-    /// On what it was tuned; `None` where there was nothing to tune, or nothing to tune it on.
+    /// Conditions of the tuning, or `None` if the predictor has nothing to tune or no report could be evaluated.
     pub training: Option<Training>,
 }
 
-/// The seed of the noise on which a filter is tuned whose noise of this seed is judged.
+/// Returns the seed of the training noise for a run whose noise has the seed `judged`. The two seeds always differ.
 pub fn training_seed(judged: u64) -> u64 {
     if judged == TRAINING_SEED { TRAINING_SEED + 1 } else { TRAINING_SEED }
 }
 
-/// The numbers with which a predictor has the least mean error `interval_ps` ahead of a tracker's reports of a motion.
+/// Finds the settings with the least mean error for predictions `interval_ps` after a tracker's reports of a motion.
 ///
-/// What is searched is, for position and orientation each, the white jerk of a Kalman filter (between 10^-6 and 10^6, in two rounds
-/// over a grid of its logarithm) or the baseline of a difference (all from 1 to 16 reports). The noise of reports is the
-/// tracker's own, and the speeds and accelerations that a Kalman filter believes in at its start are the motion's root mean
-/// squares. It is tuned on 100 seconds of the motion's [`Motion::sibling`], or of the motion where it has none, behind the tracker
-/// without bias, metal and faults, with noise of another seed than `judged_seed`. One (motion, tracker, interval) gives one
-/// result on every host.
+/// For a Kalman filter the search covers the white jerk: 10^-6 to 10^6, in two rounds over a grid of its logarithm. For
+/// a difference it covers the baseline, 1 to 16 reports. Position and orientation have separate values. The noise of
+/// reports is the tracker's own. The initial speeds and accelerations of a Kalman filter are the root mean squares of
+/// the motion.
+///
+/// Training uses 100 seconds of the motion's [`Motion::sibling`], or of the motion itself if it has no sibling. The
+/// tracker has no bias, metal or faults, and its noise has another seed than `judged_seed`. The same (motion, tracker,
+/// interval) gives the same result on every host.
 ///
 /// # Errors
 ///
@@ -81,9 +86,11 @@ pub fn tune<M: Motion + ?Sized>(
     base: &PredictorConfig,
     judged_seed: u64,
 ) -> Result<Tuned, SettingError> {
+    // Check the settings before the long search.
     base.build()?;
     let seed = training_seed(judged_seed);
     let tracker = TrackerModel::new(tracker.config().clone().without_systematic_errors())?;
+    // Collect reports and true poses of another motion of the same kind, if there is one.
     let sibling = motion.sibling();
     let lesson = match &sibling {
         Some(sibling) => Lesson::of(sibling.as_ref(), &tracker, interval_ps, seed),
@@ -92,6 +99,7 @@ pub fn tune<M: Motion + ?Sized>(
     let Some(lesson) = lesson.filter(|_| base.kind != PredictorKind::None) else {
         return Ok(Tuned { config: *base, training: None });
     };
+    // Search the parameter that this kind of predictor has.
     let (config, [mean_m, mean_deg]) = match base.kind {
         PredictorKind::Kalman => lesson.best_jerks(&lesson.with_start(*base))?,
         _ => lesson.best_baselines(base)?,
@@ -102,21 +110,21 @@ pub fn tune<M: Motion + ?Sized>(
     Ok(Tuned { config, training: Some(training) })
 }
 
-/// Reports, and what would have been right to predict from each.
+/// The training data: reports, and the true pose to predict from each report.
 struct Lesson {
     reports: Vec<TrackerReport>,
     truths: Vec<Pose>,
-    /// Reports at the start whose predictions are not judged.
+    /// Number of reports at the start whose predictions are not evaluated.
     settled: usize,
     seconds: f64,
-    /// Instants of the predictions.
+    /// Prediction interval, ps, after the instant of a report.
     interval_ps: u64,
-    /// Root mean squares a axis: speed, acceleration, angular velocity, angular acceleration.
+    /// Root mean squares for each axis: speed, acceleration, angular velocity, angular acceleration.
     rates: [f64; 4],
 }
 
 impl Lesson {
-    /// Of a motion behind a tracker; `None` where no report could be judged.
+    /// Collects the training data of a motion behind a tracker, or returns `None` if no report can be evaluated.
     fn of<M: Motion + ?Sized>(motion: &M, tracker: &TrackerModel, interval_ps: u64, seed: u64) -> Option<Self> {
         let until_ps = motion.moves_until_ps().unwrap_or(u64::MAX).min(TRAINING_S * PS_PER_S);
         let settling_ps = (SETTLING_S * PS_PER_S).min(until_ps / 2);
@@ -131,7 +139,7 @@ impl Lesson {
         Some(Self { truths, settled, seconds, interval_ps, rates, reports })
     }
 
-    /// A filter that expects at its start what the motion does.
+    /// Returns the settings with initial deviations that match the motion.
     fn with_start(&self, base: PredictorConfig) -> PredictorConfig {
         let [speed, acceleration, turn, turn_acceleration] = self.rates;
         let start = Start {
@@ -143,7 +151,7 @@ impl Lesson {
         PredictorConfig { start, ..base }
     }
 
-    /// Mean errors of a predictor: metres and degrees.
+    /// Returns the mean errors of a predictor in metres and degrees.
     fn errors(&self, config: &PredictorConfig) -> Result<[f64; 2], SettingError> {
         let mut predictor = config.build()?;
         let mut sums = [0.0; 2];
@@ -158,11 +166,13 @@ impl Lesson {
         Ok(sums.map(|sum| sum / (self.reports.len() - self.settled) as f64))
     }
 
-    /// The white jerks with the least errors, and those.
+    /// Returns the settings with the best white jerks, and their errors in metres and degrees.
     fn best_jerks(&self, base: &PredictorConfig) -> Result<(PredictorConfig, [f64; 2]), SettingError> {
         let mut spans = [JERK_DECADES; 2];
         let mut best = [(f64::INFINITY, 0.0); 2];
         for _ in 0..ROUNDS {
+            // Both channels try one value each in the same run, because position and orientation are filtered
+            // separately.
             let steps = spans.map(|(low, high)| (high - low) / (JERKS_A_ROUND - 1) as f64);
             for i in 0..JERKS_A_ROUND {
                 let tried: [f64; 2] = core::array::from_fn(|channel| spans[channel].0 + steps[channel] * i as f64);
@@ -170,6 +180,7 @@ impl Lesson {
                 let errors = self.errors(&PredictorConfig { position_jerk, orientation_jerk, ..*base })?;
                 better(&mut best, errors, tried);
             }
+            // Narrow the next round to one step on each side of the best value.
             let about = |channel: usize| (best[channel].1 - steps[channel], best[channel].1 + steps[channel]);
             let clamped = |(low, high): (f64, f64)| (low.max(JERK_DECADES.0), high.min(JERK_DECADES.1));
             spans = [0, 1].map(|channel| clamped(about(channel)));
@@ -178,7 +189,7 @@ impl Lesson {
         Ok((PredictorConfig { position_jerk, orientation_jerk, ..*base }, best.map(|(error, _)| error)))
     }
 
-    /// The baselines with the least errors, and those.
+    /// Returns the settings with the best baselines, and their errors in metres and degrees.
     fn best_baselines(&self, base: &PredictorConfig) -> Result<(PredictorConfig, [f64; 2]), SettingError> {
         let mut best = [(f64::INFINITY, 1.0); 2];
         for baseline in 1..=LONGEST_BASELINE {
@@ -199,18 +210,19 @@ fn better(best: &mut [(f64, f64); 2], errors: [f64; 2], tried: [f64; 2]) {
     }
 }
 
-/// The white jerk of a decimal logarithm; both filters' jerks have the same limits.
+/// Returns the white jerk for a decimal logarithm. The jerks of both filters have the same limits.
 fn jerk(decades: f64) -> f64 {
     within("position_jerk", libm::pow(10.0, decades))
 }
 
-/// A number within the limits of the filter's table.
+/// Clamps a number to the limits of the filter's parameter table.
 fn within(name: &str, value: f64) -> f64 {
     let limits = Filter::INFOS.iter().find(|info| info.name == name).map(|info| info.limits);
     limits.map_or(value, |(low, high)| value.clamp(low.real(), high.real()))
 }
 
-/// Root mean squares, for one of three axes, of speed, acceleration, angular velocity and angular acceleration at the reports.
+/// Returns root mean squares at the reports, for one of three axes: speed, acceleration, angular velocity, angular
+/// acceleration.
 fn rates<M: Motion + ?Sized>(motion: &M, reports: &[TrackerReport]) -> [f64; 4] {
     let at =
         |report: &TrackerReport| (motion.velocity(report.measured_ps), motion.angular_velocity(report.measured_ps));

@@ -1,18 +1,20 @@
 use crate::tracker::TrackerReport;
 
-/// How the host finds the low point in the bob's positions. The paper does not say.
+/// The method by which the host detects the pendulum's low point in the reported positions. The paper does not state
+/// its method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detection {
-    /// The bob has passed the vertical. It is seen by the first report after the low point, 0 to 1 report late, and
-    /// noise of a millimetre hardly matters, since the bob is at its fastest.
+    /// The bob has crossed the vertical. The first report after the low point shows this, 0 to 1 report interval late.
+    /// Noise of a millimetre hardly matters, because the bob is fastest there.
     Crossing,
-    /// The vertical velocity, a difference of two reports, has turned from down to up: half a report to one and a half
-    /// late. The arc is flat there, so even 0.1 mm of noise gives wrong low points: for noiseless trackers.
+    /// The vertical velocity, a difference of two reports, has turned from down to up, half to one and a half report
+    /// intervals late. The arc is flat there, so even 0.1 mm of noise gives wrong low points. This method suits
+    /// trackers without noise.
     VelocitySign,
 }
 
 impl Detection {
-    /// How late, at most, the low point is seen, in halves of a report interval.
+    /// Returns the greatest delay of the detection, in halves of a report interval.
     pub(super) fn half_intervals_late(self) -> u64 {
         match self {
             Self::Crossing => 2,
@@ -25,7 +27,8 @@ impl Detection {
     }
 }
 
-/// Follows the reports. After a low point it is deaf for a quarter of a swing.
+/// A detector of low points in a sequence of reports. After each low point it ignores further ones for a quarter of a
+/// swing.
 #[derive(Clone, Debug)]
 pub(super) struct Detector {
     how: Detection,
@@ -40,6 +43,7 @@ impl Detector {
         if !report.pose.is_finite() {
             return false;
         }
+        // A crossing changes the sign of x. The velocity method compares the height with the last report's.
         let x = report.pose.position.x;
         let height = report.pose.position.y;
         let positive = match self.how {
@@ -52,6 +56,7 @@ impl Detector {
             (Detection::Crossing, Some((was, _))) => was != positive,
             (Detection::VelocitySign, Some((was, _))) => !was && positive,
         };
+        // Noise near the low point could trigger again, so a dead time follows each detection.
         let seen = turned && report.measured_ps >= self.dead_until_ps;
         if seen {
             self.dead_until_ps = report.measured_ps + self.dead_ps;

@@ -2,49 +2,49 @@ use super::{Detection, PendulumRig, ScopeTrace};
 use crate::time::{nearest_ps, span_s};
 use crate::tracker::TrackerModel;
 
-/// A low point as the host sees it: the report that shows it.
+/// The report by which the host detects a low point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sighting {
-    /// When the position that shows it was true, ps: what the report's time stamp says.
+    /// Time stamp of the report, ps: the instant at which its position was true.
     pub measured_ps: u64,
-    /// When the report reached the host, which starts a frame then, ps.
+    /// Instant at which the report reaches the host, ps. The host starts a frame at this instant.
     pub arrives_ps: u64,
 }
 
-/// What the system's own time stamps say of one pass.
+/// One pass of the bob, measured by the system's own time stamps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct InsidePass {
-    /// The host's sight of the low point.
+    /// Report by which the host detected the low point.
     pub sighting: Sighting,
-    /// When the frame that it asked for was started, ps.
+    /// Start of the frame that the low point requested, ps.
     pub started_ps: u64,
-    /// When that frame was shown, ps, as the pipeline counts it.
+    /// Instant at which the frame is shown according to the pipeline, ps.
     pub shown_ps: u64,
 }
 
-/// What the oscilloscope shows of one pass: nothing of it comes from the system's time stamps.
+/// One pass of the bob, measured on the oscilloscope without any time stamp of the system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutsidePass {
-    /// When the bob was lowest, ps.
+    /// Instant of the low point, ps.
     pub low_point_ps: u64,
-    /// The step of the D/A line, ps.
+    /// Instant of the step on the D/A line, ps.
     pub dac_ps: u64,
-    /// The step of the photodiode on the screen to the same level, ps.
+    /// Instant at which the photodiode on the screen steps to the level of the D/A line, ps.
     pub light_ps: u64,
 }
 
-/// A latency over all passes, seconds.
+/// Statistics of a latency over all passes, in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Latency {
-    /// Passes of the bob that it is over.
+    /// Number of passes of the bob.
     pub n: usize,
-    /// Mean over the passes, seconds.
+    /// Mean latency over the passes, seconds.
     pub mean_s: f64,
-    /// Standard deviation of the passes (divided by their number less one; of one pass not a number), seconds.
+    /// Sample standard deviation (division by n - 1), seconds, or NaN for a single pass.
     pub deviation_s: f64,
-    /// That of the fastest pass, seconds.
+    /// Latency of the fastest pass, seconds.
     pub least_s: f64,
-    /// That of the slowest pass, seconds.
+    /// Latency of the slowest pass, seconds.
     pub greatest_s: f64,
 }
 
@@ -64,14 +64,16 @@ impl Latency {
     }
 }
 
-/// Latencies of the same passes from one side.
+/// The latencies of all passes, measured either from outside or from inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Side {
-    /// From the head (outside: the bob's low point; inside: the time stamp of the report) to the start of the frame.
+    /// Latency from the head to the start of the frame. Outside it begins at the low point, inside at the report's time
+    /// stamp.
     pub tracking: Latency,
-    /// From the start of the frame to the screen (outside: light under the photodiode; inside: the frame is shown).
+    /// Latency from the start of the frame to the screen. Outside it ends with light on the photodiode, inside when the
+    /// frame is shown.
     pub rendering: Latency,
-    /// Tracking and rendering together, from head to light.
+    /// Sum of tracking and rendering latency, from head to light.
     pub total: Latency,
 }
 
@@ -93,32 +95,33 @@ impl Side {
     }
 }
 
-/// Means of seconds are rounded by less than the picosecond in which all instants are given.
+/// Bound of the rounding error of a mean, seconds: one picosecond, the unit of all instants.
 const ROUNDING_S: f64 = 1e-12;
 
-/// Both measurements of the same passes, and by how much they may differ.
+/// Both measurements of the same passes, and the bounds of their difference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
-    /// From outside, in the order of the passes.
+    /// Measurements from outside, in the order of the passes.
     pub outside_passes: Vec<OutsidePass>,
-    /// From inside, in the same order.
+    /// Measurements from inside, in the order of the passes.
     pub inside_passes: Vec<InsidePass>,
-    /// What oscilloscope and photodiodes say.
+    /// Latencies measured with the oscilloscope and the photodiodes.
     pub outside: Side,
-    /// What the time stamps of host and boards say.
+    /// Latencies measured by the time stamps of host and boards.
     pub inside: Side,
-    /// How much longer tracking may be from outside: the detection's delay, one report interval for a crossing.
+    /// Bound of the excess of outside tracking over inside tracking: the detection's delay, one report interval for a
+    /// crossing.
     pub tracking_bound_ps: u64,
-    /// How much longer rendering may be from outside: the photodiode's place in the scan.
+    /// Bound of the excess of outside rendering over inside rendering: the photodiode's delay in the scan.
     pub rendering_bound_ps: u64,
-    /// How much shorter rendering may be from outside: 0 unless the pipeline counts a frame as shown inside the scan, below the
-    /// photodiode.
+    /// Bound by which outside rendering can be shorter than inside rendering. The bound is 0 unless the pipeline counts
+    /// a frame as shown during the scan, at a line below the photodiode.
     pub rendering_early_ps: u64,
 }
 
 impl Measurement {
-    /// Of passes as they were read off the oscilloscope and off the time stamps; `place_ps` is the photodiode's place in the
-    /// scan, from the retrace on.
+    /// Combines the passes of both measurements. `place_ps` is the photodiode's delay in the scan, counted from the
+    /// retrace.
     pub(super) fn new(
         detection: Detection,
         tracker: &TrackerModel,
@@ -137,30 +140,31 @@ impl Measurement {
         }
     }
 
-    /// The same of a pipeline that counts a frame as shown `counted_ps` behind the retrace: the beam passes a photodiode that hangs
-    /// higher before that.
+    /// Returns the measurement for a pipeline that counts a frame as shown `counted_ps` after the retrace. The beam
+    /// passes a photodiode above this line earlier, so outside rendering can be shorter than inside rendering.
     #[must_use]
     pub fn counted_in_the_scan(mut self, counted_ps: u64) -> Self {
         self.rendering_early_ps = counted_ps.saturating_sub(self.rendering_bound_ps);
         self
     }
 
-    /// One report interval plus the photodiode's place in the scan (for detection by crossing): how far the total
-    /// latencies from outside and inside may differ.
+    /// Returns the bound of the difference between the total latencies. For detection by crossing it is one report
+    /// interval plus the photodiode's delay in the scan.
     #[must_use]
     pub fn bound_ps(&self) -> u64 {
         self.tracking_bound_ps + self.rendering_bound_ps
     }
 
-    /// Mean total latency from outside less that from inside, seconds.
+    /// Returns the mean total latency from outside minus the mean total latency from inside, seconds.
     #[must_use]
     pub fn outside_less_inside_s(&self) -> f64 {
         self.outside.total.mean_s - self.inside.total.mean_s
     }
 
-    /// Returns true if both measurements agree on average over the passes. Outside tracking is longer by 0 to one report interval,
-    /// outside rendering by 0 to the photodiode's place in the scan. Light before a frame is shown is no agreement, unless the
-    /// pipeline counts frames inside the scan.
+    /// Returns true if both measurements agree on average over the passes. Outside tracking may exceed inside tracking
+    /// by at most one report interval (for a crossing). Outside rendering may exceed inside rendering by at most the
+    /// photodiode's delay in the scan. Outside rendering may be shorter only if the pipeline counts frames during the
+    /// scan.
     #[must_use]
     pub fn agrees(&self) -> bool {
         let tracking_s = self.outside.tracking.mean_s - self.inside.tracking.mean_s;
@@ -173,20 +177,20 @@ impl Measurement {
     }
 }
 
-/// The channels of the oscilloscope.
+/// The traces of the oscilloscope's three channels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Oscilloscope {
-    /// Photodiode at the low point: a pulse for each, half of it before.
+    /// Photodiode at the low point: one pulse for each low point, centred on its instant.
     pub low_point: ScopeTrace,
-    /// D/A line: a step for each frame that a low point asked for.
+    /// D/A line: one step for each frame that a low point requested.
     pub dac: ScopeTrace,
     /// Photodiode on the screen: dark and light frames.
     pub screen: ScopeTrace,
 }
 
 impl Oscilloscope {
-    /// With a pulse for every low point of the pendulum up to the last step of the D/A line, as wide as the bob is in the LED's
-    /// beam.
+    /// Creates an oscilloscope with a pulse for every low point up to the last step of the D/A line. The width of a
+    /// pulse is the time that the bob takes to cross the LED's beam.
     #[must_use]
     pub fn of(rig: &PendulumRig, dac: ScopeTrace, screen: ScopeTrace) -> Self {
         let last_ps = dac.edges().last().map_or(0, |edge| edge.t_ps);
@@ -195,8 +199,8 @@ impl Oscilloscope {
         Self { low_point: ScopeTrace::pulsing("low point", low_points, pulse_ps), dac, screen }
     }
 
-    /// The passes as they are read off it: for each step of the D/A line the low point that it belongs to, and the next step of
-    /// the screen to the same level; `None` where the screen never gets there.
+    /// Reads the passes off the traces. Each step of the D/A line gives one pass with its low point and the next step
+    /// of the screen to the same level. Returns `None` if the screen lacks one of these steps.
     #[must_use]
     pub fn passes(&self, rig: &PendulumRig) -> Option<Vec<OutsidePass>> {
         let passes = self.dac.edges().iter().map(|step| {

@@ -1,12 +1,12 @@
-//! Latency measured from outside: the pendulum rig.
+//! The pendulum rig, which measures latency from outside the machine (TR94).
 //!
-//! An LED and a photodiode mark the low point of a pendulum's arc; a tracker on the bob feeds the host; when the host
-//! sees the low point it starts a new frame and switches a D/A line; frames alternate dark and light under a photodiode
-//! on the screen. On the oscilloscope, tracking latency is the way from the low point to the D/A line, rendering
-//! latency from the D/A line to the screen (TR94).
+//! An LED and a photodiode mark the low point of a pendulum's arc. A tracker on the bob sends reports to the host. When
+//! the host detects the low point, it starts a new frame and switches a D/A line. Frames alternate between dark and
+//! light under a photodiode on the screen. On the oscilloscope, tracking latency is the time from the low point to the
+//! step of the D/A line. Rendering latency is the time from this step to the step of the screen.
 //!
-//! This module has what stands outside of the system: the pendulum, the host's eye for low points, the oscilloscope. What
-//! the system makes of the sightings, and the light on its screen, come from whoever simulates it.
+//! This module has the parts outside of the system: the pendulum, the host's detection of low points and the
+//! oscilloscope. The caller simulates the system and supplies the steps of the D/A line and the light on the screen.
 
 mod detection;
 mod measurement;
@@ -23,18 +23,18 @@ use crate::motion::Pendulum;
 use crate::time::PS_PER_S;
 use crate::tracker::TrackerModel;
 
-/// Silence after which the rig gives up waiting for a low point.
+/// Time without a low point after which the rig stops waiting.
 const PATIENCE_PS: u64 = 10 * PS_PER_S;
 
-/// The part of a half swing by which noise may make the host see a low point too early.
+/// Divisor of a half swing: noise may announce a low point early by at most a tenth of a half swing.
 const EARLY_PART: u64 = 10;
 
-/// The rig. Both the pendulum's pivot and the tracker's origin are the origin of the world.
+/// The pendulum rig. The pendulum's pivot and the tracker's origin are both at the origin of the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PendulumRig {
-    /// The pendulum, closed form, undamped.
+    /// Undamped pendulum whose bob carries the tracker.
     pub pendulum: Pendulum,
-    /// How the host finds the low point.
+    /// Method by which the host detects the low point.
     pub detection: Detection,
     /// Width of the LED's beam, m.
     pub beam_m: f64,
@@ -42,30 +42,31 @@ pub struct PendulumRig {
     pub photodiode_line: u32,
 }
 
-/// Why a measurement failed.
+/// The reason why a latency measurement failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum RigError {
-    /// The tracker fell silent, or never showed a low point.
+    /// The tracker stopped reporting, or the host detected too few low points.
     #[error("expected {expected} low points, the host saw {found}")]
     TooFewPasses {
-        /// How many low points were asked for.
+        /// Number of low points that the measurement needs.
         expected: usize,
-        /// How many low points the host saw.
+        /// Number of low points that the host detected.
         found: usize,
     },
-    /// A frame was started and its light never came, or frames were started that nobody asked for.
+    /// The light changes of the screen do not match the requested frames.
     #[error("expected the photodiode on the screen to change for each of {expected} frames, found {found} changes")]
     NoLight {
-        /// Frames that low points asked for.
+        /// Number of frames that low points requested.
         expected: usize,
-        /// Changes between dark and light.
+        /// Number of changes between dark and light that the photodiode saw.
         found: usize,
     },
 }
 
 impl PendulumRig {
-    /// Arm 0.5 m, 20 degrees, low point by crossing the vertical, photodiode in the middle of the screen: all assumed.
+    /// Returns the assumed rig: arm 0.5 m, amplitude 20 degrees, detection by crossing the vertical, photodiode in the
+    /// middle of the screen.
     pub fn assumed() -> Self {
         Self {
             pendulum: Pendulum::rig(),
@@ -75,13 +76,14 @@ impl PendulumRig {
         }
     }
 
-    /// The first `n` low points that the host sees, at least 1, from what a tracker on the bob tells it.
+    /// Returns the first `n` low points (at least 1) that the host detects in the reports of a tracker on the bob.
     ///
     /// # Errors
     ///
-    /// [`RigError::TooFewPasses`] when the tracker falls silent or never shows a low point.
+    /// [`RigError::TooFewPasses`] if the tracker stops reporting or the host detects fewer than `n` low points.
     pub fn sightings(&self, tracker: &TrackerModel, seed: u64, n: usize) -> Result<Vec<Sighting>, RigError> {
         let expected = n.max(1);
+        // The dead time of the detector is a quarter of a swing.
         let mut detector = self.detection.start(self.half_swing_ps() / 2);
         let limit_ps = self.pendulum.low_point_ps(n as u64).saturating_add(PATIENCE_PS);
         let seen: Vec<Sighting> = tracker
@@ -94,12 +96,12 @@ impl PendulumRig {
         if seen.len() < expected { Err(RigError::TooFewPasses { expected, found: seen.len() }) } else { Ok(seen) }
     }
 
-    /// Reads the oscilloscope, and puts what the system's time stamps say of the same passes beside it. `place_ps` is the
-    /// photodiode's place in the scan: from the retrace to the beam's passing it.
+    /// Reads the oscilloscope and combines its passes with the system's time stamps of the same passes. `place_ps` is
+    /// the photodiode's delay in the scan: the time from the retrace until the beam passes the photodiode.
     ///
     /// # Errors
     ///
-    /// [`RigError::NoLight`] when the screen never shows a frame, or the passes are not the same.
+    /// [`RigError::NoLight`] if the screen never shows a frame, or if the numbers of passes differ.
     pub fn compare(
         &self,
         tracker: &TrackerModel,
@@ -109,12 +111,13 @@ impl PendulumRig {
     ) -> Result<Measurement, RigError> {
         let found = oscilloscope.screen.edges().len();
         let no_light = RigError::NoLight { expected: inside.len(), found };
+        // The passes of both sides are compared one by one, so their numbers must agree.
         let outside = oscilloscope.passes(self).filter(|passes| passes.len() == inside.len() && !inside.is_empty());
         Ok(Measurement::new(self.detection, tracker, place_ps, outside.ok_or(no_light)?, inside))
     }
 
-    /// The low point that an event on the D/A line belongs to: the last one, or one that noise announced too early.
-    /// So the tracking latency must be below nine tenths of a half swing, 0.64 s.
+    /// Returns the low point that caused a step of the D/A line: the last low point, or one that noise announced too
+    /// early. The assignment is correct for tracking latencies below nine tenths of a half swing, 0.64 s.
     fn low_point_of(&self, dac_ps: u64) -> u64 {
         let half_ps = self.half_swing_ps();
         let guess = dac_ps.saturating_add(half_ps / EARLY_PART).saturating_sub(half_ps / 2) / half_ps;

@@ -3,20 +3,21 @@
 pub struct ScopeEdge {
     /// Instant of the step, ps of simulated time.
     pub t_ps: u64,
-    /// The level from that instant on: true is high.
+    /// Level after the step: true is high.
     pub high: bool,
 }
 
-/// One channel of the oscilloscope, low before its first edge.
+/// One channel of the oscilloscope. The level is low before the first edge.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ScopeTrace {
-    /// What the probe of this channel touches.
+    /// Name of the signal on this channel.
     pub name: &'static str,
     edges: Vec<ScopeEdge>,
 }
 
 impl ScopeTrace {
-    /// A line that has these levels from these instants on, in order of time.
+    /// Creates a channel from samples in order of time. Each sample gives an instant and the level from this instant
+    /// on.
     #[must_use]
     pub fn sampled(name: &'static str, samples: impl IntoIterator<Item = (u64, bool)>) -> Self {
         let mut edges: Vec<ScopeEdge> = Vec::new();
@@ -28,7 +29,7 @@ impl ScopeTrace {
         Self { name, edges }
     }
 
-    /// A line that changes its level at each of these instants.
+    /// Creates a channel that changes its level at each of these instants.
     #[must_use]
     pub fn toggling(name: &'static str, mut instants: Vec<u64>) -> Self {
         instants.sort_unstable();
@@ -36,24 +37,25 @@ impl ScopeTrace {
         Self { name, edges: edges.collect() }
     }
 
-    /// A line with a pulse of this width about each of these instants.
+    /// Creates a channel with a pulse of this width about each of these instants.
     pub(super) fn pulsing(name: &'static str, instants: impl Iterator<Item = u64>, width_ps: u64) -> Self {
         let ends = instants.flat_map(|t| [t.saturating_sub(width_ps / 2), t.saturating_add(width_ps / 2)]);
         Self::toggling(name, ends.collect())
     }
 
-    /// The steps, in order of time.
+    /// Returns the edges in order of time.
     pub fn edges(&self) -> &[ScopeEdge] {
         &self.edges
     }
 
-    /// Level at an instant; at an edge already the new one.
+    /// Returns the level at an instant. At an edge it is the new level.
     pub fn level(&self, t_ps: u64) -> bool {
         let after = self.edges.partition_point(|edge| edge.t_ps <= t_ps);
         after > 0 && self.edges[after - 1].high
     }
 
-    /// The channel as a time series: levels 0 and 1 at `from`, `from + step`, ... before `to`. A step of 0 counts as 1.
+    /// Returns the channel as a time series of levels 0 and 1 at `from`, `from + step`, ... before `to`. A step of 0
+    /// counts as 1.
     pub fn samples(&self, from_ps: u64, to_ps: u64, step_ps: u64) -> impl Iterator<Item = (u64, f64)> {
         (from_ps..to_ps)
             .step_by(usize::try_from(step_ps.max(1)).unwrap_or(usize::MAX))

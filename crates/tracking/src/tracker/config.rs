@@ -4,55 +4,58 @@ use serde::{Deserialize, Serialize};
 use super::{HostLine, MagneticDistortion, SerialLine, TrackerFault};
 use crate::config::{self as table, Tables};
 
-/// Settings of a tracker, its cable and the host's port. Presets take every number from [`crate::config`].
+/// Settings of a tracker, its cable and the host's port. The presets take every number from [`crate::config`].
 ///
-/// Solution n is begun at the n-th sync (floor of n x receivers / rate) and is ready for the cable
-/// `sync_to_output_ps` later; a latency counts back from there to the instant at which the pose was true.
+/// The tracker begins measurement n, called a solution, at the n-th sync (floor of n x receivers / rate). The solution
+/// is ready for the cable `sync_to_output_ps` later. A latency counts back from this instant to the instant at which
+/// the pose was true.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrackerConfig {
     /// Name of the tracker, shown in reports of a run.
     pub name: String,
-    /// Solutions a second over all receivers, 1 to 10,000.
+    /// Measurements per second over all receivers, 1 to 10,000.
     pub rate_hz: u32,
-    /// Receivers that share the rate, 1 to 16. The head's is the first to be sent.
+    /// Number of receivers that share the rate, 1 to 16. The head's receiver is sent first.
     pub receivers: u32,
-    /// From sync to the first character on the cable.
+    /// Time from sync to the first character on the cable, ps.
     pub sync_to_output_ps: u64,
-    /// Age of a position when its first character is sent, at most `sync_to_output_ps`.
+    /// Age of a position when its first character is sent, ps. At most `sync_to_output_ps`.
     pub position_latency_ps: u64,
-    /// Age of an orientation when its first character is sent, at most `sync_to_output_ps`.
+    /// Age of an orientation when its first character is sent, ps. At most `sync_to_output_ps`.
     pub orientation_latency_ps: u64,
-    /// White noise of each axis, rms, m.
+    /// White position noise of each axis, rms, m.
     pub position_noise_m: f64,
-    /// White noise about each axis, rms, degrees.
+    /// White orientation noise about each axis, rms, degrees.
     pub orientation_noise_deg: f64,
-    /// Systematic error of each axis, rms over installations, m: drawn once from the seed, the same in every report.
+    /// Systematic position error of each axis, rms over installations, m. The error is drawn once from the seed and is
+    /// the same in every report.
     pub position_bias_m: f64,
-    /// Systematic error about each axis, rms over installations, degrees: drawn once from the seed, the same in every report.
+    /// Systematic orientation error about each axis, rms over installations, degrees. The error is drawn once from the
+    /// seed and is the same in every report.
     pub orientation_bias_deg: f64,
-    /// a of the tracker's filter x' = a x + (1 - a) x'; 1 is no filter. Above 0.
+    /// Gain a of the tracker's filter x' = a x + (1 - a) x', above 0. A gain of 1 turns the filter off.
     pub filter_gain: f64,
-    /// The cable; `None` when the latency above includes it.
+    /// The serial cable, or `None` if the latencies include the cable.
     pub serial: Option<SerialLine>,
-    /// How the host's kernel looks at the port that the cable ends in.
+    /// Method by which the host's kernel reads the serial port.
     pub host: HostLine,
-    /// From the first report to the crash of a host that interrupts per character; `None` never crashes. TR94 tells
-    /// of the Flock that it does.
+    /// Time from the first report to the crash of a host that interrupts for each character, or `None` if the host
+    /// never crashes. TR94 reports this crash for the Flock of Birds.
     pub crashes_patched_host_after_ps: Option<u64>,
-    /// What metal near a magnetic tracker does; `None` for none.
+    /// Distortion by metal near a magnetic tracker, or `None` without distortion.
     pub distortion: Option<MagneticDistortion>,
-    /// Faults to inject, in order of precedence; empty for a healthy tracker.
+    /// Injected faults in order of precedence. The list is empty for a healthy tracker.
     pub faults: Vec<TrackerFault>,
 }
 
 impl TrackerConfig {
-    /// Polhemus Fastrak, one receiver, filter off, 115,200 baud, patched kernel.
+    /// Returns the Polhemus Fastrak: one receiver, filter off, 115,200 baud, patched kernel.
     pub fn fastrak() -> Self {
         Self::fastrak_by(&Tables::PAPERS)
     }
 
-    /// The same with the numbers of these tables.
+    /// Returns the Polhemus Fastrak with the numbers of these tables.
     pub fn fastrak_by(tables: &Tables) -> Self {
         let latency_ps = table::ms_to_ps(tables.fastrak.latency);
         Self {
@@ -68,12 +71,13 @@ impl TrackerConfig {
         }
     }
 
-    /// Ascension Flock of Birds, filters off, on the unpatched kernel: the patched one crashes with it.
+    /// Returns the Ascension Flock of Birds with its filters off, on an unpatched kernel. A patched kernel crashes with
+    /// this tracker.
     pub fn flock_of_birds() -> Self {
         Self::flock_of_birds_by(&Tables::PAPERS)
     }
 
-    /// The same with the numbers of these tables.
+    /// Returns the Ascension Flock of Birds with the numbers of these tables.
     pub fn flock_of_birds_by(tables: &Tables) -> Self {
         let position_latency_ps = table::ms_to_ps(tables.flock.position_latency);
         Self {
@@ -89,22 +93,23 @@ impl TrackerConfig {
         }
     }
 
-    /// The Flock on a patched host, which dies of it after a second: for fault injection.
+    /// Returns the Flock of Birds on a patched host, which crashes one second after the first report. This preset is
+    /// for fault injection.
     pub fn flock_of_birds_on_patched_host() -> Self {
         Self::flock_of_birds_on_patched_host_by(&Tables::PAPERS)
     }
 
-    /// The same with the numbers of these tables.
+    /// Returns the Flock of Birds on a patched host with the numbers of these tables.
     pub fn flock_of_birds_on_patched_host_by(tables: &Tables) -> Self {
         Self { host: HostLine::InterruptPerCharacter, ..Self::flock_of_birds_by(tables) }
     }
 
-    /// UNC optical ceiling tracker: 33 ms in all.
+    /// Returns UNC's optical ceiling tracker, with a total latency of 33 ms.
     pub fn optical_ceiling() -> Self {
         Self::optical_ceiling_by(&Tables::PAPERS)
     }
 
-    /// The same with the numbers of these tables.
+    /// Returns UNC's optical ceiling tracker with the numbers of these tables.
     pub fn optical_ceiling_by(tables: &Tables) -> Self {
         Self::ideal_by(tables)
             .named("UNC optical ceiling tracker", tables.optical.rate)
@@ -113,12 +118,12 @@ impl TrackerConfig {
             .with_latency_ps(table::ms_to_ps(tables.optical.latency))
     }
 
-    /// Polhemus 3Space above a steel floor, transmitter at the origin, unpatched kernel.
+    /// Returns the Polhemus 3Space above a steel floor, with its transmitter at the origin and an unpatched kernel.
     pub fn polhemus_3space() -> Self {
         Self::polhemus_3space_by(&Tables::PAPERS)
     }
 
-    /// The same with the numbers of these tables.
+    /// Returns the Polhemus 3Space with the numbers of these tables.
     pub fn polhemus_3space_by(tables: &Tables) -> Self {
         Self {
             host: HostLine::unix_by(tables),
@@ -131,12 +136,12 @@ impl TrackerConfig {
         }
     }
 
-    /// No error, no delay, 1,000 reports a second.
+    /// Returns an ideal tracker without error and delay, with 1,000 reports per second.
     pub fn ideal() -> Self {
         Self::ideal_by(&Tables::PAPERS)
     }
 
-    /// The same with the numbers of these tables.
+    /// Returns the ideal tracker with the numbers of these tables.
     pub fn ideal_by(tables: &Tables) -> Self {
         Self {
             name: "ideal".to_owned(),
@@ -158,7 +163,7 @@ impl TrackerConfig {
         }
     }
 
-    /// The same with one latency for position and orientation, counted from sync to output.
+    /// Returns the same tracker with one latency for position and orientation, equal to the time from sync to output.
     pub fn with_latency_ps(self, latency_ps: u64) -> Self {
         Self {
             sync_to_output_ps: latency_ps,
@@ -168,7 +173,7 @@ impl TrackerConfig {
         }
     }
 
-    /// The same tracker without noise and bias: what it reports is where the head was.
+    /// Returns the same tracker without noise and bias.
     pub fn without_noise(self) -> Self {
         Self {
             position_noise_m: 0.0,
@@ -179,17 +184,18 @@ impl TrackerConfig {
         }
     }
 
-    /// The same tracker without latency: the host knows a measurement at the instant at which it is made.
+    /// Returns the same tracker without latency: the host has a measurement at the instant of measuring.
     pub fn without_latency(self) -> Self {
         Self { serial: None, ..self.without_polling().with_latency_ps(0) }
     }
 
-    /// The same tracker on a host whose kernel takes every character as it comes.
+    /// Returns the same tracker on a host whose kernel receives every character at once.
     pub fn without_polling(self) -> Self {
         Self { host: HostLine::InterruptPerCharacter, crashes_patched_host_after_ps: None, ..self }
     }
 
-    /// The same tracker on an unpatched host, whose kernel looks at the serial line every `host.poll` of these tables.
+    /// Returns the same tracker on an unpatched host, whose kernel polls the serial line at the interval `host.poll` of
+    /// these tables.
     pub fn with_polling_by(self, tables: &Tables) -> Self {
         Self { host: HostLine::unix_by(tables), ..self }
     }
@@ -206,7 +212,7 @@ impl TrackerConfig {
         Self { position_bias_m: position_mm / 1e3, orientation_bias_deg: orientation_deg, ..self }
     }
 
-    /// The same without what no filter can know or help: bias, metal, faults.
+    /// Returns the same tracker without the errors that a filter cannot remove: bias, metal and faults.
     pub fn without_systematic_errors(self) -> Self {
         Self { position_bias_m: 0.0, orientation_bias_deg: 0.0, distortion: None, faults: Vec::new(), ..self }
     }

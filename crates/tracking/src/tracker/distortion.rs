@@ -6,31 +6,32 @@ use crate::error::SettingError;
 use crate::pose::Pose;
 use crate::rotation;
 
-/// What metal near a magnetic tracker does: a smooth error that depends on the place alone, so that a plane looks like
-/// a bowl and even a still head sees objects in wrong places (TR94).
+/// Distortion by metal near a magnetic tracker: a smooth error that depends only on the position. A plane appears as a
+/// bowl, and even a still head sees objects in wrong places (TR94).
 ///
-/// At distance r from the transmitter, positions move towards the metal by depth r^2 / (1 + (r / reach)^2), a parabola
-/// near the transmitter; orientations tilt as the bowl's surface does. The true field is not modelled.
+/// At distance r from the transmitter, positions move towards the metal by depth r^2 / (1 + (r / reach)^2). This
+/// function is a parabola near the transmitter. Orientations tilt with the bowl's surface. The true magnetic field is
+/// not modelled.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MagneticDistortion {
-    /// Place of the transmitter, m; the error there is 0.
+    /// Position of the transmitter, m. The error is 0 there.
     pub transmitter_m: DVec3,
-    /// Direction from the transmitter to the metal; any length but 0.
+    /// Direction from the transmitter to the metal, with any length except 0.
     pub towards_metal: DVec3,
     /// Depth of the bowl per square metre, m.
     pub depth_per_m2: f64,
-    /// Distance at which the depth is half of the parabola's, m.
+    /// Distance from the transmitter at which the depth is half of the parabola's, m.
     pub reach_m: f64,
 }
 
 impl MagneticDistortion {
-    /// Metal in the floor below a transmitter at this place: 20 mm at 1 m (assumed).
+    /// Returns the distortion by metal in the floor below a transmitter at this position: 20 mm at 1 m (assumed).
     pub fn floor_below(transmitter_m: DVec3) -> Self {
         Self::floor_below_by(&Tables::PAPERS, transmitter_m)
     }
 
-    /// The same with the numbers of these tables.
+    /// Returns the distortion by metal in the floor with the numbers of these tables.
     pub fn floor_below_by(tables: &Tables, transmitter_m: DVec3) -> Self {
         Self {
             transmitter_m,
@@ -40,13 +41,13 @@ impl MagneticDistortion {
         }
     }
 
-    /// The pose that the tracker believes in when the true one is `pose`.
+    /// Returns the pose that the tracker reports for the true pose `pose`.
     pub fn distort(&self, pose: &Pose) -> Pose {
         let from_transmitter = pose.position - self.transmitter_m;
         let axis = self.towards_metal.normalize();
         let saturation = 1.0 + from_transmitter.length_squared() / (self.reach_m * self.reach_m);
         let depth = self.depth_per_m2 * from_transmitter.length_squared() / saturation;
-        // The gradient of the depth; its part across the axis is the slope of the bowl.
+        // The component of the depth's gradient across the axis is the slope of the bowl.
         let gradient = from_transmitter * (2.0 * self.depth_per_m2 / (saturation * saturation));
         Pose {
             position: pose.position + axis * depth,
@@ -78,7 +79,7 @@ mod tests {
         METAL.distort(&Pose::at(DVec3::new(x, 0.0, 0.0))).position.y
     }
 
-    /// Of the height over 10 mm, negative where the plane is curved downwards.
+    /// Returns the second difference of the height over 10 mm, which is negative if the plane is curved downwards.
     fn second_difference(x: f64) -> f64 {
         height(x + 0.01) - 2.0 * height(x) + height(x - 0.01)
     }

@@ -2,42 +2,43 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::SettingError;
 
-/// Most likely random fault: more would be a tracker that hardly reports.
+/// Greatest probability of a random fault. A tracker with more faults hardly reports at all.
 const MOST_LIKELY: f64 = 0.99;
 
-/// A fault to inject. Several can be combined; where two random faults want one report, the first listed wins.
+/// A fault to inject. Several faults can be combined. If two random faults apply to one report, the first in the list
+/// wins.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum TrackerFault {
-    /// The tracker falls silent for good: nothing reaches the host at or after this instant.
+    /// The tracker fails for good: no report reaches the host at or after this instant.
     Silence {
-        /// The first instant at which nothing arrives, ps.
+        /// First instant at which no report arrives, ps.
         from_ps: u64,
     },
-    /// No solutions are measured in [from, to).
+    /// The tracker measures no solutions in [from, to).
     Dropout {
-        /// The first instant without solutions, ps.
+        /// First instant without measured solutions, ps.
         from_ps: u64,
-        /// The first instant with solutions again, ps.
+        /// First instant at which solutions are measured again, ps.
         to_ps: u64,
     },
     /// Each solution is lost with this probability.
     RandomDropout {
-        /// Chance that one solution is lost, 0 to 0.99.
+        /// Probability that a solution is lost, 0 to 0.99.
         probability: f64,
     },
-    /// Each report is made of NaN with this probability.
+    /// Each report consists of NaN with this probability.
     NotANumber {
-        /// Chance that one report is NaN, 0 to 0.99.
+        /// Probability that a report is NaN, 0 to 0.99.
         probability: f64,
     },
-    /// Each report is, with this probability, moved and turned in a random direction.
+    /// Each report is moved and turned in a random direction with this probability.
     Jump {
-        /// Chance that one report jumps, 0 to 0.99.
+        /// Probability that a report jumps, 0 to 0.99.
         probability: f64,
-        /// How far the position is moved, m, 0 to 1e6.
+        /// Distance by which the position moves, m, 0 to 1e6.
         distance_m: f64,
-        /// How far the orientation is turned, degrees, 0 to 180.
+        /// Angle by which the orientation turns, degrees, 0 to 180.
         angle_deg: f64,
     },
 }

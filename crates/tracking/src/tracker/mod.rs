@@ -1,4 +1,4 @@
-//! Trackers: when they measure, how wrong they are, and when the host gets to know.
+//! Tracker models: the times of measurements, the errors, and the arrival of reports at the host.
 
 mod config;
 mod distortion;

@@ -2,17 +2,21 @@ use super::{HostLine, TrackerConfig, TrackerFault};
 use crate::error::SettingError;
 use crate::time::{PS_PER_S, tick_ps};
 
-/// Longest latency or poll period that a configuration may name.
+/// Longest latency or poll period in a configuration.
 const LONGEST_PS: u64 = 10 * PS_PER_S;
 
-/// A tracker whose settings have been checked.
+/// A tracker with checked settings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrackerModel {
     config: TrackerConfig,
 }
 
 impl TrackerModel {
-    /// Checks the settings, once.
+    /// Checks the settings and creates the tracker.
+    ///
+    /// # Errors
+    ///
+    /// [`SettingError`] if a setting is out of range or contradicts another.
     pub fn new(config: TrackerConfig) -> Result<Self, SettingError> {
         check_times(&config)?;
         SettingError::check("position noise, m", config.position_noise_m, 0.0, 10.0)?;
@@ -30,39 +34,41 @@ impl TrackerModel {
         Ok(Self { config })
     }
 
-    /// The settings, all within their ranges.
+    /// Returns the settings, which are all within their ranges.
     pub fn config(&self) -> &TrackerConfig {
         &self.config
     }
 
-    /// Time between solutions of the head's receiver, rounded down to a picosecond.
+    /// Returns the time between solutions of the head's receiver, rounded down to a picosecond.
     pub fn period_ps(&self) -> u64 {
         PS_PER_S * u64::from(self.config.receivers) / u64::from(self.config.rate_hz)
     }
 
-    /// Time between reports: the period, or as many periods as a transfer of all receivers takes.
+    /// Returns the time between reports: the period, or the number of whole periods that a transfer of all receivers
+    /// takes.
     pub fn report_interval_ps(&self) -> u64 {
         let transfer_ps = self.config.serial.map_or(0, |s| s.transfer_ps(self.config.receivers));
         self.period_ps() * transfer_ps.div_ceil(self.period_ps()).max(1)
     }
 
-    /// Delay of the tracker's own filter behind a steady motion: period x (1 - a) / a. Time stamps do not know of it.
+    /// Returns the delay of the tracker's own filter behind a steady motion: period x (1 - a) / a. Time stamps do not
+    /// include this delay.
     pub fn filter_delay_ps(&self) -> u64 {
         let gain = self.config.filter_gain;
         (self.period_ps() as f64 * (1.0 - gain) / gain) as u64
     }
 
-    /// Time of the head's record on the cable.
+    /// Returns the time that the head's record takes on the cable.
     pub fn transfer_ps(&self) -> u64 {
         self.config.serial.map_or(0, |serial| serial.transfer_ps(1))
     }
 
-    /// Instant of sync `n`; `None` past the end of time.
+    /// Returns the instant of sync `n`, or `None` beyond the end of simulated time.
     pub(super) fn sync_ps(&self, n: u64) -> Option<u64> {
         tick_ps(n, self.config.receivers, self.config.rate_hz)
     }
 
-    /// The first solution whose sync is at or after `t_ps`.
+    /// Returns the first solution whose sync is at or after `t_ps`.
     pub(super) fn solution_at(&self, t_ps: u64) -> u64 {
         let per_ps = u128::from(t_ps) * u128::from(self.config.rate_hz);
         let n = (per_ps / (u128::from(PS_PER_S) * u128::from(self.config.receivers))) as u64;

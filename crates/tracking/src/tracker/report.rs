@@ -1,16 +1,17 @@
 use crate::pose::Pose;
 
-/// What the host gets of one solution of the tracker: a pose with its times.
+/// A report as the host receives it: a pose with its times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackerReport {
-    /// Number of the solution; a step of more than one tells of dropped solutions.
+    /// Number of the solution. A step of more than one from report to report means that solutions were dropped.
     pub solution: u64,
-    /// When the orientation was true, ps.
+    /// Instant at which the orientation was true, ps.
     pub measured_ps: u64,
-    /// When the position was true, ps: as `measured_ps`, except that the Flock's is older.
+    /// Instant at which the position was true, ps. This instant equals `measured_ps` except for the Flock of Birds,
+    /// whose position is older.
     pub position_measured_ps: u64,
-    /// When the host sees the report, ps.
+    /// Instant at which the host receives the report, ps.
     pub arrives_ps: u64,
-    /// The pose, wrong as trackers are.
+    /// Measured pose, including the tracker's errors.
     pub pose: Pose,
 }

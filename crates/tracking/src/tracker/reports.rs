@@ -8,20 +8,20 @@ use crate::random::{below, bits, normal_pair, stream, unit};
 use crate::rotation;
 
 impl TrackerModel {
-    /// What the host receives while the head follows `motion`, in order of arrival. It ends when the tracker falls
-    /// silent for good. One (model, motion, seed) gives one sequence on every host.
+    /// Returns the reports that the host receives while the head follows `motion`, in order of arrival. The sequence
+    /// ends when the tracker fails for good. The same (model, motion, seed) gives the same sequence on every host.
     pub fn reports<M: Motion>(&self, motion: M, seed: u64) -> Reports<M> {
         Reports::new(self.clone(), motion, seed)
     }
 }
 
-/// Reports of a tracker in order of arrival: see [`TrackerModel::reports`].
+/// Iterator over the reports of a tracker in order of arrival: see [`TrackerModel::reports`].
 #[derive(Clone, Debug)]
 pub struct Reports<M> {
     model: TrackerModel,
     motion: M,
     noise: u64,
-    /// Systematic error: metres, and a rotation vector in radians.
+    /// Systematic error: an offset in metres, and a rotation vector in radians.
     bias: (DVec3, DVec3),
     faults: u64,
     poll_phase_ps: u64,
@@ -35,6 +35,7 @@ pub struct Reports<M> {
 impl<M: Motion> Reports<M> {
     fn new(model: TrackerModel, motion: M, seed: u64) -> Self {
         let config = model.config();
+        // The seed picks the phase of the host's polling.
         let poll_phase_ps = match config.host {
             HostLine::Polled { period_ps } => below(bits(stream(seed, 1), 0), period_ps),
             HostLine::InterruptPerCharacter => 0,
@@ -58,20 +59,23 @@ impl<M: Motion> Reports<M> {
         }
     }
 
-    /// Skips what was synchronised before an instant; a filter inside the tracker begins anew there.
+    /// Skips all solutions whose sync is before an instant. The tracker's own filter starts at this instant.
     pub fn from(self, from_ps: u64) -> Self {
         Self { next_solution: self.model.solution_at(from_ps), ..self }
     }
 
-    /// The tracker's own result, noise, metal and filter included, and the times at which its parts were true.
+    /// Computes a solution of the tracker with its noise, distortion and filter, and the times at which its parts were
+    /// true.
     fn solve(&mut self, solution: u64, output_ps: u64) -> TrackerReport {
         let config = self.model.config();
         let position_measured_ps = output_ps - config.position_latency_ps;
         let measured_ps = output_ps - config.orientation_latency_ps;
+        // Position and orientation may have different ages.
         let mut pose = self.motion.pose(measured_ps);
         if position_measured_ps != measured_ps {
             pose.position = self.motion.pose(position_measured_ps).position;
         }
+        // Errors apply in the order of the signal: metal, bias, noise, filter.
         if let Some(distortion) = config.distortion {
             pose = distortion.distort(&pose);
         }
@@ -111,7 +115,7 @@ impl<M: Motion> Reports<M> {
         filtered
     }
 
-    /// Whether the solution is lost; an interval of loss is skipped in one step.
+    /// Returns true if the solution is lost. A dropout interval is skipped in one step.
     fn is_lost(&mut self, solution: u64, sync_ps: u64) -> bool {
         for (i, fault) in self.model.config().faults.iter().enumerate() {
             match *fault {
@@ -130,7 +134,7 @@ impl<M: Motion> Reports<M> {
         unit(bits(stream(self.faults, fault as u64), solution)) < probability
     }
 
-    /// What the cable makes of the pose.
+    /// Applies the faults that damage a report on the cable.
     fn corrupt(&self, report: &mut TrackerReport) {
         for (i, fault) in self.model.config().faults.iter().enumerate() {
             match *fault {
@@ -141,6 +145,7 @@ impl<M: Motion> Reports<M> {
                 TrackerFault::Jump { probability, distance_m, angle_deg }
                     if self.strikes(i, report.solution, probability) =>
                 {
+                    // The direction of a jump depends only on the seed, the fault and the solution.
                     let draws = stream(stream(self.faults, i as u64), report.solution);
                     report.pose.position += random_direction(draws, 0) * distance_m;
                     let turn = rotation::exp(random_direction(draws, 2) * angle_deg.to_radians());
@@ -152,19 +157,21 @@ impl<M: Motion> Reports<M> {
         }
     }
 
-    /// Sends a ready solution if the cable is free, and says when the host sees it.
+    /// Sends a ready solution if the cable is free. Returns the instant at which the host receives it, or `None` if the
+    /// cable is busy.
     fn send(&mut self, ready_ps: u64) -> Option<u64> {
         if ready_ps < self.line_free_ps {
             return None;
         }
         let config = self.model.config();
+        // The cable is busy until the records of all receivers are sent. The head's record is complete earlier.
         let busy_ps = config.serial.map_or(0, |serial| serial.transfer_ps(config.receivers));
         self.line_free_ps = ready_ps.saturating_add(busy_ps);
         let complete_ps = ready_ps.saturating_add(self.model.transfer_ps());
         Some(config.host.seen_ps(complete_ps, self.poll_phase_ps))
     }
 
-    /// The first arrival on a patched host decides when it crashes.
+    /// Schedules the crash of a patched host, which the first arrival starts.
     fn schedule_crash(&mut self, arrives_ps: u64) {
         if let Some(after_ps) = self.model.config().crashes_patched_host_after_ps.filter(|_| self.crashes) {
             self.silent_from_ps = self.silent_from_ps.min(arrives_ps.saturating_add(after_ps));
@@ -186,6 +193,7 @@ impl<M: Motion> Iterator for Reports<M> {
     fn next(&mut self) -> Option<TrackerReport> {
         loop {
             let solution = self.next_solution;
+            // Stop beyond the end of simulated time, or when the tracker has failed for good.
             let sync_ps = self.model.sync_ps(solution)?;
             let output_ps = sync_ps.checked_add(self.model.config().sync_to_output_ps)?;
             if output_ps >= self.silent_from_ps {
@@ -195,7 +203,9 @@ impl<M: Motion> Iterator for Reports<M> {
             if self.is_lost(solution, sync_ps) {
                 continue;
             }
+            // Measure even if the cable is busy, because the tracker's filter advances with every solution.
             let mut report = self.solve(solution, output_ps);
+            // A busy cable drops the solution.
             let Some(arrives_ps) = self.send(output_ps) else { continue };
             report.arrives_ps = arrives_ps;
             self.corrupt(&mut report);
@@ -208,7 +218,7 @@ impl<M: Motion> Iterator for Reports<M> {
     }
 }
 
-/// A random unit vector, from draws `first` and `first + 1`.
+/// Returns a random unit vector from draws `first` and `first + 1`.
 fn random_direction(seed: u64, first: u64) -> DVec3 {
     let (x, y) = normal_pair(seed, first);
     let (z, _) = normal_pair(seed, first + 1);

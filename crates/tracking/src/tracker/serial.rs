@@ -3,15 +3,15 @@ use serde::{Deserialize, Serialize};
 use crate::config::{self as table, Tables};
 use crate::time::PS_PER_S;
 
-/// The cable from tracker to host. One record travels at a time.
+/// The serial cable from tracker to host, which carries one record at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SerialLine {
-    /// Bytes of one receiver's record, 1 to 1000.
+    /// Length of one receiver's record, 1 to 1000 bytes.
     pub record_bytes: u32,
-    /// Line rate, bits per second, 300 to 1,000,000.
+    /// Line rate, 300 to 1,000,000 bits per second.
     pub baud: u32,
-    /// Bits on the line for a byte, with start and stop, 1 to 100.
+    /// Bits on the line for each byte, including start and stop bits, 1 to 100.
     #[serde(default = "usual_byte_bits")]
     pub byte_bits: u32,
 }
@@ -21,12 +21,12 @@ fn usual_byte_bits() -> u32 {
 }
 
 impl SerialLine {
-    /// A 47-byte Fastrak record at 115,200 baud: 4.08 ms.
+    /// Returns the line of the Fastrak: a record of 47 bytes at 115,200 baud takes 4.08 ms.
     pub fn fastrak() -> Self {
         Self::fastrak_by(&Tables::PAPERS)
     }
 
-    /// The same with the numbers of these tables.
+    /// Returns the line of the Fastrak with the numbers of these tables.
     pub fn fastrak_by(tables: &Tables) -> Self {
         Self {
             record_bytes: tables.fastrak.record as u32,
@@ -35,7 +35,7 @@ impl SerialLine {
         }
     }
 
-    /// Time of `records` records on the line: bytes x bits of a byte / baud.
+    /// Returns the time of `records` records on the line: bytes x bits of a byte / baud.
     pub fn transfer_ps(&self, records: u32) -> u64 {
         let bits = u128::from(self.record_bytes) * u128::from(self.byte_bits) * u128::from(records);
         let ps = bits.saturating_mul(u128::from(PS_PER_S)) / u128::from(self.baud.max(1));
@@ -43,32 +43,33 @@ impl SerialLine {
     }
 }
 
-/// How the host's kernel looks at its serial port.
+/// The method by which the host's kernel reads the serial port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum HostLine {
-    /// The kernel looks at every multiple of the period, from a phase that the seed picks: a record waits 0 to one
-    /// period, uniformly over seeds.
+    /// The kernel polls the port periodically, with a phase that the seed picks. A record waits 0 to one period,
+    /// uniformly over seeds.
     Polled {
-        /// Time between two looks, ps, above 0.
+        /// Time between two polls, ps, above 0.
         period_ps: u64,
     },
-    /// The patched kernel, which interrupts for each character: a record does not wait.
+    /// The patched kernel, which interrupts for each character. A record does not wait.
     InterruptPerCharacter,
 }
 
 impl HostLine {
-    /// The unpatched kernel, which looks every 30 ms (TR94).
+    /// Returns the unpatched kernel, which polls the port every 30 ms (TR94).
     pub fn unix() -> Self {
         Self::unix_by(&Tables::PAPERS)
     }
 
-    /// The same with the numbers of these tables.
+    /// Returns the unpatched kernel with the numbers of these tables.
     pub fn unix_by(tables: &Tables) -> Self {
         Self::Polled { period_ps: table::ms_to_ps(tables.host.poll) }
     }
 
-    /// When a record that is complete at `t_ps` is seen. `phase_ps` is the instant of the first look.
+    /// Returns the instant at which the kernel reads a record that is complete at `t_ps`. `phase_ps` is the instant of
+    /// the first poll.
     pub fn seen_ps(&self, t_ps: u64, phase_ps: u64) -> u64 {
         match *self {
             Self::InterruptPerCharacter => t_ps,

@@ -1,18 +1,18 @@
-//! The dual display list of just-in-time pixels: every vertex is transformed for the start T0 and for the end T1 of a
-//! field, and in between P(t) = P1 s + P0 (1 - s), s = (t - T0) / (T1 - T0). Two meanings of P are published: places on
-//! the screen, and positions in the view before the divide.
+//! The dual display list of just-in-time pixels. Every vertex is transformed for the start T0 and for the end T1 of a
+//! field. In between, P(t) = P1 s + P0 (1 - s) with s = (t - T0) / (T1 - T0). The papers give two meanings of P:
+//! positions on the screen, and positions in the view before the perspective divide.
 
 use glam::{DVec2, DVec3};
 
 use super::HmdView;
 
-/// Interpolates places on the screen. `start` and `end` are the vertex in head axes (m) at T0 and T1; `None` if either
-/// is behind the eye.
+/// Interpolates positions on the screen. `start` and `end` are the vertex in head axes (m) at T0 and T1. Returns `None`
+/// if either is behind the eye.
 pub fn screen_space(view: &HmdView, start: DVec3, end: DVec3, s: f64) -> Option<DVec2> {
     Some(view.project(start)?.lerp(view.project(end)?, s))
 }
 
-/// Interpolates positions in the view, then divides. `None` if the result is behind the eye.
+/// Interpolates positions in the view, then projects the result. Returns `None` if the result is behind the eye.
 pub fn view_space(view: &HmdView, start: DVec3, end: DVec3, s: f64) -> Option<DVec2> {
     view.project(start.lerp(end, s))
 }
@@ -26,8 +26,8 @@ mod tests {
 
     type Interpolate = fn(&HmdView, DVec3, DVec3, f64) -> Option<DVec2>;
 
-    /// Greatest error (px) of an interpolation over `span_ps` of a 200 deg/s pan, for points whose true place at that
-    /// moment is within `half_width` px of the middle of a 600 px, 60 degree view.
+    /// Returns the greatest error (px) of an interpolation over `span_ps` of a 200 deg/s pan. Only points whose true
+    /// position at that moment is within `half_width` px of the middle of a 600 px, 60 degree view count.
     fn worst(interpolate: Interpolate, span_ps: u64, half_width: f64) -> f64 {
         let steps = (0..=40).flat_map(|step| (-340..=340).map(move |tenth_deg| (step, tenth_deg)));
         steps
@@ -43,7 +43,7 @@ mod tests {
         ((truth.x - 300.0).abs() <= half_width).then(|| guess.distance(truth))
     }
 
-    /// The point in the axes of a head that pans at 200 deg/s, m.
+    /// Returns the point in the axes of a head that pans at 200 deg/s, m.
     fn seen_in_pan(point: DVec3, t_ps: u64) -> DVec3 {
         Pan::at(200.0).pose(t_ps).view_of(point)
     }
@@ -64,9 +64,10 @@ mod tests {
 
     #[test]
     fn in_the_view_the_error_stays_below_0_002_px() {
-        // atan(u tan h) - u h, with h half the turn: the chord of an arc, seen from its centre, runs ahead by turn^3 / (36 sqrt 3) at most; the edge of a flat
-        // picture magnifies it by f / cos^2 30. T1 is the end of the field less the retrace, 240 lines after T0; over
-        // a whole field 0.0022 px would be reached.
+        // The error is atan(u tan h) - u h, where h is half the turn. The chord of an arc, seen from its centre, runs
+        // ahead by turn^3 / (36 sqrt 3) at most. The edge of a flat picture magnifies this by f / cos^2 30. T1 is the
+        // end of the visible field, 240 lines after T0. Over a whole field, with the retrace, the error would reach
+        // 0.0022 px.
         for (span_ps, limit) in [(ntsc_lines_ps(240), 0.002), (NTSC_FIELD_PS, 0.0022)] {
             let turn = 200f64.to_radians() * span_ps as f64 / 1e12;
             let expected = 300.0 / 30f64.to_radians().tan() / 0.75 * turn.powi(3) / (36.0 * 3f64.sqrt());

@@ -1,14 +1,16 @@
 use crate::error::SettingError;
 use crate::random::{bits, stream};
 
-/// Rounds of the Feistel network; four make a good permutation of a good mixing function (Luby and Rackoff 1988).
+/// Rounds of the Feistel network. Four rounds with a good mixing function give a good permutation (Luby and Rackoff
+/// 1988).
 const ROUNDS: u64 = 4;
 
-/// The order of frameless rendering (Bishop et al. 1994): every pixel once per pass, in a random order.
+/// The pixel order of frameless rendering (Bishop et al. 1994): every pixel once per pass, in a random order.
 ///
-/// A seeded permutation of 0..n as a function of the step, in constant memory: a Feistel network on the next power of
-/// two, walked until it lands below n (two steps on average at most). Every pass uses the same order, so a pixel's age
-/// never exceeds a pass and half a pass is the mean; a fresh order for each pass would raise the mean to 7/12.
+/// The order is a permutation of 0..n from a seed, computed for any step in constant memory. A Feistel network permutes
+/// the next power of two and is iterated until the result is below n, on average at most two iterations. Every pass
+/// uses the same order. A pixel's age therefore never exceeds one pass, and its mean is half a pass. A new order for
+/// each pass would raise the mean to 7/12 of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RandomOrder {
     n_pixels: u32,
@@ -18,19 +20,23 @@ pub struct RandomOrder {
 }
 
 impl RandomOrder {
-    /// An order of `n_pixels`, at least 1 and at most 2^31.
+    /// Creates an order of `n_pixels`, at least 1 and at most 2^31.
+    ///
+    /// # Errors
+    ///
+    /// [`SettingError`] if `n_pixels` is out of range.
     pub fn new(n_pixels: u32, seed: u64) -> Result<Self, SettingError> {
         SettingError::check("pixels of a frameless order", f64::from(n_pixels), 1.0, f64::from(1u32 << 31))?;
         let width = n_pixels.next_power_of_two().trailing_zeros().max(2);
         Ok(Self { n_pixels, half_bits: width / 2, odd_bit: width % 2, seed: stream(seed, 5) })
     }
 
-    /// Number of pixels in a pass.
+    /// Returns the number of pixels in a pass.
     pub fn n_pixels(&self) -> u32 {
         self.n_pixels
     }
 
-    /// The pixel, 0..n, that is updated at `step`; steps n, 2n, ... begin new passes.
+    /// Returns the pixel, 0..n, that is updated at `step`. Steps n, 2n, ... begin new passes.
     pub fn pixel(&self, step: u64) -> u32 {
         let mut place = (step % u64::from(self.n_pixels)) as u32;
         loop {
@@ -41,7 +47,7 @@ impl RandomOrder {
         }
     }
 
-    /// A permutation of 0..2^width: the two parts of the word swap roles each round, so widths may be odd.
+    /// Permutes 0..2^width. The two parts of the word swap roles each round, so odd widths are allowed.
     fn permuted(&self, place: u32) -> u32 {
         let mut low_bits = self.half_bits;
         let mut high_bits = self.half_bits + self.odd_bit;

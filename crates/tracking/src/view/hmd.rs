@@ -6,11 +6,11 @@ use crate::error::SettingError;
 use crate::pose::Pose;
 use crate::time::seconds;
 
-/// Nearest distance before the eye, m, that can be projected.
+/// Least distance before the eye, m, at which a point can be projected.
 const NEAREST_M: f64 = 1e-6;
 
-/// The flat picture of a head-mounted display, seen from one eye. Pixel (0, 0) is the upper left corner, x to the
-/// right, y down, the axis of view in the middle; pixels are square.
+/// The flat picture of a head-mounted display, seen from one eye. Pixel (0, 0) is the upper left corner, with x to the
+/// right and y down. The axis of view goes through the middle. Pixels are square.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HmdView {
     width_px: f64,
@@ -19,19 +19,23 @@ pub struct HmdView {
     focal_px: f64,
 }
 
-/// How far a point is from where it should be.
+/// The difference between the shown and the true position of a point in the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PixelError {
-    /// Shown place minus true place, px, x to the right and y down.
+    /// Shown position minus true position, px, x to the right and y down.
     pub offset_px: DVec2,
     /// Length of the offset, px.
     pub pixels: f64,
-    /// The angle between the two directions, seen from the eye.
+    /// Angle between the two directions, seen from the eye.
     pub degrees: f64,
 }
 
 impl HmdView {
-    /// A view of this size (1 to 16,384 px each) and horizontal angle (1 to 170 degrees).
+    /// Creates a view with a size of 1 to 16,384 px on each side and a horizontal angle of 1 to 170 degrees.
+    ///
+    /// # Errors
+    ///
+    /// [`SettingError`] if a size or the angle is out of range.
     pub fn new(width_px: u32, height_px: u32, horizontal_deg: f64) -> Result<Self, SettingError> {
         table::HeadMountedView { width: width_px.into(), height: height_px.into(), horizontal_angle: horizontal_deg }
             .check()?;
@@ -41,7 +45,7 @@ impl HmdView {
         Ok(Self { width_px, height_px, horizontal_deg, focal_px })
     }
 
-    /// 640 x 480 pixels, 60 degrees.
+    /// Returns a view of 640 x 480 pixels with a horizontal angle of 60 degrees.
     pub fn ntsc() -> Self {
         Self::new(
             table::HeadMountedView::PAPERS.width as u32,
@@ -51,40 +55,41 @@ impl HmdView {
         .expect("the table's values are in range")
     }
 
-    /// Distance of the eye from the picture, in pixels.
+    /// Returns the distance of the eye from the picture, in pixels.
     pub fn focal_px(&self) -> f64 {
         self.focal_px
     }
 
-    /// Angle between the left and the right edge of the picture, degrees.
+    /// Returns the angle between the left and the right edge of the picture, degrees.
     pub fn horizontal_deg(&self) -> f64 {
         self.horizontal_deg
     }
 
-    /// The middle of the picture, px from its upper left corner.
+    /// Returns the middle of the picture, px from its upper left corner.
     pub fn centre_px(&self) -> DVec2 {
         DVec2::new(self.width_px, self.height_px) / 2.0
     }
 
-    /// Pixels per degree, averaged over the width: the papers' measure. A flat picture has fewer in the middle and
-    /// more at the edge.
+    /// Returns the pixels per degree, averaged over the width, which is the papers' measure. A flat picture has fewer
+    /// pixels per degree in the middle and more at the edge.
     pub fn mean_px_per_deg(&self) -> f64 {
         self.width_px / self.horizontal_deg
     }
 
-    /// Where a point in head axes (m, -z ahead) is shown; `None` behind the eye. It may lie outside of the picture.
+    /// Returns the position in the picture of a point in head axes (m, -z ahead), or `None` behind the eye. The
+    /// position may lie outside the picture.
     pub fn project(&self, point: DVec3) -> Option<DVec2> {
         let depth = -point.z;
         (depth > NEAREST_M).then(|| self.centre_px() + DVec2::new(point.x, -point.y) * (self.focal_px / depth))
     }
 
-    /// Whether a place lies within the picture.
+    /// Returns true if a position lies within the picture.
     pub fn contains(&self, place: DVec2) -> bool {
         (0.0..=self.width_px).contains(&place.x) && (0.0..=self.height_px).contains(&place.y)
     }
 
-    /// Error of a world point that was drawn for one pose and is seen from another; `None` if either has it behind
-    /// the eye.
+    /// Returns the error of a world point that was drawn for one pose and is seen from another. Returns `None` if the
+    /// point is behind the eye in either pose.
     pub fn pixel_error(&self, world: DVec3, drawn_for: &Pose, seen_from: &Pose) -> Option<PixelError> {
         let drawn = drawn_for.view_of(world);
         let seen = seen_from.view_of(world);
@@ -93,20 +98,20 @@ impl HmdView {
         Some(PixelError { offset_px, pixels: offset_px.length(), degrees })
     }
 
-    /// The papers' measure of a late frame: the point `distance_m` ahead on the axis of view when the frame was begun,
-    /// and how far from there it should be when the frame is shown.
+    /// Returns the error of a late frame by the papers' measure. The point is `distance_m` ahead on the axis of view
+    /// when the frame begins. The error is the offset from the true position when the frame is shown.
     pub fn centre_error(&self, begun: &Pose, shown: &Pose, distance_m: f64) -> Option<PixelError> {
         let point = begun.position + begun.orientation * (DVec3::NEG_Z * distance_m);
         self.pixel_error(point, begun, shown)
     }
 }
 
-/// Angle in degrees that a steady turn covers in a span.
+/// Returns the angle in degrees that a steady turn covers in a span.
 pub fn drift_deg(deg_per_s: f64, span_ps: u64) -> f64 {
     deg_per_s * seconds(span_ps)
 }
 
-/// Angle between two vectors, radians, exact for small angles too.
+/// Returns the angle between two vectors, radians, with full accuracy for small angles too.
 pub(super) fn angle_between(a: DVec3, b: DVec3) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
 }

@@ -1,4 +1,4 @@
-//! What a late or a shifted picture looks like: pixel errors, and the mathematics of the ways to avoid them.
+//! Pixel errors of late or shifted pictures, and the mathematics of methods that reduce these errors.
 
 pub mod dual_list;
 mod frameless;

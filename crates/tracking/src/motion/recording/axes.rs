@@ -2,43 +2,44 @@ use glam::{DMat3, DQuat, DVec3};
 
 use crate::pose::Pose;
 
-/// What the axes of a recording mean: those of the head (or of the sensor on it), and which way is up in the world.
+/// The axis convention of a recording: the axes of the head (or of its sensor), and the up direction of the world.
 ///
-/// A pose is turned into this crate's axes (right-handed, y up, looking along -z) by two fixed rotations, one on each side:
-/// position W p, orientation W q B, where W takes the recorded world's axes to ours and B our head's axes to the recorded ones.
+/// Two fixed rotations convert a pose into this crate's axes (right-handed, y up, looking along -z). The position
+/// becomes W p and the orientation W q B. W rotates the recorded world's axes to this crate's, and B rotates this
+/// crate's head axes to the recorded ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axes {
-    /// Head: x right, y up, looks along -z. World: y up. This crate's own, and OpenGL's.
+    /// The axes of this crate and of OpenGL. Head: x right, y up, looks along -z. World: y up.
     OpenGl,
-    /// Head: x right, y down, looks along +z, as an optical frame has it. World: z up. The TUM benchmark's.
+    /// The axes of the TUM benchmark and of optical frames. Head: x right, y down, looks along +z. World: z up.
     Optical,
-    /// Head: x up, y right, looks along +z, as the inertial unit of the EuRoC sensor sits (its calibration gives the camera
-    /// against it). World: z up.
+    /// The axes of the EuRoC sensor's inertial unit. Head: x up, y right, looks along +z. World: z up. The calibration
+    /// of the EuRoC sensor gives the camera's axes relative to this unit.
     Euroc,
-    /// Head: looks along +x, y left, z up. World: z up. Robotics' (ROS REP 103).
+    /// The axes of robotics (ROS REP 103). Head: looks along +x, y left, z up. World: z up.
     Robot,
 }
 
 impl Axes {
-    /// All of them, by the names under which experiments know them.
+    /// Every axis convention with its name in experiment files.
     pub const NAMES: [(&'static str, Self); 4] =
         [("opengl", Self::OpenGl), ("optical", Self::Optical), ("euroc", Self::Euroc), ("robot", Self::Robot)];
 
-    /// Its name in experiment files and on the command line.
+    /// Returns the name of the convention in experiment files and on the command line.
     pub fn name(self) -> &'static str {
         Self::NAMES.iter().find(|(_, axes)| *axes == self).map_or("", |(name, _)| name)
     }
 
-    /// W: from the recorded world's axes to ours.
+    /// Returns W, the rotation from the recorded world's axes to this crate's world axes.
     fn of_world(self) -> DQuat {
         match self {
             Self::OpenGl => DQuat::IDENTITY,
-            // East, north, up: x stays, up becomes y, and north -z.
+            // The recorded axes are east, north, up: x stays, up becomes y, and north becomes -z.
             Self::Optical | Self::Euroc | Self::Robot => from_images(DVec3::X, DVec3::NEG_Z, DVec3::Y),
         }
     }
 
-    /// B: from our head's axes (right, up, back) to the recorded ones.
+    /// Returns B, the rotation from this crate's head axes (right, up, back) to the recorded head axes.
     fn of_head(self) -> DQuat {
         match self {
             Self::OpenGl => DQuat::IDENTITY,
@@ -48,7 +49,7 @@ impl Axes {
         }
     }
 
-    /// A recorded pose in this crate's axes.
+    /// Converts a recorded pose to this crate's axes.
     pub(super) fn convert(self, recorded: Pose) -> Pose {
         if self == Self::OpenGl {
             return recorded;
@@ -61,7 +62,7 @@ impl Axes {
     }
 }
 
-/// The rotation that takes x, y and z to these.
+/// Returns the rotation that maps the x, y and z axes to the given vectors.
 fn from_images(x: DVec3, y: DVec3, z: DVec3) -> DQuat {
     DQuat::from_mat3(&DMat3::from_cols(x, y, z))
 }
@@ -70,7 +71,7 @@ fn from_images(x: DVec3, y: DVec3, z: DVec3) -> DQuat {
 mod tests {
     use super::*;
 
-    /// Right, up and ahead of a head in the recorded head's own axes, and up of the recorded world, in words of each convention.
+    /// For each convention: right, up and ahead of a head in the recorded head axes, and up in the recorded world axes.
     const MEANING: [(Axes, [DVec3; 3], DVec3); 4] = [
         (Axes::OpenGl, [DVec3::X, DVec3::Y, DVec3::NEG_Z], DVec3::Y),
         (Axes::Optical, [DVec3::X, DVec3::NEG_Y, DVec3::Z], DVec3::Z),

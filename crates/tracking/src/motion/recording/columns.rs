@@ -2,26 +2,28 @@ use std::fmt;
 
 use super::RecordingError;
 
-/// What a mapping must say.
+/// Description of a complete mapping, for error messages.
 const EXPECTED: &str = "t (or t_ms, t_us, t_ns), x, y, z (or x_mm, y_mm, z_mm), qw, qx, qy and qz, each with the name or number of a column";
 
-/// Which column of a text file holds what, by the column's name in the header or by its number from 1.
+/// A mapping from fields of a sample to columns of a text file. A column is given by its name in the header or by its
+/// number from 1.
 ///
-/// The field's name says the unit: `t` seconds, `t_ms`, `t_us`, `t_ns`; `x`, `y`, `z` metres, `x_mm` and so on millimetres; `qw` is
-/// the real part of the quaternion that turns the head's axes into the world's.
+/// The name of a field states its unit: `t` is in seconds, `t_ms`, `t_us` and `t_ns` in smaller units. `x`, `y` and `z`
+/// are in metres, `x_mm` and so on in millimetres. `qw` is the real part of the quaternion that rotates head axes into
+/// world axes.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct Columns {
-    /// Field and column, in the order in which they were given.
+    /// Field and column of each mapped pair, in the order in which they were given.
     given: Vec<(&'static Field, String)>,
 }
 
-/// A field of a sample, in some unit.
+/// A field of a sample in a certain unit.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Field {
     name: &'static str,
-    /// Which of time, x, y, z, qw, qx, qy, qz.
+    /// Index of the quantity in the sequence time, x, y, z, qw, qx, qy, qz.
     slot: usize,
-    /// Its unit is 10^-`places` of seconds or metres.
+    /// Decimal exponent of the unit: the unit is 10^-`places` seconds or metres.
     places: i32,
 }
 
@@ -46,7 +48,7 @@ static FIELDS: [Field; 14] = [
     field("qz", 7, 0),
 ];
 
-/// A column of a file: where it is, what it is called, and its unit as 10^-`places` of seconds or metres.
+/// A column of a file: index, name and unit. The unit is 10^-`places` seconds or metres.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Column {
     pub(super) index: usize,
@@ -55,12 +57,16 @@ pub(super) struct Column {
 }
 
 impl Columns {
-    /// Names of the fields, as [`Self::map`] takes them.
+    /// Returns the names of all fields that [`Self::map`] accepts.
     pub fn fields() -> impl Iterator<Item = &'static str> {
         FIELDS.iter().map(|field| field.name)
     }
 
-    /// Says which column holds a field.
+    /// Maps a field to a column.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordingError::Mapping`] if the field is unknown, or if its quantity already has a column.
     pub fn map(&mut self, field: &str, column: &str) -> Result<(), RecordingError> {
         let mapping = |found: String| RecordingError::Mapping { expected: EXPECTED, found };
         let known = FIELDS.iter().find(|known| known.name == field);
@@ -72,7 +78,7 @@ impl Columns {
         Ok(())
     }
 
-    /// Reads a mapping such as `t_ns=stamp,x=px,y=py`.
+    /// Parses a mapping such as `t_ns=stamp,x=px,y=py`.
     pub fn parse(text: &str) -> Result<Self, RecordingError> {
         let mut columns = Self::default();
         for part in text.split(',') {
@@ -83,23 +89,25 @@ impl Columns {
         Ok(columns)
     }
 
-    /// The fields that are mapped, each with its column, in the order in which they were given.
+    /// Returns the mapped fields with their columns, in the order in which they were given.
     pub fn iter(&self) -> impl Iterator<Item = (&'static str, &str)> {
         self.given.iter().map(|(field, column)| (field.name, column.as_str()))
     }
 
-    /// Whether nothing is mapped.
+    /// Returns true if no field is mapped.
     pub fn is_empty(&self) -> bool {
         self.given.is_empty()
     }
 
-    /// Whether columns are told by their numbers, so that a file needs no header.
+    /// Returns true if every column is given by a number. A file then needs no header.
     pub(super) fn are_numbers(&self) -> bool {
         self.given.iter().all(|(_, column)| number(column).is_some())
     }
 
-    /// The columns of a file with this header, in the order of the slots; a header that is none is empty.
+    /// Returns the columns of a file with this header, in the order of the slots. An empty `header` means that the file
+    /// has none.
     pub(super) fn in_header(&self, line: u64, header: &[&str]) -> Result<[Column; 8], RecordingError> {
+        // Find each mapped column by its name in the header, or by its number.
         let mut found: [Option<Column>; 8] = Default::default();
         for (field, wanted) in &self.given {
             let named = header.iter().position(|name| name == wanted);
@@ -111,12 +119,13 @@ impl Columns {
             })?;
             found[field.slot] = Some(Column { index, name: wanted.clone(), places: field.places });
         }
+        // Every slot needs a column: a missing one makes the mapping incomplete.
         let all: Vec<Column> = found.into_iter().flatten().collect();
         all.try_into().map_err(|_| RecordingError::Mapping { expected: EXPECTED, found: self.to_string() })
     }
 }
 
-/// The index of a column that is told by its number from 1.
+/// Converts a column number from 1 into an index from 0.
 fn number(column: &str) -> Option<usize> {
     column.parse::<usize>().ok()?.checked_sub(1)
 }

@@ -1,8 +1,9 @@
-/// Most digits of a time stamp; a stamp of nanoseconds since 1970 has 19.
+/// Greatest number of digits in a time stamp. A stamp of nanoseconds since 1970 has 19 digits.
 const MOST_DIGITS: usize = 30;
 
-/// A decimal number in units of 10^-`places` (12 for seconds in picoseconds), exactly as it is written and rounded to the nearest
-/// below that: a stamp of 10 digits before the point keeps all 9 behind it, which a double does not. `None` if it is none.
+/// Parses a decimal number exactly, in units of 10^-`places` (12 for seconds in picoseconds), and rounds it to the
+/// nearest unit. A stamp with 10 digits before the point keeps all 9 digits after it, which an `f64` would lose.
+/// Returns `None` if the text is not a number.
 pub(super) fn scaled(text: &str, places: i32) -> Option<i128> {
     let (mantissa, exponent) = match text.split_once(['e', 'E']) {
         Some((mantissa, exponent)) => (mantissa, exponent.parse::<i32>().ok()?),
@@ -13,6 +14,7 @@ pub(super) fn scaled(text: &str, places: i32) -> Option<i128> {
         None => (false, mantissa.strip_prefix('+').unwrap_or(mantissa)),
     };
     let (whole, fraction) = unsigned.split_once('.').unwrap_or((unsigned, ""));
+    // Join the digits around the point. The exponent accounts for the digits after the point.
     let digits = format!("{whole}{fraction}");
     let significant = digits.trim_start_matches('0');
     if digits.is_empty() || !digits.bytes().all(|b| b.is_ascii_digit()) || significant.len() > MOST_DIGITS {
@@ -31,7 +33,8 @@ fn multiplied(number: i128, power: i32) -> Option<i128> {
     number.checked_mul(10i128.checked_pow(power.try_into().ok()?)?)
 }
 
-/// To the nearest; a power that no number of so many digits reaches gives 0.
+/// Divides by 10^`power` and rounds to the nearest. Returns 0 if 10^`power` overflows, because `number` has at most 30
+/// digits.
 fn divided(number: i128, power: i32) -> i128 {
     let divisor = u32::try_from(power).ok().and_then(|power| 10i128.checked_pow(power));
     divisor.map_or(0, |divisor| (number + divisor / 2) / divisor)

@@ -2,48 +2,48 @@ use thiserror::Error;
 
 use super::{FARTHEST_M, FASTEST, LATEST_S};
 
-/// Why a recording cannot be replayed. Lines count from 1; times are in seconds.
+/// The reason why a recording cannot be replayed. Lines count from 1, and times are in seconds.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum RecordingError {
     /// The recording holds no samples.
     #[error("expected at least one sample, found none")]
     Empty,
-    /// The text cannot be read: input/output failed, or it is not UTF-8.
+    /// The text cannot be read: input or output failed, or the text is not UTF-8.
     #[error("cannot read the recording: {why}")]
     Unreadable {
-        /// What the reader said, with its place.
+        /// Message of the reader, including its position.
         why: String,
     },
-    /// Nothing says which columns the file has.
+    /// The columns of the file cannot be recognized and no mapping was given.
     #[error(
         "line {line}: expected the columns time_s,x,y,z,qw,qx,qy,qz, a EuRoC file (#timestamp [ns],p_RS_R_x [m],...), a TUM \
          file (eight numbers apart by spaces) or a mapping of columns, found {found}"
     )]
     Format {
-        /// Number of the line, from 1.
+        /// Number of the first line, from 1.
         line: u64,
-        /// The line, as it was read.
+        /// Text of the line, as it was read.
         found: String,
     },
-    /// A mapped column is not in the file.
+    /// The file lacks a mapped column.
     #[error("line {line}: expected a column `{expected}` for {field}, found {found}")]
     Column {
         /// Number of the header's line, from 1.
         line: u64,
-        /// What was to be read from it.
+        /// Name of the field that is mapped to the missing column.
         field: String,
-        /// Name or number of the column that was asked for.
+        /// Name or number of the missing column.
         expected: String,
-        /// The columns that there are.
+        /// Columns that the header has, separated by commas.
         found: String,
     },
-    /// A mapping leaves something out, says it twice, or does not know it.
+    /// A mapping is incomplete, maps a quantity twice, or uses an unknown field.
     #[error("columns: expected {expected}, found {found}")]
     Mapping {
-        /// What a mapping consists of.
+        /// Description of a complete mapping.
         expected: &'static str,
-        /// What was given.
+        /// The mapping that was given, or the part with the error.
         found: String,
     },
     /// A line has too few fields, or too many.
@@ -51,9 +51,9 @@ pub enum RecordingError {
     Fields {
         /// Number of the line, from 1.
         line: u64,
-        /// How many fields it should have.
+        /// Required number of fields.
         expected: usize,
-        /// How many fields it has.
+        /// Number of fields in the line.
         found: usize,
     },
     /// A field is not a finite number.
@@ -73,10 +73,11 @@ pub enum RecordingError {
         line: u64,
         /// Name of the column, as in the header.
         column: String,
-        /// Time stamp of this line, s; where a file counts from its first line, from there.
+        /// Time stamp of this line, s. For a file whose time counts from its first line, this is the time since the
+        /// first line.
         found_s: f64,
     },
-    /// A time stamp is before that of the line before.
+    /// A time stamp is earlier than the time stamp of the line before.
     #[error("line {line}, {column}: expected {previous_s} s or more, the time of the line before, found {found_s} s")]
     NotRising {
         /// Number of the line, from 1.
@@ -88,36 +89,36 @@ pub enum RecordingError {
         /// Time stamp of this line, s.
         found_s: f64,
     },
-    /// The length of a quaternion is not 1.
+    /// The length of a quaternion differs from 1 by more than the tolerance.
     #[error("line {line}, {columns}: expected a quaternion of length 1, found {found}")]
     NotUnit {
         /// Number of the line, from 1.
         line: u64,
-        /// Names of its columns, as in the header.
+        /// Names of the quaternion's columns, as in the header.
         columns: String,
-        /// Length of its quaternion.
+        /// Length of the recorded quaternion.
         found: f64,
     },
-    /// A position is farther away than any place on Earth.
+    /// A coordinate of a position exceeds the limit, which is larger than the Earth.
     #[error("line {line}, {column}: expected -{FARTHEST_M:e} to {FARTHEST_M:e} m, found {found_m:e} m")]
     TooFar {
         /// Number of the line, from 1.
         line: u64,
         /// Name of the column, as in the header.
         column: String,
-        /// The coordinate, m.
+        /// The coordinate that is out of range, m.
         found_m: f64,
     },
-    /// From one sample to the next the head moves or turns faster than anything does.
+    /// The head moves or turns between two samples faster than any real motion.
     #[error(
         "line {line}: expected at most {FASTEST:e} m/s and {FASTEST:e} rad/s from the line before, found {found:e} {unit}"
     )]
     TooFast {
         /// Number of the line, from 1.
         line: u64,
-        /// The speed.
+        /// Speed since the sample before, in `unit`.
         found: f64,
-        /// Its unit.
+        /// Unit of the speed: m/s or rad/s.
         unit: &'static str,
     },
 }

@@ -23,66 +23,69 @@ use crate::time::span_s;
 /// Latest time stamp of a recording: 10^7 s (115 days), safely below the end of simulated time.
 const LATEST_S: f64 = 1e7;
 
-/// Farthest coordinate of a recording, m. Assumed: 1e6 to 1e12; the coordinates of maps, which count from the equator, reach 1e7,
-/// and squares of this are far from the end of single precision.
+/// Farthest coordinate of a recording, m. Assumed, with a range of 1e6 to 1e12. Map coordinates, which count from the
+/// equator, reach 1e7. The square of this limit is far from the limit of single precision.
 const FARTHEST_M: f64 = 1e8;
 
-/// Fastest movement between two samples, m/s, and fastest turn, rad/s. Assumed: 1e3 to 1e9; no head moves so, but where a tracker
-/// loses its place and finds it again a recording jumps within a millisecond.
+/// Fastest movement between two samples, m/s, and fastest turn, rad/s. Assumed, with a range of 1e3 to 1e9. A head
+/// never moves so fast. The limit is this high because a recording jumps within a millisecond when a tracker loses its
+/// position and finds it again.
 const FASTEST: f64 = 1e6;
 
-/// How many times longer than usual (the median) the time between two samples is in a gap, and how long at least, s. Assumed: 3 to 20,
-/// and 0.1 to 1; a head at 200 degrees a second turns by 40 in a fifth of a second, and no straight line tells how.
+/// Least length of a gap: a multiple of the median time between two samples, and a time in seconds (`GAP_S`). Assumed,
+/// with ranges of 3 to 20 and 0.1 to 1. At 200 degrees per second a head turns by 40 degrees in 0.2 s, which no
+/// interpolation can reconstruct.
 const GAP_TIMES: u64 = 5;
 const GAP_S: f64 = 0.2;
 
-/// Time stamp (ps) and pose.
+/// The time stamp (ps) and the pose of a sample.
 type Sample = (u64, Pose);
 
-/// What is behind the last sample of a recording.
+/// The behaviour of a recording after its last sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum End {
-    /// Nothing: a run that goes on after it is refused.
+    /// A run that continues after the last sample is refused.
     #[default]
     Refuse,
-    /// The head stands still; so it does where samples are missing for long.
+    /// The head stands still after the last sample, and also during gaps.
     Hold,
-    /// The recording begins again; unless it ends where it began, the head jumps.
+    /// The recording begins again. The head jumps unless the recording ends at its first pose.
     Loop,
 }
 
 impl End {
-    /// All of them, by the names under which experiments know them.
+    /// Every behaviour at the end of a recording, with its name in experiment files.
     pub const NAMES: [(&'static str, Self); 3] = [("error", Self::Refuse), ("hold", Self::Hold), ("loop", Self::Loop)];
 
-    /// Its name in experiment files and on the command line.
+    /// Returns the name of this behaviour in experiment files and on the command line.
     pub fn name(self) -> &'static str {
         Self::NAMES.iter().find(|(_, end)| *end == self).map_or("", |(name, _)| name)
     }
 }
 
-/// How the file of a recording is to be read, where it is not to be told by its contents.
+/// The format of a recording's file, where the contents of the file do not determine it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RecordingFormat {
-    /// Which column holds what; empty for a file that says so itself.
+    /// Mapping from fields to columns. The mapping is empty for a file whose header or first line is recognized.
     pub columns: Columns,
-    /// What its axes mean; `None` for what is usual for the kind of file.
+    /// Axis convention of the file, or `None` for the usual convention of this kind of file.
     pub axes: Option<Axes>,
 }
 
-/// A recorded trace, replayed: straight lines between positions, slerp between orientations. Before the first sample
-/// the head stands still; [`End`] says what comes after the last.
+/// A replayed recording of poses: linear interpolation between positions, slerp between orientations. Before the first
+/// sample the head stands still. [`End`] defines the behaviour after the last sample.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     samples: Vec<Sample>,
     end: End,
-    /// Stretches without samples, each from one sample to the next, ps: in order.
+    /// Gaps in the order of time, each as the times (ps) of the samples before and after it.
     gaps: Vec<(u64, u64)>,
     warnings: Vec<String>,
 }
 
 impl Recording {
-    /// Reads a file of poses; times must rise. Of samples of one time the first is kept ([`Motion::warnings`]). What it is, is told by its contents:
+    /// Reads a file of poses, whose times must rise. If several samples have the same time, only the first is kept
+    /// ([`Motion::warnings`]). The contents of the file determine its kind:
     ///
     /// | file | first line | time | quaternion | axes |
     /// |---|---|---|---|---|
@@ -90,7 +93,7 @@ impl Recording {
     /// | EuRoC | `#timestamp [ns],p_RS_R_x [m],...,q_RS_w [],...` and any more columns | nanoseconds, from the first line | real part first | [`Axes::Euroc`] |
     /// | TUM | eight numbers apart by spaces, behind comments (`#`) | seconds, from the first line | real part last | [`Axes::Optical`] |
     ///
-    /// Positions are in metres, and quaternions turn the head's axes into the world's.
+    /// Positions are in metres, and quaternions rotate the head's axes into the world's.
     ///
     /// # Errors
     ///
@@ -99,12 +102,12 @@ impl Recording {
         Self::read_as(input, &RecordingFormat::default())
     }
 
-    /// The same, with columns and axes that are said. With columns the file may have any others beside them, parted by commas,
-    /// semicolons, tabs or blanks, and time counts from its first line.
+    /// Reads a file of poses with given columns and axes. If columns are given, the file may have other columns too,
+    /// and time counts from its first line. Commas, semicolons, tabs or blanks separate the columns.
     ///
     /// # Errors
     ///
-    /// As [`Self::read`].
+    /// The same as [`Self::read`].
     pub fn read_as(mut input: impl Read, format: &RecordingFormat) -> Result<Self, RecordingError> {
         let mut bytes = Vec::new();
         let unreadable = |why: String| RecordingError::Unreadable { why };
@@ -112,7 +115,7 @@ impl Recording {
         if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
             return Err(unreadable("expected UTF-8 text, found text in units of 16 bits".to_owned()));
         }
-        // Comments may be in any encoding.
+        // UTF-16 was refused above. Comments may have any encoding, so invalid UTF-8 is replaced.
         let text = String::from_utf8_lossy(&bytes);
         let read::Samples { samples, repeated } = read::samples(&text, &format.columns, format.axes)?;
         let gaps = gaps(&samples);
@@ -120,33 +123,33 @@ impl Recording {
         Ok(Self { samples, end: End::default(), gaps, warnings })
     }
 
-    /// Returns true if two samples are the ends of a gap in which the head is to stand still.
+    /// Returns true if the head stands still after this sample because a gap follows it.
     fn holds_between(&self, (before_ps, _): &Sample) -> bool {
         self.end == End::Hold && self.gaps.binary_search_by_key(before_ps, |(from_ps, _)| *from_ps).is_ok()
     }
 
-    /// The same recording with another end.
+    /// Returns the same recording with another behaviour at its end.
     #[must_use]
     pub fn ending(self, end: End) -> Self {
         Self { end, ..self }
     }
 
-    /// Time stamps of the first and the last sample.
+    /// Returns the time stamps of the first and the last sample.
     pub fn span_ps(&self) -> (u64, u64) {
         (self.samples[0].0, self.samples[self.samples.len() - 1].0)
     }
 
-    /// Number of samples, at least 1.
+    /// Returns the number of samples, at least 1.
     pub fn n_samples(&self) -> usize {
         self.samples.len()
     }
 
-    /// Goes on with the samples of another one, all of which are later.
+    /// Appends the samples of another recording, all of which must be later.
     pub(super) fn append(&mut self, more: &Self) {
         self.samples.extend_from_slice(&more.samples);
     }
 
-    /// Where in the recording an instant is.
+    /// Maps an instant of a looped recording to the corresponding instant between its first and last sample.
     fn within(&self, t_ps: u64) -> u64 {
         let (first_ps, last_ps) = self.span_ps();
         match self.end {
@@ -155,7 +158,7 @@ impl Recording {
         }
     }
 
-    /// The samples about `t_ps`; `None` outside of the recording.
+    /// Returns the samples before and after `t_ps`, or `None` outside the recording.
     fn bracket(&self, t_ps: u64) -> Option<(&Sample, &Sample)> {
         let after = self.samples.partition_point(|(t, _)| *t <= t_ps);
         Some((self.samples.get(after.checked_sub(1)?)?, self.samples.get(after)?))
@@ -204,7 +207,7 @@ impl Motion for Recording {
     }
 }
 
-/// Times between samples that are much longer than usual.
+/// Returns the gaps between samples: spans that are much longer than the median span.
 fn gaps(samples: &[Sample]) -> Vec<(u64, u64)> {
     let spans = || samples.windows(2).map(|pair| (pair[0].0, pair[1].0));
     let mut lengths: Vec<u64> = spans().map(|(from_ps, to_ps)| to_ps - from_ps).collect();
@@ -219,7 +222,7 @@ fn gaps(samples: &[Sample]) -> Vec<(u64, u64)> {
     spans().filter(is_gap).collect()
 }
 
-/// Gaps that a warning lists one by one.
+/// Number of gaps that a warning lists one by one.
 const GAPS_LISTED: usize = 3;
 
 fn gap_warning(gaps: &[(u64, u64)]) -> Option<String> {

@@ -8,37 +8,39 @@ use crate::pose::Pose;
 use crate::rotation;
 use crate::time::{PS_PER_S, span_s};
 
-/// Columns of this crate's own files, in this order: seconds, metres, unit quaternion (head to world, real part first).
+/// Columns of this crate's own files: seconds, metres, unit quaternion (head to world, real part first).
 const OWN: [&str; 8] = ["time_s", "x", "y", "z", "qw", "qx", "qy", "qz"];
 
-/// What the names of the columns of a EuRoC ground truth end in, without their units, in this order.
+/// Endings of the column names of a EuRoC ground truth, without units, in the order of the file.
 const EUROC: [&str; 8] = ["timestamp", "_x", "_y", "_z", "_w", "_x", "_y", "_z"];
 
-/// Columns of a TUM trajectory, which has no header: the real part last.
+/// Columns of a TUM trajectory in the order of the file, with the real part of the quaternion last. A TUM file has no
+/// header.
 const TUM: [&str; 8] = ["timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"];
 
-/// Where in a TUM line the time, the position and the quaternion, real part first, are.
+/// Indices in a TUM line of time, position and quaternion, with the real part of the quaternion first.
 const TUM_ORDER: [usize; 8] = [0, 1, 2, 3, 7, 4, 5, 6];
 
-/// How far the length of a recorded quaternion may be from 1; four printed decimals stay well within it.
+/// Greatest difference between the length of a recorded quaternion and 1. Rounding to four decimals stays well within
+/// this limit.
 const LENGTH_TOLERANCE: f64 = 1e-2;
 
-/// How the lines of a file are to be read.
+/// The line format of a file.
 struct Layout {
-    /// What parts the fields; `None` for any white space.
+    /// Character that separates the fields, or `None` for any white space.
     separator: Option<char>,
-    /// Time, x, y, z, qw, qx, qy, qz.
+    /// Columns of time, x, y, z, qw, qx, qy, qz.
     columns: [Column; 8],
-    /// How many fields a line has; `None` for at least those of the columns.
+    /// Exact number of fields in a line. With `None`, a line may have more fields than the columns need.
     n_fields: Option<usize>,
     axes: Axes,
-    /// Whether time counts from the first line, whatever its stamp.
+    /// True if time counts from the first line, whatever its stamp.
     from_first: bool,
-    /// The first line that may be a sample.
+    /// Number of the header's line. Samples begin after it.
     begins_after: u64,
 }
 
-/// A line with something on it.
+/// A non-empty line of a file with its number.
 struct Line<'a> {
     number: u64,
     text: &'a str,
@@ -53,23 +55,25 @@ impl<'a> Line<'a> {
     }
 }
 
-/// A field without blanks and quotes.
+/// Removes blanks and quotes around a field.
 fn bare(field: &str) -> &str {
     field.trim().trim_matches('"')
 }
 
-/// What a file holds.
+/// The contents of a recording's file.
 pub(super) struct Samples {
     pub(super) samples: Vec<Sample>,
-    /// What is to be said of samples that were left out.
+    /// Warning about samples that were left out because they repeat a time.
     pub(super) repeated: Option<String>,
 }
 
 /// Reads the samples of a recording, in this crate's axes.
 pub(super) fn samples(text: &str, columns: &Columns, axes: Option<Axes>) -> Result<Samples, RecordingError> {
+    // Number the lines from 1, and drop a byte order mark and empty lines.
     let lines = text.trim_start_matches('\u{feff}').lines().zip(1..);
     let lines = lines.map(|(text, number)| Line { number, text: text.trim() }).filter(|line| !line.text.is_empty());
     let lines: Vec<Line<'_>> = lines.collect();
+    // Take the layout from the mapping, or recognize it from the first lines.
     let layout = if columns.is_empty() { recognised(&lines)? } else { mapped(&lines, columns)? };
     let axes = axes.unwrap_or(layout.axes);
     let mut first_ps = None;
@@ -79,7 +83,8 @@ pub(super) fn samples(text: &str, columns: &Columns, axes: Option<Axes>) -> Resu
         let (stamp_ps, pose) = layout.sample(line)?;
         let origin_ps = if layout.from_first { *first_ps.get_or_insert(stamp_ps) } else { 0 };
         let t_ps = layout.time(line, stamp_ps - origin_ps, samples.last())?;
-        // Public ground truths have such pairs: the tracker reported twice within one tick of its clock.
+        // Public ground truths have pairs of samples with one time: the tracker reported twice within one tick of its
+        // clock.
         if samples.last().is_some_and(|(before_ps, _)| *before_ps == t_ps) {
             repeated.add(line.number);
             continue;
@@ -93,7 +98,7 @@ pub(super) fn samples(text: &str, columns: &Columns, axes: Option<Axes>) -> Resu
     if samples.is_empty() { Err(RecordingError::Empty) } else { Ok(Samples { samples, repeated: repeated.warning() }) }
 }
 
-/// Samples of the time of the one before.
+/// Counts samples that have the same time as the sample before.
 #[derive(Default)]
 struct Repeated {
     count: usize,
@@ -126,16 +131,18 @@ fn check_speed(line: &Line<'_>, (before_ps, before): &Sample, (t_ps, pose): &Sam
     too_fast.map_or(Ok(()), |(found, unit)| Err(RecordingError::TooFast { line: line.number, found, unit }))
 }
 
-/// The layout of a file that says itself what it is.
+/// Recognizes the layout of a file from its first lines.
 fn recognised(lines: &[Line<'_>]) -> Result<Layout, RecordingError> {
     let first = lines.first().ok_or(RecordingError::Empty)?;
     let header: Vec<&str> = first.text.trim_start_matches('#').split(',').map(bare).collect();
+    // Case 1: this crate's own header.
     if header == OWN {
         let columns = in_order(&OWN, [0, 1, 2, 3, 4, 5, 6, 7], 0);
         let axes = Axes::OpenGl;
         let begins_after = first.number;
         return Ok(Layout { separator: Some(','), columns, n_fields: Some(8), axes, from_first: false, begins_after });
     }
+    // Case 2: the header of a EuRoC ground truth.
     if first.text.starts_with('#') && is_euroc(&header) {
         let names: [&str; 8] = std::array::from_fn(|i| header[i]);
         let columns = in_order(&names, [0, 1, 2, 3, 4, 5, 6, 7], 9);
@@ -149,6 +156,7 @@ fn recognised(lines: &[Line<'_>]) -> Result<Layout, RecordingError> {
             begins_after,
         });
     }
+    // Case 3: a TUM trajectory, whose first line without `#` has eight numbers.
     let numbers = lines.iter().find(|line| !line.text.starts_with('#')).ok_or(RecordingError::Empty)?;
     let fields = numbers.fields(None);
     if fields.len() == TUM.len() && fields.iter().all(|field| field.parse::<f64>().is_ok()) {
@@ -159,7 +167,8 @@ fn recognised(lines: &[Line<'_>]) -> Result<Layout, RecordingError> {
     Err(RecordingError::Format { line: first.number, found: first.text.to_owned() })
 }
 
-/// Whether a header is that of a EuRoC ground truth: what follows the first eight columns (velocity, biases) is left alone.
+/// Returns true if a header belongs to a EuRoC ground truth. Columns after the first eight (velocity, biases) are
+/// ignored.
 fn is_euroc(header: &[&str]) -> bool {
     let name = |column: &str| column.split('[').next().unwrap_or_default().trim().to_owned();
     header.len() >= EUROC.len() && header.iter().zip(EUROC).all(|(column, end)| name(column).ends_with(end))
@@ -170,10 +179,11 @@ fn in_order(names: &[&str; 8], order: [usize; 8], time_places: i32) -> [Column; 
     std::array::from_fn(|slot| Column { index: order[slot], name: names[order[slot]].to_owned(), places: places(slot) })
 }
 
-/// The layout of a file whose columns are said.
+/// Returns the layout of a file whose columns are given by a mapping.
 fn mapped(lines: &[Line<'_>], columns: &Columns) -> Result<Layout, RecordingError> {
     let first = lines.first().ok_or(RecordingError::Empty)?;
     let separator = [',', ';', '\t'].into_iter().find(|separator| first.text.contains(*separator));
+    // A first line of numbers alone is a sample, not a header.
     let header = Line { number: first.number, text: first.text.trim_start_matches('#').trim() };
     let fields = header.fields(separator);
     let has_header = !fields.iter().all(|field| field.parse::<f64>().is_ok());
@@ -192,15 +202,17 @@ fn mapped(lines: &[Line<'_>], columns: &Columns) -> Result<Layout, RecordingErro
 }
 
 impl Layout {
-    /// The stamp of a line in picoseconds, and its pose in the recorded axes.
+    /// Parses a line into its time stamp in picoseconds and its pose in the recorded axes.
     fn sample(&self, line: &Line<'_>) -> Result<(i128, Pose), RecordingError> {
         let fields = line.fields(self.separator);
         let needed = self.columns.iter().map(|column| column.index + 1).max().unwrap_or_default();
+        // Check the number of fields before any field is read.
         let expected = self.n_fields.unwrap_or(needed);
         let found = fields.len();
         if found < needed || self.n_fields.is_some_and(|exact| exact != found) {
             return Err(RecordingError::Fields { line: line.number, expected, found });
         }
+        // The time is parsed exactly, the other fields as floating point.
         let [time, numbers @ ..] = &self.columns;
         let stamp_ps = scaled(fields[time.index], 12 - time.places);
         let stamp_ps = stamp_ps.ok_or_else(|| not_a_number(line, time, fields[time.index]))?;
@@ -228,7 +240,7 @@ impl Layout {
         Err(RecordingError::NotUnit { line: line.number, columns: names.join(","), found })
     }
 
-    /// The instant of a sample, after that of the one before.
+    /// Returns the instant of a sample, after checking that times do not fall and stay below the limit.
     fn time(&self, line: &Line<'_>, t_ps: i128, previous: Option<&Sample>) -> Result<u64, RecordingError> {
         let column = self.columns[0].name.clone();
         let line = line.number;

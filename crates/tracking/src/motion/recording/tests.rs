@@ -108,11 +108,11 @@ fn bytes_that_are_not_text_are_an_error() {
     assert!(matches!(Recording::read(&b"\xff\xfe"[..]), Err(RecordingError::Unreadable { .. })));
 }
 
-// One motion in three kinds of file. The head stands at (0, 1.7, 0) and looks along -z; half a second later it has turned a quarter
-// to the left and moved to (0.25, 1.7, -0.5); then it looks 30 degrees up. In the other two files up is z and what was -z is y.
-// Their matrices have as columns where the sensor's axes point, in words of each format, and were turned into quaternions by
-// hand. At the start the optical frame has x east, y down, z north: (w, x, y, z) = (s, -s, 0, 0) with s = sqrt(1/2); EuRoC's
-// x up, y east, z north: (1, -1, -1, -1) / 2.
+// One motion in three kinds of file. The head stands at (0, 1.7, 0) and looks along -z. Half a second later it has
+// turned a quarter to the left and moved to (0.25, 1.7, -0.5). Then it looks 30 degrees up. In the other two files up
+// is z, and y replaces -z. The quaternions were computed by hand from matrices whose columns are the directions of the
+// sensor's axes. At the start the optical frame has x east, y down, z north: (w, x, y, z) = (s, -s, 0, 0) with s =
+// sqrt(1/2). EuRoC's frame has x up, y east, z north: (1, -1, -1, -1) / 2.
 const OWN: &str = "time_s,x,y,z,qw,qx,qy,qz
 0,0,1.7,0,1,0,0,0
 0.5,0.25,1.7,-0.5,0.70710678,0,0.70710678,0
@@ -199,7 +199,7 @@ fn a_mapping_that_is_not_whole_is_an_error() {
 
 #[test]
 fn axes_can_be_said() {
-    // A robot that faces north and turns a quarter to the left, about its z axis, which is up.
+    // A robot that faces north and turns a quarter to the left about its upward z axis.
     let text = "1 0 0 1.7 0 0 0.70710678 0.70710678\n2 0 0 1.7 0 0 1 0\n";
     let format = RecordingFormat { axes: Some(Axes::Robot), ..RecordingFormat::default() };
     let recording = Recording::read_as(text.as_bytes(), &format).unwrap();
@@ -229,7 +229,7 @@ fn of_samples_of_one_time_the_first_is_kept_and_the_others_are_told() {
     assert_eq!(said, "line 3, timestamp: expected 2 s or more, the time of the line before, found 1 s");
 }
 
-/// A hundred samples a second over three seconds, less those between two instants.
+/// Returns a recording of 100 samples per second over three seconds, without the samples between two instants.
 fn with_gap(from_ms: u64, to_ms: u64) -> String {
     let times = (0..300).map(|n| 10 * n).filter(|ms| !(from_ms + 1..to_ms).contains(ms));
     times.map(|ms| format!("{}.{:03},{}e-3,0,0,1,0,0,0\n", ms / 1000, ms % 1000, ms)).collect()
