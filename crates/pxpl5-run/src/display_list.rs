@@ -25,8 +25,8 @@ pub fn display_list(scene: &Scene) -> Result<DisplayList, String> {
             scene.name()
         ));
     }
+    // Convert structures, spheres and vertices to the types of the display list.
     let structure = |s: &pxpl5_scene::Structure| DisplayStructure {
-        // Convert structures, spheres and vertices to the types of the display list.
         triangles: s.triangles.clone(),
         spheres: s.spheres.clone(),
         frame: match s.frame {

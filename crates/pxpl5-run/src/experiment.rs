@@ -277,17 +277,17 @@ impl Experiment {
     /// Returns a hash of everything on which the trace depends: machine, pipeline with its settings, contents of the
     /// scene, fields, seed, level and head.
     #[must_use]
-    // Machine: the code version, the displays, the number of boards, and all parameters that affect the trace.
     pub fn config_hash(&self) -> Fingerprint {
         let mut hash = Fingerprint::default();
+        // Machine: the code version, the displays, the number of boards, and all parameters that affect the trace.
         hash.setting("code", self.config.code_name());
         self.config.displays.iter().for_each(|display| hash.setting("display", display.name()));
         let [n_gps, n_renderers] = self.config.boards();
         hash.setting("n_gps", n_gps);
         hash.setting("n_renderers", n_renderers);
         self.config.telling_parameters().iter().for_each(|parameter| hash.setting(&parameter.path, parameter.value));
-        // Pipeline, scene and settings of the run.
         self.config.i860.unusual_settings().iter().for_each(|(key, value)| hash.setting(key, value));
+        // Pipeline, scene and settings of the run.
         hash.setting("pipeline", self.pipeline.name());
         self.pipeline.settings().iter().for_each(|(key, value)| hash.setting(key, value));
         hash.setting("scene", Fingerprint::of_scene(&self.scene));

@@ -96,12 +96,12 @@ impl LoadSchedule {
         let mut field = self.scan.field_at(after);
         loop {
             let groups = self.height().div_ceil(self.lines);
-            // Find the last group of lines whose first load lies at or before the instant.
             let begun = |group: u32| self.loaded(Load { field, line: group * self.lines, number: 0 }) <= after;
+            // Find the last group of lines whose first load lies at or before the instant.
             let groups_begun = partition(groups, begun);
-            // A later load of the same group comes next, if the group has one.
             if let Some(group) = groups_begun.checked_sub(1) {
                 let line = group * self.lines;
+                // A later load of the same group comes next, if the group has one.
                 let loads_begun = partition(self.loads, |number| self.loaded(Load { field, line, number }) <= after);
                 if loads_begun < self.loads {
                     return Load { field, line, number: loads_begun };

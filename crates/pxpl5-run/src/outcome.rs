@@ -147,19 +147,19 @@ impl Outcome {
     /// Returns the number of complete new pictures a second, over the window. At most one picture a period of the
     /// display counts, because no more can be seen. Returns `None` if fewer than two were shown, or if all of them
     /// belong to start-up.
-    // A single picture has no rate.
     #[must_use]
     pub fn updates_hz(&self) -> Option<f64> {
         let complete = self.closed.tally.complete;
+        // A single picture has no rate.
         if complete < LEAST_UPDATES {
-            // Pipelines with due pictures have the rate of the pictures that were shown in time.
             return None;
         }
+        // Pipelines with due pictures have the rate of the pictures that were shown in time.
         if self.pipeline().periods_a_picture(&self.record).is_some() {
-            // Otherwise several updates make up a picture, and each period counts at most once.
             return self.due()?.updates_hz(self.field_ms());
         }
         let window = self.closed.window?;
+        // Otherwise several updates make up a picture, and each period counts at most once.
         let pictures = complete as f64 / self.pipeline().updates_per_picture(&self.record);
         let seen =
             pictures.min(self.closed.tally.ends().periods_shown([window.first_period, window.last_period]) as f64);

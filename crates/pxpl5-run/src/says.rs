@@ -33,8 +33,8 @@ impl Stepper {
     #[must_use]
     pub fn details(&self, board: Board) -> Vec<String> {
         let Some(look) = self.processor(board) else { return Vec::new() };
-        // Messages that have arrived, that are being sent, and that wait.
         let ports = self.record().ports();
+        // Messages that have arrived, that are being sent, and that wait.
         let mut lines: Vec<String> = Vec::new();
         lines.extend(
             look.inbox

@@ -76,13 +76,13 @@ impl ByCells {
 
 impl DuePolicy for ByCells {
     fn begin(&mut self, updates: &Updates, number: PictureNumber, now: Time) -> VecDeque<Due> {
-        // All memories of the cycle use one view.
         let eye = (updates.setup.poses)(now, now).position;
         let mut update = self.policy.frame(eye);
         update.due[0] |= self.has_moving;
         if !update.due.contains(&true) {
             return VecDeque::new();
         }
+        // All memories of the cycle use one view.
         let view = updates.view(number, now);
         let from = view.eyes.first().map_or(eye, |eye| place(&eye.world_to_eye));
         for (memory, drawn_from) in self.drawn_from.iter_mut().enumerate() {

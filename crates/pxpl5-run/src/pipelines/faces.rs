@@ -180,7 +180,6 @@ impl FacePipeline {
             let mut cycles = Cycles::new(updates, scan, All { structures });
             return Ok(Box::new(move |number, now| cycles.next(number, now)));
         }
-        // With one memory and the machine as renderer, each update redraws everything.
         if self.policy == FacePolicy::Full {
             let mut full = Full::new(updates);
             return Ok(Box::new(move |number, now| full.next(number, now)));

@@ -1,25 +1,25 @@
-//! How latencies are spread.
+//! Histograms of latencies.
 
 use crate::markup::Element;
 use crate::svg::{Tenths, anchored, hint, line};
 
-/// Width and height of the chart in its own units.
+/// Width of the chart in its own units.
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 200.0;
-/// What stands left of, right of, above and below the bars.
+/// Space on the left of the bars.
 const LEFT: f64 = 44.0;
 const RIGHT: f64 = 30.0;
 const TOP: f64 = 14.0;
 const BOTTOM: f64 = 42.0;
-/// Where the bars stand, from the top.
+/// Vertical position of the foot of the bars, from the top.
 const FLOOR: f64 = HEIGHT - BOTTOM;
 
-/// Most bars of a histogram.
+/// Number of bars of a histogram.
 const BINS: usize = 24;
 /// Width of a bar with the gap behind it.
 const STEP: f64 = (WIDTH - LEFT - RIGHT) / BINS as f64;
 
-/// A histogram of latencies in milliseconds, as SVG to stand in a page.
+/// Returns a histogram of latencies in milliseconds, as SVG for a page.
 #[must_use]
 pub fn histogram(values_ms: &[f64]) -> String {
     histogram_element(values_ms).to_string()
@@ -43,12 +43,12 @@ pub(crate) fn histogram_element(values_ms: &[f64]) -> Element {
     svg.child(&anchored(LEFT - 6.0, FLOOR, "end").text(0))
 }
 
-/// Left edge of a bar.
+/// Returns the left edge of a bar.
 fn place_of(bin: usize) -> f64 {
     LEFT + STEP * bin as f64
 }
 
-/// Equal parts of the range of some values, and how many lie in each.
+/// Counts of values in equal parts of their range.
 struct Bins {
     begin: f64,
     width: f64,
@@ -56,13 +56,13 @@ struct Bins {
 }
 
 impl Bins {
-    /// Values that are all equal stand in the middle.
+    /// Counts values. If all values are equal, they lie in the middle bin.
     fn of(values: &[f64]) -> Self {
         let low = values.iter().copied().fold(f64::MAX, f64::min);
         let high = values.iter().copied().fold(f64::MIN, f64::max);
         let width = ((high - low) / BINS as f64).max(0.01);
         let begin = (f64::midpoint(low, high) - width * BINS as f64 / 2.0).max(0.0);
-        // A trifle wider, so that the greatest value lies within.
+        // The range is slightly enlarged, so that the greatest value lies in the last bin.
         let mut bins = Self { begin, width: width * 1.000_001, counts: [0; BINS] };
         for value in values {
             bins.counts[(((value - begin) / bins.width) as usize).min(BINS - 1)] += 1;

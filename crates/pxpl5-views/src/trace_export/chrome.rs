@@ -1,15 +1,15 @@
-//! Chrome's trace event format (JSON).
+//! Writer of Chrome's trace event format (JSON).
 
 use super::model::{Events, Slice, Step, Trace, Track};
 use pxpl5_sim::Time;
 use serde_json::{Map, Value, json};
 use std::io::{self, Write};
 
-/// Writes a trace as Chrome's JSON: an object with `traceEvents`, one a line, and the origin in `otherData`.
+/// Writes a trace as Chrome's JSON: an object with `traceEvents`, one event a line, and the origin in `otherData`.
 ///
 /// # Errors
 ///
-/// When the writer fails.
+/// Any error of the writer.
 pub fn chrome(trace: &Trace, mut out: impl Write) -> io::Result<()> {
     let origin: Map<String, Value> = trace.origin.iter().map(|(key, value)| ((*key).into(), json!(value))).collect();
     write!(out, "{{\"displayTimeUnit\":\"ns\",\"otherData\":{},\n\"traceEvents\":[", Value::Object(origin))?;
@@ -22,7 +22,7 @@ pub fn chrome(trace: &Trace, mut out: impl Write) -> io::Result<()> {
     out.flush()
 }
 
-/// Microseconds with six decimals, exact; JSON numbers made by a library would be rounded.
+/// Returns a time in microseconds with six decimals. The text is exact, because a JSON library would round the number.
 fn us(ps: u64) -> String {
     format!("{}.{:06}", ps / 1_000_000, ps % 1_000_000)
 }
@@ -38,7 +38,7 @@ fn names(trace: &Trace) -> Vec<String> {
     groups.chain(tracks).map(|event| event.to_string()).collect()
 }
 
-/// An event: kind, time, what else belongs to it.
+/// Returns an event as JSON. `rest` contains additional members.
 fn event(place: &str, kind: &str, time: Time, name: &str, rest: &str) -> String {
     format!(r#"{{"name":{},"ph":"{kind}","ts":{},{place}{rest}}}"#, json!(name), us(time.0))
 }
