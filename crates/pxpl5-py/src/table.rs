@@ -151,7 +151,8 @@ impl Table {
         self.batch.schema().fields().iter().map(|field| field.name().clone()).collect()
     }
 
-    /// Returns a description with the unit of each column, by name. The text is empty if the name says everything.
+    /// Returns the description of each column with its unit, by column name. The text is empty if the name says
+    /// everything.
     #[getter]
     fn definitions(&self) -> HashMap<String, String> {
         let schema = self.batch.schema();

@@ -17,18 +17,18 @@ use tracking::tracker::{TrackerConfig, TrackerModel};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
-    /// Reports are old when they arrive, and pictures are old when they are shown. Without this cause, all measurements
-    /// up to the instant of the picture are known.
+    /// Age of tracker reports when they arrive, and of pictures when they are shown. With this cause removed, the host
+    /// knows all measurements up to the instant that a picture is drawn for.
     Latency,
-    /// A picture is drawn for one instant and lights over a time span. Without this cause, the whole picture is
-    /// evaluated at that instant.
+    /// Duration of the scan: a picture is drawn for one instant and lights over a time span. With this cause removed,
+    /// the whole picture is evaluated at that instant.
     ScanOut,
-    /// The tracker's noise and bias. Without this cause, reports contain the true pose.
+    /// Noise and bias of the tracker. With this cause removed, reports contain the true pose.
     Noise,
-    /// The predictor's error. Without this cause, the true motion extrapolates the newest report.
+    /// Error of the predictor. With this cause removed, the true motion extrapolates the newest report.
     Prediction,
-    /// The tracker measures, and the host polls, only at intervals. Without this cause, a measurement arrives at the
-    /// very instant at which it is needed.
+    /// Intervals at which the tracker measures and the host polls. With this cause removed, a measurement arrives at
+    /// the very instant at which it is needed.
     Sampling,
 }
 

@@ -203,8 +203,9 @@ impl Experiment {
         self
     }
 
-    /// Sets the closed form that completes the messages of failed runs. A run that is too short can then tell how many
-    /// fields to simulate. A scene that is too large can tell how many triangles are shown in time.
+    /// Sets the functions that estimate values for error messages, by the pipeline's closed form. The message about a
+    /// run that is too short can then recommend a number of fields. The message about a scene that is too large can
+    /// recommend a number of triangles.
     #[must_use]
     pub const fn estimated_by(mut self, estimates: Option<Estimates>) -> Self {
         self.estimates = estimates;
@@ -262,13 +263,14 @@ impl Experiment {
         Self { head: None, ..self }
     }
 
-    /// Returns the raster that displays the picture in front of the head's eyes.
+    /// Returns the raster correction of the head-mounted display.
     #[must_use]
     pub fn raster(&self) -> Raster {
         self.head.as_ref().map(|head| head.raster()).unwrap_or_default()
     }
 
-    /// Returns the instant, within the time in which a view is lit, that the view is drawn for.
+    /// Returns the instant of a picture's display time for which its view is drawn, such as the middle or the first
+    /// pixel.
     #[must_use]
     pub fn aim(&self) -> Aim {
         self.head.as_ref().map(|head| head.aim()).unwrap_or_default()
@@ -311,8 +313,9 @@ impl Experiment {
         out_of_range(&self.config, self.pipeline.as_ref()).into_iter().chain(of_head).collect()
     }
 
-    /// Returns warnings about results that do not represent the published machine. See [`out_of_range`] and
-    /// [`times_of_table`]. Warnings about the files of the head's motion and of the scene follow.
+    /// Returns warnings about parameter values that no source supports ([`out_of_range`]), and about work without code
+    /// at the cycle level ([`times_of_table`]). Problems in the files of the head's motion and of the scene are
+    /// included.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let supposed = self.out_of_range();

@@ -14,7 +14,7 @@ pub struct FaceNote {
     pub view: ViewNumber,
     /// Index of the display memory.
     pub memory: usize,
-    /// Time at which the policy found the memory due.
+    /// Time at which the policy decided that the memory must be redrawn.
     pub due_at: Time,
     /// For each structure of the scene, true if the memory contains the structure.
     pub structures: Arc<[bool]>,

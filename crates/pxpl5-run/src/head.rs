@@ -22,9 +22,9 @@ pub type HeadError = SettingError;
 /// Origin of the numbers of a predictor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Numbers {
-    /// The caller gave the numbers.
+    /// The user has given the numbers.
     Given,
-    /// The run will find the numbers, for the interval over which its pipeline predicts.
+    /// A dry run will find the numbers, for the interval over which the pipeline predicts.
     ToBeTuned,
     /// A dry run found the numbers. The first training covers all poses. The second one covers orientations alone, for
     /// a display that predicts orientations over another interval.
@@ -35,7 +35,7 @@ enum Numbers {
 /// settings.
 const TUNING: &str = "for its interval and motion, version 1";
 
-/// A head with its motion, tracker and predictor, and the raster in front of its eyes.
+/// A head with its motion, tracker and predictor, and with the raster correction of its display.
 #[derive(Clone)]
 pub struct Head {
     pub(crate) motion: Moving,
@@ -155,14 +155,15 @@ impl Head {
         self.judge_at_m
     }
 
-    /// Sets the raster in front of the head's eyes.
+    /// Sets the raster correction of the head-mounted display.
     #[must_use]
     pub const fn before(mut self, raster: Raster) -> Self {
         self.raster = raster;
         self
     }
 
-    /// Sets the instant, within the time in which a view is lit, that the view is predicted for.
+    /// Sets the instant of a picture's display time for which its view is predicted, such as the middle or the first
+    /// pixel.
     #[must_use]
     pub const fn aiming(mut self, aim: Aim) -> Self {
         self.aim = aim;
@@ -208,13 +209,14 @@ impl Head {
         }
     }
 
-    /// Returns the instant, within the time in which a view is lit, that the view is predicted for.
+    /// Returns the instant of a picture's display time for which its view is predicted, such as the middle or the first
+    /// pixel.
     #[must_use]
     pub const fn aim(&self) -> Aim {
         self.aim
     }
 
-    /// Returns the raster in front of the head's eyes.
+    /// Returns the raster correction of the head-mounted display.
     #[must_use]
     pub const fn raster(&self) -> Raster {
         self.raster

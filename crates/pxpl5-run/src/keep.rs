@@ -8,8 +8,8 @@ pub enum Keep {
     /// to 100 KB (frameless).
     #[default]
     Everything,
-    /// Statistics of the whole run, and all observations of its last pictures. Memory, and time a field, do not depend
-    /// on the length of the run.
+    /// Statistics of the whole run, and all observations of its last pictures. Memory, and computing time per field, do
+    /// not depend on the length of the run.
     ///
     /// The streaming observer of [`Experiment::summed_by`](crate::Experiment::summed_by) computes the results for a
     /// tracked head. Without an observer, the report marks these results as missing. Two kinds of runs keep everything

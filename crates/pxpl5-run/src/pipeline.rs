@@ -57,8 +57,8 @@ pub struct Setup {
     pub cells: Arc<[Vec<Cell>]>,
     /// Record of the updates that a pipeline with faces has requested.
     pub notes: FaceNotes,
-    /// Instant, within the time in which a view is lit, that a view is drawn for. Firmware that knows this time uses
-    /// the setting.
+    /// Instant of a picture's display time for which its view is drawn, such as the middle or the first pixel. Only
+    /// firmware that knows the display time uses the setting.
     pub aim: Aim,
     /// Function that returns the arrival time of the next tracker report at the host.
     pub reports: ReportTimes,
@@ -158,8 +158,8 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     /// Returns the begun pictures that, at `end`, are shown or have missed their deadline, in order.
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes>;
 
-    /// Returns the number of periods of the first display before `end` in which an old picture is shown in a new
-    /// direction. Each such period counts as a picture, although nothing was drawn for it.
+    /// Returns the number of display periods before `end` in which the display turned old faces to a new head
+    /// direction. Each such period counts as a picture, although the pipeline drew nothing for it.
     fn turned_periods(&self, _record: &Record, _end: Time) -> u64 {
         0
     }

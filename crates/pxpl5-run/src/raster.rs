@@ -1,13 +1,13 @@
-//! Corrections of a picture between the frame buffer and the eye.
+//! Correction of a picture during its scan, between the frame buffer and the eye.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Way in which a raster displays the content of its frame buffer.
+/// Correction that a display applies while it scans its frame buffer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Raster {
-    /// Each pixel is displayed in its own place.
+    /// No correction: each pixel is displayed in its own place.
     #[default]
     Plain,
     /// The picture is shifted during the scan by the error of the pose that it was drawn for (VDRT, Breglia 1981).
@@ -15,7 +15,7 @@ pub enum Raster {
 }
 
 impl Raster {
-    /// All rasters, with their names on the command line.
+    /// All corrections, with their names on the command line.
     pub const ALL: [(&str, Self); 2] = [("plain", Self::Plain), ("vdrt", Self::Vdrt)];
 }
 

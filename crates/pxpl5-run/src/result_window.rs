@@ -93,8 +93,8 @@ impl ResultWindow {
     }
 }
 
-/// Returns the period of the first due picture that is counted. This picture is the first one between `start` and `end`
-/// that was not shown. If all were shown, it is the first one due at or after `steady`.
+/// Returns the period in which the first counted picture is due. If a picture that is due between `start` and `end` was
+/// not shown, the first such picture is taken. Otherwise, the first one that is due at or after `steady` is taken.
 fn first_due(ends: &PictureEnds, every: u64, [start, steady]: [u64; 2], end: u64) -> u64 {
     // The first picture defines in which periods pictures are due.
     let anchor = ends.first_from(start).unwrap_or(start);

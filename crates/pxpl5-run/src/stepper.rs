@@ -302,8 +302,8 @@ impl Stepper {
     }
 
     /// Returns true if a machine at the end of the run may be in a deadlock. A pipeline that waits for a swap is at
-    /// rest until the next tick. In a long run, the machine itself detects a deadlock. Only in a short run, or after
-    /// idle ticks at the end, can a deadlock be undetected.
+    /// rest until the next tick. In a long run, the machine itself detects a deadlock. A deadlock can be undetected
+    /// only in a short run, or after idle ticks at the end.
     fn may_be_stuck(&self) -> bool {
         let is_long = self.experiment.fields > SHORT_RUN && self.run.machine.idle_ticks() < IDLE_TICKS;
         self.run.machine.is_at_rest() && !is_long

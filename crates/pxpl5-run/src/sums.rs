@@ -17,7 +17,7 @@ use std::sync::Arc;
 pub struct Settled<'a> {
     /// Pipeline that draws the pictures.
     pub pipeline: &'a dyn Pipeline,
-    /// Instant, within the time in which a view is lit, that the view is drawn for.
+    /// Instant of a picture's display time for which its view is drawn, such as the middle or the first pixel.
     pub aim: Aim,
     /// Number of periods of the first display that the run simulates.
     pub fields: u64,
@@ -38,8 +38,8 @@ pub struct Settled<'a> {
     pub until: PeriodNumber,
     /// Largest number of samples of a kind that are kept one by one: see [`Samples::keeping`](crate::Samples::keeping).
     pub samples: usize,
-    /// Window of the results, as far as it is known. The window may still move to a later begin, never to an earlier
-    /// one. If it moves, all data handed over before lie outside. `None` if the run has no window.
+    /// Window of the results, as far as it is known. The begin of the window may still move to a later period. Then all
+    /// data that was handed over before lies outside the window. `None` if the run has no window.
     pub window: Option<ResultWindow>,
 }
 

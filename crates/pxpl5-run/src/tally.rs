@@ -54,8 +54,8 @@ pub struct Tally {
     pub late_regions: u64,
     /// The first late regions, at most [`LATE_REGIONS_LISTED`].
     pub first_late_regions: Vec<LateRegion>,
-    /// Number of records (marks, arrivals, swaps) that all passes over the records have read. The number measures the
-    /// cost of the sums.
+    /// Number of records (marks, arrivals, swaps) that were read to compute the sums. A record that is read twice
+    /// counts twice.
     pub records_looked_at: u64,
     /// Latencies by surface or pair of surfaces, in the order of [`WHOSE`] and [`ENDS`].
     surfaces_ms: Vec<Samples>,

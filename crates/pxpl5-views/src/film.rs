@@ -1,4 +1,4 @@
-//! Films of the viewer's view, period by period, as animated PNG.
+//! Films of the displayed pictures, period by period, as animated PNG.
 
 use crate::animation::Animation;
 use crate::frame_time::frame_seconds;
@@ -22,7 +22,7 @@ pub enum FilmOf {
     All,
 }
 
-/// A film of an experiment. It has a frame for each period of the display, as the viewer sees it at the end of the
+/// A film of an experiment. A film has a frame for each period of the display, which shows the screen at the end of the
 /// period. With an NTSC display, the lines of the previous field stand between those of the present one.
 #[derive(Clone, Debug)]
 pub struct Film {

@@ -14,7 +14,7 @@
 //! | [`results`] | a row for each picture, and the origin of each file, by which the file can be made again |
 //! | [`charts`] | speed against error of the levels of modelling, error against time, distribution of latencies |
 //! | [`page`] | one page of HTML without external resources |
-//! | [`Film`] | the viewer's view, period by period |
+//! | [`Film`] | the displayed pictures, period by period |
 //! | [`png_bytes`] | a picture with its origin |
 //! | [`Animation`] | a sequence of pictures as animated PNG |
 //!

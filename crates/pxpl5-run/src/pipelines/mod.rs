@@ -111,7 +111,7 @@ fn swapped_in(stages: &[StageSpan], picture: PictureNumber, shown_at: Time) -> O
     })
 }
 
-/// Returns the marks at which boards took the view to draw.
+/// Returns the marks of the stage SAMPLE, at which a board took the newest view for drawing.
 fn samples(record: &Record) -> impl Iterator<Item = &Mark> {
     record.observation().marks.iter().filter(|mark| mark.stage == Stage::Sample)
 }

@@ -13,7 +13,7 @@ const MARGIN: f64 = 4.0;
 pub struct MeanPart {
     /// Name, as in [`LATENCY_PARTS`](pxpl5_measure::LATENCY_PARTS).
     pub name: String,
-    /// Mean over all pictures, in milliseconds.
+    /// Mean duration of the part over all pictures, in milliseconds.
     pub mean_ms: f64,
     /// True if the part belongs to the latency that the papers state.
     pub published: bool,
