@@ -58,9 +58,11 @@ pub(crate) fn attended<T: Send + 'static>(
     worker.map_err(|error| failed_run(format!("no thread can be started: {error}")))?;
     let mut told = None;
     loop {
+        // Wait without the interpreter's lock, then check for Ctrl-C and report progress.
         let result = py.detach(|| wait(&mut results));
         let looked = py.check_signals().and_then(|()| tell(callback, &progress, &mut told));
         if let Err(error) = looked {
+            // Request the work to stop, and raise the exception.
             progress.given_up.store(true, Ordering::Relaxed);
             if waits {
                 py.detach(|| end(&mut results));

@@ -160,6 +160,7 @@ fn run(
     told: Arc<Progress>,
 ) -> Result<pxpl5::Outcome, Box<ExperimentError>> {
     let fields = native.length();
+    // A short run stops in every field, a long one only for progress.
     let each = if fields <= LOOKED_AT { fields } else { 0 };
     let stops: Vec<PeriodNumber> = PeriodNumber::FIRST.until(PeriodNumber::FIRST.after(each)).collect();
     let host = Attended { workstation, told: Arc::clone(&told), motion, policy };

@@ -253,6 +253,7 @@ impl Outcome {
         run.timeline = Some(self.timeline(py, None, None, None, None)?.into_bytes());
         run.latencies_ms =
             outcome.complete_pictures().map(|times| times.shown_at.since(times.transform_at).as_ms()).collect();
+        // Surfaces without pixels have no picture on the page.
         for (id, surface) in outcome.record().surfaces() {
             if let Some(picture) = py.detach(|| outcome.picture(id)) {
                 let png = png_bytes(&picture, &[]).map_err(wrong_setting)?;

@@ -49,6 +49,7 @@ impl Asked {
         let grid = pass.picture().viewport.grid();
         let regions = grid.regions() as u16;
         let primitives: Vec<u32> = (0..regions).map(|region| pass.counts(RegionId(region)).total()).collect();
+        // Describe the frame in a dictionary and call the policy.
         let asked = Python::attach(|py| -> PyResult<Vec<Assignment>> {
             let about = PyDict::new(py);
             about.set_item("frame", frame.0)?;

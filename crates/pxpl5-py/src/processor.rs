@@ -116,6 +116,7 @@ impl Processor {
         let mut ram = Ram::new(0, memory);
         let base = program.base;
         let size = program.bytes.len();
+        // Load the program, then choose the start address.
         ram.load(base, &program.bytes)
             .map_err(|_| wrong_setting(format!("{size} bytes at {base:#x} do not fit {memory:#x} bytes of memory")))?;
         let start = program.symbol("start").unwrap_or(base);

@@ -206,6 +206,7 @@ fn indices(array: ArrayView2<'_, i64>, vertices: usize) -> PyResult<Vec<[u32; 3]
     for (number, row) in array.rows().into_iter().enumerate() {
         let mut corners = [0; 3];
         for (corner, found) in corners.iter_mut().zip(row) {
+            // Negative indices and indices beyond the vertices are errors.
             let index = u32::try_from(*found).ok().filter(|index| (*index as usize) < vertices);
             *corner = index.ok_or_else(|| {
                 wrong_setting(format!(

@@ -100,6 +100,7 @@ fn column_of(name: &str, rows: &[Map<String, Value>], about: &str) -> Column {
     let known: Vec<Option<&Value>> = rows.iter().map(|row| row.get(name).filter(|value| !value.is_null())).collect();
     let all = |is: fn(&Value) -> bool| known.iter().flatten().all(|value| is(value));
     let none = known.iter().all(Option::is_none);
+    // A column without values, or with any real number among numbers, is float64.
     let values: ArrayRef = if none || (!all(Value::is_i64) && all(Value::is_number)) {
         Arc::new(known.iter().map(|value| value.and_then(Value::as_f64)).collect::<Float64Array>())
     } else if all(Value::is_i64) {
@@ -167,6 +168,7 @@ impl Table {
     /// Raises KeyError with the existing names.
     fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let column = self.batch.column(self.column_index(name)?);
+        // NumPy has no missing integers, so a column with gaps becomes float64.
         if let Some(whole) = column.as_any().downcast_ref::<Int64Array>() {
             if whole.null_count() == 0 {
                 return Ok(PyArray1::from_slice(py, whole.values()).into_any());
@@ -246,6 +248,7 @@ fn text(column: &ArrayRef, row: usize) -> String {
     let any = column.as_any();
     if let Some(values) = any.downcast_ref::<Float64Array>() {
         let value = values.value(row);
+        // Four significant digits, but at most six after the decimal point.
         let digits = 3 - value.abs().max(1e-3).log10().floor() as i32;
         return format!("{value:.*}", digits.clamp(0, 6) as usize);
     }

@@ -79,6 +79,7 @@ impl Estimator {
     #[must_use]
     pub fn new(views: &Arc<HeadViews>, without: Option<Cause>) -> Self {
         let head = views.head();
+        // Each cause is removed from the tracker or from the predictor, and the rest stays as in the run.
         let tracker = head.tracker().config().clone();
         let way = match without {
             None | Some(Cause::ScanOut) => Way::Following(views.follower()),

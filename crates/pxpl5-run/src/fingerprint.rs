@@ -37,6 +37,7 @@ impl Fingerprint {
     #[must_use]
     pub fn of_scene(scene: &Scene) -> Self {
         let mut all = Self::default();
+        // The order of these lines defines the hash, so it must not change.
         all.length(scene.vertices());
         scene.vertices().iter().for_each(|vertex| all.vertex(vertex));
         all.length(scene.triangles());

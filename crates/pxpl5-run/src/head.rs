@@ -96,6 +96,7 @@ impl Head {
         predictor: PredictorConfig,
         seed: u64,
     ) -> Result<Self, HeadError> {
+        // Check both configurations now, so that later calls cannot fail.
         predictor.build()?;
         let tracker = TrackerModel::new(tracker)?;
         Ok(Self {
@@ -294,6 +295,7 @@ impl Head {
             start,
             ..own
         };
+        // The training for positions stays on record.
         let of_all = if let Numbers::Tuned(of_all, _) = self.numbers { of_all } else { None };
         Self { predictor, numbers: Numbers::Tuned(of_all, training), ..self.clone() }
     }

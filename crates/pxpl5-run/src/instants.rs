@@ -52,11 +52,13 @@ impl Instants {
             None => At { number, instant: instant.0, steps: [0; 2] },
             Some(last) => {
                 assert!(number > last.number, "{number} after {}", last.number);
+                // Store only the differences from the expected entry, which are small.
                 write(&mut self.written, number - last.number - 1);
                 write(&mut self.written, folded(instant.0.wrapping_sub(last.expected())));
                 last.followed_by(number, instant.0)
             }
         };
+        // Decoding can begin at every block.
         if self.count.is_multiple_of(BLOCK) {
             self.begins.push(Begin { at, next: self.written.len() });
         }

@@ -120,10 +120,12 @@ impl LatchedHead {
     pub fn latency(&self, head: &HeadViews, x: u32, y: u32, field: PeriodNumber) -> Option<RotationLatency> {
         let latched = self.latches(x, y, field)?;
         let (known, _) = self.turned_by(head, x, y, field)?;
+        // The orientation comes from the newest report that the host knew.
         let report = head.report_by(known)?;
         let measured = head.measured_at(report)?;
         let scanned = self.scan.lights(x, y, field)?;
         let loaded = self.loaded(report);
+        // Each part begins at the end of the part before.
         Some(RotationLatency {
             tracker: report.since(measured),
             host: self.link,

@@ -66,6 +66,7 @@ pub(crate) fn with_clocks_of_instructions(machine: &MachineConfig, layout: &Layo
     ] {
         // A layout without the fields of a command never gets that command.
         let of_program = kind.clocks(layout).map_or(of_table, u64::from);
+        // A value that differs from the table was set by the experiment and stays.
         *clocks = if *clocks == of_table { of_program } else { *clocks };
     }
     machine

@@ -99,6 +99,7 @@ impl RehearsalSum {
     /// memory waits until the picture that replaces it is known.
     fn timed(&mut self, settled: &Settled<'_>) -> Vec<(PictureTimes, Option<PictureTimes>)> {
         let notes = settled.notes.all();
+        // Leave out the updates of all memories except the first.
         let of_others: BTreeSet<PictureNumber> =
             notes.iter().filter(|note| note.memory > 0).map(|note| note.picture).collect();
         let is_timed = |times: &&PictureTimes| !of_others.contains(&times.picture);

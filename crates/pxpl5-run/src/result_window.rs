@@ -51,6 +51,7 @@ impl ResultWindow {
         let end = if every.is_some() { reached.0 } else { reached.0.checked_sub(1)? };
         let periods = end.checked_sub(begun.first_period.0)?;
         let every = every.unwrap_or(1).max(1);
+        // The window covers whole intervals between due pictures.
         let whole = periods / every * every;
         let last_period = PeriodNumber((begun.first_period.0 + whole).checked_sub(1)?);
         (whole > 0).then_some(Self { last_period, ..begun })
@@ -60,6 +61,7 @@ impl ResultWindow {
     /// The window ends with the requested end of the run.
     pub(crate) fn begun(ends: &PictureEnds, every: Option<u64>, known: PeriodNumber, planned: PeriodNumber) -> Self {
         let steady_from = ends.steady_from();
+        // Start-up may take at most the first half of the requested run.
         let middle = WARM_UP_PERIODS + planned.0.saturating_sub(WARM_UP_PERIODS) / 2;
         let start = ends.first_from(0).unwrap_or_default().min(middle);
         // If start-up takes more than half of the run, due pictures are counted from the first picture on.

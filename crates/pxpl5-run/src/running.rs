@@ -77,6 +77,7 @@ impl Experiment {
         stops: &[PeriodNumber],
         mut at: impl FnMut(PeriodNumber, &mut Machine) -> Result<(), ExperimentError>,
     ) -> Result<Outcome, ExperimentError> {
+        // Run from stop to stop. A failed machine ends the loop, and `finish` returns the error.
         let mut stepper = Stepper::begin(self, preparation)?;
         for field in self.stops(stops) {
             stepper.run_to(stepper.record().tick(field));

@@ -83,6 +83,7 @@ impl Stepper {
 
     fn renderer_line(&self, number: usize) -> Option<String> {
         let look = self.renderer(number)?;
+        // The level of the FIFO comes first, then activities of the renderer.
         let mut text = format!("fifo {}/{}", look.fifo_words.unwrap_or_default(), look.fifo_depth_words);
         if let Some(order) = look.copying {
             let display = self.record().ports().board(order.target.frame_buffer);

@@ -60,6 +60,7 @@ impl Statistics {
         }
         let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
+        // Two passes over the values avoid the loss of precision of a sum of squares.
         let squares = values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>();
         Self {
             n: values.len() as u64,

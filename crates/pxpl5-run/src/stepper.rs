@@ -51,6 +51,7 @@ pub struct Stepper {
 
 impl Stepper {
     pub(crate) fn begin(experiment: &Experiment, preparation: Preparation) -> Result<Self, ExperimentError> {
+        // The time on the host includes the building of the machine.
         let begun_s = experiment.host.seconds();
         let run = experiment.assemble(preparation.clone())?;
         let window = Window::new(experiment, run.machine.record());
@@ -74,6 +75,7 @@ impl Stepper {
             let pause = self.run_until(target, |_, _| false);
             return if pause == Pause::End && time <= self.end() { Pause::Reached } else { pause };
         }
+        // Final results are added to the sums after each chunk.
         while self.now < target {
             let chunk = self.record().tick(self.period().after(PROGRESS_FIELDS)).min(target);
             if let Err(error) = self.run.machine.run_until(chunk) {
@@ -342,10 +344,12 @@ fn needed_by_run(partial: &Outcome) -> Option<u64> {
     }
     let shown = || pictures.iter().map(|times| times.shown_at);
     let (first, last) = (shown().min()?, shown().max()?);
+    // Estimate the interval between pictures.
     let each = match pictures.len() {
         1 => first.since(Time::ZERO),
         more => Span(last.since(first).0 / (more as u64 - 1)),
     };
+    // Extrapolate to the first picture after the warm-up.
     let missing = (WARM_UP_PICTURES + 1).saturating_sub(pictures.len()).max(1) as u64;
     let at = last + Span(each.0.saturating_mul(missing));
     let field = partial.record().display().period_at(at).since(PeriodNumber::FIRST);

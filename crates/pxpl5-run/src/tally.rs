@@ -244,6 +244,7 @@ impl Tally {
             let begin = begins.entry((stage.picture, eye)).or_insert(stage.begin);
             *begin = stage.begin.min(*begin);
         }
+        // All eyes of a picture are swapped in at the same instant.
         for ((picture, _), begin) in &begins {
             let ms = shown[picture].since(*begin).as_ms();
             self.eye_swap_ms.push(ms);
@@ -255,6 +256,7 @@ impl Tally {
         for times in pictures {
             let own = of_picture(stages, times.picture);
             for (stage, samples) in &mut self.stage_ms {
+                // A stage without an end has no duration and is left out.
                 let spans = own.iter().filter(|span| span.stage == *stage);
                 samples.extend(spans.filter_map(|span| Some((span.end? - span.begin).as_ms())));
             }

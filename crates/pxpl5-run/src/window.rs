@@ -75,6 +75,7 @@ impl Window {
         }
         let record = run.machine.record();
         self.tally.records_looked_at += record.observation().records() as u64;
+        // Late regions are counted before their records are discarded.
         if let Some(begin) = self.take_old(experiment, run, now) {
             self.tally.take_late(&experiment.pipeline.late_regions(record, begin));
             let of_head = before(record, begin).unwrap_or_default();
@@ -137,6 +138,7 @@ impl Window {
     ) -> Closed {
         let pipeline = experiment.pipeline.as_ref();
         let end = record.tick(experiment.end());
+        // Periods that were not simulated do not count.
         self.tally.end_early(reached);
         self.tally.records_looked_at += record.observation().records() as u64;
         self.tally.take_late(&pipeline.late_regions(record, end));

@@ -60,6 +60,7 @@ fn nearest_fraction(exact: Fraction) -> Fraction {
             let last_is_nearer = exact.distance(last) * between.under <= exact.distance(between) * last.under;
             return if last_is_nearer && last.under > 0 { last } else { between };
         }
+        // Continue with the remainder, as in Euclid's algorithm.
         let next = last.followed(times, before);
         before = last;
         last = next;

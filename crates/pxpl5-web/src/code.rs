@@ -18,6 +18,7 @@ pub(crate) fn lines(stepper: &Stepper, board: Board) -> Vec<String> {
 fn of(processor: &Processor) -> Vec<String> {
     let state = processor.state();
     let mut lines = vec![format!("i860 after its last call: pc {:#010x}, psr {:#010x}", state.pc, state.psr)];
+    // Four rows show eight registers each.
     let rows = state.r.chunks(8).enumerate();
     lines.extend(rows.map(|(row, eight)| {
         let words: Vec<String> = eight.iter().map(|word| format!("{word:08x}")).collect();
@@ -27,6 +28,7 @@ fn of(processor: &Processor) -> Vec<String> {
     // A call ends at its return address, which lies outside of the code. Then the begin of the code is shown.
     let end = program.base + program.bytes.len() as u32;
     let at = if (program.base..end).contains(&state.pc) { state.pc & !3 } else { program.base };
+    // Show the instructions around this address, with labels and a mark.
     let begin = at.saturating_sub(4 * BEFORE).max(program.base);
     for address in (begin..end.min(at + 4 * AFTER)).step_by(4) {
         let Ok(words) = processor.read(address, 1) else { break };

@@ -108,6 +108,7 @@ pub(crate) fn faces(stepper: &Stepper, eye: Eye, memory: usize) -> Option<Vec<u8
     let step = faces.texels() / FACE_SIDE;
     let mut cross = RgbImage::from_pixel(4 * FACE_SIDE, 3 * FACE_SIDE, image::Rgb([40, 44, 48]));
     for (face, column, row) in CROSS {
+        // Sample the face at the resolution of the cross.
         for (x, y) in (0..FACE_SIDE * FACE_SIDE).map(|at| (at % FACE_SIDE, at / FACE_SIDE)) {
             let texel = TexelAddress { face, column: x * step, row: y * step };
             let colour = faces.texel(texel).map_or(0, |(colour, _)| colour);

@@ -34,12 +34,14 @@ fn sphere_around(list: &DisplayList, structure: &DisplayStructure) -> ObjectSphe
     let spheres = list.spheres[structure.spheres.clone()].iter();
     let all: Vec<(DVec3, f64)> =
         points.chain(spheres.map(|sphere| (sphere.centre.as_dvec3(), f64::from(sphere.radius)))).collect();
+    // The bounding box covers vertices and spheres.
     let low = all.iter().fold(DVec3::INFINITY, |low, (at, radius)| low.min(*at - DVec3::splat(*radius)));
     let high = all.iter().fold(DVec3::NEG_INFINITY, |high, (at, radius)| high.max(*at + DVec3::splat(*radius)));
     if all.is_empty() {
         return ObjectSphere { centre: DVec3::ZERO, radius_m: 0.0 };
     }
     let centre = (low + high) / 2.0;
+    // The radius reaches the farthest vertex or sphere surface.
     let radius_m = all.iter().map(|(at, radius)| centre.distance(*at) + radius).fold(0.0, f64::max);
     ObjectSphere { centre, radius_m }
 }

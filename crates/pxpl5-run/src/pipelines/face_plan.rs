@@ -43,6 +43,7 @@ impl Updates {
         // The two buffers of a memory take turns.
         let buffer = (self.sent[due.memory] + 1) % 2;
         self.sent[due.memory] += 1;
+        // The record tells later which update each swap has shown.
         self.notes.write(FaceNote {
             picture: number,
             view: view.number,
@@ -107,6 +108,7 @@ impl Full {
         match (self.updates.setup.starts)(now) {
             None => Planned::Nothing,
             Some(start) if start > now => Planned::Wait(start),
+            // The host is ready: request a redraw of everything.
             Some(_) => {
                 let due = Due {
                     memory: 0,

@@ -138,6 +138,7 @@ impl FacePipeline {
 
     fn config(self, machine: &Machine, pixels: bool) -> Result<CubeControlConfig, ConfigError> {
         let ports = machine.ports();
+        // The first GP is the master, and all others are slaves.
         let [master, slaves @ ..] = &ports.gps[..] else { return Err(too_few_gps(0)) };
         if slaves.is_empty() {
             return Err(too_few_gps(1));
@@ -155,11 +156,13 @@ impl FacePipeline {
     fn faces(self, machine: &Machine, pixels: bool) -> Result<Faces, ConfigError> {
         let display = display_of(machine.record())?.config();
         let texels = display.timing.face_texels as u32;
+        // A face is a square picture, divided into the usual regions.
         let grid = RegionGrid { width: texels, height: texels, region_width: REGION_SIZE, region_height: REGION_SIZE };
         let viewport = Viewport::new(grid, Lines::Frame)
             .map_err(|error| ConfigError::Board(format!("arp.face_texels: {error}")))?;
         let picture =
             Picture { viewport, shading: self.shading, binning: RegionBinning::Touched, layout: self.layout(), pixels };
+        // A display with packed texels takes one word a pixel, otherwise colour and depth are sent.
         let content = if display.format().words() == 1 { CopyContent::Packed } else { CopyContent::ColourAndDepth };
         if self.source == FaceSource::PixelPlanes {
             region_has_room(machine.record(), content.words().into())?;
@@ -173,6 +176,7 @@ impl FacePipeline {
         let display = display_of(machine.record())?.config();
         let projection = projection(display);
         let scan = display.scan().map_err(|error| ConfigError::Board(error.to_string()))?;
+        // An ideal renderer has no delay, so its views are predicted for the next field.
         let setup = &if self.source == FaceSource::Ideal { seen_next(setup, scan) } else { setup.clone() };
         let updates = Updates::new(setup, projection, display.timing.display_memories as usize);
         if self.policy == FacePolicy::Full && self.source == FaceSource::Ideal {
@@ -192,6 +196,7 @@ impl FacePipeline {
             let mut cycles = Cycles::new(updates, scan, policy);
             return Ok(Box::new(move |number, now| cycles.next(number, now)));
         }
+        // Without warping, cells use a falloff of `None`.
         let falloff = if self.policy == FacePolicy::CellsWarped { self.falloff } else { Falloff::None };
         let policy = ByCells::new(&updates, &timing, falloff);
         let mut cycles = Cycles::new(updates, scan, policy);
@@ -313,6 +318,7 @@ impl Pipeline for FacePipeline {
     /// uses one display memory.
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         let mut config = config;
+        // Replace a display that takes no faces.
         if config.displays.first().is_none_or(|display| !display.takes_faces()) {
             let display = match self.source {
                 FaceSource::PixelPlanes => ArpConfig::MACHINE,

@@ -53,9 +53,11 @@ impl Frameless {
         let ports = record.ports();
         let ring = record.ring().timing();
         let timing = record.config().gp;
+        // A slave spends the software time of three messages in addition to its pass.
         let slave_ns = pass.ns(&timing) + 3 * timing.message_ns;
         let block_ns = ring.occupancy(self.block * self.block).0 / 1_000;
         let slaves = ports.gps.len().saturating_sub(1).max(1) as u64;
+        // The ring sends the blocks of all slaves while one slave transforms.
         (slave_ns / (slaves * block_ns)).clamp(LEAST_BATCH, MOST_BATCH) as u32
     }
 
@@ -162,6 +164,7 @@ impl Pipeline for Frameless {
             })
         });
         let mut times: Vec<_> = times.filter(|times| times.is_shown() && times.shown_at <= end).collect();
+        // Updates may be shown in another order than that of their numbers.
         times.sort_by_key(|times| (times.shown_at, times.picture));
         times
     }

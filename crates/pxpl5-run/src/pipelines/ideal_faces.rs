@@ -75,6 +75,7 @@ impl IdealFaces {
             let image: Arc<dyn PixelSource> = Arc::new(DrawnRegion { cube: Arc::clone(&drawn), region });
             (0..parts).map(move |part| Body::Pixels(RegionPixels { target, image: Arc::clone(&image), part, parts }))
         };
+        // The display expects the announcement first and the request for a swap last.
         let [begin, swap] = announcement;
         let pixels = regions.iter().copied().flat_map(of_region);
         [begin].into_iter().chain(pixels).chain([swap]).map(|body| (port, body)).collect()

@@ -70,6 +70,7 @@ pub(super) fn config(
     layout: Layout,
     pixels: bool,
 ) -> Result<JitpConfig, ConfigError> {
+    // The firmware needs the beam times of an interlaced display.
     let ports = record.ports();
     let display = ntsc(record, "this pipeline")?;
     let config = JitpConfig {
@@ -106,11 +107,13 @@ pub(super) fn whole_pass(setup: &Setup) -> TransformCost {
 pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
     let gp = machine.processor(config.host, Priority::Foreground);
     let reports = Arc::clone(&setup.reports);
+    // The host passes on the tracker's reports.
     let program = host(gp, config.clone(), setup.host, move |after| reports(after));
     machine.load(config.host, Priority::Foreground, Box::pin(program));
     let gp = machine.processor(config.master, Priority::Foreground);
     let views = Arc::clone(&setup.wanted);
     let pass = whole_pass(setup);
+    // The master requests views for the instants that its strips are seen.
     let view_of = move |wanted: Wanted| views(wanted.number, wanted.known, wanted.shown_at);
     for (level, program) in master(&gp, config, pass, view_of) {
         machine.load(config.master, level, program);

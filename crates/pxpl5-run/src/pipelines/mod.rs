@@ -59,6 +59,7 @@ fn ntsc<'a>(record: &'a Record, pipeline: &str) -> Result<&'a NtscDisplay, Confi
         let found = record.display().name();
         ConfigError::Board(format!("{pipeline} draws single fields: expected the display ntsc, found {found}"))
     })?;
+    // A larger display is accepted.
     let RegionGrid { width, height, .. } = RegionGrid::FRAME;
     let [found_width, found_height] = [display.video().width(), display.video().height()];
     if found_width < width || found_height < height {
@@ -123,6 +124,7 @@ fn late_regions(
     end: Time,
     due: impl Fn(&Video, &Arrival) -> Time,
 ) -> Vec<LateRegion> {
+    // Only regions that arrived before `end` are evaluated.
     let arrived = record.observation().arrivals.iter().filter(|arrival| arrival.last_part_at < end);
     // Keep the arrivals after their deadline, with the delay.
     let late = arrived.filter_map(|arrival| {

@@ -85,6 +85,7 @@ impl RenderingControl {
 
     fn config(self, machine: &Machine, pixels: bool) -> Result<RenderingControlConfig, ConfigError> {
         let ports = machine.ports();
+        // The first GP is the master, and all others are slaves.
         let [master, slaves @ ..] = &ports.gps[..] else { return Err(too_few_gps(0)) };
         if slaves.is_empty() {
             return Err(too_few_gps(1));
@@ -147,6 +148,7 @@ impl Pipeline for RenderingControl {
         let views = Arc::clone(&setup.views);
         let starts = Arc::clone(&setup.starts);
         let gp = machine.processor(config.host, foreground);
+        // The host decides when a frame begins, and samples the view for it.
         let view_of = move |view, time| views(view, time);
         let program = host(gp, config.clone(), setup.host, move |ready| starts(ready), view_of);
         machine.load(config.host, foreground, Box::pin(program));

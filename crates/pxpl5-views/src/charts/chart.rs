@@ -287,6 +287,7 @@ fn draw_name<'a>(area: &Area<'a>, look: Look, series: &ChartSeries, (x, y): (i32
             look.mark(area, (x + em, y))?;
         }
     }
+    // The name stands to the right of the sample.
     let style = TextStyle::from((FontFamily::SansSerif, f64::from(look.em)).into_font());
     area.draw(&Text::new(series.name.clone(), (x + em * 5 / 2, y), style.pos(Pos::new(HPos::Left, VPos::Center))))
 }

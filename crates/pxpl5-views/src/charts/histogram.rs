@@ -30,6 +30,7 @@ pub(crate) fn histogram_element(values_ms: &[f64]) -> Element {
     let most = bins.counts.iter().copied().max().unwrap_or(1).max(1);
     let mut svg = Element::new("svg").with("class", "chart").with("viewBox", format_args!("0 0 {WIDTH} {HEIGHT}"));
     svg = svg.with("role", "img").child(&hint("Histogram of latency"));
+    // Draw a bar for each bin with values, then labels at every quarter of the range.
     for (bin, count) in bins.counts.iter().enumerate().filter(|(_, count)| **count > 0) {
         svg.add(&bins.bar(bin, *count, most));
     }
@@ -37,6 +38,7 @@ pub(crate) fn histogram_element(values_ms: &[f64]) -> Element {
         let value = format!("{:.2}", bins.begin_of(bin));
         svg.add(&anchored(Tenths(place_of(bin)), FLOOR + 17.0, "middle").text(value));
     }
+    // The axis and its labels come last.
     svg.add(&line(format_args!("M{LEFT} {FLOOR}H{WIDTH}"), "#222"));
     svg.add(&Element::new("text").with("x", LEFT).with("y", HEIGHT - 6.0).text("latency, ms"));
     svg.add(&anchored(LEFT - 6.0, TOP + 8.0, "end").text(most));

@@ -58,6 +58,7 @@ pub(crate) fn part_bar_element(parts: &[MeanPart]) -> Option<Element> {
         }
         x += width;
     }
+    // The frame and the labels lie above the parts.
     svg.add(&frame.drawn());
     svg.add(&Element::new("text").with("x", MARGIN).with("y", 68).text(0));
     Some(svg.child(&anchored(Tenths(x), 68, "end").text(format_args!("{all_ms:.1} ms"))))

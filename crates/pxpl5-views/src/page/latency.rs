@@ -13,6 +13,7 @@ pub(super) fn latency(report: &Value, latencies_ms: &[f64]) -> Vec<Element> {
         all.push(histogram_element(latencies_ms));
     }
     let parts = list(&report["latency_parts_ms"]);
+    // A report without parts gets the histogram only.
     if parts.is_empty() {
         return all;
     }
@@ -44,6 +45,7 @@ pub(super) fn due(report: &Value) -> Vec<Element> {
         all.push(heading("Pictures due"));
         all.push(paragraph(format_args!("{definition}.")));
     }
+    // Pipelines without due pictures have no table.
     if report["due"].is_object() {
         let cells = DUE.map(|key| number_cell(known(&report["due"][key])));
         all.push(table(&DUE.map(|key| key.replace('_', " ")).each_ref().map(String::as_str), [row(cells)]));
@@ -90,6 +92,7 @@ pub(super) fn head_to_light(head: &Value) -> Vec<Element> {
     let [tracker, predictor, display] = ["tracker", "predictor", "display"].map(|key| plain(&head[key]));
     // Reports of older versions have no aim.
     let aim = head["aim"].as_str().map_or_else(String::new, |aim| format!(", aim {aim}"));
+    // One table has the stages from head to light, and one has the errors.
     let stages = STAGES.iter().map(|stage| stage_row(stage, &head["end_to_end"]));
     let errors = ERRORS.iter().map(|unit| error_row(unit, &head["error"][*unit]));
     vec![

@@ -38,6 +38,7 @@ fn section(of: &PageTable) -> Element {
     if !names.is_empty() {
         section.add_line(&table(&names, of.rows.iter().map(|cells| row(cells.iter().map(|text| shown(text))))));
     }
+    // Charts and pictures follow the table.
     let charts = of.charts.iter().map(|chart| figure("image/svg+xml", chart));
     let pictures = of.pictures.iter().map(|picture| figure("image/png", picture));
     let figures: Vec<Element> = charts.chain(pictures).collect();

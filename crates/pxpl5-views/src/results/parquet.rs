@@ -30,6 +30,7 @@ pub fn parquet(outcome: &Outcome, out: impl Write + Send) -> Result<()> {
         let Some(mut writer) = group.next_column()? else { break };
         // Times are below 2^63 ps, which is about 106 days.
         let values: Vec<i64> = rows.iter().filter_map(|row| row[i]).map(u64::cast_signed).collect();
+        // The definition level is 0 for a missing value and 1 for a present one.
         let levels: Vec<i16> = rows.iter().map(|row| row[i].is_some().into()).collect();
         let levels = column.optional.then_some(&levels[..]);
         writer.typed::<Int64Type>().write_batch(&values, levels, None)?;

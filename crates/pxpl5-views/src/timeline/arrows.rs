@@ -13,13 +13,16 @@ pub(super) fn arrows(timeline: &Timeline, display: &dyn Display, chosen: Option<
     let bars = located(timeline);
     let mut arrows = Vec::new();
     arrows.extend(from_tracker(timeline, &bars));
+    // Each bar of the picture depends on an earlier bar.
     for to in &bars {
         arrows.extend(cause(&bars, to.bar).map(|from| follow(from, *to)));
     }
+    // The end of each COPY leads to the beam.
     for copy in bars.iter().filter(|located| located.bar.stage == Stage::Copy) {
         let end = light(display, chosen, copy.bar);
         arrows.push(Arrow { from: copy.place, begin: copy.bar.end.min(end), to: DrawingPlace::Beam, end });
     }
+    // Arrows that leave the drawn time are left out.
     arrows.retain(|arrow| arrow.begin >= timeline.from && arrow.end <= timeline.to);
     arrows
 }

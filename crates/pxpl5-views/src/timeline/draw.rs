@@ -113,6 +113,7 @@ impl<'a> Drawing<'a> {
             self.out.add_line(&segment("retrace", [x, top, x, bottom]));
         }
         let word = if self.timeline.retraces.len() < CROWDED { "field " } else { "" };
+        // The number of a field stands in the middle between two retraces.
         for pair in self.timeline.retraces.windows(2) {
             let middle = Units(self.x(pair[0].1).0.midpoint(self.x(pair[1].1).0));
             let number = caption("mid", [middle, Units::whole(HEAD - 20)]);
@@ -179,6 +180,7 @@ impl<'a> Drawing<'a> {
         let class = format!("{stage} {stage}-{} {emphasis}", pattern(bar.surface));
         let about = hint(about(bar, self.timeline));
         self.out.add_line(&rectangle(&class, [x, y, width, Units::whole(LANE)]).child(&about));
+        // A dark strip at the foot of a COPY shows when data arrives.
         for (begin, end) in &bar.receiving {
             let x = self.x(*begin);
             let strip = [x, y + Units::whole(LANE - STRIP), self.x(*end) - x, Units::whole(STRIP)];
@@ -205,6 +207,7 @@ impl<'a> Drawing<'a> {
         if room < short {
             return;
         }
+        // The label moves up to make room for the strip.
         let strip = if bar.receiving.is_empty() { 0 } else { STRIP / 2 };
         let place = [Units(begin.midpoint(end)), y + Units::whole(LANE / 2 + 5 - strip)];
         let mut label = caption(&format!("label {}-text", class_of(bar.stage)), place).text(letters);

@@ -70,6 +70,7 @@ fn copies(run: &SoFar<'_>, is_there: impl Fn(&Arrival) -> bool) -> Vec<Bar> {
     let mut parts = Parts::new();
     for arrival in run.observation().arrivals.iter().filter(|arrival| is_there(arrival)) {
         let begin = arrival.begins_at(message);
+        // Arrivals of the same picture and part extend one bar.
         let key = (arrival.target.picture, run.pipeline().copy_part(arrival));
         let bar = parts.entry(key).or_insert_with(|| copy_bar(run.record(), arrival, begin));
         bar.begin = bar.begin.min(begin);

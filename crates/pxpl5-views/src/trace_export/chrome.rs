@@ -65,6 +65,7 @@ fn slice_events(place: &str, slice: &Slice) -> Vec<String> {
     let args = slice.picture.map_or_else(String::new, |picture| format!(r#","args":{{"picture":{picture}}}"#));
     let rest = format!(r#","dur":{}{args}"#, us((slice.end - slice.begin).0));
     let mut events = vec![event(place, "X", slice.begin, &slice.name, &rest)];
+    // A flow event binds the slice to the flow of its picture.
     if let Some(flow) = slice.flow {
         let (kind, bound) = match flow.step {
             Step::First => ("s", ""),

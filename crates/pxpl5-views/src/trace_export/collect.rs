@@ -67,6 +67,7 @@ impl Trace {
         let message = outcome.record().message_span();
         let arrivals = outcome.observation().arrivals.iter().filter(|arrival| arrival.target.frame_buffer == node);
         self.track(group, "COPY", Events::Slices(apart(arrivals.map(|arrival| region_slice(arrival, message)))));
+        // A swap is an instant, and the displayed picture is a slice.
         let shown = shown_by(&outcome.so_far(), node);
         let swaps = shown.iter().map(|shown| (shown.begin, "swap".to_owned()));
         self.track(group, "swaps", Events::Instants(swaps.collect()));
@@ -86,6 +87,7 @@ impl Trace {
         let mut slices: BTreeMap<Stage, Vec<Slice>> = BTreeMap::new();
         for mark in outcome.observation().marks.iter().filter(|mark| mark.node == node) {
             let key = (mark.stage, mark.picture, mark.surface);
+            // Match each end with the begin of the same stage, picture and surface.
             match mark.edge {
                 StageEdge::Begin => drop(begun.insert(key, mark.time)),
                 StageEdge::End => {

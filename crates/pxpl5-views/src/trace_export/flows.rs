@@ -23,6 +23,7 @@ pub(super) fn connect(trace: &mut Trace, outcome: &Outcome) {
     let sends = firsts(trace, &[Stage::Send]);
     let stages = firsts(trace, &[Stage::Transform, Stage::Render, Stage::Copy]);
     let shown = first_shown(trace);
+    // A flow leads from SEND through the stages to the first period that shows the picture.
     for times in outcome.pictures() {
         let sent = updates.shown_by(times).and_then(|update| sends.get(&update));
         let worked = stages.get(&times.picture);

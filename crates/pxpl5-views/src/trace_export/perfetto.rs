@@ -49,6 +49,7 @@ const SEQUENCE: u64 = 1;
 ///
 /// Any error of the writer.
 pub fn perfetto(trace: &Trace, mut out: impl Write) -> io::Result<()> {
+    // Descriptors of tracks come before their events.
     for packet in descriptors(trace) {
         write(&mut out, packet)?;
     }
