@@ -1,5 +1,5 @@
-//! Re-draws the pipeline figures of the papers from simulation: `cargo run --release --example figures [FOLDER]`, by
-//! default into `docs/figures/`. Each must be what the test `tests/timeline.rs` expects to find there.
+//! Draws the pipeline figures of the papers from simulated runs: `cargo run --release --example figures [FOLDER]`, by
+//! default into `docs/figures/`. The test `tests/timeline.rs` compares the files with its own drawings.
 
 use pxpl5::pipeline_figures::PIPELINE_FIGURES;
 use pxpl5::timeline::{TimelineOptions, svg};

@@ -1,5 +1,5 @@
-//! Clocks per triangle of the three kernels, what they are made of, how far they depend on each assumption, and what they
-//! make of the figures when they run on the boards.
+//! Measures the clocks per triangle of the three kernels, their causes, and their dependence on each assumption. Also
+//! computes the figures with the kernels on the boards.
 //!
 //! Prints docs/gp-timing.md: `cargo run --profile test --example gp_timing > docs/gp-timing.md`.
 
@@ -22,7 +22,7 @@ const KERNELS: [(Kernel, &str); 3] =
     [(frame(Schedule::Straight), "straight"), (frame(Schedule::Compiled), "compiled"), (frame(Schedule::Dual), "dual")];
 /// Clocks in a microsecond (40 MHz, published).
 const CLOCKS_PER_US: f64 = 40.0;
-/// Rows that memory causes; without them every access is a hit.
+/// Freezes that memory causes. Without them, every access is a hit.
 const MEMORY_ROWS: [Freeze; 11] = [
     Freeze::InstructionMiss,
     Freeze::InstructionMissBehindData,
@@ -41,7 +41,7 @@ fn scene() -> Vec<Triangle> {
     triangles(1000, 0.12, 1)
 }
 
-/// Profile of one call over the scene, after one to warm the caches.
+/// Returns the profile of one call over the scene, after a first call that fills the caches.
 fn warm(kernel: Kernel, config: Config) -> Profile {
     let mut bench = Bench::new(kernel, Viewport::FRAME, config, &scene());
     bench.run();
@@ -96,7 +96,7 @@ fn results() {
     }
 }
 
-/// The same for Phong triangles, of which the published rate speaks.
+/// Prints the clocks for Phong triangles, for which the published rate was measured.
 fn phong() {
     println!("\n## Phong triangles, steady state\n");
     head(&["condition", "straight", "compiled", "dual"]);
@@ -223,17 +223,17 @@ fn dram_sensitivity() {
     );
 }
 
-/// The scheduled kernel of Phong triangles, of strips or each with corners of its own.
+/// Returns the scheduled kernel for Phong triangles, either in strips or with separate corners.
 const fn scheduled_phong(list: KernelList) -> Kernel {
     Kernel { surface: KernelSurface::Phong, list, ..frame(Schedule::Dual) }
 }
 
-/// Strips of so many triangles each, about a thousand triangles in all.
+/// Returns strips of `length` triangles each, about a thousand triangles in all.
 fn strips_of(length: usize) -> Vec<Strip> {
     strips(&vec![length; 1000 / length], 0.12, 1)
 }
 
-/// A bench whose caches are as they always are, ready to be measured.
+/// Returns a bench after a first call that fills the caches, with an empty profile.
 fn warm_strips(kernel: Kernel, config: Config, length: usize) -> Bench {
     let mut bench = Bench::of_strips(kernel, Viewport::FRAME, config, &strips_of(length));
     bench.run();
@@ -247,7 +247,7 @@ fn strip_clocks(kernel: Kernel, config: Config, length: usize) -> f64 {
     bench.profile().clocks() as f64 / (1000 / length * length) as f64
 }
 
-/// Triangles that share vertices: what a vertex and a triangle cost, and what the resources allow.
+/// Prints the cost of a vertex and of a triangle in strips, and the lower bounds of the resources.
 fn sharing() -> Result<(), Box<dyn std::error::Error>> {
     println!("\n## Strips, steady state\n");
     println!(
@@ -279,7 +279,8 @@ fn sharing() -> Result<(), Box<dyn std::error::Error>> {
     lower_bounds()
 }
 
-/// Clocks by part of the code, Phong, one long strip beside triangles of their own corners.
+/// Prints the clocks by part of the code for Phong triangles, for one long strip and for triangles with separate
+/// corners.
 fn steps() {
     println!("\n### Clocks by step: one long strip, and triangles with corners of their own (Phong, dual)\n");
     head(&["step", "strip", "own corners"]);
@@ -318,7 +319,7 @@ fn steps() {
     }
 }
 
-/// Issue and freezes by cause of one long strip.
+/// Prints issue clocks and freezes by cause for one long strip.
 fn strip_causes() {
     println!("\n### Issue and freezes by cause: one long strip (Phong, dual)\n");
     head(&["cause", "clocks a triangle"]);
@@ -334,7 +335,7 @@ fn strip_causes() {
     row(&["(data-cache misses of loads, number)".into(), share(profile.data_misses)]);
 }
 
-/// What both halves of the pairs must do at least, beside the schedules.
+/// Prints the smallest possible number of instruction pairs beside that of the schedules.
 fn lower_bounds() -> Result<(), Box<dyn std::error::Error>> {
     println!("\n### Lower bound of the resources (Phong, dual)\n");
     println!(
@@ -358,7 +359,7 @@ fn lower_bounds() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Time of TRANSFORM of a field of Slats in microseconds.
+/// Returns the mean time of TRANSFORM for a field of Slats, in microseconds.
 fn transform_us(preset: &str, level: Level, triangles: u32) -> Result<f64, Box<dyn std::error::Error>> {
     let small = test_scene(TestScene::Typical, triangles);
     let experiment = Experiment::new(MachineConfig::preset(preset)?, Slats::split(), small).fields(12).level(level);
@@ -368,7 +369,8 @@ fn transform_us(preset: &str, level: Level, triangles: u32) -> Result<f64, Box<d
     Ok(times.iter().sum::<f64>() / times.len() as f64)
 }
 
-/// Time of a triangle and eye on the board: what ten more in a clump cost.
+/// Returns the time per triangle and eye on the board: the additional time for ten more triangles in a clump, for two
+/// eyes.
 fn on_board_us(preset: &str, level: Level) -> Result<f64, Box<dyn std::error::Error>> {
     Ok((transform_us(preset, level, 30)? - transform_us(preset, level, 20)?) / 20.0)
 }
@@ -417,7 +419,7 @@ fn board() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// The timing table as the code gives it, beside the published and fitted one.
+/// Prints the timing table from the code beside the published and fitted table.
 fn table_of_code() -> Result<(), Box<dyn std::error::Error>> {
     println!("\n## The timing table from the code\n");
     println!(
@@ -481,7 +483,7 @@ fn table_of_code() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// What just-in-time pixels and frameless rendering do besides TRANSFORM.
+/// Prints the clocks of just-in-time pixels and frameless rendering outside of TRANSFORM.
 fn strips_and_blocks() -> Result<(), Box<dyn std::error::Error>> {
     println!("\n## Strips and blocks\n");
     println!(

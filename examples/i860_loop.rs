@@ -1,4 +1,5 @@
-//! A loop on the graphics processor's i860: assemble, run, step, and where its clocks went. Its twin in Python is i860_loop.py.
+//! Runs a loop on the graphics processor's i860: assembles, runs and steps the code, and prints a profile of the
+//! clocks. The Python version is i860_loop.py.
 //!
 //! `cargo run --release --example i860_loop`
 
@@ -21,7 +22,7 @@ end:    nop
 result: .long   0
 ";
 
-/// Memory of a graphics processor's board, bytes.
+/// Memory of a graphics processor's board, in bytes.
 const MEMORY: usize = 8 << 20;
 
 fn main() -> Result<(), Box<dyn Error>> {

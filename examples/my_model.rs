@@ -1,4 +1,5 @@
-//! My model on my machine: both pipelines, their latencies and their pixels. Its twin in Python is my_model.py.
+//! Runs a model of your own on a machine of your own, with two pipelines, and prints latencies and pixels. The Python
+//! version is my_model.py.
 //!
 //! `cargo run --release --example my_model [MODEL]`
 
@@ -7,22 +8,22 @@ use pxpl5::{ExperimentFile, Eye, Measured, Parameter, picture};
 use std::error::Error;
 use std::sync::Arc;
 
-/// A pyramid, as a model file has it.
+/// A pyramid in the format of a model file.
 const PYRAMID: &str =
     "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv 0 1.5 0\nf 1 5 2\nf 2 5 3\nf 3 5 4\nf 4 5 1\nf 1 2 3\nf 1 3 4\n";
 
-/// The machine of the papers with more graphics processors, and faster code on them.
+/// The machine of the papers with more graphics processors and faster code.
 const MACHINE: &str = "[machine]\npreset = \"small-hmd\"\nn_gps = 20\ngp.triangle_ns = 18_000\n";
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // A model file (PLY, OBJ or PDB), or one in memory.
+    // The model is a file (PLY, OBJ or PDB), or the pyramid in memory.
     let model = match std::env::args().nth(1) {
         Some(path) => scene::load(path)?,
         None => scene::from_bytes(PYRAMID.as_bytes(), Format::Obj, "pyramid")?,
     };
     let model = Arc::new(model);
     for pipeline in ["rendering-control", "slats"] {
-        // The settings of an experiment file; the scene is handed over.
+        // The settings have the format of an experiment file. The model replaces the scene in the settings.
         let settings = format!("pipeline = \"{pipeline}\"\nscene = \"mig\"\nfields = 80\n{MACHINE}");
         let plan = ExperimentFile::parse(&settings, "settings")?.resolve()?;
         for warning in plan.out_of_range().iter().map(Parameter::warning) {

@@ -1,4 +1,4 @@
-//! My recording of a head: what each pipeline makes of it, in pixels of error. Its twin in Python is my_recording.py.
+//! Runs pipelines with a recording of a head and prints their errors in pixels. The Python version is my_recording.py.
 //!
 //! `cargo run --release --example my_recording [RECORDING]`
 
@@ -10,7 +10,8 @@ use std::fs::File;
 use std::sync::Arc;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // A file of the own format, of EuRoC or TUM, or samples: seconds, metres, quaternions with the real part first.
+    // The recording is a file in the project's own format or in that of EuRoC or TUM, or a text with samples. A sample
+    // has seconds, metres, and a quaternion with the real part first.
     let recording = match std::env::args().nth(1) {
         Some(path) => Recording::read(File::open(path)?)?,
         None => Recording::read(nodding()?.as_bytes())?,
@@ -24,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             );
             let plan = ExperimentFile::parse(&settings, "settings")?.resolve()?;
             let experiment = plan.experiment(plan.load_scene()?);
-            // The same tracker and predictor before this recording.
+            // Tracker and predictor stay the same, and the recording replaces the motion.
             let head = experiment.tracked_head().ok_or("the settings have a head")?;
             let head = Head::clone(head).moving(recording.clone());
             let report = experiment.head(head).run()?.report();
@@ -40,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Four seconds of a head that turns by 20 degrees to both sides, once in two seconds.
+/// Returns four seconds of a head that turns by 20 degrees to both sides, once in two seconds.
 fn nodding() -> Result<String, std::fmt::Error> {
     let mut text = "time_s,x,y,z,qw,qx,qy,qz\n".to_owned();
     for sample in 0..=240 {

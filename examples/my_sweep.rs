@@ -1,4 +1,5 @@
-//! A sweep: how latency grows with triangles and falls with graphics processors, as a table. Its twin in Python is my_sweep.py.
+//! Runs a sweep: latency as a function of the numbers of triangles and graphics processors, as a table. The Python
+//! version is my_sweep.py.
 //!
 //! `cargo run --release --example my_sweep [FOLDER]`
 
@@ -29,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (name, definition) in &header.measure {
         println!("{name:>20}  {definition}");
     }
-    // Points that are finished stay so: after an interruption the same call goes on.
+    // Finished points are kept. After an interruption, the same call continues the sweep.
     let mut store = Store::open(&folder, header, true)?;
     let threads = available_parallelism().map_or(1, usize::from);
     run(&sweep, &mut store, RunOptions { shard: Shard::ALL, threads }, |_| {})?;

@@ -1,7 +1,7 @@
-//! How well the cost of a sweep's points is known before they run: every point's estimate beside the CPU time that it took on one thread.
+//! Compares the estimated cost of each point of a sweep with its measured CPU time on one thread.
 //!
-//! `cargo run --release --example point_costs -- OUT SWEEP.toml...` writes OUT/NAME/rows.jsonl for each sweep, for `pxpl5 plot`, and OUT/costs.md, the table
-//! of docs/sweeps.md. `scripts/costs` does all of it.
+//! `cargo run --release --example point_costs -- OUT SWEEP.toml...` writes OUT/NAME/rows.jsonl for each sweep, for
+//! `pxpl5 plot`, and OUT/costs.md, the table of docs/sweeps.md. `scripts/costs` runs all steps.
 
 use cpu_time::ThreadTime;
 use pxpl5::Fingerprint;
@@ -14,7 +14,7 @@ use std::time::Duration;
 
 const USAGE: &str = "usage: point_costs OUT SWEEP.toml...";
 
-/// What is written of a point.
+/// Quantities that are written for each point, with definitions.
 const QUANTITIES: [(&str, &str); 4] = [
     ("cost.estimated_ms", "milliseconds that the point was estimated to take on one thread"),
     ("cost.measured_ms", "milliseconds of CPU that it took on one thread"),
@@ -22,10 +22,10 @@ const QUANTITIES: [(&str, &str); 4] = [
     ("cost.percent", "share of its pipeline's points, in per cent, whose ratio is no greater"),
 ];
 
-/// A point that could be simulated.
+/// Estimated and measured cost of a point that could be simulated.
 struct Cost {
     row: SweepRow,
-    /// The pipeline, and whether its head is tracked.
+    /// Name of the pipeline, with a note if its head is tracked.
     group: String,
     estimated_s: f64,
     measured_s: f64,
@@ -56,13 +56,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// All points that can be simulated, one after the other.
+/// Measures all points that can be simulated, one after the other.
 fn measured(sweep: &Sweep) -> Result<Vec<Cost>, Box<dyn Error>> {
     let mut costs = Vec::new();
-    // Scenes are loaded once: no point should pay for the others.
+    // Scenes are loaded first, so that no point includes the loading time.
     let estimates = sweep.costs(&(0..sweep.space().points()).collect::<Vec<_>>());
     for (point, estimated_s) in (0..).zip(estimates) {
-        // CPU time: other work on the host counts for nothing.
+        // CPU time is measured, because other work on the host does not affect it.
         let begin = ThreadTime::try_now()?;
         let rows = sweep.rows(&[point], Duration::MAX);
         let measured_s = begin.try_elapsed()?.as_secs_f64();
@@ -76,7 +76,7 @@ fn measured(sweep: &Sweep) -> Result<Vec<Cost>, Box<dyn Error>> {
     Ok(costs)
 }
 
-/// Says of each point which share of its group has no greater ratio.
+/// Computes, for each point, the percentage of its group with the same or a smaller ratio.
 fn rank(costs: &mut [Cost]) {
     let mut ratios: BTreeMap<String, Vec<f64>> = BTreeMap::new();
     for cost in costs.iter() {
@@ -89,7 +89,7 @@ fn rank(costs: &mut [Cost]) {
     }
 }
 
-/// The points as a sweep's folder, with what they cost as what was measured.
+/// Writes the points as the folder of a sweep, with the costs as measured quantities.
 fn write(sweep: &Sweep, costs: &[Cost], folder: &Path) -> Result<(), Box<dyn Error>> {
     let mut header = sweep.header()?;
     header.config_hash = Fingerprint::of(format!("costs of {}", header.config_hash).as_bytes()).to_string();
@@ -105,7 +105,7 @@ fn write(sweep: &Sweep, costs: &[Cost], folder: &Path) -> Result<(), Box<dyn Err
     Ok(store.finish()?)
 }
 
-/// A line for each pipeline: where its ratios lie.
+/// Returns a table of the ratios with a line for each pipeline.
 fn table(costs: &[Cost]) -> Result<String, std::fmt::Error> {
     let mut groups: BTreeMap<&str, Vec<&Cost>> = BTreeMap::new();
     for cost in costs {

@@ -1,7 +1,8 @@
-//! Which system wins by how many pixels, and what it costs: rotation, translation and both, in a gallery.
+//! Compares systems by pixel error and cost: rotation, translation and both, in a gallery.
 //!
-//! `cargo run --release --example systems [FOLDER]` runs every system once under three motions of a head with the optical tracker and a
-//! Kalman filter, judged as `compare` judges its rows, and writes systems.svg and systems.md (by default into docs/).
+//! `cargo run --release --example systems [FOLDER]` runs every system under three motions of a head with the optical
+//! tracker and a Kalman filter. The evaluation is that of `compare`. The files systems.svg and systems.md are written
+//! into docs/ by default.
 
 use pxpl5::{ExperimentFile, Measured, Outcome, Pixels};
 use std::collections::BTreeSet;
@@ -9,7 +10,7 @@ use std::error::Error;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-/// Pipelines with a setting of their own, in the order of the figure.
+/// Pipelines with one setting each, in the order of the figure.
 const SYSTEMS: [(&str, Option<(&str, &str)>); 17] = [
     ("rendering-control", Some(("mono", "true"))),
     ("slats", Some(("binning", "touched"))),
@@ -30,21 +31,21 @@ const SYSTEMS: [(&str, Option<(&str, &str)>); 17] = [
     ("arp-ideal-line", None),
 ];
 
-/// Motions, what they are, and their names in experiment files.
+/// Motions with their descriptions and their names in experiment files.
 const MOTIONS: [(&str, &str); 3] =
     [("rotation, 100 deg/s", "pan:100"), ("translation, 1 m/s", "walk:1"), ("both, walking and looking", "walk:1:1")];
 
 const FIELDS: i64 = 150;
 
-/// What came of a system under a motion.
+/// Results of a system under a motion.
 struct Found {
-    /// Mean distance of a pixel's content from where it should be; nothing where none was judged.
+    /// Mean distance, in pixels, of content from its ideal position. `None` if no pixel was evaluated.
     mean_px: Option<f64>,
-    /// Triangles that go through TRANSFORM, once for each view or update that they are in.
+    /// Triangles a second that go through TRANSFORM. A triangle counts once for each view or update that contains it.
     triangles_per_s: f64,
-    /// Bytes of pixels, with their depths, that displays receive.
+    /// Bytes a second of pixels, including depths, that displays receive.
     bytes_per_s: f64,
-    /// Why there is nothing, if so.
+    /// Reason for a missing result.
     failure: Option<String>,
 }
 
@@ -111,7 +112,7 @@ fn of_run(outcome: &Outcome) -> Found {
     }
 }
 
-/// Triangles that went through TRANSFORM.
+/// Returns the number of triangles that went through TRANSFORM.
 fn triangles(outcome: &Outcome) -> u64 {
     let notes = outcome.face_notes().all();
     let Some(head) = outcome.head() else { return 0 };
@@ -157,7 +158,7 @@ const PLOT: f64 = 190.0;
 const ROW: f64 = 26.0;
 const TOP: f64 = 74.0;
 
-/// Where an error stands in a panel: decades from 0.1 to 100 px.
+/// Returns the horizontal position of an error in a panel, on a scale of decades from 0.1 to 100 px.
 fn across(px: f64) -> f64 {
     (px.clamp(0.1, 100.0).log10() + 1.0) / 3.0 * PLOT
 }

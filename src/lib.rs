@@ -1,8 +1,8 @@
 //! Cycle-accurate emulator of Pixel-Planes 5, UNC's graphics multicomputer of 1989 to 1995, and of its low-latency
 //! rendering pipelines.
 //!
-//! An [`Experiment`] runs a [`Pipeline`] with a [`scene`] on a machine described by a [`MachineConfig`], and gives an
-//! [`Outcome`]: latencies, pictures, and everything that was observed.
+//! An [`Experiment`] runs a [`Pipeline`] with a [`scene`] on a machine that a [`MachineConfig`] describes. The result
+//! is an [`Outcome`] with latencies, pictures and all observations.
 //!
 //! ```
 //! use pxpl5::{Experiment, MachineConfig, Measured, Pixels, RenderingControl, Slats, scene};
@@ -26,26 +26,27 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! This crate only hands on what others define; `use pxpl5::...` is all that a user's crate needs.
+//! This crate re-exports the other crates. A user's crate needs only `use pxpl5::...`.
 //!
-//! | crate | answers |
+//! | crate | content |
 //! |---|---|
-//! | [`machine`], [`display`] | what boards there are and how they are plugged together; what a display is |
+//! | [`machine`], [`display`] | the boards and their connections; the interface of displays |
 //! | [`run`] | one experiment: [`Experiment`], [`Pipeline`], [`Head`], [`Registry`]; the outcome is data |
-//! | [`measure`] | what an outcome says: [`Report`], latencies, errors in pixels, pictures |
-//! | [`analytic`] | the same without events |
+//! | [`measure`] | evaluation of an outcome: [`Report`], latencies, errors in pixels, pictures |
+//! | [`analytic`] | closed forms, without events |
 //! | [`lab`] | questions over many experiments: [`figures`], [`levels`], [`limit`], [`compare`], [`sweep`], experiment files |
-//! | [`oracle`] | what should be on the screen: an ideal renderer of one process |
-//! | [`views`] | what people look at: timelines, traces, tables, charts, report pages, films |
-//! | [`arp`] | a walk through a scene behind a display that turns with the head: policies, tears, warping, figures, pictures |
-//! | [`volume`] | the same scenes as slices of a spinning volumetric display: settings, reports, variants, figures |
-//! | [`scene`], [`tracking`] | what is drawn, and who looks at it |
-//! | [`firmware`] | what a pipeline of one's own is written with |
+//! | [`oracle`] | ideal pictures: a renderer without parallelism and without time |
+//! | [`views`] | output for people: timelines, traces, tables, charts, report pages, films |
+//! | [`arp`] | a walk through a scene with a display that follows head rotation: policies, tears, warping, figures, pictures |
+//! | [`volume`] | scenes as slices of a spinning volumetric display: settings, reports, variants, figures |
+//! | [`scene`], [`tracking`] | the scene, and the motion and tracking of the viewer's head |
+//! | [`firmware`] | types for writing a pipeline of your own |
 //!
-//! Every number of the model has a unit, a standing (published, derived, assumed) and a source:
-//! [`MachineConfig::parameters`] lists them.
+//! Every number of the model has a unit, a provenance (published, derived, assumed) and a source.
+//! [`MachineConfig::parameters`] lists all of them.
 //!
-//! **Not modelled:** see the data sheet at the head of each board's crate, and ACCURACY.md for what comes out wrong.
+//! **Not modelled:** see the data sheet at the beginning of each board's crate. ACCURACY.md lists the results that
+//! differ from the papers.
 
 #![warn(missing_docs)]
 
@@ -94,15 +95,15 @@ pub use pxpl5_views::{FILM_PERIODS, Film, FilmError, FilmOf, results, timeline, 
 pub use pxpl5_wire::{Eye, PeriodNumber, PictureNumber, SurfaceId, ViewNumber};
 pub use slats::CopySchedule;
 
-/// What somebody who looks at boards while they work sees: see [`Stepper`].
+/// Snapshots of boards during a run: see [`Stepper`].
 pub mod looks {
     pub use pxpl5_gp::{Account, BreakpointHit, GpBoard, GpLook, Priority, Processor, ProgramLook, WaitingMail};
     pub use pxpl5_renderer::{Lanes, PixelArray, Plane, RendererLook};
     pub use pxpl5_ring::{OnChannel, WaitReason, WaitingMessage};
 }
 
-/// What a pipeline of one's own is written with: firmware on graphics processors, display lists, commands for renderers, and
-/// what travels on the ring.
+/// Types for writing a pipeline of your own: firmware on graphics processors, display lists, commands for renderers,
+/// and messages on the ring.
 pub mod firmware {
     pub use pphigs::{
         DisplayList, EyeView, FrameView, Pass, Picture, RegionBinning, RegionEnvelope, Shading, Share, region_messages,
@@ -116,7 +117,7 @@ pub mod firmware {
     };
 }
 
-/// The examples of the README, compiled and run.
+/// Compiles and runs the examples of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

@@ -1,5 +1,5 @@
-//! Messages that no firmware of ours sends, at every port of every display, between its ticks: each is used or counted as a fault, and
-//! the display goes on. Whoever writes a pipeline sends such things first.
+//! Tests of displays with messages that no firmware of the papers sends, at every port and at any time. A display must
+//! use each message or count a fault, and continue. A new pipeline often sends such messages by mistake.
 
 use proptest::prelude::*;
 use pxpl5::display::{Display, DisplayContext, DisplayEvent};
@@ -11,12 +11,12 @@ use pxpl5_sim::TestBench;
 use pxpl5_wire::{PixelSource, RegionPixels, SWAP_REQUEST};
 use std::sync::Arc;
 
-/// First port of the displays.
+/// Ring address of the displays' first port.
 const FIRST_PORT: u16 = 30;
-/// Periods that a display lives.
+/// Number of simulated periods of a display.
 const PERIODS: u64 = 4;
 
-/// As many pixels as a renderer has.
+/// A pixel source with as many pixels as a renderer.
 #[derive(Debug)]
 struct Grey;
 
@@ -26,7 +26,7 @@ impl PixelSource for Grey {
     }
 }
 
-/// Numbers of which many are what a message should have.
+/// Returns a strategy for numbers, many of which are valid in messages.
 fn size() -> impl Strategy<Value = u32> {
     prop_oneof![4 => prop::sample::select(vec![640, 480, 240, 128, 120, 96, 16, 512]), 1 => 0u32..4, 1 => any::<u32>()]
 }
@@ -65,12 +65,12 @@ fn pixels() -> impl Strategy<Value = Body> {
     )
 }
 
-/// A message, the port that it comes to (counted round), and when, in thousandths of all periods.
+/// Returns a strategy for a message, its port (modulo the number of ports), and its time in thousandths of all periods.
 fn message() -> impl Strategy<Value = (Body, usize, u64)> {
     (prop_oneof![words(), pixels()], 0usize..12, 0u64..1_000)
 }
 
-/// Looks at everything that a display shows.
+/// Reads everything that a display shows.
 fn look(display: &dyn Display, now: Time) {
     for surface in 0..display.surfaces().len() {
         let of_surface = &display.surfaces()[surface];

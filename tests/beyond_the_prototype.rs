@@ -1,5 +1,5 @@
-//! What goes beyond the measured prototypes: Slats with a backup field, several graphics processors and more renderers, as
-//! the papers name as future work; Rendering Control on the larger machines.
+//! Tests of variants beyond the measured prototypes: Slats with a backup field, with several graphics processors and
+//! with more renderers, which the papers name as future work. Rendering Control is tested on the larger machines.
 
 use pxpl5::limit::LimitQuery;
 use pxpl5::scene::builtin;
@@ -25,12 +25,13 @@ fn limit(gps: usize, renderers: usize, slats: Slats, scene: TestScene) -> u32 {
 fn a_complete_field_goes_to_the_other_buffer_and_is_shown() {
     let outcome = run(Slats::backup(), "full-screen:60");
     assert_eq!(outcome.report().missed_retraces, Some(0));
-    // Even and odd lines each change buffers every second field: two fields from one buffer, two from the other.
+    // Even and odd lines each change buffers every second field, so two fields come from one buffer and two from the
+    // other.
     let buffers: Vec<u8> = outcome.observation().arrivals.iter().map(|arrival| arrival.target.buffer).collect();
     assert!(buffers.contains(&0) && buffers.contains(&1));
 }
 
-/// Asking for each field costs two messages a field more than a split copy, whose limit is 146 triangles.
+/// The request for each field costs two messages a field more than a split copy, whose limit is 146 triangles.
 #[test]
 fn a_backup_costs_a_few_triangles_of_the_limit_of_a_split_copy() {
     let outcome = run(Slats::backup(), "full-screen:140");
@@ -45,7 +46,7 @@ fn typical_triangles_sent_only_where_they_touch_raise_the_limit() {
     assert!(touched > all, "{touched} and {all}");
 }
 
-/// A finished region leaves through the backing store: colours are a block of 32 bits, depths another one.
+/// A finished region leaves through the backing store. Colours take a block of 32 bits, and depths take another block.
 #[test]
 fn a_backing_store_has_room_for_a_finished_region_or_is_refused() {
     for (pipeline, bits) in [("rendering-control", 32), ("arp-full", 64)] {
@@ -66,7 +67,8 @@ fn a_backing_store_has_room_for_a_finished_region_or_is_refused() {
 
 #[test]
 fn every_machine_that_the_papers_name_goes_on_drawing() {
-    // Up to 50 GPs and 20 renderers (I3D95): full input FIFOs must not keep back the pixels of their own boards.
+    // Machines have up to 50 GPs and 20 renderers (I3D95). Full input FIFOs must not block the pixels of their own
+    // boards.
     for machine in ["small-hmd", "medium", "large"] {
         let config = MachineConfig::preset(machine).expect("listed");
         let head = builtin("head").expect("built in");
@@ -74,7 +76,8 @@ fn every_machine_that_the_papers_name_goes_on_drawing() {
         let outcome = experiment.run().expect("it runs");
         let last = outcome.steady_pictures().last().expect("some were shown");
         let fields = outcome.end().since(last.shown_at).as_ms() / 16.683;
-        // Two eyes of 59,592 triangles cost the 12 slaves of the smallest machine 13 fields, and several are under way.
+        // Two eyes of 59,592 triangles take the 12 slaves of the smallest machine 13 fields, and several frames are in
+        // progress.
         assert!(fields < 30.0, "{machine} shows nothing for {fields} fields");
     }
 }

@@ -1,4 +1,4 @@
-//! The cycle level: graphics processors whose time comes from i860 code over the data of every triangle.
+//! Tests of the cycle level: the times of graphics processors come from i860 code that runs for every triangle.
 
 use jitp::JitpTiming;
 use pxpl5::limit::test_scene;
@@ -10,11 +10,11 @@ use pxpl5::{
 use pxpl5_gp::Stage;
 use std::sync::Arc;
 
-/// Triangles of a clump, and of a smaller one.
+/// Number of triangles in a full clump.
 const CLUMP: u32 = 30;
 const PART_OF_A_CLUMP: u32 = 20;
 
-/// Times of the table that code takes the place of.
+/// Parameters of the table whose times come from code at the cycle level.
 const TIMES_OF_CODE: [&str; 10] =
     ["message", "triangle", "bin_entry", "token_entry", "guard", "sphere", "edit", "pass", "structure", "sphere_view"];
 
@@ -22,7 +22,7 @@ fn slats(machine: &str) -> Experiment {
     slats_on(MachineConfig::preset(machine).expect("listed"), CLUMP)
 }
 
-/// A clump of triangles that are wholly inside the guard band, so that none is left to the clipper.
+/// Returns Slats with a clump of triangles inside the guard band, so that no triangle is clipped.
 fn slats_on(machine: MachineConfig, triangles: u32) -> Experiment {
     let small = test_scene(TestScene::Typical, triangles);
     Experiment::new(machine, Slats::split(), small).fields(12).pixels(Pixels::Off).level(Level::Cycle)
@@ -36,7 +36,7 @@ fn rendering_control() -> Experiment {
         .level(Level::Cycle)
 }
 
-/// The hash of everything that happened, of runs in which nothing is shown behind start-up too.
+/// Returns the trace hash of a run, also of one without a picture after start-up.
 fn hash(experiment: &Experiment) -> TraceHash {
     match experiment.run() {
         Ok(outcome) => outcome.record().trace_hash(),
@@ -45,7 +45,7 @@ fn hash(experiment: &Experiment) -> TraceHash {
     }
 }
 
-/// Mean time of TRANSFORM of the pictures after the first ones, in microseconds.
+/// Returns the mean time of TRANSFORM after the first pictures, in microseconds.
 fn transform_us(outcome: &Outcome) -> f64 {
     let stages = outcome.stages();
     let spans = stages.iter().filter(|span| span.stage == Stage::Transform && span.picture > PictureNumber(2));
@@ -71,7 +71,8 @@ fn both_pipelines_give_the_same_trace_whatever_the_ties_and_the_pixels() {
     }
 }
 
-/// Time of a triangle for two eyes: what more of them in a clump cost, whatever the beginning of the pass and the messages take.
+/// Returns the time of a triangle for two eyes: the additional time of more triangles in a clump. The constant time of
+/// a pass and its messages cancels out.
 fn triangle_us(preset: &str) -> f64 {
     machine_us(MachineConfig::preset(preset).expect("listed"))
 }
@@ -82,7 +83,8 @@ fn machine_us(machine: MachineConfig) -> f64 {
     (more - less) / f64::from(CLUMP - PART_OF_A_CLUMP)
 }
 
-/// The presets of 1994 and of 1995 have the same code and other times in the table, so that nothing of these times is the table's.
+/// The presets of 1994 and of 1995 have the same code and different times in the table. Equal results prove that no
+/// time comes from the table.
 #[test]
 fn the_codes_are_in_the_order_of_their_making() {
     let [compiled, of_1995, scheduled] = ["slats", "slats-1995", "slats-optimised"].map(triangle_us);
@@ -90,12 +92,13 @@ fn the_codes_are_in_the_order_of_their_making() {
     let machine = MachineConfig { code: Some(CodeVersion::Unoptimised), ..MachineConfig::slats() };
     let straight = machine_us(machine);
     assert!(scheduled < compiled && compiled < straight, "{scheduled:.0}, {compiled:.0}, {straight:.0} us");
-    // I3D95 expected a factor of about 3 of code that fits the instruction cache.
+    // I3D95 expected a factor of about 3 for code that fits the instruction cache.
     let factor = compiled / scheduled;
     assert!((2.0..4.0).contains(&factor), "{compiled:.0} us and {scheduled:.0} us: a factor of {factor:.2}");
 }
 
-/// Times of TRANSFORM of thirty triangles and two eyes, with two times per triangle in the table.
+/// Returns the times of TRANSFORM for thirty triangles and two eyes, with two different times per triangle in the
+/// table.
 fn transforms_us(code: Option<CodeVersion>, triangle_ns: [u64; 2]) -> [f64; 2] {
     triangle_ns.map(|triangle_ns| {
         let mut machine = MachineConfig { code, ..MachineConfig::slats() };
@@ -109,11 +112,12 @@ fn transforms_us(code: Option<CodeVersion>, triangle_ns: [u64; 2]) -> [f64; 2] {
 #[test]
 fn a_time_per_triangle_that_is_set_holds_where_no_code_runs() {
     let us = transforms_us(None, [20_000, 21_000]);
-    // Thirty triangles, two eyes, one microsecond each.
+    // Thirty triangles and two eyes, with one microsecond each.
     assert!((us[1] - us[0] - 60.0).abs() < 1e-6, "{us:?}");
 }
 
-/// Whatever the table says: triangles, those that are clipped, spheres, edits, passes, tokens and messages are code.
+/// All work is code: triangles, clipped triangles, spheres, edits, passes, tokens and messages. The table has no
+/// effect.
 #[test]
 fn no_time_comes_from_the_table_where_code_runs() {
     let hash_on = |machine: &MachineConfig, pipeline: Arc<dyn Pipeline>, name: &str| {
@@ -127,7 +131,7 @@ fn no_time_comes_from_the_table_where_code_runs() {
     for (preset, pipeline, scene) in [
         ("slats", slats, "full-screen:30"),
         ("small-hmd", Arc::clone(&control), "mig"),
-        // The walls of a room around the viewer reach behind the near plane.
+        // The walls of a room around the viewer reach behind the near plane, so triangles are clipped.
         ("small-hmd", Arc::clone(&control), "room"),
         ("small-hmd", control, "molecules"),
         ("small-hmd", faces(FacePolicy::Full), "molecules"),

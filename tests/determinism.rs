@@ -1,4 +1,5 @@
-//! Same input, same trace: whatever the ties, the threads and the pixels.
+//! Tests that the same input gives the same trace, with any order of ties, any number of threads, and with or without
+//! pixels.
 
 use pxpl5::{Experiment, Frameless, MachineConfig, Measured, Pixels, RenderingControl, Slats, Workstation, scene};
 
@@ -53,8 +54,8 @@ fn pixels_and_threads_change_no_time_and_threads_no_pixel() {
     }
 }
 
-/// The whole report, without what the host and the order of ties make of it: the seconds that it took, and how many events were
-/// scheduled in vain.
+/// Returns the whole report without values that depend on the host or on the order of ties: the seconds of the run, and
+/// the number of events that were scheduled in vain.
 fn report(experiment: &Experiment) -> serde_json::Value {
     let mut report = serde_json::to_value(experiment.run().expect("it runs").report()).expect("it is data");
     let fields = report.as_object_mut().expect("an object");
@@ -63,7 +64,7 @@ fn report(experiment: &Experiment) -> serde_json::Value {
     report
 }
 
-/// Machines in which more happens at one instant than on any that was built.
+/// Returns machines in which more events happen at one instant than in any machine that was built.
 fn machines_of_many_ties() -> [Experiment; 2] {
     let scene = scene::builtin("full-screen:4").expect("built in");
     let crowded = MachineConfig { n_renderers: 1_000, ..MachineConfig::small_hmd() };
@@ -86,7 +87,7 @@ fn no_number_of_a_report_depends_on_ties_however_many_there_are() {
     }
 }
 
-/// The statistics are in the hash: who sums in another order is found out.
+/// The report hash covers the statistics, so a different order of summation changes the hash.
 #[test]
 fn a_report_hash_is_more_than_the_trace() {
     let [experiment, ..] = pipelines();

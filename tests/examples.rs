@@ -1,6 +1,7 @@
-//! The guide shows the examples in Rust as they are, and they run; python/tests/test_examples.py does the same with their twins.
+//! Tests that the guide shows the Rust examples unchanged, and that the examples run. python/tests/test_examples.py
+//! does the same for the Python versions.
 //!
-//! `PXPL5_UPDATE_GUIDE=1 cargo test --test examples` writes them into the guide anew.
+//! `PXPL5_UPDATE_GUIDE=1 cargo test --test examples` writes the examples into the guide.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -15,7 +16,7 @@ fn read(path: &Path) -> String {
     std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// The page with every example as it stands in its file.
+/// Returns the page with every example replaced by the content of its file.
 fn shown(page: &str) -> String {
     let mut pieces = page.split("<!-- examples/");
     let mut made = pieces.next().unwrap_or_default().to_owned();
@@ -41,7 +42,7 @@ fn the_guide_shows_every_example_as_it_is() {
     assert!(page == expected, "run PXPL5_UPDATE_GUIDE=1 cargo test --test examples");
 }
 
-/// What an example prints, in a folder of its own. cargo builds examples beside the tests.
+/// Runs an example in a folder of its own and returns its output. Cargo builds examples beside the tests.
 fn printed(name: &str) -> String {
     let tests = std::env::current_exe().expect("a test is a program");
     let programs = tests.ancestors().nth(2).expect("target/PROFILE/deps").join("examples");
@@ -54,7 +55,7 @@ fn printed(name: &str) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
-/// The number before a word of a line.
+/// Returns the number before a word in a line.
 fn number_before(line: &str, word: &str) -> f64 {
     let before = line.split(word).next().unwrap_or_default();
     let number = before.split_whitespace().last().and_then(|number| number.parse().ok());
@@ -67,7 +68,7 @@ fn my_model_is_shown_by_both_pipelines_and_slats_shows_it_in_every_field() {
     let lines: Vec<&str> = printed.lines().filter(|line| !line.starts_with("warning")).collect();
     let [rendering_control, its_pixels, slats, pixels] = lines[..] else { panic!("{printed}") };
     assert!(rendering_control.starts_with("rendering-control: ") && slats.starts_with("slats: "));
-    // A field of NTSC is 16.683 ms, and Slats takes one.
+    // An NTSC field takes 16.683 ms, and Slats takes one field.
     assert_eq!(number_before(slats, " ms (sd"), 16.7);
     assert_eq!(number_before(slats, " Hz"), 59.9);
     assert!(number_before(rendering_control, " ms (sd") > 16.7);
@@ -94,7 +95,8 @@ fn the_sweep_has_a_line_for_each_point_and_more_processors_are_faster() {
         number_before(row, " ms ")
     };
     assert!(latency("8000 13 1 ") < latency("8000 4 1 "));
-    // 8,000 x 21.7 us on four processors are 43 ms, more than the two fields of a frame in which 1,000 are done.
+    // 8,000 triangles of 21.7 us on four processors take 43 ms, more than the two fields of a frame. 1,000 triangles
+    // take less.
     assert!(latency("1000 4 1 ") < latency("8000 4 1 "));
 }
 
@@ -103,7 +105,7 @@ fn the_recording_is_judged_under_every_pipeline_and_predictor() {
     let printed = printed("my_recording");
     let errors: Vec<f64> = printed.lines().map(|line| number_before(line, " px of error")).collect();
     assert_eq!(errors.len(), 3 * 2);
-    // Prediction of a smooth motion brings the picture nearer under each pipeline.
+    // Prediction of a smooth motion reduces the error under each pipeline.
     for pair in errors.chunks(2) {
         assert!(pair[1] < pair[0], "{printed}");
     }

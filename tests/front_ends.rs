@@ -1,7 +1,8 @@
-//! The experiments that Rust and Python both run, and the hashes that both must find: `python/tests/experiments.json`, which
-//! python/tests/test_runs.py reads too.
+//! Tests that Rust and Python find the same hashes for the experiments of `python/tests/experiments.json`.
+//! python/tests/test_runs.py reads the same file.
 //!
-//! Hashes change with every simulated time: `PXPL5_UPDATE_EXPERIMENTS=1 cargo test --test front_ends` writes them anew.
+//! Hashes change with every simulated time. `PXPL5_UPDATE_EXPERIMENTS=1 cargo test --test front_ends` writes them
+//! again.
 
 use pxpl5::{ExperimentFile, Measured};
 use serde_json::{Value, json};
@@ -11,7 +12,7 @@ fn file() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("python/tests/experiments.json")
 }
 
-/// What a run of an experiment's text finds.
+/// Runs an experiment from its text and returns the hashes.
 fn found(text: &str) -> Value {
     let plan = ExperimentFile::parse(text, "experiments.json").and_then(|file| file.resolve()).expect("an experiment");
     let outcome = plan.experiment(plan.load_scene().expect("a scene")).run().expect("it can be run");

@@ -1,6 +1,8 @@
-//! Trace and pictures of 42 experiments, as hashes: nothing that is simulated changes unnoticed, on any host and with any vector unit.
+//! Hashes of traces and pictures of 42 experiments. They detect every change of a simulated value, on any host and with
+//! any vector unit.
 //!
-//! `tests/golden/hashes.txt` changes only by `PXPL5_UPDATE_HASHES=1 cargo test --test hashes`, and CHANGELOG.md says why then.
+//! `tests/golden/hashes.txt` changes only by `PXPL5_UPDATE_HASHES=1 cargo test --test hashes`. CHANGELOG.md then states
+//! the reason.
 
 use pxpl5::{ExperimentFile, Measured, SurfaceId};
 use pxpl5_renderer::Vectors;
@@ -9,7 +11,7 @@ use std::path::Path;
 
 const UPDATE: &str = "PXPL5_UPDATE_HASHES";
 
-/// Pipelines with the fields in which something is shown.
+/// Pipelines, each with a number of fields that is large enough to show a picture.
 const PIPELINES: [(&str, &str, u64); 14] = [
     ("rendering-control", "mono = false", 14),
     ("rendering-control", "mono = true", 12),
@@ -29,12 +31,12 @@ const PIPELINES: [(&str, &str, u64); 14] = [
 
 const SCENES: [(&str, u64); 3] = [("full-screen:8", 8), ("mig", 24), ("molecules", 30)];
 
-/// 64 bits of FNV-1a.
+/// Returns the 64-bit FNV-1a hash of some bytes.
 fn fnv(bytes: impl Iterator<Item = u8>) -> u64 {
     bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
 }
 
-/// Name, hash of the trace, hash of all last pictures.
+/// Returns a line with the name, the hash of the trace, and the hash of all last pictures.
 fn hashed(pipeline: &str, key: &str, fields: u64, scene: &str, triangles: u64) -> String {
     let text =
         format!("pipeline = \"{pipeline}\"\n{key}\nscene = \"{scene}\"\ntriangles = {triangles}\nfields = {fields}\n");
@@ -49,7 +51,7 @@ fn hashed(pipeline: &str, key: &str, fields: u64, scene: &str, triangles: u64) -
     format!("{hash} {:016x} {pipeline} {} {scene}", fnv(pictures.into_iter()), key.replace(' ', ""))
 }
 
-/// All experiments, a line each.
+/// Returns the lines of all experiments.
 fn all_hashed() -> String {
     let mut text = String::new();
     for (pipeline, key, fields) in PIPELINES {

@@ -1,4 +1,5 @@
-//! Experiment files with a head, a tracker and a display: do they give what the comparison gives, and the pictures?
+//! Tests of experiment files with a head, a tracker and a display. Their results must equal those of the comparison,
+//! and their pictures must be correct.
 
 mod support;
 
@@ -66,7 +67,8 @@ fn an_experiment_file_gives_the_numbers_of_the_comparison() {
     }
 }
 
-/// A wall's edge straight ahead at time zero, under a pan: a picture for the first moment of each field, for one eye.
+/// Returns an experiment with a wall's edge straight ahead at time zero, under a pan. Each field is drawn for its first
+/// instant, for one eye.
 fn panned(deg_per_s: f64, raster: Raster, fields: u64) -> Experiment {
     let head = Head::new(Arc::new(Pan::at(deg_per_s)), TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1);
     let head = head.expect("in range").before(raster).aiming(Aim::FirstPixel);
@@ -75,13 +77,13 @@ fn panned(deg_per_s: f64, raster: Raster, fields: u64) -> Experiment {
         .fields(fields)
 }
 
-/// The column of each line of a field where the wall ends.
+/// Returns the column in which the wall ends, for each line of a field.
 fn edges(picture: &image::RgbImage, field: PeriodNumber) -> Vec<f64> {
     let lines = (0..picture.height()).filter(|y| u64::from(y % 2) == field.0 % 2);
     lines.map(|y| edge(picture, y)).collect()
 }
 
-/// The first column behind the wall in a line; -1 for none.
+/// Returns the first column behind the wall in a line, or -1.
 fn edge(picture: &image::RgbImage, y: u32) -> f64 {
     let behind = (1..picture.width()).find(|x| is_wall(picture, x - 1, y) && !is_wall(picture, *x, y));
     behind.map_or(-1.0, f64::from)
@@ -110,9 +112,9 @@ fn a_shifted_raster_shows_the_edge_where_it_is_when_each_line_lights() {
             .collect();
         errors.iter().copied().fold(0.0, f64::max)
     });
-    // A place is a whole column: half a pixel of the picture, half a pixel of the shift.
+    // Positions are whole columns: half a pixel of error in the picture, and half a pixel in the shift.
     assert!(vdrt <= 1.0, "{vdrt}");
-    // The end of the field is 15.3 ms after the moment that it is drawn for, its begin.
+    // The end of the field is 15.3 ms after its begin, for which the picture is drawn.
     let expected = 554.256 * (30.0 * 0.0153f64).to_radians().tan();
     assert!((plain - expected).abs() < 1.0, "{plain} {expected}");
 }
@@ -134,10 +136,11 @@ fn a_film_on_a_shifted_raster_shows_the_pictures_of_a_run_on_it() {
 
 #[test]
 fn slats_takes_a_report_no_older_than_the_trackers_interval_and_the_way_to_the_processors() {
-    // Sent as it comes, the newest report waits for the retrace from nothing to one interval; sent once a field just after the retrace
-    // it would wait for a whole field more, 16.68 ms. A thousand reports a second come at all places of a field, so that they wait for half
-    // of an interval in the mean; the Fastrak's 120 need 500 fields for that, of which these are a part. (Trackers behind the port of a host
-    // whose kernel looks 60 times a second always come at the same place.)
+    // A report that is sent at once waits for the retrace between zero and one interval. If reports were sent once a
+    // field just after the retrace, each would wait for another field of 16.68 ms. A thousand reports a second fall on
+    // all places of a field, so they wait for half an interval on average. The Fastrak's 120 reports would need 500
+    // fields for that, of which these are a part. Trackers behind the port of a host whose kernel polls 60 times a
+    // second always report at the same place.
     for (tracker, least_ms, most_ms) in [("fastrak", 0.0, 1e3 / 120.0), ("ideal", 0.5, 0.5)] {
         let settings = [
             ("pipeline", "slats"),

@@ -1,8 +1,8 @@
-//! Golden images: what each pipeline shows of the built-in scenes, to the bit, on every host.
+//! Golden images: the pictures of each pipeline for built-in scenes must be equal to the bit on every host.
 //!
-//! A piece of each picture lies in `tests/golden/` for people; a fingerprint of all of it stands in
-//! `tests/golden/fingerprints.txt`. On a mismatch `target/images/` gets a triptych: expected, difference, actual.
-//! They change only by `PXPL5_UPDATE_IMAGES=1 cargo test --test images`, and somebody must look at them then.
+//! A piece of each picture is in `tests/golden/` for inspection. A fingerprint of the whole picture is in
+//! `tests/golden/fingerprints.txt`. On a mismatch, `target/images/` gets a triptych: expected, difference, actual. The
+//! files change only by `PXPL5_UPDATE_IMAGES=1 cargo test --test images`, and must then be inspected.
 
 use image::{Rgb, RgbImage, imageops};
 mod support;
@@ -19,17 +19,18 @@ use support::boards;
 
 const UPDATE: &str = "PXPL5_UPDATE_IMAGES";
 
-/// A scene and the piece of its frames that is kept: left, top, width, height.
+/// A scene and the stored piece of its frames: left, top, width, height.
 struct Subject {
     scene: &'static str,
     piece: [u32; 4],
-    /// Enough for [`pxpl5::WARM_UP_PICTURES`] and one more.
+    /// Number of fields, enough for [`pxpl5::WARM_UP_PICTURES`] and one more picture.
     fields: u64,
 }
 
 const SUBJECTS: [Subject; 4] = [
     Subject { scene: "mig", piece: [200, 120, 256, 200], fields: 60 },
-    // Under Slats a picture takes four fields; both halves of the frame have been drawn then.
+    // Under Slats, a picture of this scene takes four fields. After so many fields, both halves of the frame have been
+    // drawn.
     Subject { scene: "molecules", piece: [180, 130, 240, 180], fields: 90 },
     Subject { scene: "head", piece: [120, 60, 320, 260], fields: 160 },
     Subject { scene: "full-screen:12", piece: [288, 208, 64, 64], fields: 60 },
@@ -45,7 +46,7 @@ fn scratch(name: &str) -> PathBuf {
     folder.join(name)
 }
 
-/// 64 bits of FNV-1a over size and bytes.
+/// Returns the 64-bit FNV-1a hash of size and bytes.
 fn fingerprint(picture: &RgbImage) -> String {
     let size = [picture.width(), picture.height()].map(u32::to_le_bytes);
     let bytes = size.as_flattened().iter().chain(picture.as_raw());
@@ -61,7 +62,7 @@ fn fingerprints() -> BTreeMap<String, String> {
         .collect()
 }
 
-/// The kept piece of a frame, or the lines of it that a field has.
+/// Returns the stored piece of a frame, or its lines in a field.
 fn piece(picture: &RgbImage, [left, top, width, height]: [u32; 4]) -> RgbImage {
     let step = 480 / picture.height();
     let top = top / step;
@@ -69,7 +70,7 @@ fn piece(picture: &RgbImage, [left, top, width, height]: [u32; 4]) -> RgbImage {
     imageops::crop_imm(picture, left, top, width, height).to_image()
 }
 
-/// Expected, difference (white where equal, black where not), actual.
+/// Returns three pictures side by side: expected, difference (white where equal, black otherwise), actual.
 fn triptych(expected: &RgbImage, actual: &RgbImage) -> RgbImage {
     let width = expected.width().max(actual.width());
     let height = expected.height().max(actual.height());
@@ -82,7 +83,7 @@ fn triptych(expected: &RgbImage, actual: &RgbImage) -> RgbImage {
     out
 }
 
-/// What is wrong with a picture, if anything.
+/// Compares a picture with the stored one. Returns a description of the difference, if any.
 fn check(name: &str, picture: &RgbImage, subject: &Subject, known: &BTreeMap<String, String>) -> Option<String> {
     let actual = piece(picture, subject.piece);
     let Ok(expected) = image::open(golden(&format!("{name}.png"))) else {
@@ -112,8 +113,8 @@ fn update(name: &str, picture: &RgbImage, subject: &Subject) {
     picture.save(scratch(&format!("{name}-whole.png"))).expect("target can be written");
 }
 
-/// The newest picture alone: a frame of Rendering Control, or a field of Slats. Interlaced with the one before, a
-/// moving scene would show two poses.
+/// Returns the newest picture alone: a frame of Rendering Control or a field of Slats. A field interlaced with the
+/// previous one would show two poses of a moving scene.
 fn shown(outcome: &Outcome, eye: Eye) -> RgbImage {
     let newest = outcome.pictures().last().expect("it has shown some").picture;
     let frame_buffer = &boards(outcome)[eye.index()];
@@ -127,7 +128,7 @@ fn shown(outcome: &Outcome, eye: Eye) -> RgbImage {
     }
 }
 
-/// The pictures of both eyes by name.
+/// Returns the pictures of both eyes with their names.
 fn pictures(pipeline: Arc<dyn Pipeline>, config: &MachineConfig, subject: &Subject) -> Vec<(String, RgbImage)> {
     let scene = scene::builtin(subject.scene).expect("built in");
     let name = format!("{}-{}", pipeline.name(), subject.scene.replace(':', "-"));
@@ -158,7 +159,8 @@ fn compare(pipeline: impl Pipeline + Copy + 'static, config: &MachineConfig) {
     assert!(wrong.is_empty(), "\n{wrong}");
 }
 
-/// The 140 triangles of the published machine make no molecule. What misses its retrace is shown later, in its place.
+/// Returns a machine with more boards, because the published machine can draw only 140 triangles in time. Pictures that
+/// miss their retrace are shown later in their place.
 fn many_boards() -> MachineConfig {
     let published = MachineConfig::preset("slats-optimised").expect("listed");
     MachineConfig { n_gps: 32, ..published }
@@ -182,7 +184,7 @@ fn a_still_scene_looks_the_same_however_many_processors_draw_it() {
     }
 }
 
-/// One test, because an update of two at once would lose half of the fingerprints.
+/// A single test covers all pipelines, because two simultaneous updates would lose half of the fingerprints.
 #[test]
 fn both_pipelines_show_the_golden_images_to_both_eyes() {
     compare(RenderingControl::stereo(), &MachineConfig::small_hmd());

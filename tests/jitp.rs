@@ -1,4 +1,5 @@
-//! From head to light: what the papers say of just-in-time pixels, latency and registration, on the whole machine.
+//! Tests of the papers' statements about just-in-time pixels, latency and registration, from head to light on the whole
+//! machine.
 
 use glam::DVec3;
 mod support;
@@ -21,18 +22,18 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use support::video;
 
-/// A fast turn of the head (JITP).
+/// A fast turn of the head, in degrees per second (JITP).
 const PAN: f64 = 200.0;
-/// Focal length of 640 pixels over 60 degrees.
+/// Focal length, in pixels, of 640 pixels over 60 degrees.
 const FOCAL_PX: f64 = 554.256_258_422_040_8;
-/// A field that is well past the start, and even.
+/// An even field that is well after the start.
 const FIELD: PeriodNumber = PeriodNumber(40);
 
 fn head(motion: impl Motion + Send + Sync + 'static, tracker: TrackerConfig, kind: PredictorKind) -> Head {
     Head::new(Arc::new(motion), tracker, kind, 1).expect("the settings are in range")
 }
 
-/// Nothing is wrong with a pose of this head, so that only the moments of drawing and of light differ.
+/// Returns a head with perfect poses, so that only the times of drawing and of light differ.
 fn perfect(motion: impl Motion + Send + Sync + 'static) -> Head {
     head(motion, TrackerConfig::ideal(), PredictorKind::ConstantVelocity)
 }
@@ -54,13 +55,13 @@ fn under_a_pan(viewpoint: Viewpoint, racing: bool) -> Outcome {
     run(Jitp { strip_rows: 1, ..Jitp::new(viewpoint, racing) }, perfect(Pan::at(PAN)), FIELD.0 + 2)
 }
 
-/// A field for one moment as the paper's: that of its first pixel.
+/// Returns a run in which a field is drawn for one instant as in the paper: for its first pixel.
 fn conventional() -> Outcome {
     let jitp = Jitp { strip_rows: 1, ..Jitp::new(Viewpoint::Field, true) };
     run(jitp, perfect(Pan::at(PAN)).aiming(Aim::FirstPixel), FIELD.0 + 2)
 }
 
-/// Seconds between the beam's passes over two pixels of a field.
+/// Returns the seconds between the beam's passes over two pixels of a field.
 fn beam_s(outcome: &Outcome, from: (u32, u32), to: (u32, u32)) -> f64 {
     let [from_ps, to_ps] = [from, to].map(|(x, y)| video(outcome).when(x, y, FIELD).expect("visible").0 as f64);
     (to_ps - from_ps) * 1e-12
@@ -72,11 +73,11 @@ fn j1_one_transform_a_field_is_33_pixels_off_at_its_end() {
     let registration = Registration::of(&outcome).expect("there is a head");
     let last = registration.at(320, 478, FIELD).expect("shown");
     let scan_s = beam_s(&outcome, (0, 0), (320, 478));
-    // The pixel is below the level: a turn about the vertical moves it by the chord of a smaller circle.
+    // The pixel lies below eye level, so a turn about the vertical axis moves it along a smaller circle.
     let level = FOCAL_PX / f64::hypot(FOCAL_PX, 478.5 - 240.0);
     let turn_deg = 2.0 * f64::asin((last.degrees / 2.0).to_radians().sin() / level).to_degrees();
     assert!((turn_deg - PAN * scan_s).abs() < 0.001, "{turn_deg} {}", PAN * scan_s);
-    // The paper counts to the next retrace, and 10 pixels a degree.
+    // The paper counts up to the next retrace, and 10 pixels a degree.
     let whole_field_deg = turn_deg / scan_s * seconds(NTSC_FIELD_PS);
     println!("J1: {whole_field_deg:.3} deg, {:.2} px", whole_field_deg * 10.0);
     assert!((whole_field_deg - 3.3).abs() < 0.05 && (whole_field_deg * 10.0 - 33.0).abs() < 0.5);
@@ -108,14 +109,14 @@ fn j4_a_vertical_edge_slants_by_speed_times_scan_time() {
     let registration = Registration::of(&outcome).expect("there is a head");
     for y in [0, 120, 240, 478] {
         let error = registration.at(320, y, FIELD).expect("shown").offset_px.x;
-        // The middle of the picture is half a pixel to the left of the pixel's middle.
+        // The middle of the picture lies half a pixel to the left of the middle of the pixel.
         let angle = f64::atan(0.5 / FOCAL_PX) + (PAN * beam_s(&outcome, (0, 0), (320, y))).to_radians();
         let expected = 0.5 - FOCAL_PX * angle.tan();
         assert!((error - expected).abs() < 0.01, "line {y}: {error} {expected}");
     }
 }
 
-/// The column right of the last white pixel of each row.
+/// Returns the column right of the last white pixel of each row.
 fn edge(picture: &image::RgbImage) -> Vec<f64> {
     (0..picture.height()).map(|row| right_of_white(picture, row)).collect()
 }
@@ -125,7 +126,7 @@ fn right_of_white(picture: &image::RgbImage, row: u32) -> f64 {
     last.map_or(0.0, |x| f64::from(x + 1))
 }
 
-/// Pixels between the first and the last row of the straight line through all of them.
+/// Returns the slant of an edge: the pixels between first and last row of the fitted straight line.
 fn slant(edge: &[f64]) -> f64 {
     let n = edge.len() as f64;
     let mean_row = (n - 1.0) / 2.0;
@@ -146,7 +147,7 @@ fn j4_the_plates_slant_as_the_old_well_does() {
         [&plates.conventional, &plates.conventional_seen, &plates.just_in_time, &plates.just_in_time_seen]
             .map(|picture| slant(&edge(picture)));
     println!("J4: {conventional:.3} seen {conventional_seen:.3}, {just_in_time:.3} seen {just_in_time_seen:.3}");
-    // 239 lines of 4004/63 us at 200 deg/s: 3.038 degrees; the head turns left, so things move right in the view.
+    // 239 lines of 4004/63 us at 200 deg/s are 3.038 degrees. The head turns left, so objects move right in the view.
     let turn = (PAN * 239.0 * 4004.0 / 63.0 * 1e-6).to_radians();
     let expected = FOCAL_PX * 2.0 * (turn / 2.0).tan();
     assert!(conventional.abs() < 1e-9, "drawn vertical: {conventional}");
@@ -163,7 +164,7 @@ fn a_picture_is_seen_as_it_is_by_a_still_head() {
     assert_eq!(as_seen(&picture, FIELD, video(&outcome), &still), picture);
 }
 
-/// Views that are sampled for a field.
+/// Returns the number of views that are sampled for a field.
 fn n_views(viewpoint: Viewpoint) -> usize {
     let outcome = under_a_pan(viewpoint, true);
     let sampled = outcome.head().expect("a head").sampled();
@@ -172,14 +173,15 @@ fn n_views(viewpoint: Viewpoint) -> usize {
 
 #[test]
 fn j5_scanline_rendering_takes_240_transforms_a_field() {
-    // The paper counts about 256 lines; 240 of a field are visible.
+    // The paper counts about 256 lines, but only 240 lines of a field are visible.
     assert_eq!(
         (n_views(Viewpoint::Strip), n_views(Viewpoint::Field), n_views(Viewpoint::Dual(Interpolation::View))),
         (240, 1, 2)
     );
 }
 
-/// Distance in pixels from where strips of one line show it: at the left edge, in the middle, at the right edge.
+/// Returns the distance in pixels from the position in strips of one line, at the left edge, in the middle and at the
+/// right edge.
 fn beside_strips(interpolation: Interpolation) -> [f64; 3] {
     let [strip, dual] = [Viewpoint::Strip, Viewpoint::Dual(interpolation)].map(|viewpoint| {
         let outcome = under_a_pan(viewpoint, true);
@@ -194,7 +196,7 @@ fn places_on_the_screen_are_off_at_the_edge_and_positions_in_the_view_are_not() 
     let screen = beside_strips(Interpolation::Screen);
     let view = beside_strips(Interpolation::View);
     println!("dual display list, left edge, middle, right edge: screen {screen:?} view {view:?}");
-    // tan is interpolated over the 15.24 ms of the scan: f x turn^2 / 8 x 2 tan 30 / cos^2 30.
+    // tan is interpolated over the 15.24 ms of the scan, which gives an error of f x turn^2 / 8 x 2 tan 30 / cos^2 30.
     let turn = (PAN * 239.82 * 4004.0 / 63.0 * 1e-6).to_radians();
     let expected = FOCAL_PX * turn * turn / 8.0 * 2.0 * 30f64.to_radians().tan() / 0.75;
     assert!((screen[0] / expected - 1.0).abs() < 0.1 && (screen[2] / expected - 1.0).abs() < 0.1, "{expected}");
@@ -217,11 +219,11 @@ fn all_combinations_of_viewpoint_and_racing_are_in_time_and_racing_saves_a_field
 
 #[test]
 fn lines_that_come_too_late_are_counted_and_nothing_breaks() {
-    // 417 triangles for each line take a slave 9 ms; it has 12 x 63.6 us.
+    // For each line, 417 triangles take a slave 9 ms, but only 12 x 63.6 us are available.
     let mig = builtin("mig").expect("built in");
     let outcome = Experiment::new(MachineConfig::small_hmd(), Jitp::new(Viewpoint::Strip, true), mig).fields(40).run();
     let report = outcome.expect("it runs").report();
-    // The first 8 of 40 fields are the warm-up, and no other is complete.
+    // The first 8 of 40 fields are the warm-up, and none of the others is complete.
     assert_eq!(report.missed_retraces, Some(32));
 }
 
@@ -236,7 +238,7 @@ fn more_renderers_allow_more_triangles_in_a_line() {
     let small = possible_in_a_line("small-hmd");
     let large = possible_in_a_line("design-maximum");
     println!("triangles per line: small-hmd {small}, design-maximum {large}");
-    // A column of a line has 63.6 us at the renderer, of which the copy takes 7.2: 8 triangles of 6.45 us.
+    // A renderer has 63.6 us for a column of a line. The copy takes 7.2 us, so 8 triangles of 6.45 us remain.
     assert!((6..=9).contains(&small), "{small}");
     assert!(large > 2 * small, "{large}");
 }
@@ -252,7 +254,8 @@ fn ninety_milliseconds_are_1_8_times_as_wrong_as_fifty() {
     }
 }
 
-/// From head to light in milliseconds, and the error in the middle of the picture in degrees, with a tracker without noise.
+/// Returns the latency from head to light in milliseconds, and the error in the middle of the picture in degrees. The
+/// tracker has no noise.
 fn latency_and_error(pipeline: impl Pipeline + 'static) -> (f64, f64) {
     let tracker =
         TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..TrackerConfig::optical_ceiling() };
@@ -264,7 +267,7 @@ fn latency_and_error(pipeline: impl Pipeline + 'static) -> (f64, f64) {
 fn errors_of_pipelines_are_as_their_latencies_from_head_to_light() {
     let control = latency_and_error(RenderingControl::stereo());
     let slats = latency_and_error(Slats::split());
-    // A frame of Rendering Control is seen for two fields, so on average half a field later than its first light.
+    // A frame of Rendering Control is visible for two fields, on average half a field later than its first light.
     let latencies = (control.0 + 16.683 / 2.0) / slats.0;
     println!("{control:?} {slats:?}: latencies {latencies:.3}, errors {:.3}", control.1 / slats.1);
     assert!((control.1 / slats.1 / latencies - 1.0).abs() < 0.05);
@@ -289,7 +292,8 @@ fn metal_misplaces_objects_even_for_a_still_head() {
     let at = Pose::at(DVec3::new(0.7, 0.0, 0.7));
     let outcome = run(Slats::split(), head(Still(at), tracker, PredictorKind::None), 90);
     let errors = PixelErrors::of(&outcome);
-    // A bowl of 20 mm at 1 m, seen at 2 m and more: some pixels, always the same (but for the two fields' lines).
+    // The tracker's field is distorted by 20 mm at a distance of 1 m, like a bowl, and content lies at 2 m and more.
+    // The error is some pixels and constant, except for the different lines of two fields.
     let centre = errors.centre_px;
     assert!(centre.p50 > 0.5 && (centre.max - centre.p50).abs() < 1e-3, "{centre:?}");
 }
@@ -318,7 +322,7 @@ fn frameless_blocks_come_once_a_pass_and_are_half_a_pass_old() {
     let least = counts.iter().min().copied().unwrap_or(0);
     let most = counts.iter().max().copied().unwrap_or(0);
     assert!(least > 10 && most - least <= 1, "without repetition: {least} to {most}");
-    // At a random moment a block is half of the time between two of its updates old.
+    // At a random instant, the age of a block is half of the time between two of its updates.
     let gaps: Vec<f64> = of_block.values().flat_map(|times| times.windows(2).map(|w| w[1] - w[0])).collect();
     let age_ms = gaps.iter().map(|gap| gap * gap / 2.0).sum::<f64>() / gaps.iter().sum::<f64>();
     let pass_ms = 1e3 / outcome.report().updates_hz.expect("two pictures");
@@ -392,13 +396,14 @@ fn a_comparison_has_a_row_for_every_pipeline_and_just_in_time_comes_nearest_to_t
     assert_eq!(json["pipelines"].as_array().map(Vec::len), Some(29));
     let mean = |name: &str| all.row(name).expect("a row").error.mean_px.mean;
     assert!(mean("ideal") < 1e-3 && mean("jitp-scanline-racing") < 0.1 && mean("jitp-dual-view-racing") < 0.1);
-    // All draw for the middle of what they show: one field errs as another, and two fields more.
+    // All pipelines aim at the middle of their display time. One field gives the same error in both, and two fields
+    // give more.
     assert!((mean("jitp-field-racing") / mean("slats-touched") - 1.0).abs() < 1e-3);
     assert!((mean("jitp-field") / mean("slats-touched") - 1.0).abs() < 1e-3);
     assert!(mean("jitp-field-racing") > 7.0 && mean("rendering-control") > 2.0 * mean("slats-touched"));
 }
 
-/// A pan before walls that stand still, with a tracker that knows where the head is.
+/// Returns a comparison under a pan past still walls, with a tracker without errors.
 fn comparison(fields: u64) -> CompareQuery {
     let mut shared = ExperimentFile::new();
     let pan = format!("pan:{PAN}");

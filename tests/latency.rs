@@ -1,5 +1,5 @@
-//! The latencies and limits of the papers, each with the tolerance that its derivation allows. `tests/published.rs`
-//! asserts the same and more through the table of figures; here each experiment stands by itself.
+//! Tests of the latencies and limits of the papers, each with the tolerance that its derivation allows.
+//! `tests/published.rs` covers the same and more through the table of figures. Here, each experiment is independent.
 
 mod support;
 
@@ -11,7 +11,7 @@ use pxpl5_framebuffer::Video;
 use pxpl5_gp::Stage;
 use support::video;
 
-/// A region of 15 messages of 1,024 + 16 words of 50 ns (TR94: 780 us).
+/// Time of a region of 15 messages with 1,024 + 16 words of 50 ns (TR94: 780 us).
 const REGION_US: f64 = 780.0;
 
 fn run(experiment: Experiment) -> Outcome {
@@ -33,7 +33,7 @@ fn stages(outcome: &Outcome, stage: Stage, picture: PictureNumber) -> Vec<StageS
     outcome.observation().stages(message).into_iter().filter(|s| s.stage == stage && s.picture == picture).collect()
 }
 
-/// From the first word of the first region to the last pixel of the last, in microseconds.
+/// Returns the time from the first word of the first region to the last pixel of the last region, in microseconds.
 fn copy_us<'a>(arrivals: impl Iterator<Item = &'a Arrival> + Clone) -> f64 {
     let begin = arrivals.clone().map(|a| a.first_part_at.0).min().expect("regions") - 52_000_000;
     let end = arrivals.map(|a| a.last_part_at.0).max().expect("regions");
@@ -50,8 +50,8 @@ fn figure_1_a_region_of_15360_pixels_is_copied_in_780_us() {
 
 #[test]
 fn figure_2_both_eyes_are_copied_in_31_2_ms() {
-    // 2 x 640 x 480 pixels in messages of 1,024: 600 x 52 us = 31.2 ms of port time, one eye after the other. At the
-    // seam and at the begin a renderer may keep a port waiting: 0.2 %.
+    // 2 x 640 x 480 pixels in messages of 1,024 words take 600 x 52 us = 31.2 ms of port time, one eye after the other.
+    // At the begin and between the eyes, a renderer may keep a port waiting: 0.2 %.
     let outcome = trivial();
     let ms: f64 = stages(&outcome, Stage::Copy, PictureNumber(10))
         .iter()
@@ -62,8 +62,8 @@ fn figure_2_both_eyes_are_copied_in_31_2_ms() {
 
 #[test]
 fn figure_4_a_trivial_stereo_scene_is_1_percent_later_than_measured() {
-    // FIXME(accuracy): published 56.5 ms, here as a mean over both eyes, each from the start of its own TRANSFORM; the frame rate is
-    // exact.
+    // FIXME(accuracy): the published value is 56.5 ms, as a mean over both eyes from the start of each TRANSFORM. The
+    // frame rate is exact.
     let outcome = trivial();
     let both = pxpl5::measure::summary(&outcome).eye_swap_latencies_ms;
     let mean = both.iter().sum::<f64>() / both.len() as f64;
@@ -71,7 +71,7 @@ fn figure_4_a_trivial_stereo_scene_is_1_percent_later_than_measured() {
     assert!((outcome.report().updates_hz.expect("two pictures") - 30_000.0 / 1_001.0).abs() < 1e-3);
 }
 
-/// Whether a picture begins with a field and is shown with the next one.
+/// Returns true if a picture begins with a field and is shown with the next one.
 fn takes_one_field(times: &PictureTimes, video: &Video) -> bool {
     let started = video.field_at(times.transform_at);
     times.transform_at == video.retrace(started) && times.shown_at == video.retrace(started.next())
@@ -88,8 +88,8 @@ fn figure_9_slats_shows_every_field_exactly_one_field_after_its_start() {
 
 #[test]
 fn figure_10_twenty_field_regions_take_eleven_region_times() {
-    // Left and right in turn, in order of arrival: at each end one board idles for one region. A renderer needs a
-    // cycle, a word and up to 8 hops to hand over from one board to the other: below 2 us in all.
+    // Left and right regions alternate in order of arrival, so at each end one board idles for one region. The change
+    // between boards takes a renderer a cycle, a word and up to 8 hops: below 2 us in all.
     let outcome = slats("slats", Slats::whole(), 60);
     let us = copy_us(outcome.observation().arrivals.iter().filter(|a| a.target.picture == PictureNumber(6)));
     assert!((11.0 * REGION_US..11.0 * REGION_US + 2.0).contains(&us), "{us} us");
@@ -101,7 +101,8 @@ fn figure_11_half_of_them_take_3_9_ms() {
     for bottom in [false, true] {
         let half = |a: &&Arrival| a.target.picture == PictureNumber(6) && (a.target.region.0 >= 5) == bottom;
         let us = copy_us(outcome.observation().arrivals.iter().filter(half));
-        // Below a microsecond for handing over, and up to 8 hops between the ways of the first and the last renderer.
+        // The changes take less than a microsecond, and the ways of the first and the last renderer differ by up to 8
+        // hops.
         assert!((us - 5.0 * REGION_US).abs() < 1.5, "{us} us");
     }
 }
@@ -129,7 +130,7 @@ fn figure_12_without_the_copy_optimisation_110_triangles_are_the_most() {
 
 #[test]
 fn figure_13_with_it_the_model_draws_146_triangles_where_140_were_measured() {
-    // FIXME(accuracy): 4 % too many, with nothing fitted to it.
+    // FIXME(accuracy): the limit is 4 % too high, although no number was fitted to it.
     assert!(!misses("slats", Slats::split(), 140));
     assert!(!misses("slats", Slats::split(), 146));
     assert!(misses("slats", Slats::split(), 147));
@@ -144,7 +145,7 @@ fn figure_14_the_code_of_1995_draws_about_100_triangles() {
     }
 }
 
-/// When the first region of a field is copied, in milliseconds after the retrace.
+/// Returns the time at which the first region of a field is copied, in milliseconds after the retrace.
 fn first_copy_ms(triangles: usize) -> f64 {
     let outcome = slats("slats", Slats::split(), triangles);
     let top =
@@ -153,8 +154,9 @@ fn first_copy_ms(triangles: usize) -> f64 {
     (begin - video(&outcome).retrace(PeriodNumber(5)).0) as f64 * 1e-9
 }
 
-/// I3D95 prints "about 12.8 ms". 16.683 - 5 x 0.78 = 12.78 ms is the latest possible begin. 146 triangles are the most that are in time, so
-/// one more begins later than a renderer's acknowledgement (two messages of 12 us and their way) allows.
+/// I3D95 prints "about 12.8 ms". The latest possible begin is 16.683 - 5 x 0.78 = 12.78 ms. 146 triangles are the most
+/// that are in time. One more triangle begins later than a renderer's acknowledgement (two messages of 12 us and their
+/// way) allows.
 #[test]
 fn figure_15_the_first_copy_begins_about_12_8_ms_after_the_retrace() {
     let [most, too_many] = [146, 147].map(first_copy_ms);

@@ -1,5 +1,5 @@
-//! The published figures, asserted: free checks within what the papers print or their last digit allows, misses as they
-//! are (FIXME(accuracy)). Causes stand in ACCURACY.md, which must be what these runs give.
+//! Tests of the published figures. Free checks must agree within the printed digits, and misses have the recorded size
+//! (FIXME(accuracy)). ACCURACY.md, which explains the causes, must contain the results of these runs.
 
 use pxpl5::Level;
 use pxpl5::figures::{Bench, FigureRow, Figures, WITHOUT_CLOSED_FORM, markdown, run_all};
@@ -12,7 +12,7 @@ fn row(id: &str) -> &'static FigureRow {
     FIGURES.rows.iter().find(|row| row.id == id).expect("listed")
 }
 
-/// The rows of which there is a closed form, and so an interval.
+/// Returns the rows that have a closed form, and so an interval.
 fn varied() -> impl Iterator<Item = &'static FigureRow> {
     FIGURES.rows.iter().filter(|row| !WITHOUT_CLOSED_FORM.contains(&row.id))
 }
@@ -66,7 +66,8 @@ fn application_scenes_take_as_many_fields_as_measured() {
 
 #[test]
 fn the_bins_hold_7_700_triangles_that_cover_the_screen() {
-    // As many on each of 12 slaves: 7,704 is the first multiple of 12 that is not below.
+    // Each of the 12 slaves has the same number of triangles: 7,704 is the first multiple of 12 that is not below the
+    // published number.
     within("16", 7_700.0, 7_704.0);
     within("16b", 1.5, 2.5);
     within("16c", 293.0 * 0.97, 293.0 * 1.03);
@@ -74,7 +75,7 @@ fn the_bins_hold_7_700_triangles_that_cover_the_screen() {
 
 #[test]
 fn triangles_touch_fewer_than_1_3_regions_in_the_mean_of_our_scenes() {
-    // FIXME(accuracy): published 1.3; the mig alone gives 1.4, the head 1.02.
+    // FIXME(accuracy): the published value is 1.3. The mig alone gives 1.4, and the head gives 1.02.
     within("8", 1.1, 1.25);
 }
 
@@ -99,7 +100,7 @@ fn the_limits_that_parameters_were_fitted_to_come_out_exactly() {
 
 #[test]
 fn the_copy_optimisation_raises_the_limit_by_seven_triangles_too_many() {
-    // FIXME(accuracy): published 140.
+    // FIXME(accuracy): the published value is 140.
     within("13", 146.0, 147.0);
 }
 
@@ -110,8 +111,8 @@ fn the_first_copy_of_a_full_field_begins_after_about_12_8_ms() {
 
 #[test]
 fn the_rig_sees_what_the_paper_measured_with_its_photodiode_low_on_the_screen() {
-    // Published 54 to 57 ms, without the photodiode's place. Both copies take 31.2 ms, the retrace is waited for 8.3 ms in the mean of
-    // all phases, and a field has 240 lines of 63.6 us.
+    // The published range is 54 to 57 ms, without the position of the photodiode. Both copies take 31.2 ms. The wait
+    // for the retrace is 8.3 ms on average over all phases. A field has 240 lines of 63.6 us.
     let [first, last] = row("17").unprinted.expect("the line is not printed");
     assert!((last - first - 239.0 * 0.063_556).abs() < 0.05, "{first} to {last}");
     assert!(first > 31.2 + 8.3 - 1.0 && first < 54.0 && last > 54.0, "{first} to {last}");
@@ -120,7 +121,7 @@ fn the_rig_sees_what_the_paper_measured_with_its_photodiode_low_on_the_screen() 
 
 #[test]
 fn ninety_milliseconds_are_1_8_times_as_wrong_as_fifty() {
-    // The ratio of the latencies, but for the bends of the motion within them.
+    // The ratio of the latencies, except for the curvature of the motion within them.
     within("18", 1.75, 1.8);
 }
 
@@ -143,7 +144,7 @@ fn every_row_names_its_source_and_every_miss_its_cause() {
 
 #[test]
 fn the_joint_sample_of_machines_lies_on_both_sides_of_the_presets() {
-    // The presets are no part of the sample, so that its range could miss them.
+    // The presets are not part of the sample, so its range could miss them.
     for interval in &FIGURES.intervals {
         let [low, high] = interval.joint;
         assert!(
@@ -157,7 +158,7 @@ fn the_joint_sample_of_machines_lies_on_both_sides_of_the_presets() {
 
 #[test]
 fn what_is_simulated_lies_in_the_interval_of_the_analytic_level_or_within_3_percent_of_it() {
-    // The interval stands as it was computed at the other level: it could be anywhere.
+    // The interval was computed at the other level, so agreement is not trivial.
     for row in varied() {
         let [low, high] = row.interval.expect("every figure with a closed form has one");
         assert!((0.97 * low..=1.03 * high).contains(&row.simulated), "figure {}", row.id);
@@ -165,9 +166,9 @@ fn what_is_simulated_lies_in_the_interval_of_the_analytic_level_or_within_3_perc
     for row in WITHOUT_CLOSED_FORM.map(row) {
         assert_eq!(row.analytic, None, "figure {}", row.id);
         match row.interval {
-            // The rig is measured with its photodiode on the first and on the last line of the screen too.
+            // The measuring rig also has its photodiode on the first and on the last line of the screen.
             Some([low, high]) if row.id == "17" => assert!(low < row.simulated && row.simulated < high),
-            // With a tracker before the machine, the FIFO and the channels of a sender are moved, with events.
+            // For runs with a tracker, the depth of the FIFO and the channels of a sender are varied, with events.
             Some([low, high]) => {
                 assert!(["19", "19b"].contains(&row.id) && low <= row.simulated && row.simulated <= high)
             }
@@ -184,8 +185,8 @@ fn no_figure_is_out_of_reach_of_all_parameters_and_readings() {
 
 #[test]
 fn the_analytic_level_agrees_with_the_transaction_level() {
-    // Closed form against events: within 3 %.
-    // The same views of the head at both; of figure 7's and 7b's more than half.
+    // Closed form and events agree within 3 %. Both use the same views of the head, for more than half of the views of
+    // figures 7 and 7b.
     let bench = Bench::new(Level::Analytic).with_mig(6, 150);
     for row in varied() {
         let value = bench.measure(row.id).expect("it runs").value;
@@ -205,7 +206,7 @@ fn behind_faces_a_turn_takes_as_long_with_10_000_triangles_as_with_10() {
     let rows = &FIGURES.families[0].rows;
     let of_e1: Vec<_> = rows.iter().filter(|row| row.experiment == "E1").collect();
     assert_eq!((of_e1[0].id, of_e1[0].ours), ("A4", 0.0), "picoseconds");
-    // Missed by what the papers do not print.
+    // These rows differ from the papers by more than the printed digits.
     let missed: Vec<_> = rows.iter().filter(|row| !row.is_met).map(|row| row.id).collect();
     assert_eq!(missed, ["A12", "A12"]);
 }

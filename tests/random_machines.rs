@@ -1,9 +1,10 @@
-//! Machines that nobody built: every pipeline on every display that it draws for, with numbers of boards and parameters from all over
-//! what is allowed. What ARCHITECTURE.md promises is so on them too.
+//! Tests of random machines: every pipeline on every display that it supports, with numbers of boards and parameters
+//! from the whole allowed range. The promises of ARCHITECTURE.md must hold on all of them.
 //!
-//! Reports of random runs must be true in themselves: counts add up, rates are possible, means lie between least and greatest, and
-//! what was not shown has no number. Each case follows from a number, so that a failure names it; `PXPL5_FUZZ=100` tries a hundred
-//! times as many, `PXPL5_FUZZ_FROM` begins elsewhere. `PXPL5_FUZZ=25 cargo test --test random_machines reports` checks 1,000 reports.
+//! Reports of random runs must be consistent. Counts add up, rates are possible, means lie between least and greatest,
+//! and pictures that were not shown have no values. Each case follows from a number, which a failure prints.
+//! `PXPL5_FUZZ=100` tries a hundred times as many cases, and `PXPL5_FUZZ_FROM` begins at another number. `PXPL5_FUZZ=25
+//! cargo test --test random_machines reports` checks 1,000 reports.
 
 use pxpl5::firmware::NodeId;
 use pxpl5::results::quantities_csv;
@@ -14,7 +15,7 @@ use pxpl5::{
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// SplitMix64: a stream of numbers that follows from its begin.
+/// SplitMix64: a stream of numbers that follows from its seed.
 struct Dice(u64);
 
 impl Dice {
@@ -38,20 +39,21 @@ fn setting(name: &str, default: u64) -> u64 {
     std::env::var(name).map_or(default, |text| text.parse().unwrap_or_else(|_| panic!("{name}={text}")))
 }
 
-/// How long and how heavy the runs are that are thought up: least and most.
+/// Smallest and largest length and load of random runs.
 #[derive(Clone, Copy)]
 struct Sizes {
     fields: (u64, u64),
     triangles: (u64, u64),
 }
 
-/// Runs of a few pictures.
+/// Sizes of runs with a few pictures.
 const SHORT: Sizes = Sizes { fields: (9, 18), triangles: (4, 40) };
 
-/// Runs with a window of results, many of them too heavy for their machine.
+/// Sizes of runs with a window of results. Many of these runs are too heavy for their machine.
 const REPORTED: Sizes = Sizes { fields: (1, 60), triangles: (1, 600) };
 
-/// An experiment and what it was made of; `None` where the machine refuses its numbers or has not what the pipeline needs.
+/// Returns an experiment and its description. Returns `None` if the machine refuses its numbers, or lacks boards for
+/// the pipeline.
 fn case(round: u64, sizes: Sizes) -> Option<(Experiment, String)> {
     let mut dice = Dice(round << 8 | 7);
     let registry = registry();
@@ -80,7 +82,7 @@ fn case(round: u64, sizes: Sizes) -> Option<(Experiment, String)> {
     parameters.retain(|parameter| !parameter.read_only);
     for _ in 0..dice.between(0, 5) {
         let parameter = &parameters[dice.between(0, parameters.len() as u64 - 1) as usize];
-        // Half of them lie in the range of the sources, half anywhere.
+        // Half of the values lie in the range of the sources, and half anywhere within the limits.
         let bounds = dice.of(&[parameter.info.range, parameter.info.limits]);
         let (Some(least), Some(most)) = (bounds.0.whole(), bounds.1.whole()) else { continue };
         let size = dice.between(1, 24);
@@ -92,7 +94,7 @@ fn case(round: u64, sizes: Sizes) -> Option<(Experiment, String)> {
     experiment.build().is_ok().then_some((experiment, told))
 }
 
-/// What came of it, however it ended; a machine that stands still has ended too, but must not.
+/// Returns the outcome of a run, also of one that failed, with its error. The callers reject a deadlock.
 fn outcome(experiment: &Experiment, told: &str) -> (Outcome, Option<RunError>) {
     match experiment.run() {
         Ok(outcome) => (outcome, None),
@@ -102,18 +104,19 @@ fn outcome(experiment: &Experiment, told: &str) -> (Outcome, Option<RunError>) {
     }
 }
 
-/// The whole report, without what the host makes of it, and how the run ended.
+/// Returns the whole report without values that depend on the host, and the error of the run.
 fn report(experiment: &Experiment, told: &str) -> (serde_json::Value, Option<String>) {
     let (outcome, error) = outcome(experiment, told);
     let mut report = serde_json::to_value(outcome.report()).expect("it is data");
     let fields = report.as_object_mut().expect("an object");
     fields.remove("host_seconds");
-    // How many events were scheduled in vain depends on ties and savings.
+    // The number of events scheduled in vain depends on ties and optimizations.
     fields.remove("events");
     (report, error.map(|error| error.to_string()))
 }
 
-/// When a message occupied a channel, the port that sends and the port that receives: rule 3 and the table of `pxpl5_ring`.
+/// Returns the time span in which a message occupied a channel, the sending port and the receiving port (rule 3 and the
+/// table of `pxpl5_ring`).
 fn occupied(transfer: &Transfer, outcome: &Outcome) -> (Time, Time) {
     let ring = &outcome.record().config().ring;
     let n_nodes = u64::from(outcome.record().ring().n_nodes());
@@ -123,7 +126,8 @@ fn occupied(transfer: &Transfer, outcome: &Outcome) -> (Time, Time) {
     (Time(begin), Time(transfer.end.0 - on_the_way))
 }
 
-/// The most intervals at one instant; what ends at an instant makes room for what begins there.
+/// Returns the largest number of intervals that overlap. An interval that ends at an instant does not overlap one that
+/// begins then.
 fn most_at_once(intervals: &[(Time, Time)]) -> usize {
     let mut edges: Vec<(Time, i64)> = intervals.iter().flat_map(|(begin, end)| [(*begin, 1), (*end, -1)]).collect();
     edges.sort_unstable();
@@ -135,7 +139,8 @@ fn most_at_once(intervals: &[(Time, Time)]) -> usize {
     sums.max().unwrap_or(0) as usize
 }
 
-/// Words take their time, there are only so many channels, a port receives one message at a time, FIFOs hold what they can.
+/// Checks the rules of the ring: words take their time, the number of channels is limited, a port receives one message
+/// at a time, and no FIFO overflows.
 fn assert_the_ring_is_a_ring(outcome: &Outcome, told: &str) {
     let config = outcome.record().config();
     let traffic = outcome.record().observation().traffic.as_ref().expect("it was recorded");
@@ -162,17 +167,17 @@ fn assert_the_ring_is_a_ring(outcome: &Outcome, told: &str) {
     }
 }
 
-/// Words of an order to a display at most; a region has 16 pixels at least.
+/// Largest number of words in an order to a display. A region has at least 16 pixels.
 const ORDER_WORDS: u32 = 2;
 
-/// What displays count, where they count it, is what came to them; and they could use all of it.
+/// Checks that displays count exactly the messages that arrived, and that they could use all of them.
 fn assert_every_region_arrives_once(outcome: &Outcome, told: &str) {
     let observation = outcome.record().observation();
     let traffic = observation.traffic.as_ref().expect("it was recorded");
     for display in outcome.record().displays() {
         let counted = |name: &str| display.counters().iter().find(|counter| counter.name == name).map(|c| c.count);
         let is_its = |port: NodeId| display.nodes().contains(&port);
-        // Orders to swap are no pixels, and shorter than any that are.
+        // Orders to swap contain no pixels, and are shorter than any message with pixels.
         let is_pixels = |transfer: &&Transfer| is_its(transfer.destination) && transfer.words > ORDER_WORDS;
         let messages = traffic.transfers.iter().filter(is_pixels).count() as u64;
         let regions = observation.arrivals.iter().filter(|arrival| is_its(arrival.target.frame_buffer)).count() as u64;
@@ -182,7 +187,7 @@ fn assert_every_region_arrives_once(outcome: &Outcome, told: &str) {
     }
 }
 
-/// Rendering Control copies into the buffer that is not shown.
+/// Checks that Rendering Control copies only into the buffer that is not shown.
 fn assert_no_shown_buffer_is_written(outcome: &Outcome, told: &str) {
     let observation = outcome.record().observation();
     for (surface, _) in outcome.record().surfaces() {
@@ -194,19 +199,19 @@ fn assert_no_shown_buffer_is_written(outcome: &Outcome, told: &str) {
             assert_eq!(first, last, "{told}: swapped while {:?} came", arrival.target.region);
             (u64::from(arrival.target.buffer) + first as u64) % 2
         });
-        // The buffers take turns: which is hidden after how many swaps is the same from the first region to the last.
+        // The buffers take turns, so the number of swaps tells which buffer is hidden during all regions of a frame.
         let which: Vec<u64> = written.collect();
         assert!(which.iter().all(|buffer| *buffer == which[0]), "{told}: {surface:?}");
     }
 }
 
-/// All that is promised of a machine at work, once.
+/// Checks all promises about a machine during a run.
 #[test]
 fn a_ring_is_a_ring_and_every_region_arrives_on_machines_that_nobody_built() {
     let (mut ran, mut swapped) = (0, 0);
     each_case(60, SHORT, |experiment, told| {
         let (outcome, error) = outcome(experiment, told);
-        // A machine whose numbers a pipeline cannot live with says which: it never just stands still.
+        // A machine that a pipeline cannot use must be refused with a reason. It must never come to a deadlock.
         assert!(!matches!(error, Some(RunError::Deadlock { .. } | RunError::Ring { .. })), "{told}: {error:?}");
         assert_the_ring_is_a_ring(&outcome, told);
         assert_every_region_arrives_once(&outcome, told);
@@ -226,7 +231,7 @@ fn no_number_of_a_report_depends_on_ties_savings_or_threads_on_machines_that_nob
         for seed in 1..4 {
             assert_eq!(report(&experiment.clone().shuffle_ties(seed), told), expected, "{told}, ties {seed}");
         }
-        // Polling every edge of the clock takes minutes where nothing happens; `tests/savings.rs` does without that one.
+        // Without the optimization `IdleBoards`, runs take minutes, so `tests/savings.rs` covers it.
         for saving in Saving::ALL.into_iter().filter(|saving| *saving != Saving::IdleBoards) {
             assert_eq!(report(&experiment.clone().without(saving), told), expected, "{told}, without {saving}");
         }
@@ -256,7 +261,8 @@ fn whole(value: &Value, what: &str, told: &str) -> u64 {
     value.as_u64().unwrap_or_else(|| panic!("{told}: {what}: {value}"))
 }
 
-/// Of every object with a number of values: without a value there is no number, and otherwise they are in order.
+/// Checks every object with statistics in a report. Without values it has no numbers, and otherwise the numbers are in
+/// order.
 fn assert_statistics_are_in_order(path: &str, value: &Value, told: &str) {
     match value {
         Value::Object(fields) => {
@@ -265,7 +271,7 @@ fn assert_statistics_are_in_order(path: &str, value: &Value, told: &str) {
                 let names =
                     ["mean", "min", "p50", "p90", "p99", "max"].into_iter().filter(|name| fields.contains_key(*name));
                 assert!(names.clone().all(|name| of(name).is_some() == (n > 0)), "{told}: {path}: {value}");
-                // The mean may differ from equal numbers in its last digits.
+                // The mean of equal numbers may differ from them in its last digits.
                 let near = |a: f64, b: f64| a <= b + 1e-9 * (a.abs() + b.abs() + 1e-3);
                 let in_order: Vec<f64> = names.filter(|name| *name != "mean").filter_map(of).collect();
                 assert!(in_order.windows(2).all(|pair| pair[0] <= pair[1]), "{told}: {path}: {value}");
@@ -289,7 +295,8 @@ fn assert_statistics_are_in_order(path: &str, value: &Value, told: &str) {
     }
 }
 
-/// Every picture due ends in one way, all counts are of one window, and no display shows more than a picture a period.
+/// Checks that every due picture has one result, that all counts cover the same window, and that no display shows more
+/// than one picture a period.
 fn assert_counts_add_up(report: &Value, field_ms: f64, told: &str) {
     let fields = whole(&report["fields"], "fields", told);
     let window = &report["window"];
@@ -320,7 +327,8 @@ fn assert_counts_add_up(report: &Value, field_ms: f64, told: &str) {
     }
 }
 
-/// A pixel of the grid is evaluated, or counted for one reason; none is evaluated where nothing due was shown.
+/// Checks that each pixel of the grid is evaluated or counted with one reason. No pixel is evaluated if no due picture
+/// was shown.
 fn assert_errors_are_of_what_was_shown(report: &Value, told: &str) {
     let error = &report["head"]["error"];
     let of = |name: &str| whole(&error[name], name, told);
@@ -341,7 +349,7 @@ fn assert_errors_are_of_what_was_shown(report: &Value, told: &str) {
     assert!(whole(&budget["n"], "n", told) <= whole(&report["pictures"], "pictures", told), "{told}");
 }
 
-/// The table of pictures has those over which the report's latency is, and no others.
+/// Checks that the table of pictures has exactly the pictures in the report's latency.
 fn assert_the_table_of_pictures_agrees(outcome: &Outcome, report: &Value, told: &str) {
     let text = pxpl5::results::csv(outcome);
     let mut lines = text.lines();
@@ -361,7 +369,7 @@ fn assert_the_table_of_pictures_agrees(outcome: &Outcome, report: &Value, told: 
     }
 }
 
-/// A quantity that has a value in the table has the report's, and none where the report has null.
+/// Checks that the table of quantities has the values of the report, and none where the report has null.
 fn assert_the_table_of_quantities_agrees(results: &Results, report: &Value, told: &str) {
     let measures: Vec<Measure> =
         QUANTITIES.iter().map(|quantity| Measure::named(quantity.name).expect("listed")).collect();
@@ -396,7 +404,8 @@ fn assert_the_table_of_quantities_agrees(results: &Results, report: &Value, told
     }
 }
 
-/// JSON, the table of pictures and that of quantities say the same, and nothing of what was not shown.
+/// JSON, the table of pictures and the table of quantities must agree, and contain nothing about pictures that were not
+/// shown.
 #[test]
 fn reports_of_random_runs_are_true_in_themselves() {
     let (mut shown, mut heavy, mut heads, mut without_window) = (0, 0, 0, 0);
@@ -418,9 +427,9 @@ fn reports_of_random_runs_are_true_in_themselves() {
     assert!(shown > 0 && heavy > 0 && heads > 0 && without_window > 0, "{shown} {heavy} {heads} {without_window}");
 }
 
-/// So many machines that can be built, or as many times that as is asked for.
+/// Calls `check` for a number of machines that can be built, times `PXPL5_FUZZ`.
 fn each_case(machines: u64, sizes: Sizes, mut check: impl FnMut(&Experiment, &str)) {
-    /// Of so many that are thought up one can be built at least.
+    /// Number of random experiments of which at least one can be built.
     const TRIES: u64 = 20;
     let first = setting("PXPL5_FUZZ_FROM", 0);
     let machines = machines * setting("PXPL5_FUZZ", 1);
@@ -429,7 +438,7 @@ fn each_case(machines: u64, sizes: Sizes, mut check: impl FnMut(&Experiment, &st
         (first..first + TRIES * machines).filter_map(|round| case(round, sizes)).take(machines as usize)
     {
         if first > 0 {
-            // What hangs has no last word.
+            // A test that hangs prints nothing at its end, so the case is printed before it runs.
             println!("{told}");
         }
         built += 1;

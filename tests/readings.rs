@@ -1,4 +1,5 @@
-//! What the papers leave open about Rendering Control: every answer runs, draws the same pictures, and the closed form follows.
+//! Tests of questions that the papers leave open about Rendering Control. Every interpretation must run, draw the same
+//! pictures and agree with the closed form.
 
 mod support;
 
@@ -9,22 +10,22 @@ use pxpl5::{
     RenderingControl, Statistics,
 };
 
-/// A field, milliseconds.
+/// Duration of a field in milliseconds.
 const FIELD_MS: f64 = 1001.0 / 60.0;
 
 fn bench(level: Level, kept: u64, finished: FinishedRegions) -> Bench {
     Bench::new(level).with_mig(2, 60).with(Reading { kept, finished, ..Reading::USUAL })
 }
 
-/// Every number of regions that a renderer may keep, with either rule.
+/// Returns every number of regions that a renderer may keep, with either rule.
 fn rules() -> impl Iterator<Item = (u64, FinishedRegions)> {
     [1, 2, 3, ROOM].into_iter().flat_map(|kept| FinishedRegions::ALL.map(|finished| (kept, finished)))
 }
 
 #[test]
 fn with_room_for_all_regions_and_a_master_that_goes_on_the_theory_is_three_fields() {
-    // TR94 derives it: TRANSFORM begins when COPY of the third previous eye has ended, and COPY never pauses: three times 15.6 ms of
-    // COPY, at 30 Hz 16.68 ms each.
+    // TR94 derives the value: TRANSFORM begins when COPY of the third previous eye has ended, and COPY never pauses.
+    // This gives three times 15.6 ms of COPY, or 16.68 ms each at 30 Hz.
     let theory = Bench::new(Level::Transaction).measure("3").expect("it runs").value;
     assert!((theory - 3.0 * FIELD_MS).abs() < 0.3, "{theory}");
 }
@@ -35,14 +36,15 @@ fn the_closed_form_follows_every_rule() {
         for id in ["4", "4b", "6"] {
             let [closed, run] = [Level::Analytic, Level::Transaction]
                 .map(|level| bench(level, kept, finished).measure(id).expect("it runs").value);
-            // Figure 6 is a mean of seven lengths, each of which ends with a retrace: two of them may be one sooner or later.
+            // Figure 6 is a mean of seven lengths. Each ends with a retrace, and two of them may end one retrace sooner
+            // or later.
             let allowed = if id == "6" { 2.0 * FIELD_MS / 7.0 } else { 0.05 * run };
             assert!((closed - run).abs() < allowed, "figure {id}, {kept} kept, {finished:?}: {closed} and {run}");
         }
     }
 }
 
-/// Triangles that cover the screen: on 12 slaves, each in 20 bins of 4 bytes an entry.
+/// Runs triangles that cover the screen, on 12 slaves. Each triangle has an entry of 4 bytes in 20 bins.
 fn cover(triangles: usize, bin_bytes: u64) -> Result<Outcome, ExperimentError> {
     let mut machine = MachineConfig::small_hmd();
     machine.set("gp.bin_bytes", bin_bytes).expect("within its limits");
@@ -52,7 +54,7 @@ fn cover(triangles: usize, bin_bytes: u64) -> Result<Outcome, ExperimentError> {
 
 #[test]
 fn a_triangle_too_many_for_the_bins_is_a_fault_that_names_region_need_and_room() {
-    // 10 triangles a slave in 20 bins are 800 bytes.
+    // 10 triangles a slave in 20 bins take 800 bytes.
     let outcome = cover(120, 800).expect("it fits exactly");
     assert!(outcome.shown() > 3);
     let Err(ExperimentError::Run { error, .. }) = cover(121, 800) else { panic!("one slave has 11 triangles") };
@@ -60,11 +62,11 @@ fn a_triangle_too_many_for_the_bins_is_a_fault_that_names_region_need_and_room()
     assert!(text.contains("(region 18) needs 836 bytes, 800 are available"), "{text}");
 }
 
-/// Figure 16: a multiple of 12 slaves fits, and one triangle more does not.
+/// Figure 16: this multiple of 12 fits, and one triangle more does not.
 #[test]
 fn the_bins_of_the_machine_hold_7_704_triangles_that_cover_the_screen_and_no_more() {
     let presets = MachineConfig::small_hmd().gp.bin_bytes;
-    // Too few fields for a frame of half a second: but nothing overflows.
+    // The run has too few fields for a frame of half a second, but no memory overflows.
     assert!(matches!(cover(7_704, presets), Err(ExperimentError::TooShort { .. })));
     let Err(ExperimentError::Run { error, .. }) = cover(7_705, presets) else { panic!("one slave has 643 triangles") };
     assert!(error.to_string().contains("needs 51440 bytes, 51360 are available"), "{error}");
@@ -79,9 +81,10 @@ fn where_the_bins_of_both_eyes_do_not_fit_transform_waits_for_render_of_the_eye_
         let summary = pxpl5::measure::summary(&outcome);
         Statistics::of(summary.eye_latencies_ms.into_iter()).mean
     };
-    // A slave has 200 triangles: 16,000 bytes an eye. A region takes a renderer 2,400 x 7.3 us = 17.5 ms, RENDER four of them. With room
-    // for both eyes TRANSFORM begins one RENDER earlier, and its own 200 x (21.7 + 20) us are hidden behind it. Without, the first of 12
-    // slaves begins when the last five tokens have been there, 7/12 of a region before the last slave.
+    // A slave has 200 triangles, which take 16,000 bytes an eye. A region takes a renderer 2,400 x 7.3 us = 17.5 ms,
+    // and each renderer draws four regions. With memory for both eyes, TRANSFORM begins one RENDER earlier, and its own
+    // 200 x (21.7 + 20) us overlap RENDER. With memory for one eye, the first of 12 slaves begins when the last five
+    // tokens have been there. That is 7/12 of a region before the last slave.
     let [one, both] = [16_000, 32_000].map(path_ms);
     let expected = 4.0 * 17.5 - 200.0 * 0.0417 - 7.0 / 12.0 * 17.5;
     assert!((both - one - expected).abs() < 3.0, "{both} ms with room for both eyes, {one} ms for one");
@@ -109,7 +112,7 @@ fn pictures_are_the_same_whatever_becomes_of_finished_regions() {
     }
 }
 
-/// The scene before a head that stands still, far enough to see all of it.
+/// Returns the scene with a still head that is far enough away to see all of it.
 fn still(scene: Scene) -> Scene {
     let (target, radius) = scene.bounding_sphere();
     let eye = target + glam::Vec3::Z * 3.0 * radius;
@@ -131,13 +134,13 @@ fn of_a_closed_surface_nothing_is_missing_without_its_back_faces_and_half_of_the
         (pictures, commands as f64 / regions as f64)
     };
     for name in ["aircraft", "sphere:400"] {
-        // Less work is done sooner: the pictures are only the same before a head that stands still.
+        // Less work ends sooner, so pictures are equal only for a still head.
         let whole = still(builtin(name).expect("built in"));
         let (all, all_commands) = run(whole.clone());
         let (culled, culled_commands) = run(whole.culled());
         let differing =
             all.iter().zip(&culled).map(|(a, b)| a.pixels().zip(b.pixels()).filter(|(p, q)| p != q).count());
-        // At a silhouette a face that is turned away may have the same depth as the one before it.
+        // At a silhouette, a back face may have the same depth as the front face before it.
         assert!(differing.sum::<usize>() < 40, "{name}");
         assert!(
             culled_commands < all_commands * 0.75,

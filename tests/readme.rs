@@ -1,4 +1,4 @@
-//! What the README repeats from generated documents is what they say.
+//! Tests that the README agrees with the generated documents that it quotes.
 
 fn read(name: &str) -> String {
     let path = format!("{}/{name}", env!("CARGO_MANIFEST_DIR"));
@@ -35,14 +35,14 @@ fn what_the_readme_says_of_all_figures_is_what_accuracy_md_says() {
     assert!(readme.contains(&format!("; {missed} are missed.")), "README.md does not say that {missed} are missed");
 }
 
-/// Files that a page links to, without anchors; none from outside.
+/// Returns the files that a page links to, without anchors and without external links.
 fn links(page: &str) -> Vec<&str> {
     let all = page.split("](").skip(1).filter_map(|rest| rest.split([')', ' ']).next());
     let local = all.filter(|link| !link.contains("://") && !link.starts_with('#'));
     local.map(|link| link.split('#').next().unwrap_or(link)).collect()
 }
 
-/// Pages of a folder and of those in it, relative to the repository.
+/// Returns the pages of a folder and its subfolders, relative to the repository.
 fn pages(folder: &str) -> Vec<String> {
     let path = format!("{}/{folder}", env!("CARGO_MANIFEST_DIR"));
     let entries = std::fs::read_dir(&path).unwrap_or_else(|error| panic!("{path}: {error}"));

@@ -1,4 +1,4 @@
-//! Do results, traces and films say what happened?
+//! Tests that results, traces and films agree with the run.
 
 use prost::Message;
 mod support;
@@ -33,7 +33,7 @@ thread_local! {
     static STEREO: Rc<Outcome> = Rc::new(run(RenderingControl::stereo(), "mig", 60));
     static MONO: Rc<Outcome> = Rc::new(run(RenderingControl::mono(), "molecules", 60));
     static SPLIT: Rc<Outcome> = Rc::new(run(Slats::split(), "full-screen:100", 30));
-    /// So many triangles that every field misses its retrace.
+    /// A run with so many triangles that every field misses its retrace.
     static LATE: Rc<Outcome> = Rc::new(run(Slats::whole(), "full-screen:160", 30));
 }
 
@@ -70,7 +70,7 @@ fn the_parts_of_every_latency_add_up_to_the_picosecond() {
     }
 }
 
-/// Pipelines that race the beam instead of swapping.
+/// Returns runs of pipelines that race the beam and do not swap.
 fn racing() -> [Outcome; 3] {
     [
         run(Jitp::new(Viewpoint::Strip, true), "full-screen:2", 12),
@@ -111,14 +111,14 @@ fn the_means_of_the_report_add_up_to_its_latency() {
     }
 }
 
-/// When the last board ended a stage of a picture.
+/// Returns the time at which the last board ended a stage of a picture.
 fn end_of(outcome: &Outcome, stage: Stage, surface: Option<SurfaceId>, picture: PictureNumber) -> Time {
     let marks = outcome.observation().marks.iter();
     let ends = marks.filter(|m| (m.stage, m.surface, m.picture, m.edge) == (stage, surface, picture, StageEdge::End));
     ends.map(|mark| mark.time).max().expect("marked")
 }
 
-/// The place of a part among [`LATENCY_PARTS`].
+/// Returns the index of a part in [`LATENCY_PARTS`].
 fn part(name: &str) -> usize {
     LATENCY_PARTS.iter().position(|part| part.name == name).expect("a part")
 }
@@ -148,14 +148,14 @@ fn mean_ms(report: &Report, of: &str, until: &str) -> f64 {
 fn the_latencies_of_the_eyes_lie_between_their_events() {
     let outcome = stereo();
     let report = outcome.report();
-    // The frame's latency is that of the pair: from its first TRANSFORM to the swap.
+    // The latency of a frame is that of the pair: from its first TRANSFORM to the swap.
     assert!((mean_ms(&report, "pair", "swap") - report.latency_ms.statistics.mean).abs() < 1e-9);
     let pictures = outcome.steady_pictures().iter();
     let to_copy: Vec<f64> =
         pictures.map(|times| (times.copied_at.expect("copied") - times.transform_at).as_ms()).collect();
     let expected = to_copy.iter().sum::<f64>() / to_copy.len() as f64;
     assert!((mean_ms(&report, "pair", "end_of_copy") - expected).abs() < 1e-9);
-    // Both eyes are swapped in at once, so they differ by the time between their TRANSFORMs at every event.
+    // Both eyes are swapped in at the same instant, so their latencies differ by the time between their TRANSFORMs.
     let [at_swap, at_light] =
         ["swap", "light"].map(|until| mean_ms(&report, "left", until) - mean_ms(&report, "right", until));
     assert!(at_swap > 0.0 && (at_light - at_swap).abs() < 1e-9);
@@ -169,7 +169,7 @@ fn csv_opens_with_its_names_and_holds_the_latency_of_the_report() {
         let report = outcome.report();
         let rows = rows(&text);
         assert_eq!(rows.len(), outcome.pictures().len());
-        // What was not complete in time has no latency.
+        // A picture that was not complete in time has no latency.
         assert!(rows.iter().all(|row| row["latency_ps"].is_some() == (row["complete"] == Some(1))));
         let steady = rows.iter().filter(|row| row["steady"] == Some(1));
         let latencies: Vec<f64> = steady.filter_map(|row| Some(row["latency_ps"]? as f64 * 1e-9)).collect();
@@ -181,7 +181,7 @@ fn csv_opens_with_its_names_and_holds_the_latency_of_the_report() {
     }
 }
 
-/// The table of a CSV file.
+/// Parses the table of a CSV file.
 fn rows(text: &str) -> Vec<BTreeMap<String, Option<u64>>> {
     let mut lines = text.lines();
     let names: Vec<&str> = lines.next().expect("names").split(',').collect();
@@ -218,7 +218,7 @@ fn parquet_holds_what_csv_holds() {
     assert_eq!(found, rows(&csv(&stereo())));
 }
 
-/// The messages of the Perfetto format that are read back, from its published descriptions.
+/// Messages of the Perfetto format for reading traces, from its published description.
 mod proto {
     #[derive(Clone, prost::Message)]
     pub(crate) struct Trace {
@@ -303,7 +303,7 @@ fn a_trace_has_an_instant_at_every_retrace() {
     assert_eq!(retraces.len() as u64, split().fields() + 1);
     for (n, (ns, event)) in retraces.iter().enumerate() {
         assert_eq!((event.kind, event.name.clone()), (3, format!("retrace {n}")));
-        // 1001/60000 s, rounded down to picoseconds and then to nanoseconds.
+        // The period of 1001/60000 s is rounded down to picoseconds and then to nanoseconds.
         assert_eq!(*ns, n as u64 * 1_001_000_000_000 / 60_000);
     }
 }
@@ -362,7 +362,7 @@ fn recorded_messages_are_those_that_the_boards_counted() {
         let mut steps = traffic.busy_channels.clone();
         steps.push((outcome.end(), 0));
         let counted: u64 = steps.windows(2).map(|pair| (pair[1].0 - pair[0].0).0 * u64::from(pair[0].1)).sum();
-        // The ring counts messages that have ended, the counter those under way as well.
+        // The ring counts messages that have ended, and the counter also includes those in transfer.
         let tolerance = 8 * 8_000_000_000;
         assert!(counted >= busy.0 && counted < busy.0 + tolerance, "{counted} and {}", busy.0);
     }
@@ -387,7 +387,7 @@ fn chrome_json_has_the_same_slices_to_the_picosecond() {
     chrome(&trace, &mut bytes).expect("memory can be written");
     let json: Value = serde_json::from_slice(&bytes).expect("JSON");
     assert_eq!(json["otherData"]["config_hash"], mono().report().config_hash);
-    // Decimal text, not a rounded number.
+    // The text is decimal and not rounded.
     let text = String::from_utf8(bytes).expect("UTF-8");
     let written = text.lines().filter(|line| line.contains("\"ph\":\"X\""));
     let written: Vec<(u64, u64)> =
@@ -401,7 +401,7 @@ fn chrome_json_has_the_same_slices_to_the_picosecond() {
     assert_eq!(begun, ended, "every flow that begins ends");
 }
 
-/// A time of a line of JSON, microseconds with six decimals, in picoseconds.
+/// Returns a time of a JSON line in picoseconds. The line has microseconds with six decimals.
 fn ps(line: &str, key: &str) -> Option<u64> {
     let rest = line.split(&format!("\"{key}\":")).nth(1)?;
     let (whole, decimals) = rest.split(['}', ',']).next()?.split_once('.')?;
@@ -421,7 +421,7 @@ fn frames(bytes: &[u8]) -> (png::Info<'static>, Vec<Vec<u8>>) {
     (reader.info().clone(), frames)
 }
 
-/// A short run that remembers all of its fields.
+/// Returns a short run that keeps all of its fields.
 fn remembered() -> (Experiment, Outcome) {
     let mut machine = MachineConfig::slats();
     machine.displays[0].remember(100);
@@ -458,7 +458,7 @@ fn a_film_without_a_field_is_refused() {
     assert!(matches!(film.write(&[], Vec::new()), Err(FilmError::Periods { found: 0, .. })));
 }
 
-/// Some pixels of a row.
+/// Returns some pixels of a row.
 fn pixels(picture: &image::RgbImage, y: u32, x: std::ops::Range<u32>) -> Vec<image::Rgb<u8>> {
     x.map(|x| *picture.get_pixel(x, y)).collect()
 }
@@ -470,7 +470,7 @@ fn below_the_beam_a_viewer_still_sees_the_field_before_last() {
     let fields: Vec<_> = (7..10).map(|n| board.seen(PeriodNumber(n)).expect("remembered")).collect();
     let video = video(&outcome);
     let [oldest, before, now] = [0, 1, 2].map(|i| fields[i].picture());
-    // Field 9 scans the odd lines; the beam is at pixel 320 of line 201.
+    // Field 9 scans the odd lines. The beam is at pixel 320 of line 201.
     let at = video.when(320, 201, PeriodNumber(9)).expect("scanned");
     let screen = seen_at(video, at, &fields);
     assert_eq!(pixels(&screen, 199, 0..640), pixels(&now, 99, 0..640));
@@ -478,7 +478,7 @@ fn below_the_beam_a_viewer_still_sees_the_field_before_last() {
     assert_eq!(pixels(&screen, 201, 321..640), pixels(&oldest, 100, 321..640));
     assert_eq!(pixels(&screen, 203, 0..640), pixels(&oldest, 101, 0..640));
     assert_eq!(pixels(&screen, 200, 0..640), pixels(&before, 100, 0..640));
-    // One picosecond before, the pixel under the beam is the old one.
+    // One picosecond earlier, the pixel under the beam is still the old one.
     let earlier = seen_at(video, Time(at.0 - 1), &fields);
     assert_eq!(earlier.get_pixel(320, 201), oldest.get_pixel(320, 100));
     assert_ne!(now, oldest, "the head moves");

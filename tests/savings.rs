@@ -1,4 +1,4 @@
-//! What is not computed would not have mattered: without each saving the trace and the pixels seen are the same.
+//! Tests of the optimizations: with each of them disabled, the trace and the visible pixels stay the same.
 
 mod support;
 
@@ -10,13 +10,13 @@ use pxpl5_framebuffer::SeenField;
 use std::collections::BTreeSet;
 use support::ntsc;
 
-/// The Mig of so many triangles, of which there are 417.
+/// Returns the Mig with at most `triangles` of its 417 triangles.
 fn mig(triangles: usize) -> Scene {
     scene::builtin("mig").and_then(|mig| mig.decimated(triangles)).expect("so many")
 }
 
-/// Three pipelines, each with a scene that leaves some regions empty and some not. Strips are of eight lines: one line's thirteen beam times, 0.8 ms,
-/// are less than code needs for the pass of a strip.
+/// Returns three pipelines, each with a scene that leaves some regions empty. Strips have eight lines, because the
+/// thirteen beam times of a single line, 0.8 ms, are too short for a pass by code.
 fn experiments() -> [Experiment; 3] {
     let jitp = Jitp { strip_rows: 8, ..Jitp::new(Viewpoint::Strip, true) };
     [
@@ -34,7 +34,7 @@ fn after(experiment: &Experiment, fields: u64) -> Machine {
     machine
 }
 
-/// The pixels of every field that was seen, eye by eye.
+/// Returns the pixels of every displayed field, eye by eye.
 fn seen(machine: &Machine, fields: u64) -> Vec<SeenField> {
     let boards = Eye::BOTH.into_iter().filter_map(|eye| ntsc(machine.record()).boards().get(eye.index()));
     boards.flat_map(|board| (0..fields).filter_map(|field| board.seen(PeriodNumber(field)))).collect()
@@ -44,7 +44,7 @@ fn pictures(machine: &Machine, fields: u64) -> Vec<image::RgbImage> {
     seen(machine, fields).iter().map(SeenField::picture).collect()
 }
 
-/// How many different colours a picture has.
+/// Returns the number of different colours in a picture.
 fn colours(picture: &image::RgbImage) -> usize {
     picture.pixels().map(|pixel| pixel.0).collect::<BTreeSet<_>>().len()
 }
@@ -56,7 +56,7 @@ fn assert_same(experiment: &Experiment, saving: Saving, fields: u64) {
     let with = pictures(&with, fields);
     let without = pictures(&without, fields);
     assert!(with == without, "{saving} in {experiment:?}");
-    // In the first fields nothing has been drawn yet.
+    // The first fields are empty.
     assert!(fields < 10 || with.iter().any(|picture| colours(picture) > 2), "nothing was seen in {experiment:?}");
 }
 
@@ -96,7 +96,7 @@ fn nobody_looking_changes_no_time() {
     }
 }
 
-/// All at once, where the graphics processors run code too.
+/// All optimizations are disabled at once, also with code on the graphics processors.
 #[test]
 fn savings_do_not_meet() {
     let [_, slats, _] = experiments();
@@ -105,7 +105,7 @@ fn savings_do_not_meet() {
     assert_eq!(after(&without, 2).record().trace_hash(), after(&slats, 2).record().trace_hash());
 }
 
-/// A test of the tests: giving up a saving does do more.
+/// Checks the tests themselves: a disabled optimization increases the number of events.
 #[test]
 fn a_saving_that_is_given_up_is_paid_for_in_events() {
     let [_, slats, _] = experiments();

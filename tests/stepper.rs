@@ -1,4 +1,5 @@
-//! A run in pieces is the run: how it is divided, and how often somebody looks, changes no trace and no picture.
+//! Tests that a run in pieces equals an uninterrupted run. Neither the division into pieces nor the reading of state
+//! changes the trace or a picture.
 
 use pxpl5::machine::Board;
 use pxpl5::run::{Pause, Stepper};
@@ -9,7 +10,7 @@ use pxpl5::{
 use pxpl5_renderer::PixelArray;
 use std::collections::BTreeSet;
 
-/// An experiment of these settings; `None` where the pipeline does not run on the display.
+/// Returns an experiment from settings, or `None` if the pipeline does not run on the display.
 fn experiment(settings: &[&str]) -> Option<Experiment> {
     let mut file = ExperimentFile::new();
     settings.iter().for_each(|setting| file.set_text(setting, "test").expect("known"));
@@ -18,7 +19,7 @@ fn experiment(settings: &[&str]) -> Option<Experiment> {
     experiment.build().is_ok().then_some(experiment)
 }
 
-/// Also of a run that was too short for statistics.
+/// Returns the outcome, also of a run that is too short for statistics.
 fn outcome(result: Result<Outcome, ExperimentError>) -> Outcome {
     match result {
         Ok(outcome) => outcome,
@@ -27,7 +28,7 @@ fn outcome(result: Result<Outcome, ExperimentError>) -> Outcome {
     }
 }
 
-/// Numbers that look random: an xorshift generator.
+/// A generator of random numbers (xorshift).
 struct Dice(u64);
 
 impl Dice {
@@ -39,7 +40,7 @@ impl Dice {
     }
 }
 
-/// Goes on by a piece of some kind.
+/// Advances by a random kind of piece.
 fn step(stepper: &mut Stepper, dice: &mut Dice) {
     match dice.below(6) {
         0 => stepper.run_to(stepper.now() + Span::from_us(dice.below(5_000))),
@@ -57,7 +58,7 @@ fn step(stepper: &mut Stepper, dice: &mut Dice) {
     };
 }
 
-/// Looks at everything that there is to see.
+/// Reads the state of all boards, and sometimes pictures and pixel memory.
 fn look(stepper: &Stepper, dice: &mut Dice) {
     let processors = (0..60).map(Board::Gp).chain([Board::Host]).filter_map(|board| stepper.processor(board));
     assert!(processors.count() > 1);
@@ -75,7 +76,7 @@ fn look(stepper: &Stepper, dice: &mut Dice) {
     }
 }
 
-/// The run of an experiment in random pieces.
+/// Runs an experiment in random pieces.
 fn in_pieces(experiment: &Experiment, seed: u64) -> Outcome {
     let mut dice = Dice(seed);
     let mut stepper = experiment.stepper().expect("it can be built");
@@ -162,7 +163,7 @@ fn an_event_is_taken_at_its_time_and_named_with_its_board() {
     assert_eq!(stepper.last(), Some(next));
 }
 
-/// What the beam has drawn at an instant is known then, and nothing that comes later is in it.
+/// The picture at an instant has all pixels that the beam has drawn by then, and none that it draws later.
 #[test]
 fn what_has_been_drawn_so_far_is_what_the_whole_run_says_of_that_instant() {
     let whole = outcome(slats().run());
@@ -181,7 +182,7 @@ fn what_has_been_drawn_so_far_is_what_the_whole_run_says_of_that_instant() {
     assert!(lit > 1_000, "{lit} pixels of the aircraft");
 }
 
-/// The FIFO's course is found a second time by the record of traffic, whose sums are of the whole run.
+/// The levels of a FIFO are compared with the record of traffic, whose sums cover the whole run.
 #[test]
 fn a_fifo_holds_what_the_record_of_traffic_says() {
     let whole = outcome(slats().run());

@@ -1,11 +1,11 @@
-//! A still scene looks the same on every machine, under every pipeline: as an ideal renderer of one process draws it.
+//! Tests that a still scene looks the same on every machine and under every pipeline, and equals the ideal picture.
 //!
-//! Sizes reach from one slave to 49 and from one renderer to 20, with the sizes between at which messages of a region used
-//! to be drawn into another slave's. Only pixels at which two primitives have the same depth to the last bit may differ, and
-//! only by showing another of these primitives: the oracle knows them.
+//! Sizes range from one slave to 49 and from one renderer to 20. They include the sizes at which messages of a region
+//! were once drawn into another slave's region. Pixels may differ only if two primitives have exactly the same depth
+//! there, and then show one of these primitives. The ideal renderer reports such ties.
 //!
-//! `PXPL5_MODELS=FOLDER cargo test --test still_scenes` draws every model of a folder too; with `PXPL5_PICTURES=FOLDER` all
-//! pictures and the oracle's are written there, to be looked at.
+//! `PXPL5_MODELS=FOLDER cargo test --test still_scenes` also draws every model of a folder. With
+//! `PXPL5_PICTURES=FOLDER`, all pictures and ideal pictures are written into a folder for inspection.
 
 use pxpl5::oracle::IdealPicture;
 use pxpl5::scene::config::FIT_DISTANCE_RADII;
@@ -18,21 +18,22 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Processors, the master included, and renderers.
+/// Numbers of processors, including the master, and of renderers.
 const SIZES: [(usize, usize); 6] = [(2, 1), (2, 20), (7, 3), (13, 5), (34, 20), (50, 20)];
 
-/// Slats binds four field regions to a renderer, so it takes five; and it needs no master.
+/// Numbers of processors and renderers for Slats. Slats binds four field regions to a renderer, so it takes five
+/// renderers. It needs no master.
 const SIZES_OF_SLATS: [(usize, usize); 4] = [(1, 5), (7, 5), (13, 20), (50, 20)];
 
-/// Primitives that a pipeline is given of a scene, of all of which it draws evenly spread ones, and fields after which all of
-/// a still picture has been drawn.
+/// Returns the number of primitives that a pipeline draws, evenly spread over the scene, and the number of fields until
+/// a still picture is complete.
 ///
-/// Just-in-time pixels leave out strips whose beam has passed, so that more than they can draw would never be seen.
-/// A slave has as many strip times of 508 us as there are slaves, in which it transforms everything for each strip
-/// (scanline, 21.7 us a primitive) or interpolates it (dual, 7 us), and a field of 16.7 ms for its transforms. One renderer
-/// has 508 us to draw and copy five regions, which leaves 230 us for triangles of 6.45 us: seven for each column.
-/// An overloaded Slats that takes an even number of fields for each picture would draw the same lines for ever.
-/// Rendering Control with one slave has 8 MB for all commands.
+/// Just-in-time pixels leave out strips whose beam has passed, so too many primitives would never be visible. A slave
+/// has as many strip times of 508 us as the machine has slaves. In this time, it transforms all primitives for each
+/// strip (scanline, 21.7 us a primitive) or interpolates them (dual, 7 us). It has a field of 16.7 ms for the
+/// transforms. One renderer has 508 us to draw and copy five regions. This leaves 230 us for triangles of 6.45 us:
+/// seven for each column. An overloaded Slats that takes an even number of fields for each picture would always draw
+/// the same lines. Rendering Control with one slave has 8 MB for all commands.
 fn load(pipeline: &str, (gps, renderers): (usize, usize), covers_the_screen: bool) -> (usize, u64) {
     let slaves = gps.saturating_sub(1);
     let by_renderers = match renderers {
@@ -51,8 +52,8 @@ fn load(pipeline: &str, (gps, renderers): (usize, usize), covers_the_screen: boo
     }
 }
 
-/// The scene at time zero with at most `most` of its primitives, evenly spread, before a head that stands
-/// where `motion.path = "still"` has it.
+/// Returns the scene at time zero with at most `most` of its primitives, evenly spread. The head stands still at the
+/// position of `motion.path = "still"`.
 fn still(scene: &Scene, most: usize) -> Scene {
     let all = scene.triangles().len() + scene.spheres().len();
     let mut parts = scene.posed(&scene.edits_at(0)).into_parts();
@@ -75,7 +76,7 @@ fn still(scene: &Scene, most: usize) -> Scene {
     Scene::new(parts).expect("what is kept is whole")
 }
 
-/// The built-in scenes, and the models of the folder that was named.
+/// Returns the built-in scenes and the models of the given folder.
 fn scenes() -> Vec<Scene> {
     let mut all: Vec<_> =
         ["mig", "molecules", "head", "full-screen:12"].map(|name| scene::builtin(name).expect("built in")).into();
@@ -93,13 +94,14 @@ fn machine(entry: &PipelineEntry, (gps, renderers): (usize, usize)) -> MachineCo
     config
 }
 
-/// Strips of eight lines: of one line, a single slave could not draw any in time. By code it takes longer: a sphere 78 us, the beginning
-/// of each pass more than 100 us (docs/gp-timing.md); so strips have 32 lines where levels are compared, and 2.0 ms each.
+/// Returns settings with strips of several lines, because a single slave cannot draw strips of one line in time. At the
+/// cycle level, a sphere takes 78 us, and the begin of each pass more than 100 us (docs/gp-timing.md). Strips have 32
+/// lines, or 2.0 ms, in comparisons between levels.
 fn settings(entry: &PipelineEntry, lines: u64) -> PipelineSettings {
     if entry.family == "jitp" { with_strips(lines) } else { PipelineSettings::default() }
 }
 
-/// Lines of a strip where pictures are held against the oracle, and where they are compared between levels.
+/// Number of lines in a strip for comparisons with the ideal picture.
 const LINES: u64 = 8;
 const LINES_AT_BOTH_LEVELS: u64 = 32;
 
@@ -107,7 +109,8 @@ fn run(entry: &PipelineEntry, size: (usize, usize), scene: &Arc<Scene>, fields: 
     run_at(Level::Transaction, (entry, LINES), size, scene, fields)
 }
 
-/// Some pictures may never be complete: what is seen at the end counts here, not when it came.
+/// Runs a pipeline and returns the outcome. Some pictures may never be complete. Only the visible result at the end
+/// counts, not its time.
 fn run_at(
     level: Level,
     (entry, lines): (&PipelineEntry, u64),
@@ -123,7 +126,7 @@ fn run_at(
     }
 }
 
-/// The oracle's pictures by what they depend on: a pipeline's shading and layout, scene, primitives and eye.
+/// Ideal pictures by pipeline and scene, number of primitives, and eye.
 type Ideals = Mutex<BTreeMap<(String, usize, u16), Arc<IdealPicture>>>;
 static IDEALS: Ideals = Mutex::new(BTreeMap::new());
 
@@ -141,7 +144,7 @@ fn ideal(outcome: &Outcome, scene: &Scene, surface: u16) -> Arc<IdealPicture> {
     })
 }
 
-/// What is wrong with the pictures of a run, if anything.
+/// Returns descriptions of the faults in the pictures of a run.
 fn faults(entry: &PipelineEntry, size: (usize, usize), whole: &Scene) -> Vec<String> {
     let covers_the_screen = whole.name().starts_with("full-screen");
     let (most, fields) = load(entry.name, size, covers_the_screen);
@@ -192,11 +195,11 @@ fn just_in_time_pixels_show_what_the_oracle_draws() {
     all_sizes(|entry| entry.family == "jitp");
 }
 
-/// Primitives of which pictures are compared between levels: few, so that code keeps up with the beam.
+/// Number of primitives for comparisons between levels. It is small, so that code keeps up with the beam.
 const AT_BOTH_LEVELS: usize = 30;
 
-/// Other times, and the same pictures to the bit. One slave draws, so that ties fall as in the display list. Of the variants of one
-/// family that draws faces the first stands for all.
+/// Times differ between the levels, but pictures must be equal to the bit. One slave draws, so that ties are resolved
+/// in the order of the display list. One variant represents each family that draws faces.
 #[test]
 fn every_pipeline_shows_the_same_pictures_at_the_cycle_level() {
     let registry = registry();
@@ -225,13 +228,13 @@ fn every_pipeline_shows_the_same_pictures_at_the_cycle_level() {
     }
 }
 
-/// Whether a pipeline draws pictures of what an eye sees. Faces of a cube are held against the oracle face by face, in
-/// crates/pxpl5-run/tests/faces.rs, and what is seen of them against a literal display.
+/// Returns true if a pipeline draws pictures for the eye. Faces of a cube are compared with ideal faces in
+/// crates/pxpl5-run/tests/faces, and their display is compared with a reference model.
 fn draws_pictures(entry: &PipelineEntry) -> bool {
     (entry.build)(&PipelineSettings::default()).draws_faces().is_none()
 }
 
-/// A pipeline that is not tested here would be one that nobody has held against the oracle.
+/// Every pipeline must be covered by these tests.
 #[test]
 fn every_pipeline_is_drawn() {
     let families = ["rendering-control", "slats", "frameless", "jitp"];
@@ -240,8 +243,8 @@ fn every_pipeline_is_drawn() {
     assert!(pictures.all(|entry| families.contains(&entry.family)));
 }
 
-/// Strips of a field that does not race come a field before their beam, and never while the field two before it has still to
-/// be shown: on machines with many slaves they would come earlier than that.
+/// Without beam racing, the strips of a field arrive one field before their beam. They must never arrive while the
+/// field two before is still to be shown, although machines with many slaves could send them earlier.
 #[test]
 fn no_pipeline_overwrites_lines_that_have_still_to_be_shown() {
     let full = Arc::new(scene::builtin("full-screen:4").expect("built in"));
@@ -267,7 +270,7 @@ fn no_pipeline_overwrites_lines_that_have_still_to_be_shown() {
     }
 }
 
-/// A line that came after its beam is never shown either.
+/// Checks that a line that arrived after its beam is never shown.
 fn check_never_shown(report: &Report, what: &str) {
     let never_shown = report.lines_never_shown().expect("NTSC counts them");
     println!("{what}: {never_shown} lines never shown, {} regions late", report.late_regions);

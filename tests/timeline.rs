@@ -1,4 +1,4 @@
-//! Do timelines show what was simulated?
+//! Tests that timelines agree with the simulated run.
 
 use proptest::prelude::*;
 mod support;
@@ -40,10 +40,12 @@ fn bars<'a>(timeline: &'a Timeline, row: &str) -> Vec<&'a Bar> {
     timeline.rows.iter().filter(|r| r.name == row).flat_map(|r| &r.bars).collect()
 }
 
-/// 20 regions of 15 messages of 1,024 words and 16 words of overhead, 50 ns each (spec: 780 us a region).
+/// Time of COPY: 20 regions of 15 messages with 1,024 words and 16 words of overhead, 50 ns each (specification: 780 us
+/// a region).
 const COPY: Span = Span(20 * 15 * (1_024 + 16) * 50_000);
 
-/// The first region may come from the farthest of five renderers and the last from the nearest: four hops of 50 ns less.
+/// Difference of ways on the ring. The first region may come from the farthest of five renderers and the last from the
+/// nearest: four hops of 50 ns less.
 const WAYS: Span = Span(4 * 50_000);
 
 #[test]
@@ -52,7 +54,7 @@ fn a_copy_of_the_trivial_scene_takes_twenty_region_times() {
     for row in ["left frame buffer", "right frame buffer"] {
         for bar in bars(&timeline, row) {
             let span = bar.end - bar.begin;
-            // The command of each region reaches its renderer a few microseconds after the region before has gone.
+            // The command of each region reaches its renderer a few microseconds after the previous region has left.
             assert!(span + WAYS >= COPY && span < COPY + Span::from_us(100), "{row}: {span}");
         }
     }
@@ -134,10 +136,10 @@ fn retraces_stand_where_the_formula_puts_them() {
     let is_line = |node: &roxmltree::Node| node.attribute("class") == Some("retrace") && node.has_tag_name("path");
     let places = document.descendants().filter(is_line).filter_map(|node| node.attribute("d"));
     let found: Vec<f64> = places.map(|d| d[1..].split(' ').next().expect("x").parse().expect("a number")).collect();
-    // The axis is 960 - 172 - 14 units long; retrace n is at n x 1001/60000 s.
+    // The axis is 960 - 172 - 14 units long. Retrace n is at n x 1001/60000 s.
     let fields = timeline.retraces.len() - 1;
     let expected = (0..=fields).map(|n| 172.0 + 774.0 * n as f64 / fields as f64);
-    // The last line is the legend's.
+    // The last line belongs to the legend.
     for (found, expected) in found.iter().zip(expected) {
         assert!((found - expected).abs() < 0.011, "{found} instead of {expected}");
     }
@@ -178,7 +180,7 @@ proptest! {
     fn bars_in_a_lane_do_not_hide_each_other(first in 0u64..30) {
         let options = TimelineOptions { first_field: Some(PeriodNumber(first)), fields: Some(8), ..TimelineOptions::default() };
         let timeline = Timeline::of(&trivial(), &options);
-        // What overlaps by less than three units of the drawing's 794 may share a lane.
+        // Bars that overlap by less than three of the drawing's 794 units may share a lane.
         let touching = Span((timeline.to - timeline.from).0 / 264);
         for row in &timeline.rows {
             for (i, bar) in row.bars.iter().enumerate() {
@@ -219,10 +221,10 @@ fn run_of_figure(name: &str) -> Outcome {
     figure.run().expect("runs")
 }
 
-/// TR94 figures 3, 5 and 6: what each is drawn to show.
+/// Each of TR94's figures 3, 5 and 6 must show the effect for which it was drawn.
 #[test]
 fn the_published_figures_show_what_they_were_drawn_for() {
-    // Two fields a frame, so the frame buffers are the bottleneck.
+    // A frame takes two fields, so the frame buffers are the bottleneck.
     assert!((run_of_figure("trivial").report().updates_hz.expect("two pictures") - 30.0).abs() < 0.1);
     assert!((run_of_figure("balanced").report().updates_hz.expect("two pictures") - 30.0).abs() < 0.1);
     for slats in [run_of_figure("whole"), run_of_figure("split")] {
@@ -231,7 +233,8 @@ fn the_published_figures_show_what_they_were_drawn_for() {
     }
 }
 
-/// A walk sideways through a hall that lies in all four memories; each has a row of its own, and the trace a heading.
+/// The viewer walks sideways through a hall that lies in all four memories. Each memory has a row of its own, and a
+/// heading in the trace.
 #[test]
 fn each_display_memory_has_a_row_of_what_it_received_and_showed() {
     let registry = pxpl5::registry();
@@ -251,7 +254,7 @@ fn each_display_memory_has_a_row_of_what_it_received_and_showed() {
     for k in 0..4 {
         let row = timeline.rows.iter().find(|row| row.name == format!("arp port {k}")).expect("a row a memory");
         received += row.bars.len();
-        // What the firmware's notes say that the memory shows, from swap to swap.
+        // Content of the memory from swap to swap, according to the firmware's record.
         let swapped = |at: Time| history.memory(k).iter().find(|shown| outcome.record().tick(shown.from) == at);
         for shown in &row.shown {
             let noted = swapped(shown.begin).expect("a swap");

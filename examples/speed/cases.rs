@@ -1,4 +1,4 @@
-//! What is measured, and what was aimed at (the project's own goals).
+//! The measured workloads and the project's own goals for them.
 
 use crate::opengl::OpenGl;
 use crate::peers::{Euc, Ours, Retrofire, views};
@@ -17,11 +17,11 @@ pub(crate) struct Row {
     pub(crate) work: String,
     pub(crate) goal: Option<f64>,
     pub(crate) unit: &'static str,
-    /// Whether more is better.
+    /// True if a larger value is better.
     pub(crate) is_rate: bool,
     pub(crate) measured: f64,
     pub(crate) spread: f64,
-    /// Whether README shows it.
+    /// True if README shows the line.
     pub(crate) is_chosen: bool,
 }
 
@@ -31,7 +31,7 @@ impl Row {
     }
 }
 
-/// A saving and what it is worth.
+/// An optimization of the simulator with its effect.
 pub(crate) struct SavingRow {
     pub(crate) saving: Saving,
     pub(crate) work: &'static str,
@@ -39,17 +39,17 @@ pub(crate) struct SavingRow {
     pub(crate) without_ms: f64,
 }
 
-/// Triangles that cover the screen: an entry for each region of a field, none of them cut.
+/// Triangles that cover the screen. Each has an entry in every region of a field, and none is clipped.
 const FULL_SCREEN: PerTriangle = PerTriangle { entries: 10.0, clipped: 0.0 };
 
-/// NTSC fields a second of real time.
+/// NTSC fields in a second of real time.
 const FIELD_HZ: f64 = 60_000.0 / 1_001.0;
 
 fn mig(triangles: usize) -> Fallible<Scene> {
     Ok(scene::builtin("mig")?.decimated(triangles)?)
 }
 
-/// A machine of the papers with so many boards, and memory for every scene here.
+/// Returns a machine of the papers with the given numbers of boards, and with memory for every scene here.
 fn machine(n_gps: usize, n_renderers: usize) -> MachineConfig {
     let mut config = MachineConfig { n_gps, n_renderers, ..MachineConfig::small_hmd() };
     config.gp.memory_bytes = 1 << 28;
@@ -61,7 +61,7 @@ fn stereo(machine: MachineConfig, scene: Scene) -> Experiment {
     Experiment::new(machine, RenderingControl::stereo(), scene).pixels(Pixels::Off).host(Workstation::with_threads(0))
 }
 
-/// The head of 59,592 triangles in stereo.
+/// Returns the scene `head` of 59,592 triangles in stereo.
 pub(crate) fn head() -> Fallible<Experiment> {
     Ok(stereo(MachineConfig::small_hmd(), scene::builtin("head")?))
 }
@@ -71,7 +71,7 @@ fn slats(triangles: usize) -> Fallible<Experiment> {
     Ok(experiment.pixels(Pixels::Off).host(Workstation::with_threads(0)))
 }
 
-/// Runs so many fields without looking; the number of them.
+/// Runs a number of fields without reading pixels, and returns this number.
 fn fields(experiment: &Experiment, fields: u64) -> Fallible<f64> {
     let mut machine = experiment.build()?;
     let end = machine.record().tick(PeriodNumber(fields));
@@ -80,12 +80,12 @@ fn fields(experiment: &Experiment, fields: u64) -> Fallible<f64> {
     Ok(fields as f64)
 }
 
-/// Runs so many fields; the number of stereo pairs that were shown.
+/// Runs a number of fields, and returns the number of stereo pairs that were shown.
 fn pairs(experiment: &Experiment, fields: u64) -> Fallible<f64> {
     Ok(experiment.clone().fields(fields).run()?.pictures().len() as f64)
 }
 
-/// Runs so many fields, and looks at the left eye's last picture every so many.
+/// Runs a number of fields, and reads the left eye's last picture in every `every`-th field.
 fn looking(experiment: &Experiment, all: u64, every: Option<u64>) -> Fallible<f64> {
     let mut machine = experiment.build()?;
     for field in (1..=all).filter(|field| *field == all || every.is_some_and(|every| field % every == 0)) {
@@ -100,7 +100,7 @@ fn looking(experiment: &Experiment, all: u64, every: Option<u64>) -> Fallible<f6
     Ok(all as f64)
 }
 
-/// Events of so many fields, each one by itself.
+/// Runs a number of fields, and returns the number of events.
 fn events(experiment: &Experiment, fields: u64) -> Fallible<f64> {
     let mut machine = experiment.build()?;
     let end = machine.record().tick(PeriodNumber(fields));
@@ -120,7 +120,7 @@ fn rate(work: &str, goal: Option<f64>, unit: &'static str, measured: &Measured) 
     row(work, goal, unit, true, 1.0 / measured.best(), measured)
 }
 
-/// One in parts of another, which was measured in turns with it.
+/// Returns the ratio of two workloads that were measured in turns.
 fn ratio(work: &str, goal: Option<f64>, one: &Measured, other: &Measured) -> Row {
     row(work, goal, "", false, one.best() / other.best(), one)
 }
@@ -130,12 +130,12 @@ const fn chosen_row(mut row: Row) -> Row {
     row
 }
 
-/// Those of README.
+/// Returns the lines that README shows.
 pub(crate) fn chosen(rows: &[Row]) -> Vec<Row> {
     rows.iter().filter(|row| row.is_chosen).cloned().collect()
 }
 
-/// All lines of the table of goals.
+/// Returns all lines of the table of goals.
 pub(crate) fn goals(rounds: usize, opengl: Option<&str>) -> Fallible<Vec<Row>> {
     let mut rows = heads(rounds)?;
     rows.extend(pictures(rounds, opengl)?);
@@ -146,7 +146,7 @@ pub(crate) fn goals(rounds: usize, opengl: Option<&str>) -> Fallible<Vec<Row>> {
     Ok(rows)
 }
 
-/// The head in stereo on the machine.
+/// Measures the scene `head` in stereo on the machine.
 fn heads(rounds: usize) -> Fallible<Vec<Row>> {
     const FIELDS: u64 = 480;
     let off = head()?;
@@ -159,7 +159,8 @@ fn heads(rounds: usize) -> Fallible<Vec<Row>> {
     ])
 }
 
-/// One eye without the machine, beside `euc` and `retrofire`, and beside the OpenGL that is installed if there is a program for it.
+/// Measures one eye's picture without the machine, beside `euc` and `retrofire`. The installed OpenGL is measured too,
+/// if a program for it is given.
 fn pictures(rounds: usize, opengl: Option<&str>) -> Fallible<Vec<Row>> {
     let head = scene::builtin("head")?;
     let views = views(&head);
@@ -201,13 +202,13 @@ fn pictures(rounds: usize, opengl: Option<&str>) -> Fallible<Vec<Row>> {
     Ok(rows)
 }
 
-/// Both draw the same picture, if they cover as many pixels within 2 %.
+/// Checks that two renderers draw the same picture: the numbers of covered pixels may differ by 2 %.
 fn agree(peer: &str, theirs: f64, own: f64) -> Fallible<()> {
     let is_same = (theirs / own - 1.0).abs() < 0.02;
     is_same.then_some(()).ok_or_else(|| format!("{peer} covers {theirs} pixels, we {own}").into())
 }
 
-/// The Mig: on the large machine, under Slats, and with code on the i860s.
+/// Measures the aircraft on the large machine, under Slats, and with code on the i860s.
 fn aircraft(rounds: usize) -> Fallible<Vec<Row>> {
     let large = stereo(machine(50, 20), mig(417)?);
     let slats_off = slats(140)?;
@@ -240,7 +241,7 @@ fn aircraft(rounds: usize) -> Fallible<Vec<Row>> {
     ])
 }
 
-/// The same scene on more boards.
+/// Measures the same scene on machines with more boards.
 fn growth(rounds: usize) -> Fallible<Vec<Row>> {
     const FIELDS: u64 = 120;
     let scene = scene::builtin("head")?.decimated(10_000)?;
@@ -253,7 +254,7 @@ fn growth(rounds: usize) -> Fallible<Vec<Row>> {
     ])
 }
 
-/// What looking costs, and what does not.
+/// Measures the cost of lazy pixels: when pictures are read, and when none is read.
 fn looks(rounds: usize) -> Fallible<Vec<Row>> {
     const FIELDS: u64 = 120;
     let off = head()?;
@@ -310,12 +311,12 @@ fn analytic(rounds: usize) -> Fallible<Vec<Row>> {
     ])
 }
 
-/// Fields of a run without a saving: long enough to show something, short enough for the slowest way.
+/// Returns the number of fields of a run without an optimization. The number is small for the slowest runs.
 const fn fields_without(saving: Saving) -> u64 {
     if matches!(saving, Saving::IdleBoards | Saving::Transfers) { 2 } else { 48 }
 }
 
-/// Every saving, with and without.
+/// Measures every optimization, enabled and disabled.
 pub(crate) fn savings(rounds: usize) -> Fallible<Vec<SavingRow>> {
     let works = [
         ("Mig, Rendering Control", stereo(MachineConfig::small_hmd(), mig(417)?)),

@@ -1,4 +1,4 @@
-//! What more cores are worth: independent work on one thread and on all of this machine, in turns, by the clock on the wall.
+//! Measures the gain from more cores: independent work on one thread and on all threads, in turns, in wall-clock time.
 
 use crate::timing::Fallible;
 use pxpl5::figures::{Bench, run_all};
@@ -10,7 +10,7 @@ use std::path::Path;
 use std::thread;
 use std::time::Instant;
 
-/// Runs of some tenths of a second.
+/// Settings of a sweep whose points take some tenths of a second each.
 const SPACE: &str = "
 pipeline = \"slats\"
 scene = \"typical:140\"
@@ -21,10 +21,11 @@ measure = [\"latency_ms.mean\"]
 seeds = 96
 ";
 
-/// Work that is done with a number of threads, and how often.
+/// Work for a number of threads: name, number of rounds, goal as a part of the ideal factor, and function.
 type Work<'a> = (&'a str, usize, Option<f64>, Box<dyn Fn(usize) -> Fallible<()> + 'a>);
 
-/// The table: how many times faster it is on all threads than on one. Nothing shares anything in the first line: more than it cannot be had.
+/// Returns a table of the speed-up on all threads. The first line, in which threads share nothing, shows the largest
+/// possible speed-up.
 pub(crate) fn table(rounds: usize) -> Fallible<String> {
     let threads = thread::available_parallelism()?.get();
     let folder = std::env::temp_dir().join(format!("pxpl5-speed-{}", std::process::id()));
@@ -53,7 +54,7 @@ pub(crate) fn table(rounds: usize) -> Fallible<String> {
     Ok(text)
 }
 
-/// The same sums, dealt out.
+/// Computes the same sums on all threads, with equal shares.
 fn arithmetic(threads: usize) -> Fallible<()> {
     const STEPS: u64 = 800_000_000;
     thread::scope(|scope| {

@@ -1,9 +1,12 @@
-//! Measures the speed of whole machines and writes the tables of docs/speed.md and README.md that lie between
-//! `<!-- speed: NAME -->` and `<!-- end of speed -->`: nothing of them is typed. `scripts/speed` builds and runs it.
+//! Measures the speed of whole machines and writes the tables of docs/speed.md and README.md. The tables lie between
+//! `<!-- speed: NAME -->` and `<!-- end of speed -->`, and no number in them is typed by hand. `scripts/speed` builds
+//! and runs the program.
 //!
-//! Times are CPU time of the process, but where threads are compared. What a table compares is measured in one process, in turns, and the best of some rounds
-//! counts: beside other work that is what swings least. `cargo run --release --example speed [-- --check] [-- --opengl PROGRAM]`: the first only
-//! measures one round and prints, the second has the program of scripts/llvmpipe draw beside us.
+//! Times are CPU times of the process, except in comparisons of threads. All values of a table are measured in one
+//! process, in turns. The best of several rounds counts, because it varies least under other load.
+//!
+//! `cargo run --release --example speed [-- --check] [-- --opengl PROGRAM]`: `--check` measures one round and prints
+//! only. `--opengl` also measures the program of scripts/llvmpipe.
 
 mod cases;
 mod cores;
@@ -18,13 +21,13 @@ mod workers;
 use std::error::Error;
 use std::path::Path;
 
-/// Rounds of each table.
+/// Number of rounds for each table.
 const ROUNDS: usize = 7;
 
 #[derive(Default)]
 struct Options {
     is_check: bool,
-    /// The program that draws with the installed OpenGL.
+    /// Program that draws with the installed OpenGL.
     opengl: Option<String>,
 }
 

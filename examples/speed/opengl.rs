@@ -1,4 +1,4 @@
-//! The OpenGL that is installed, as a process beside ours (scripts/llvmpipe).
+//! The installed OpenGL, measured in a separate process (scripts/llvmpipe).
 
 use crate::timing::Fallible;
 use pphigs::EyeView;
@@ -6,20 +6,20 @@ use pxpl5::scene::Scene;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
-/// A process that draws the views of a scene.
+/// A process that draws views of a scene.
 pub(crate) struct OpenGl {
     process: Child,
     requests: ChildStdin,
     answers: BufReader<ChildStdout>,
-    /// Who draws, in its own words.
+    /// Name of the renderer, as OpenGL reports it.
     pub(crate) renderer: String,
-    /// Pixels covered in the last view.
+    /// Number of pixels covered in the last view.
     pub(crate) covered: f64,
     views: f64,
 }
 
 impl OpenGl {
-    /// Starts the program, with one thread, and gives it a scene and views of it.
+    /// Starts the program with one thread, and sends it a scene and views of the scene.
     pub(crate) fn new(program: &str, scene: &Scene, views: &[EyeView]) -> Fallible<Self> {
         let mut command = Command::new(program);
         command.envs([("LIBGL_ALWAYS_SOFTWARE", "1"), ("GALLIUM_DRIVER", "llvmpipe"), ("LP_NUM_THREADS", "0")]);
@@ -33,7 +33,7 @@ impl OpenGl {
         Ok(Self { process, requests, answers, renderer, covered: 0.0, views: views.len() as f64 })
     }
 
-    /// Has all views drawn; CPU time of one, seconds.
+    /// Draws all views and returns the CPU time of one view, in seconds.
     pub(crate) fn draw(&mut self) -> Fallible<f64> {
         self.requests.write_all(b"d")?;
         let answer = line(&mut self.answers)?;
@@ -48,7 +48,7 @@ impl OpenGl {
 
 impl Drop for OpenGl {
     fn drop(&mut self) {
-        // It has nothing to lose.
+        // The process has no data to save, so an error is ignored.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }
@@ -62,7 +62,7 @@ fn line(answers: &mut impl BufRead) -> Fallible<String> {
     }
 }
 
-/// What the program expects of a mesh and of views.
+/// Returns the mesh and the views in the format of the program.
 fn input(scene: &Scene, views: &[EyeView]) -> Vec<u8> {
     let light = scene.lighting();
     let counts = [scene.vertices().len(), scene.triangles().len(), views.len()].map(|count| count as u32);

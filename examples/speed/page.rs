@@ -1,4 +1,4 @@
-//! The tables as text, and their places in the documents.
+//! Formats the tables and inserts them into documents.
 
 use crate::cases::{Row, SavingRow};
 use crate::timing::Fallible;
@@ -6,7 +6,7 @@ use std::fmt::Write;
 use std::path::Path;
 use std::process::Command;
 
-/// A number with three digits.
+/// Formats a number with three significant digits. Large numbers have all digits of their whole part.
 pub(crate) fn digits(number: f64) -> String {
     match number.abs() {
         large if large >= 1e4 => {
@@ -44,7 +44,7 @@ pub(crate) fn of_savings(rows: &[SavingRow]) -> String {
     text
 }
 
-/// Replaces what is between a document's marks of a name.
+/// Replaces the text between the marks of a table in a document.
 pub(crate) fn replace(path: &Path, name: &str, table: &str) -> Fallible<()> {
     let text = std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
     let begin = format!("<!-- speed: {name} -->\n");
@@ -55,7 +55,7 @@ pub(crate) fn replace(path: &Path, name: &str, table: &str) -> Fallible<()> {
     Ok(std::fs::write(path, format!("{before}{begin}\n{}\n\n{end}{after}", table.trim_end()))?)
 }
 
-/// Who measured when, and beside what.
+/// Returns a sentence about the host, the date and the conditions of the measurement.
 pub(crate) fn conditions(rounds: usize, load_before: &str) -> String {
     format!(
         "Measured by `scripts/speed` on {}: {}, {}, profile {}; CPU time of the process, best of {rounds} rounds in turns. Load average of the machine \
@@ -85,18 +85,18 @@ fn compiler() -> String {
     said_by("rustc", "--version")
 }
 
-/// Cargo's profile, by the folder that this was built into: `target/PROFILE/examples`.
+/// Returns the name of Cargo's profile, from the folder of the program: `target/PROFILE/examples`.
 fn profile() -> String {
     let name = std::env::current_exe().ok().and_then(|path| Some(path.parent()?.parent()?.file_name()?.to_owned()));
     name.map_or_else(|| "unknown".to_owned(), |name| format!("`{}`", name.display()))
 }
 
-/// Today, UTC.
+/// Returns today's date in UTC.
 fn date() -> String {
     said_by("date", "-u +%F")
 }
 
-/// What a command prints, or nothing where it is not there.
+/// Returns the output of a command, or an empty text if the command is missing.
 fn said_by(command: &str, arguments: &str) -> String {
     let output = Command::new(command).args(arguments.split(' ')).output();
     output.map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned()).unwrap_or_default()

@@ -1,12 +1,12 @@
-//! Several ways of some work, measured in turns.
+//! Measures several workloads in turns.
 
 use cpu_time::ProcessTime;
 use std::error::Error;
 
 pub(crate) type Fallible<T> = Result<T, Box<dyn Error>>;
 
-/// What is measured: a name, and what does it once and says how many of its elements that were; or, of work that another process does, how many
-/// seconds of CPU time an element took there.
+/// A workload with a name. Its function performs the work once and returns the number of processed elements. For work
+/// in another process, the function returns the CPU time of an element in seconds instead.
 pub(crate) struct Way<'a> {
     pub(crate) name: String,
     pub(crate) run: Box<dyn FnMut() -> Fallible<f64> + 'a>,
@@ -23,7 +23,7 @@ impl<'a> Way<'a> {
     }
 }
 
-/// CPU times of an element, seconds, in rising order.
+/// CPU times of an element in seconds, in rising order.
 #[derive(Clone, Debug)]
 pub(crate) struct Measured {
     pub(crate) seconds: Vec<f64>,
@@ -34,13 +34,13 @@ impl Measured {
         self.seconds.first().copied().unwrap_or(f64::NAN)
     }
 
-    /// The middle one above the best one, in parts of it.
+    /// Returns the relative difference between the median and the best time.
     pub(crate) fn spread(&self) -> f64 {
         self.seconds.get(self.seconds.len() / 2).map_or(f64::NAN, |median| median / self.best() - 1.0)
     }
 }
 
-/// Runs all ways in turns, so many rounds, after one that does not count.
+/// Runs all workloads in turns for `rounds` rounds, after a first round that does not count.
 pub(crate) fn in_turns(rounds: usize, mut ways: Vec<Way<'_>>) -> Fallible<Vec<Measured>> {
     let mut all = vec![Measured { seconds: Vec::new() }; ways.len()];
     for round in 0..=rounds {

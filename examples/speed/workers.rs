@@ -1,5 +1,5 @@
-//! How far worker threads for pixels carry: each region's work is measured alone, on one thread, and the schedule of 1 to 16 threads is
-//! simulated from these pieces.
+//! Estimates the speed-up by worker threads for pixels. The work of each region is measured alone, on one thread. From
+//! these times, the schedule of 1 to 16 threads is simulated.
 
 use crate::cases::head;
 use crate::timing::Fallible;
@@ -11,10 +11,10 @@ use std::collections::VecDeque;
 use std::fmt::Write;
 use std::sync::{Arc, Mutex};
 
-/// CPU time of the simulating thread before a region is handed over, and of its pixels; seconds.
+/// CPU times in seconds: of the simulating thread before a region is handed over, and of the region's pixels.
 type Piece = (f64, f64);
 
-/// A computer whose one thread does all, and notes how long.
+/// A host with a single thread, which records the times of all regions.
 #[derive(Clone, Debug, Default)]
 struct Noting(Arc<Mutex<Vec<Piece>>>);
 
@@ -47,11 +47,12 @@ impl PixelWorker for NotingWorker {
     }
 }
 
-/// When all is done, with so many workers, of whom the first free one takes the first region of a queue that holds so many. Where it is
-/// full the simulating thread computes the region itself, and when it has come to its end it takes regions as the others do.
+/// Returns the total time with a number of workers. The first free worker takes the first region of the queue, whose
+/// length is limited. If the queue is full, the simulating thread computes the region itself. At the end of the
+/// simulation, this thread becomes a worker too.
 fn makespan(pieces: &[Piece], workers: usize) -> f64 {
     let mut free = vec![0.0_f64; workers];
-    // When each region that waits was handed over, and what it takes.
+    // Each waiting region has the time of its hand-over and the time of its pixels.
     let mut waiting: VecDeque<(f64, f64)> = VecDeque::new();
     let mut now = 0.0_f64;
     for (simulating, pixels) in pieces {
@@ -68,7 +69,7 @@ fn makespan(pieces: &[Piece], workers: usize) -> f64 {
     free.into_iter().fold(now, f64::max)
 }
 
-/// Regions begun until then by whoever is free first.
+/// Starts the waiting regions that can begin before `then`, each on the worker that is free first.
 fn take_until(then: f64, free: &mut [f64], waiting: &mut VecDeque<(f64, f64)>) {
     while let (Some((handed_over, pixels)), Some(first)) =
         (waiting.front(), free.iter_mut().min_by(|a, b| a.total_cmp(b)))
@@ -82,10 +83,10 @@ fn take_until(then: f64, free: &mut [f64], waiting: &mut VecDeque<(f64, f64)>) {
     }
 }
 
-/// Threads that simulate and compute together.
+/// Numbers of threads, including the simulating thread.
 const THREADS: [usize; 7] = [1, 2, 3, 4, 6, 8, 16];
 
-/// The table.
+/// Returns the table.
 pub(crate) fn table() -> Fallible<String> {
     const FIELDS: u64 = 480;
     let noting = Noting::default();

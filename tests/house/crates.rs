@@ -1,30 +1,30 @@
-//! The crates of the workspace, as cargo and their sources tell of them.
+//! The crates of the workspace, from their manifests and sources.
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// A crate of ours.
+/// A crate of the workspace.
 pub(crate) struct Crate {
-    /// Its name, as its manifest has it.
+    /// Name in the manifest.
     pub(crate) name: String,
-    /// What its manifest says of it.
+    /// Description in the manifest.
     pub(crate) about: String,
-    /// The crates of ours that it is built of, without those of its tests.
+    /// Crates of the workspace on which this crate depends, without dependencies for tests.
     pub(crate) dependencies: Vec<String>,
-    /// The Rust files below its `src`.
+    /// Rust files below `src`.
     pub(crate) files: Vec<SourceFile>,
 }
 
-/// A Rust file of a crate, with its text.
+/// A Rust file of a crate.
 pub(crate) struct SourceFile {
-    /// Its path below `src`, with `/`.
+    /// Path below `src`, with `/` as separator.
     pub(crate) path: String,
-    /// What is in it.
+    /// Content of the file.
     pub(crate) text: String,
 }
 
-/// All crates, by name.
+/// Returns all crates, sorted by name.
 pub(crate) fn workspace() -> Vec<Crate> {
     let output = Command::new(env!("CARGO"))
         .args(["metadata", "--no-deps", "--offline", "--format-version", "1"])

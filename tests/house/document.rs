@@ -1,4 +1,4 @@
-//! The tables of ARCHITECTURE.md that are made from the crates.
+//! The tables of ARCHITECTURE.md that are generated from the crates.
 
 use crate::FLOORS;
 use crate::crates::Crate;
@@ -8,7 +8,7 @@ use std::path::Path;
 const BEGIN: &str = "<!-- made by tests/house: begin -->\n";
 const END: &str = "<!-- made by tests/house: end -->\n";
 
-/// Compares the document with what the crates are, or writes it.
+/// Compares the document with the crates, or updates the document.
 pub(crate) fn check(members: &[Crate]) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("ARCHITECTURE.md");
     let text = std::fs::read_to_string(&path).expect("it is there");

@@ -1,6 +1,6 @@
-//! The rules of the house, and the part of ARCHITECTURE.md that is made from its crates.
+//! Rules for the structure of the workspace, and the part of ARCHITECTURE.md that is generated from the crates.
 //!
-//! `PXPL5_UPDATE_HOUSE=1 cargo test --test house` writes that part anew.
+//! `PXPL5_UPDATE_HOUSE=1 cargo test --test house` updates that part.
 
 mod crates;
 mod document;
@@ -10,8 +10,8 @@ mod source;
 use crates::{Crate, workspace};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The floors of the house: a crate may depend on crates of the floors listed with it, and on those of its own floor only
-/// where that is said.
+/// Layers of the workspace. A crate may depend on crates of the listed layers, and on crates of its own layer only if
+/// that is listed too.
 const FLOORS: [(&str, &[&str], &[&str]); 12] = [
     ("ground", &["parameters", "pxpl5-sim", "pxpl5-wire", "i860", "pxpl5-display"], &["ground"]),
     (
@@ -104,7 +104,7 @@ fn the_facade_only_hands_on() {
     }
 }
 
-/// What a browser cannot run: clocks, threads, files and the environment of the host.
+/// Names that a browser does not support: clocks, threads, files and the environment of the host.
 const OF_THE_HOST: [&str; 7] =
     ["std::time", "Instant::now", "SystemTime", "std::thread", "std::fs", "std::env::", "std::process"];
 
@@ -122,7 +122,7 @@ fn one_experiment_needs_no_clock_thread_or_file_of_the_host() {
     }
 }
 
-/// A crate and all of ours that it is built of.
+/// Returns a crate together with all crates of the workspace on which it depends.
 fn closure(members: &[Crate], name: &str) -> BTreeSet<String> {
     let mut all = BTreeSet::from([name.to_owned()]);
     loop {
@@ -152,7 +152,7 @@ fn eyes_fields_and_beams_are_known_to_ntsc_and_its_pipelines_only() {
     }
 }
 
-/// The labels of the frame buffers of two eyes.
+/// Files that may contain the labels of the frame buffers of two eyes.
 const KNOWS_EYES: [&str; 1] = ["surface.rs"];
 
 #[test]
@@ -171,7 +171,7 @@ fn architecture_describes_the_crates_as_they_are() {
     document::check(&workspace());
 }
 
-/// Functions that each host computes in its own way, by its own library. Square roots are exact everywhere.
+/// Functions whose results depend on the library of the host. Square roots are exact everywhere.
 const OF_THE_HOSTS_LIBRARY: [&str; 26] = [
     ".sin()",
     ".cos()",
@@ -201,7 +201,7 @@ const OF_THE_HOSTS_LIBRARY: [&str; 26] = [
     "::from_axis_angle(",
 ];
 
-/// Where one of them is called and no simulated number depends on it.
+/// Places that may call such a function, because no simulated number depends on it.
 const ACCEPTED_PLACES: [(&str, &str, &str); 2] = [
     (
         "parameters",
@@ -215,7 +215,8 @@ const ACCEPTED_PLACES: [(&str, &str, &str); 2] = [
     ),
 ];
 
-/// Same input, same trace on every host: what is simulated takes transcendental functions from `libm`, which is compiled along.
+/// The same input must give the same trace on every host. Simulation code takes transcendental functions from `libm`,
+/// which is compiled with the program.
 #[test]
 fn nothing_simulated_calls_a_transcendental_function_of_the_host() {
     let members = workspace();

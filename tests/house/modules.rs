@@ -1,11 +1,11 @@
-//! Which module of a crate takes names from which, and circles among them.
+//! Imports between the modules of a crate, and circles among them.
 
 use crate::crates::Crate;
 use crate::source;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Module paths such as `isa::decode`, and those whose names they take. The root of a crate is the empty path. What a
-/// module only hands on (`pub use`) is not taken by it.
+/// Returns, for each module path such as `isa::decode`, the modules from which it imports. The root of a crate is the
+/// empty path. Re-exports (`pub use`) do not count.
 pub(crate) fn imports(member: &Crate) -> BTreeMap<String, BTreeSet<String>> {
     let sources: BTreeMap<String, String> = member
         .files
@@ -30,8 +30,8 @@ fn module_of(path: &str) -> String {
     path.trim_end_matches("/mod").replace('/', "::")
 }
 
-/// Whole paths, from the crate's root, of everything that a module names with `crate::`, `super::` or `self::`, and of the
-/// names that it takes from its own children.
+/// Returns the full paths, from the crate's root, of all names that a module uses with `crate::`, `super::` or
+/// `self::`, and of names from its own children.
 fn paths(module: &str, text: &str) -> Vec<String> {
     let mut found = Vec::new();
     for statement in statements(text) {
@@ -43,14 +43,14 @@ fn paths(module: &str, text: &str) -> Vec<String> {
         for (at, _) in text.match_indices(prefix) {
             let rest: String =
                 text[at..].chars().take_while(|c| c.is_alphanumeric() || *c == '_' || *c == ':').collect();
-            // What ends before a brace is an import of several names, which were found above.
+            // A path that ends before a brace is an import of several names, which were found above.
             found.extend(absolute(module, &rest).filter(|path| !path.ends_with(':')));
         }
     }
     found
 }
 
-/// Statements that begin with `use`, in one line each; those that hand on are left out.
+/// Returns the `use` statements of a source, one line each, without re-exports.
 fn statements(text: &str) -> Vec<String> {
     let mut found = Vec::new();
     let mut open: Option<String> = None;
@@ -70,7 +70,7 @@ fn statements(text: &str) -> Vec<String> {
     found
 }
 
-/// The paths of a tree such as `a::{b, c::{d, e as f}}`.
+/// Returns the paths of a tree such as `a::{b, c::{d, e as f}}`.
 fn leaves(tree: &str) -> Vec<String> {
     let tree = tree.trim();
     let Some((prefix, rest)) = tree.split_once('{') else {
@@ -82,7 +82,7 @@ fn leaves(tree: &str) -> Vec<String> {
     split_commas(balanced(inner)).iter().flat_map(|part| leaves(part)).map(|leaf| format!("{prefix}{leaf}")).collect()
 }
 
-/// Closing braces that an opening one has lost.
+/// Appends the closing braces that are missing.
 fn balanced(text: &str) -> String {
     let missing = text.matches('{').count().saturating_sub(text.matches('}').count());
     format!("{text}{}", "}".repeat(missing))
@@ -106,7 +106,7 @@ fn split_commas(text: String) -> Vec<String> {
     parts.into_iter().map(|part| part.trim().to_owned()).filter(|part| !part.is_empty()).collect()
 }
 
-/// A path from the crate's root; `None` for another crate's. A name without a prefix may be that of a child.
+/// Returns a path from the crate's root, or `None` for another crate. A name without a prefix may be a child.
 fn absolute(module: &str, path: &str) -> Option<String> {
     if let Some(rest) = path.strip_prefix("crate::") {
         return Some(rest.to_owned());
@@ -127,7 +127,7 @@ fn join(base: &str, rest: &str) -> String {
     if base.is_empty() { rest.to_owned() } else { format!("{base}::{rest}") }
 }
 
-/// Names that a module hands on, with where it has them from.
+/// Returns the names that a module re-exports, with their origins.
 fn hands_on(module: &str, text: &str) -> BTreeMap<String, String> {
     let public = text.replace("pub(crate) use ", "use ").replace("pub(super) use ", "use ").replace("pub use ", "use ");
     let mut names = BTreeMap::new();
@@ -143,7 +143,7 @@ fn hands_on(module: &str, text: &str) -> BTreeMap<String, String> {
     names
 }
 
-/// The module that a path leads to: the deepest one that there is, or where a module that hands the name on has it from.
+/// Returns the module that a path leads to: the deepest existing module, or the origin of a re-exported name.
 fn resolve(
     path: &str,
     sources: &BTreeMap<String, String>,
@@ -164,13 +164,14 @@ fn resolve(
     None
 }
 
-/// Whether a source defines an item of this name.
+/// Returns true if a source defines an item with a name.
 fn defines(text: &str, name: &str) -> bool {
     let kinds = ["fn", "struct", "enum", "trait", "type", "const", "static", "macro_rules!"];
     kinds.iter().any(|kind| source::has_word(text, &format!("{kind} {name}")))
 }
 
-/// Sets of names that reach each other, two at least (Tarjan would find them in one pass; the graphs are small).
+/// Returns the sets of at least two names that reach each other. The graphs are small, so a simple search is used
+/// instead of Tarjan's algorithm.
 pub(crate) fn circles<'a>(arrows: &BTreeMap<&'a str, Vec<&'a str>>) -> Vec<Vec<&'a str>> {
     let reach: BTreeMap<&str, BTreeSet<&str>> = arrows.keys().map(|from| (*from, reached(arrows, from))).collect();
     let mut seen: BTreeSet<&str> = BTreeSet::new();

@@ -1,7 +1,7 @@
-//! Source text, as far as the rules look into it.
+//! Source text as the rules read it.
 
-/// A source without its tests: everything before the first `#[cfg(test)]`, which stands at the end of a file here, unless
-/// it stands before a single line.
+/// Returns a source without its tests: everything before the first `#[cfg(test)]` that begins a module. An attribute
+/// before a single line does not count.
 pub(crate) fn product(text: &str) -> String {
     let mut kept = String::new();
     let mut lines = text.lines();
@@ -19,20 +19,21 @@ pub(crate) fn product(text: &str) -> String {
     kept
 }
 
-/// A source without comments.
+/// Returns a source without comments.
 pub(crate) fn code(text: &str) -> String {
     let lines = text.lines().map(|line| line.split("//").next().unwrap_or_default());
     lines.fold(String::new(), |all, line| all + line + "\n")
 }
 
-/// A source without what the features `files` and `threads` add; a file that is all of it is left out by its first line.
+/// Returns a source without the code of the features `files` and `threads`. A file that belongs to such a feature as a
+/// whole says so in its first line.
 pub(crate) fn without_host_feature(text: &str) -> String {
     let is_of_the_host =
         ["files", "threads"].iter().any(|name| text.contains(&format!("#![cfg(feature = \"{name}\")]")));
     if is_of_the_host { String::new() } else { code(text) }
 }
 
-/// Whether a word stands in a text, not as a part of a longer one.
+/// Returns true if a text contains a word that is not part of a longer word.
 pub(crate) fn has_word(text: &str, word: &str) -> bool {
     text.match_indices(word).any(|(at, _)| {
         let before = text[..at].chars().next_back();

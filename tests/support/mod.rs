@@ -1,20 +1,20 @@
-//! What tests of the NTSC display share.
+//! Functions that several tests of the NTSC display share.
 #![allow(dead_code, reason = "each test binary uses some of it")]
 
 use pxpl5::{NtscDisplay, Outcome, Record};
 use pxpl5_framebuffer::{FrameBuffer, Video};
 
-/// The NTSC display of a run.
+/// Returns the NTSC display of a run.
 pub(crate) fn ntsc(record: &Record) -> &NtscDisplay {
     record.display_of_kind().expect("the papers' machines have one")
 }
 
-/// Retraces and beam of a run.
+/// Returns the retraces and the beam of a run.
 pub(crate) fn video(outcome: &Outcome) -> &Video {
     ntsc(outcome.record()).video()
 }
 
-/// The frame buffers of a run: left, right.
+/// Returns the frame buffers of a run: left, right.
 pub(crate) fn boards(outcome: &Outcome) -> &[FrameBuffer] {
     ntsc(outcome.record()).boards()
 }

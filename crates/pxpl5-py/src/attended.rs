@@ -1,4 +1,5 @@
-//! Work without the interpreter's lock, while the calling thread reports progress and listens for Ctrl-C.
+//! Runs long work without the interpreter's lock. Meanwhile, the calling thread reports progress and listens for
+//! Ctrl-C.
 
 use crate::errors::failed_run;
 use pyo3::prelude::*;
@@ -7,7 +8,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::Duration;
 
-/// How far some work is, and whether somebody still wants it.
+/// Progress of some work, and the request to stop it.
 #[derive(Debug, Default)]
 pub(crate) struct Progress {
     done: AtomicU64,
@@ -16,30 +17,31 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// Says how many of all steps are done.
+    /// Reports that `done` of `of` steps are done.
     pub(crate) fn tell(&self, done: u64, of: u64) {
         self.of.store(of, Ordering::Relaxed);
         self.done.fetch_max(done, Ordering::Relaxed);
     }
 
-    /// Whether nobody wants the result any more.
+    /// Returns true if the work should stop.
     pub(crate) fn is_given_up(&self) -> bool {
         self.given_up.load(Ordering::Relaxed)
     }
 }
 
-/// From one look at progress and Ctrl-C to the next.
+/// Time between two checks for progress and Ctrl-C.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// Does some work on a thread of its own. `callback` is called with how many of all steps are done, at most twenty times a second
-/// and at the end.
+/// Runs `work` on a separate thread. `callback` receives the number of finished steps and of all steps, at most twenty
+/// times a second and at the end.
 ///
-/// Ctrl-C, or an exception of the callback, gives the work up: it is raised once the work has noticed, or at once where the work
-/// cannot notice (`waits` is false), which then goes on unheard.
+/// Ctrl-C or an exception of the callback requests the work to stop, and then raises. If `waits` is true, the exception
+/// is raised after the work has stopped. If `waits` is false, it is raised at once, and the result of the work is
+/// ignored.
 ///
 /// # Errors
 ///
-/// `KeyboardInterrupt`, what the callback raises, and a bug of ours as `RunError`.
+/// `KeyboardInterrupt`, any exception of the callback, and `RunError` for a bug of the emulator.
 pub(crate) fn attended<T: Send + 'static>(
     py: Python<'_>,
     callback: Option<&Bound<'_, PyAny>>,
@@ -50,15 +52,17 @@ pub(crate) fn attended<T: Send + 'static>(
     let (sender, mut results) = sync_channel(1);
     let told = Arc::clone(&progress);
     let worker = std::thread::Builder::new().name("pxpl5".to_owned()).stack_size(STACK_BYTES).spawn(move || {
-        // Nobody listens to work that was given up.
+        // After a stop, the receiver may be gone, so an error is ignored.
         let _ = sender.send(work(told));
     });
     worker.map_err(|error| failed_run(format!("no thread can be started: {error}")))?;
     let mut told = None;
     loop {
+        // Wait without the interpreter's lock, then check for Ctrl-C and report progress.
         let result = py.detach(|| wait(&mut results));
         let looked = py.check_signals().and_then(|()| tell(callback, &progress, &mut told));
         if let Err(error) = looked {
+            // Request the work to stop, and raise the exception.
             progress.given_up.store(true, Ordering::Relaxed);
             if waits {
                 py.detach(|| end(&mut results));
@@ -75,10 +79,10 @@ pub(crate) fn attended<T: Send + 'static>(
     }
 }
 
-/// As main threads have it: the emulator was never run with less.
+/// Stack size of the worker thread, equal to that of a main thread. The emulator has not been tested with less.
 const STACK_BYTES: usize = 8 << 20;
 
-// Unique borrows, since a receiver may be sent to another thread, but not shared.
+// The receiver is borrowed mutably, because a receiver can be sent to another thread but not shared.
 
 fn wait<T>(results: &mut Receiver<T>) -> Result<T, RecvTimeoutError> {
     results.recv_timeout(LOOK)
@@ -88,7 +92,7 @@ fn end<T>(results: &mut Receiver<T>) -> Option<T> {
     results.recv().ok()
 }
 
-/// Calls back with what is new.
+/// Calls the callback if the progress has changed.
 fn tell(callback: Option<&Bound<'_, PyAny>>, progress: &Progress, told: &mut Option<(u64, u64)>) -> PyResult<()> {
     let now = (progress.done.load(Ordering::Relaxed), progress.of.load(Ordering::Relaxed));
     let Some(callback) = callback.filter(|_| now.1 > 0 && *told != Some(now)) else { return Ok(()) };

@@ -1,4 +1,4 @@
-//! What there is to choose from: presets, parameters, pipelines, displays, scenes, keys and quantities.
+//! Lists of everything that a user can choose: presets, parameters, pipelines, displays, scenes, keys and quantities.
 
 use crate::errors::wrong_setting;
 use pxpl5::{ExperimentFile, MachineConfig, PRESETS, Parameter, QUANTITIES, Value, registry};
@@ -8,17 +8,17 @@ use pythonize::pythonize;
 use serde_json::json;
 use std::collections::BTreeMap;
 
-/// Any value of the library as Python's.
+/// Converts a value of the library to Python.
 pub(crate) fn python<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyResult<Bound<'py, PyAny>> {
     Ok(pythonize(py, value)?)
 }
 
-/// A number that is whole if its text is.
+/// A number from Python, which keeps the type that Python gave it.
 #[derive(FromPyObject)]
 pub(crate) enum Number {
-    /// An exact one.
+    /// An exact whole number.
     Whole(u64),
-    /// A measured one.
+    /// A real number.
     Real(f64),
 }
 
@@ -31,16 +31,17 @@ impl From<Number> for Value {
     }
 }
 
-/// Names of the machines that are built in, those of the papers first, each with what it is and its source.
+/// Returns the names of the built-in machines with descriptions and sources. The machines of the papers come first.
 #[pyfunction]
 pub(crate) fn presets() -> Vec<(&'static str, &'static str)> {
     PRESETS.iter().map(|preset| (preset.name, preset.about)).collect()
 }
 
-/// Boards and parameters of a preset with some of them changed, by path: ``n_gps``, ``n_renderers``, and a list of dictionaries with
-/// path, name, unit, standing, range, limits, source, papers, value and read_only.
+/// Returns the boards and parameters of a preset after some changes by path: ``n_gps``, ``n_renderers``, ``warnings``
+/// and a list of parameters. Each parameter is a dictionary with path, value, unit, standing, low, high, source and
+/// read_only.
 ///
-/// Raises :class:`pxpl5.SettingError` for a preset, path or value that no machine has.
+/// Raises :class:`pxpl5.SettingError` for an invalid preset, path or value.
 #[pyfunction]
 pub(crate) fn machine_parameters<'py>(
     py: Python<'py>,
@@ -49,6 +50,7 @@ pub(crate) fn machine_parameters<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let machine = MachineConfig::preset(preset).map_err(wrong_setting)?;
     let mut machine = registry().machine_of(machine);
+    // Apply the changes, then check the machine as a whole.
     for (path, value) in changes {
         machine.set(&path, value).map_err(wrong_setting)?;
     }
@@ -64,7 +66,7 @@ pub(crate) fn machine_parameters<'py>(
     )
 }
 
-/// Parameters as objects: path, value, unit, standing, range, source and whether they are only listed.
+/// Returns parameters as objects with path, value, unit, standing, range, source and read_only.
 pub(crate) fn described(parameters: &[Parameter]) -> Vec<serde_json::Value> {
     parameters.iter().map(described_one).collect()
 }
@@ -84,13 +86,15 @@ fn described_one(parameter: &Parameter) -> serde_json::Value {
     })
 }
 
-/// Parameters of all trackers, of the host's port and of the predictors: dictionaries as in :func:`machine_parameters`.
+/// Returns the parameters of all trackers, of the host's port and of the predictors. Each is a dictionary as in
+/// :func:`machine_parameters`.
 #[pyfunction]
 pub(crate) fn tracking_parameters(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
     python(py, &described(&pxpl5::tracking_parameters()))
 }
 
-/// All pipelines: dictionaries with name, family, about, preset and keys (name, about, values).
+/// Returns all pipelines as dictionaries with name, family, about, preset, has_closed_form and keys. Each key has name,
+/// about and values.
 #[pyfunction]
 pub(crate) fn pipelines(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
     let registry = registry();
@@ -116,25 +120,25 @@ pub(crate) fn pipelines(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
     python(py, &all)
 }
 
-/// Names of the displays that pipelines draw for.
+/// Returns the names of the displays that pipelines support.
 #[pyfunction]
 pub(crate) fn displays() -> Vec<&'static str> {
     registry().displays().iter().map(|entry| entry.name).collect()
 }
 
-/// Names of the built-in scenes, each with what it is; ``N`` stands for a number of triangles.
+/// Returns the names of the built-in scenes with descriptions. ``N`` stands for a number of triangles.
 #[pyfunction]
 pub(crate) fn builtin_scenes() -> Vec<(&'static str, &'static str)> {
     pxpl5::scene::names().to_vec()
 }
 
-/// All keys of experiments but the parameters, each with what it sets.
+/// Returns all keys of experiments except parameters, each with a description.
 #[pyfunction]
 pub(crate) fn keys() -> Vec<(String, String)> {
     ExperimentFile::keys_of(&registry()).into_iter().map(|key| (key.path, key.about)).collect()
 }
 
-/// The quantities that can be measured, by name, with their definitions.
+/// Returns the quantities that can be measured, by name, with their definitions.
 #[pyfunction]
 pub(crate) fn quantities(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let all = PyDict::new(py);

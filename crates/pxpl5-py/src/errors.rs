@@ -1,9 +1,9 @@
-//! What goes wrong, as exceptions of `pxpl5._errors` with the words of the library.
+//! Converts errors of the library to exceptions of `pxpl5._errors`, with the same messages.
 
 use pyo3::prelude::*;
 use std::fmt::Display;
 
-/// An exception of `pxpl5._errors`, by its name.
+/// Returns an exception of `pxpl5._errors` by its name.
 pub(crate) fn raised(name: &str, error: &impl Display) -> PyErr {
     Python::attach(|py| {
         let class = py.import("pxpl5._errors").and_then(|module| module.getattr(name));
@@ -14,22 +14,22 @@ pub(crate) fn raised(name: &str, error: &impl Display) -> PyErr {
     })
 }
 
-/// A setting, name, file or array that no experiment can have.
+/// Returns the exception for an invalid setting, name, file or array.
 pub(crate) fn wrong_setting(error: impl Display) -> PyErr {
     raised("SettingError", &error)
 }
 
-/// A run that ended early, or a machine that cannot go on.
+/// Returns the exception for a run that ended early, or for a machine that cannot continue.
 pub(crate) fn failed_run(error: impl Display) -> PyErr {
     raised("RunError", &error)
 }
 
-/// A folder of a sweep that cannot be used.
+/// Returns the exception for a sweep folder that cannot be used.
 pub(crate) fn failed_sweep(error: impl Display) -> PyErr {
     raised("SweepError", &error)
 }
 
-/// Source text that no program can be made of.
+/// Returns the exception for source text that cannot be assembled.
 pub(crate) fn not_assembled(error: impl Display) -> PyErr {
     raised("AssemblyError", &error)
 }

@@ -1,4 +1,4 @@
-//! An experiment that is ready to be run.
+//! An experiment that is ready to run.
 
 use crate::attended::{Progress, attended};
 use crate::errors::{failed_run, raised, wrong_setting};
@@ -17,21 +17,22 @@ use pyo3::types::PyDict;
 use std::fmt;
 use std::sync::Arc;
 
-/// A machine, a pipeline, a scene and a head, checked.
+/// A checked experiment: a machine, a pipeline, a scene and a head.
 #[pyclass(frozen, module = "pxpl5._native")]
 pub(crate) struct Experiment {
     plan: Plan,
     native: Native,
-    /// What Python is asked while it runs.
+    /// Python callable that supplies the motion during the run, if any.
     motion: Option<Arc<Called>>,
     policy: Option<Arc<Asked>>,
 }
 
 #[pymethods]
 impl Experiment {
-    /// Of settings; ``scene``, ``motion`` and ``policy`` stand in the place of what the settings name.
+    /// Creates an experiment from settings. ``scene``, ``motion`` and ``policy`` replace the values in the settings.
     ///
-    /// Raises :class:`pxpl5.SettingError` for the first setting that is wrong or missing, and for a scene that cannot be loaded.
+    /// Raises :class:`pxpl5.SettingError` for the first invalid or missing setting, and for a scene that cannot be
+    /// loaded.
     #[new]
     #[pyo3(signature = (settings, *, scene = None, motion = None, policy = None, phong = true))]
     fn new(
@@ -43,12 +44,14 @@ impl Experiment {
         phong: bool,
     ) -> PyResult<Self> {
         let plan = settings.plan()?;
+        // A given scene replaces the one in the settings.
         let scene = match scene {
             Some(scene) => Arc::clone(&scene.scene),
             None => py.detach(|| plan.load_scene()).map_err(wrong_setting)?,
         };
         let mut native = plan.experiment(scene);
         let policy = policy.map(|policy| Arc::new(Asked::new(policy)));
+        // A policy is a pipeline of its own, so the experiment is built anew with the other settings.
         if let Some(asked) = &policy {
             let pipeline: Arc<dyn Pipeline> = Arc::new(PolicyPipeline::new(Arc::clone(asked), phong));
             native = Native::with(plan.machine.clone(), pipeline, Arc::clone(native.scene()))
@@ -60,6 +63,7 @@ impl Experiment {
                 native = native.head(head.head());
             }
         }
+        // A motion replaces the motion of the tracked head.
         if let Some(motion) = motion {
             let Some(head) = native.tracked_head().cloned() else {
                 return Err(wrong_setting("a motion: expected a head with a tracker, found none"));
@@ -70,28 +74,31 @@ impl Experiment {
         Ok(Self { plan, native, motion, policy })
     }
 
-    /// Name of everything on which the trace depends.
+    /// Returns a hash of everything on which the trace depends.
     ///
-    /// Raises what a callable raises.
+    /// Raises any exception of a callable.
     fn config_hash(&self, py: Python<'_>) -> PyResult<String> {
         let hash = py.detach(|| self.native.config_hash().to_string());
         self.check()?;
         Ok(hash)
     }
 
-    /// What no source allows: parameters outside of their range, each with range and source; and what has no code at the cycle level.
+    /// Returns warnings about results that no source supports: parameters outside their range, and work without code at
+    /// the cycle level.
     fn warnings(&self) -> Vec<String> {
         self.native.warnings()
     }
 
-    /// Paths of all parameters with their values, units and sources, those of the tracker included.
+    /// Returns the paths of all parameters with values, units and sources, including those of the tracker.
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         crate::catalogue::python(py, &crate::catalogue::described(&self.plan.parameters()))
     }
 
-    /// Runs it, with as many threads for pixels as are said; keeps what tables and timelines need, or statistics only.
+    /// Runs the experiment. ``threads`` threads compute pixels. ``keep_everything`` keeps the records for tables and
+    /// timelines, otherwise only statistics.
     ///
-    /// Raises :class:`pxpl5.RunError` (with everything observed until then) and :class:`pxpl5.TooShortError`; KeyboardInterrupt.
+    /// Raises :class:`pxpl5.RunError` with the observations until the error, :class:`pxpl5.TooShortError`, and
+    /// KeyboardInterrupt.
     #[pyo3(signature = (progress = None, threads = None, keep_everything = true))]
     fn run(
         &self,
@@ -105,6 +112,7 @@ impl Experiment {
         let asked = (self.motion.clone(), self.policy.clone());
         let native = self.native.clone().keep(keep);
         let result = attended(py, progress, true, move |told| run(&native, workstation, asked, told));
+        // An exception of a callable takes precedence over the error of the run.
         self.check()?;
         match result? {
             Ok(outcome) => Ok(Outcome::of(outcome, &self.plan.measure)),
@@ -112,9 +120,10 @@ impl Experiment {
         }
     }
 
-    /// The measured quantities at the experiment's own level, also the analytic one, by name; None where there is none.
+    /// Returns the measured quantities by name, at the experiment's own level, which may be the analytic one. A
+    /// quantity without a value is None.
     ///
-    /// Raises as :meth:`run`.
+    /// Raises the same exceptions as :meth:`run`.
     fn measure<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let native = self.native.clone().pixels(pxpl5::Pixels::Off).host(Workstation::with_threads(1));
         let result = py.detach(|| match self.plan.level {
@@ -132,14 +141,14 @@ impl Experiment {
 }
 
 impl Experiment {
-    /// Raises what a callable has raised.
+    /// Raises any exception that a callable has raised.
     fn check(&self) -> PyResult<()> {
         self.motion.iter().try_for_each(|called| called.check())?;
         self.policy.iter().try_for_each(|asked| asked.check())
     }
 }
 
-/// Fields up to which a run is looked at in every one of them, so that Ctrl-C is heard soon.
+/// Largest number of fields of a run that stops in every field, so that Ctrl-C takes effect soon.
 const LOOKED_AT: u64 = 20_000;
 
 type AskedOfPython = (Option<Arc<Called>>, Option<Arc<Asked>>);
@@ -151,6 +160,7 @@ fn run(
     told: Arc<Progress>,
 ) -> Result<pxpl5::Outcome, Box<ExperimentError>> {
     let fields = native.length();
+    // A short run stops in every field, a long one only for progress.
     let each = if fields <= LOOKED_AT { fields } else { 0 };
     let stops: Vec<PeriodNumber> = PeriodNumber::FIRST.until(PeriodNumber::FIRST.after(each)).collect();
     let host = Attended { workstation, told: Arc::clone(&told), motion, policy };
@@ -161,7 +171,7 @@ fn run(
     native.clone().host(host).run_stopping(&stops, at).map_err(Box::new)
 }
 
-/// This computer, as long as somebody wants the result.
+/// The host computer of a run that Python may stop.
 struct Attended {
     workstation: Workstation,
     told: Arc<Progress>,
@@ -191,7 +201,7 @@ impl Host for Attended {
     }
 }
 
-/// An error of the library as an exception; what was observed goes with it.
+/// Converts an error of the library to an exception, with the observations until the error.
 fn exception(py: Python<'_>, error: ExperimentError, measures: &[Measure]) -> PyErr {
     let text = error.to_string();
     let (name, partial, needed) = match error {
@@ -200,6 +210,7 @@ fn exception(py: Python<'_>, error: ExperimentError, measures: &[Measure]) -> Py
         ExperimentError::Stopped(_) => return failed_run(text),
         _ => return wrong_setting(text),
     };
+    // The exception carries the partial outcome and the number of fields that a run would need.
     let exception = raised(name, &text);
     let value = exception.value(py);
     let partial = Py::new(py, Outcome::of(*partial, measures));

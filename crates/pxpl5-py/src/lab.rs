@@ -1,4 +1,4 @@
-//! Questions over many experiments: figures, limits, comparison.
+//! Questions over many experiments: figures, limits and comparisons.
 
 use crate::attended::attended;
 use crate::catalogue::python;
@@ -11,22 +11,23 @@ use pxpl5::{Goal, Level, TestScene};
 use pyo3::prelude::*;
 use serde_json::json;
 
-/// The level of modelling of a name.
+/// Returns the level of modelling with a name.
 fn level(name: &str) -> PyResult<Level> {
     let names = Level::ALL.map(Level::name).join(", ");
     let found = Level::ALL.into_iter().find(|level| level.name() == name);
     found.ok_or_else(|| wrong_setting(format!("level: expected {names}, found {name}")))
 }
 
-/// Numbers of the published figures, such as 4b, each with what the paper states.
+/// Returns the numbers of the published figures, such as 4b, with the statements of the papers.
 #[pyfunction]
 pub(crate) fn figure_ids() -> Vec<(&'static str, &'static str)> {
     FIGURES.iter().map(|figure| (figure.id, figure.statement)).collect()
 }
 
-/// A published figure by its number, measured at a level: a dictionary with published, simulated, unit and more.
+/// Measures a published figure at a level, by its number. Returns a dictionary with published, simulated, unit and
+/// more.
 ///
-/// Raises :class:`pxpl5.SettingError` for a number that there is not, :class:`pxpl5.RunError` where its experiment gives nothing.
+/// Raises :class:`pxpl5.SettingError` for an unknown number, and :class:`pxpl5.RunError` if the experiment fails.
 #[pyfunction]
 #[pyo3(signature = (id, level = "transaction", progress = None))]
 pub(crate) fn figure<'py>(
@@ -57,9 +58,9 @@ fn row(row: &FigureRow) -> serde_json::Value {
     value
 }
 
-/// All published figures with their intervals: a list of dictionaries. It takes minutes.
+/// Measures all published figures with their intervals, which takes minutes. Returns a list of dictionaries.
 ///
-/// Raises :class:`pxpl5.RunError` where an experiment gives nothing.
+/// Raises :class:`pxpl5.RunError` if an experiment fails.
 #[pyfunction]
 #[pyo3(signature = (level = "transaction", progress = None))]
 pub(crate) fn figures<'py>(
@@ -74,9 +75,9 @@ pub(crate) fn figures<'py>(
     python(py, &rows)
 }
 
-/// Every way to fight latency side by side: a dictionary whose `pipelines` lists a row for each.
+/// Compares all pipelines under the same settings. Returns a dictionary whose `pipelines` has a row for each.
 ///
-/// Raises :class:`pxpl5.SettingError` for a setting that is wrong.
+/// Raises :class:`pxpl5.SettingError` for an invalid setting.
 #[pyfunction]
 #[pyo3(signature = (settings, only, seeds, limits, progress = None))]
 pub(crate) fn compare<'py>(
@@ -92,12 +93,13 @@ pub(crate) fn compare<'py>(
     python(py, &comparison.map_err(wrong_setting)?)
 }
 
-/// The most triangles that a pipeline draws in time: a dictionary with triangles, first_miss, island, unbroken_from, tried, goal and scene.
+/// Finds the largest number of triangles that a pipeline draws in time. Returns a dictionary with triangles,
+/// first_miss, island, unbroken_from, tried, goal, fields and scene.
 ///
-/// ``scene`` is full-screen, typical, or None for the settings' own one thinned out; ``rate_hz`` or ``latency_fields`` replace the
-/// pipeline's own goal, ``fields`` the length of each run.
+/// ``test_scene`` is full-screen, typical or None. With ``thinned``, the settings' own scene is reduced instead.
+/// ``rate_hz`` or ``latency_fields`` replaces the pipeline's own goal. ``fields`` is the length of each run.
 ///
-/// Raises :class:`pxpl5.SettingError` for a setting that is wrong.
+/// Raises :class:`pxpl5.SettingError` for an invalid setting.
 #[pyfunction]
 #[pyo3(signature = (settings, *, test_scene = None, thinned = false, rate_hz = None, latency_fields = None, fields = None))]
 pub(crate) fn limit<'py>(
@@ -112,6 +114,7 @@ pub(crate) fn limit<'py>(
     let plan = settings.plan()?;
     let mut query = LimitQuery::of_plan(&plan);
     query.criterion.fields = fields.unwrap_or(query.criterion.fields);
+    // A goal in the arguments replaces that of the pipeline.
     let own = query.criterion.goal;
     query.criterion.goal = rate_hz.map(Goal::RateHz).or(latency_fields.map(Goal::LatencyFields)).unwrap_or(own);
     if let Some(name) = test_scene {
@@ -120,6 +123,7 @@ pub(crate) fn limit<'py>(
         query.criterion.scene =
             found.ok_or_else(|| wrong_setting(format!("scene: expected {expected}, found {name}")))?;
     }
+    // A reduced scene replaces the test scene.
     if thinned {
         query.model = Some(py.detach(|| Model::load(plan.scene)).map_err(wrong_setting)?);
     }

@@ -1,4 +1,4 @@
-//! The Python package `pxpl5`, as far as it is native: the façade `pxpl5` with its values as Python's.
+//! The native part of the Python package `pxpl5`, which makes the façade `pxpl5` available to Python.
 //!
 //! ```text
 //!   python/pxpl5/*.py   what users import: keywords, docstrings, notebooks, progress, Dask
@@ -10,13 +10,14 @@
 //!
 //! # Behaviour
 //!
-//! - What takes long runs on a thread of its own without the interpreter's lock; the calling thread reports progress and listens
-//!   for Ctrl-C (attended.rs).
-//! - Pictures go to NumPy without a copy of their pixels; tables go through the Arrow PyCapsule interface without a copy of their
-//!   columns. Vertices that come from NumPy are copied once.
-//! - Errors are exceptions of `pxpl5._errors`, with the words of the library.
+//! - Long work runs on a separate thread without the interpreter's lock. The calling thread reports progress and
+//!   listens for Ctrl-C (attended.rs).
+//! - Pictures are passed to NumPy without a copy of their pixels. Tables are passed through the Arrow PyCapsule
+//!   interface without a copy of their columns. Vertices from NumPy are copied once.
+//! - Errors become exceptions of `pxpl5._errors` with the same messages.
 //!
-//! **Not here:** numbers, models and file formats. What only Python needs (defaults of keywords, HTML) is in python/pxpl5.
+//! **Not here:** numbers, models and file formats. Code for Python only (defaults of keywords, HTML) is in
+//! python/pxpl5.
 
 mod attended;
 mod catalogue;
@@ -36,7 +37,7 @@ mod volume;
 
 use pyo3::prelude::*;
 
-/// The native part of pxpl5; use the package `pxpl5`.
+/// Native part of pxpl5. Users import the package `pxpl5` instead.
 #[pymodule]
 mod _native {
     #[pymodule_export]

@@ -1,4 +1,4 @@
-//! How heads move: by name, from recordings, from arrays, as Python says.
+//! Motions of the head: by name, from recordings, from arrays, or from a Python callable.
 
 use crate::errors::wrong_setting;
 use glam::{DQuat, DVec3};
@@ -14,14 +14,14 @@ use std::fs::File;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A motion of the head: its pose at every instant of simulated time.
+/// A motion of the head, which gives a pose at every instant of simulated time.
 ///
-/// A pose is seven numbers: x, y, z in metres, and the unit quaternion w, x, y, z that turns the head's axes into the world's. Axes
-/// are right-handed, y up; a head looks along its own -z.
+/// A pose has seven numbers: the position x, y, z in metres, and a unit quaternion w, i, j, k. The quaternion rotates
+/// from the head's axes to the world's axes. Axes are right-handed with y upwards, and a head looks along its own -z.
 #[pyclass(frozen, module = "pxpl5")]
 pub(crate) struct Motion {
     pub(crate) moving: Arc<dyn Moving + Send + Sync>,
-    /// Where a Python callable leaves what it raised.
+    /// Python callable of the motion, which stores its exceptions. `None` for other motions.
     pub(crate) called: Option<Arc<Called>>,
     about: String,
 }
@@ -34,20 +34,24 @@ impl Motion {
 
 #[pymethods]
 impl Motion {
-    /// A motion by its name: ``still``, ``pan:DEG_PER_S``, ``slide:M_PER_S``, ``sine:DEG:HZ``, ``pendulum``, ``synthetic:SEED``, or
-    /// the path of a recording. (Walks need a scene: give their name to the experiment.)
+    /// Creates a motion from its name: ``still``, ``pan:DEG_PER_S``, ``slide:M_PER_S``, ``sine:DEG:HZ``, ``pendulum``,
+    /// ``synthetic:SEED``, or the path of a recording. Walks need a scene, so their names are given to the experiment
+    /// instead.
     ///
-    /// Raises :class:`pxpl5.SettingError` with what was expected and what was found.
+    /// Raises :class:`pxpl5.SettingError` with the expected and the found text.
     #[new]
     fn new(name: &str) -> PyResult<Self> {
         Ok(Self::of(pxpl5::compare::motion(name).map_err(wrong_setting)?, name.to_owned()))
     }
 
-    /// A recording: a file of the own format, of EuRoC or TUM, told by its contents; with ``columns`` any table, whose columns
-    /// are given by name or number (``t``, ``t_ms``, ``t_us`` or ``t_ns``; ``x``, ``y``, ``z`` or ``x_mm`` ..; ``qw``, ``qx``, ``qy``, ``qz``).
-    /// ``end`` says what comes after the last sample: ``hold``, ``loop``, or None: no run may go on.
+    /// Reads a recording in the project's own format, or in the format of EuRoC or TUM. The content decides the format.
+    /// With ``columns``, any table can be read.
     ///
-    /// Raises :class:`pxpl5.SettingError` with line and column, what was expected and what was found.
+    /// ``columns`` gives the columns by name or number: ``t``, ``t_ms``, ``t_us`` or ``t_ns``; ``x``, ``y``, ``z`` or
+    /// ``x_mm`` ..; ``qw``, ``qx``, ``qy``, ``qz``. ``end`` is the motion after the last sample: ``hold``, ``loop``, or
+    /// None if no run may go on.
+    ///
+    /// Raises :class:`pxpl5.SettingError` with line, column, and the expected and the found text.
     #[staticmethod]
     #[pyo3(signature = (path, *, columns = None, end = None))]
     fn recording(path: PathBuf, columns: Option<BTreeMap<String, String>>, end: Option<&str>) -> PyResult<Self> {
@@ -62,11 +66,11 @@ impl Motion {
         Ok(Self::of(Arc::new(recording.ending(end_named(end)?)), name))
     }
 
-    /// A recording of arrays: ``times_s`` of shape (n,), rising, seconds from the begin of the run; ``positions`` of shape (n, 3), metres;
-    /// ``quaternions`` of shape (n, 4), w, x, y, z. Straight lines between positions, slerp between orientations. ``end`` as in
-    /// :meth:`recording`.
+    /// Creates a recording from arrays: ``times_s`` of shape (n,), rising, in seconds from the start of the run;
+    /// ``positions`` of shape (n, 3), in metres; ``quaternions`` of shape (n, 4) with w, x, y, z. Positions are
+    /// interpolated linearly and orientations by slerp. ``end`` is as in :meth:`recording`.
     ///
-    /// Raises :class:`pxpl5.SettingError` with the sample (as line, from 2) that is wrong.
+    /// Raises :class:`pxpl5.SettingError` with the line number of the invalid sample, counted from 2.
     #[staticmethod]
     #[pyo3(signature = (times_s, positions, quaternions, *, end = None))]
     fn from_arrays(
@@ -80,11 +84,11 @@ impl Motion {
         Ok(Self::of(Arc::new(recording.ending(end_named(end)?)), "arrays".to_owned()))
     }
 
-    /// A motion of a callable: ``pose(time_s)`` gives (x, y, z, w, i, j, k) for an instant in seconds, always the same for the same one.
-    /// It is called from another thread, a few thousand times for a second of simulated time. ``name`` is part of the experiment's name, as
-    /// are the poses at 512 instants of the first 64 s.
+    /// Creates a motion from a callable. ``pose(time_s)`` must return (x, y, z, w, i, j, k) for an instant in seconds,
+    /// and always the same pose for the same instant. Another thread calls it a few thousand times for a second of
+    /// simulated time. The hash of the experiment covers ``name`` and the poses at 512 instants of the first 64 s.
     ///
-    /// What it raises ends the run, and is raised there.
+    /// An exception of the callable ends the run, and the run raises it.
     #[staticmethod]
     #[pyo3(signature = (pose, *, name = "callable"))]
     fn from_callable(pose: Py<PyAny>, name: &str) -> Self {
@@ -92,9 +96,10 @@ impl Motion {
         Self { moving: called.clone(), called: Some(called), about: name.to_owned() }
     }
 
-    /// The poses at some instants: ``times_s`` of shape (n,), seconds, 0 or later; gives shape (n, 7): x, y, z, w, i, j, k.
+    /// Returns the poses at instants. ``times_s`` has shape (n,), in seconds, 0 or later. The result has shape (n, 7):
+    /// x, y, z, w, i, j, k.
     ///
-    /// Raises what a callable raises.
+    /// Raises any exception of a callable.
     fn poses<'py>(&self, py: Python<'py>, times_s: PyReadonlyArray1<'py, f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let times = times_s.as_array();
         let poses: Vec<f64> = times.iter().flat_map(|time| numbers(&self.moving.pose(nearest_ps(*time)))).collect();
@@ -103,20 +108,21 @@ impl Motion {
         Ok(PyArray2::from_owned_array(py, poses))
     }
 
-    /// When it ends, seconds, if no run may go on after that; None where it goes on for ever.
+    /// Returns the end of the motion in seconds, if no run may go on after it. Returns None for a motion without an
+    /// end.
     #[getter]
     fn ends_s(&self) -> Option<f64> {
         self.moving.ends_ps().map(seconds)
     }
 
-    /// What it was made of.
+    /// Returns a description of the motion's origin.
     fn __repr__(&self) -> String {
         format!("<pxpl5.Motion {}>", self.about)
     }
 }
 
 impl Motion {
-    /// Raises what a callable has raised since this was asked last.
+    /// Raises any exception that a callable has raised since the last check.
     pub(crate) fn check(&self) -> PyResult<()> {
         match &self.called {
             Some(called) => called.check(),
@@ -125,7 +131,7 @@ impl Motion {
     }
 }
 
-/// A motion that a Python callable says.
+/// A motion from a Python callable.
 pub(crate) struct Called {
     pose: Py<PyAny>,
     name: String,
@@ -133,7 +139,7 @@ pub(crate) struct Called {
 }
 
 impl Called {
-    /// Whether it has raised something that nobody has heard of yet.
+    /// Returns true if the callable has raised an exception that is not reported yet.
     pub(crate) fn has_raised(&self) -> bool {
         self.raised.lock().unwrap_or_else(PoisonError::into_inner).is_some()
     }
@@ -156,7 +162,7 @@ impl Called {
     }
 }
 
-/// How far a quaternion's length may be from 1: what a few digits leave.
+/// Largest difference of a quaternion's length from 1, which allows rounding to a few digits.
 const UNIT: f64 = 1e-3;
 
 impl fmt::Debug for Called {
@@ -166,7 +172,7 @@ impl fmt::Debug for Called {
 }
 
 impl Moving for Called {
-    /// After an exception the head stands still: the run is given up.
+    /// Returns the pose from the callable. After an exception, the head stands still until the run ends.
     fn pose(&self, t_ps: u64) -> Pose {
         if self.has_raised() {
             return Pose::IDENTITY;
@@ -186,7 +192,7 @@ impl Moving for Called {
     }
 }
 
-/// The instants by which callables are told apart: every eighth of a second.
+/// Number of instants whose poses identify a callable. They are an eighth of a second apart.
 const SAMPLES: u64 = 512;
 const SAMPLE_PS: u64 = 125_000_000_000;
 
@@ -203,7 +209,7 @@ fn end_named(name: Option<&str>) -> PyResult<End> {
     found.ok_or_else(|| wrong_setting(format!("end: expected {}, found {name}", names.join(" or "))))
 }
 
-/// The arrays as the library's own format has them: a number is written so that the same one is read.
+/// Converts arrays to text in the project's own format. The text of a number gives the same number when read.
 fn own_format(
     times_s: &ArrayView1<'_, f64>,
     positions: &ArrayView2<'_, f64>,
@@ -216,6 +222,7 @@ fn own_format(
             "positions and quaternions: expected shapes ({n}, 3) and ({n}, 4), found {found}"
         )));
     }
+    // The text has a header line and one line for each sample.
     let mut text = String::from("time_s,x,y,z,qw,qx,qy,qz\n");
     for ((time, position), turn) in times_s.iter().zip(positions.rows()).zip(quaternions.rows()) {
         let values = [*time].into_iter().chain(position.iter().copied()).chain(turn.iter().copied());

@@ -1,4 +1,4 @@
-//! What came of an experiment: numbers, tables, pictures, drawings.
+//! Results of an experiment: numbers, tables, pictures and drawings.
 
 use crate::catalogue::python;
 use crate::errors::{failed_run, wrong_setting};
@@ -17,10 +17,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
-/// What came of an experiment: the machine's record and the pictures that were shown.
+/// Results of an experiment: the machine's record and the pictures that were shown.
 #[pyclass(frozen, module = "pxpl5._native")]
 pub(crate) struct Outcome {
-    /// As it came, until somebody asks for its numbers.
+    /// Outcome of the run. `None` after `results` has taken the outcome.
     outcome: Mutex<Option<pxpl5::Outcome>>,
     results: OnceLock<Results>,
     measures: Vec<Measure>,
@@ -31,11 +31,12 @@ impl Outcome {
         Self { outcome: Mutex::new(Some(outcome)), results: OnceLock::new(), measures: measures.to_vec() }
     }
 
-    /// The numbers, which may take a while the first time: what a load that is too heavy could be instead is searched for.
+    /// Returns the results, which are computed at the first call. For a load that is too heavy, the computation
+    /// searches for a suitable load and may take some time.
     fn results(&self, py: Python<'_>) -> PyResult<&Results> {
         py.detach(|| {
             if self.results.get().is_none() {
-                // Whoever comes second waits here, and finds the results made.
+                // A second caller waits here until the first one has finished.
                 let mut outcome = self.outcome.lock().unwrap_or_else(PoisonError::into_inner);
                 if let Some(outcome) = outcome.take() {
                     let _ = self.results.set(Results::of_run(outcome));
@@ -50,7 +51,7 @@ impl Outcome {
         run.ok_or_else(|| wrong_setting("the analytic level has no events"))
     }
 
-    /// What can be said of the outcome at once, without its report.
+    /// Reads a value of the outcome without computing the report.
     fn look<T: Send>(&self, py: Python<'_>, at: impl Fn(&pxpl5::Outcome) -> T + Send + Sync) -> PyResult<T> {
         let looked = py.detach(|| {
             let outcome = self.outcome.lock().unwrap_or_else(PoisonError::into_inner);
@@ -62,7 +63,7 @@ impl Outcome {
         }
     }
 
-    /// A surface by its label (`left`, `right`) or number.
+    /// Returns a surface by its label (`left`, `right`) or number.
     fn surface(&self, py: Python<'_>, name: &str) -> PyResult<SurfaceId> {
         let (outcome, _) = self.run(py)?;
         let all: Vec<(SurfaceId, &str)> =
@@ -79,19 +80,19 @@ impl Outcome {
 
 #[pymethods]
 impl Outcome {
-    /// Hash of everything that happened, statistics included: the same as that of the command and of Rust.
+    /// Returns the hash of the trace, including statistics. The command and the Rust library give the same hash.
     #[getter]
     fn trace_hash(&self, py: Python<'_>) -> PyResult<String> {
         Ok(self.run(py)?.1.trace_hash.clone())
     }
 
-    /// Name of everything on which the trace depends.
+    /// Returns a hash of everything on which the trace depends.
     #[getter]
     fn config_hash(&self, py: Python<'_>) -> PyResult<String> {
         self.look(py, |outcome| outcome.experiment().config_hash().to_string())
     }
 
-    /// Names of the pipeline, the machine's preset and the scene.
+    /// Returns the names of the pipeline, the machine's preset and the scene.
     fn subject(&self, py: Python<'_>) -> PyResult<(String, String, String)> {
         self.look(py, |outcome| {
             let experiment = outcome.experiment();
@@ -100,24 +101,24 @@ impl Outcome {
         })
     }
 
-    /// Everything as numbers: the dictionary of `pxpl5 run --json`.
+    /// Returns the report as the dictionary that `pxpl5 run --json` prints.
     fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         python(py, self.run(py)?.1)
     }
 
-    /// The report as JSON text.
+    /// Returns the report as JSON text.
     fn report_json(&self, py: Python<'_>) -> PyResult<String> {
         serde_json::to_string_pretty(self.run(py)?.1).map_err(wrong_setting)
     }
 
-    /// The value of a quantity by its name; None where the run shows none.
+    /// Returns the value of a quantity by its name, or None if the run has no value.
     fn quantity(&self, py: Python<'_>, name: &str) -> PyResult<Option<f64>> {
         let measure = Measure::named(name)
             .map_err(|nearest| wrong_setting(format!("there is no quantity `{name}`; did you mean `{nearest}`?")))?;
         Ok(measure.of(self.results(py)?))
     }
 
-    /// All quantities that the run shows, by name.
+    /// Returns all quantities by name. A quantity without a value is None.
     fn quantities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);
         for measure in QUANTITIES.iter().filter_map(|quantity| Measure::named(quantity.name).ok()) {
@@ -126,7 +127,7 @@ impl Outcome {
         Ok(all)
     }
 
-    /// The quantities that the experiment names in ``measure``, by name.
+    /// Returns the quantities that the experiment lists in ``measure``, by name.
     fn measured<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);
         let results = self.results(py)?;
@@ -134,19 +135,20 @@ impl Outcome {
         Ok(all)
     }
 
-    /// A row for each picture that was begun.
+    /// Returns a table with a row for each begun picture.
     fn pictures(&self, py: Python<'_>) -> PyResult<Table> {
         let (outcome, _) = self.run(py)?;
         let (columns, rows) = py.detach(|| (columns(), rows(outcome)));
         Table::of(columns.iter().enumerate().map(|(i, column)| column_of(i, column, &rows)).collect())
     }
 
-    /// A row for each stage of each picture.
+    /// Returns a table with a row for each stage of each picture.
     fn stages(&self, py: Python<'_>) -> PyResult<Table> {
         let (outcome, _) = self.run(py)?;
         let record = outcome.record();
         let stages = outcome.stages();
         let ps = |time: pxpl5::Time| time.0.cast_signed();
+        // Stages of all surfaces have no surface label.
         let label = |id: SurfaceId| record.surface(id).map(|surface| surface.label.to_owned());
         Table::of(vec![
             Column::whole(
@@ -173,12 +175,13 @@ impl Outcome {
         ])
     }
 
-    /// Labels of the surfaces that somebody looks at, such as left and right.
+    /// Returns the labels of the surfaces that a viewer sees, such as left and right.
     fn surfaces(&self, py: Python<'_>) -> PyResult<Vec<&'static str>> {
         Ok(self.run(py)?.0.record().surfaces().map(|(_, surface)| surface.label).collect())
     }
 
-    /// What a viewer of a surface sees at the end; None without pixels, or before anything was shown.
+    /// Returns the picture on a surface at the end of the run. Returns None without pixels, or before a picture was
+    /// shown.
     fn picture(&self, py: Python<'_>, surface: &str) -> PyResult<Option<Picture>> {
         let id = self.surface(py, surface)?;
         let (outcome, _) = self.run(py)?;
@@ -186,7 +189,8 @@ impl Outcome {
         picture.map(|picture| Picture::of(py, picture, self.texts(py)?)).transpose()
     }
 
-    /// What a viewer of a surface saw at the end of a field; None of one that is no longer remembered, or not over.
+    /// Returns the picture on a surface at the end of a field. Returns None if the field is not over, or no longer
+    /// recorded.
     fn seen(&self, py: Python<'_>, surface: &str, field: u64) -> PyResult<Option<Picture>> {
         let id = self.surface(py, surface)?;
         let (outcome, _) = self.run(py)?;
@@ -194,7 +198,7 @@ impl Outcome {
         picture.map(|picture| Picture::of(py, picture, self.texts(py)?)).transpose()
     }
 
-    /// Both eyes side by side, as at the end; None without pixels.
+    /// Returns the pictures of both eyes side by side at the end of the run, or None without pixels.
     fn both(&self, py: Python<'_>) -> PyResult<Option<Picture>> {
         let (outcome, _) = self.run(py)?;
         let pictures = py.detach(|| {
@@ -205,8 +209,8 @@ impl Outcome {
         both.map(|picture| Picture::of(py, picture, self.texts(py)?)).transpose()
     }
 
-    /// Pixel memory of a renderer at the end: bit planes of shape (208, 128, 128) by bit, row and column, 0 or 1; None of a renderer that
-    /// holds nothing, and without pixels. The array is not shared.
+    /// Returns the pixel memory of a renderer at the end of the run. The array has shape (208, 128, 128) by bit, row and
+    /// column, with values 0 or 1. Returns None without pixels, and for a renderer that has no pixels. The array is a copy.
     fn pixel_memory<'py>(&self, py: Python<'py>, renderer: usize) -> PyResult<Option<Bound<'py, PyArray3<u8>>>> {
         let renderers = self.run(py)?.0.record().renderers();
         let count = renderers.len();
@@ -217,13 +221,14 @@ impl Outcome {
         Ok(planes.map(|planes| PyArray3::from_owned_array(py, planes)))
     }
 
-    /// How the pipeline divides pixel memory: name, first bit and bits of each field.
+    /// Returns the layout of pixel memory: name, first bit and width in bits of each field.
     fn pixel_memory_fields(&self, py: Python<'_>) -> PyResult<Vec<(String, u32, u32)>> {
         let layout: Layout = self.run(py)?.0.pipeline().layout();
         Ok(layout.ranges().into_iter().map(|range| (range.name, range.first, range.width)).collect())
     }
 
-    /// A timeline as SVG: of a picture, or the first after the warm-up; from a field on, so many fields.
+    /// Returns a timeline as SVG. ``picture`` is the picture whose dependencies are drawn, by default the first after
+    /// the warm-up. The other arguments select the first field and the number of fields.
     #[pyo3(signature = (picture = None, first_field = None, fields = None, title = None))]
     fn timeline(
         &self,
@@ -240,7 +245,7 @@ impl Outcome {
         Ok(py.detach(|| svg(outcome, &options)))
     }
 
-    /// The run as one page of HTML, with its pictures and its timeline.
+    /// Returns the run as an HTML page with pictures and a timeline.
     fn page(&self, py: Python<'_>, name: &str) -> PyResult<String> {
         let (outcome, report) = self.run(py)?;
         let mut run = PageRun { name: name.to_owned(), ..PageRun::default() };
@@ -248,6 +253,7 @@ impl Outcome {
         run.timeline = Some(self.timeline(py, None, None, None, None)?.into_bytes());
         run.latencies_ms =
             outcome.complete_pictures().map(|times| times.shown_at.since(times.transform_at).as_ms()).collect();
+        // Surfaces without pixels have no picture on the page.
         for (id, surface) in outcome.record().surfaces() {
             if let Some(picture) = py.detach(|| outcome.picture(id)) {
                 let png = png_bytes(&picture, &[]).map_err(wrong_setting)?;
@@ -257,7 +263,7 @@ impl Outcome {
         Ok(html(&[run]))
     }
 
-    /// Pixel errors field by field, and over what; None of a run without a tracked head.
+    /// Returns the pixel errors of each field with their totals, or None for a run without a tracked head.
     fn pixel_errors<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let (outcome, _) = self.run(py)?;
         let errors = py.detach(|| outcome.pixel_errors());
@@ -265,7 +271,7 @@ impl Outcome {
     }
 }
 
-/// A column of the table of pictures.
+/// Returns a column of the table of pictures.
 fn column_of(i: usize, column: &pxpl5::results::Column, rows: &[Vec<Option<u64>>]) -> Column {
     let values = rows.iter().map(|row| row[i].map(u64::cast_signed)).collect();
     Column::whole(&column.name, &column.definition, values)
@@ -275,13 +281,13 @@ fn numbers(stages: &[pxpl5::StageSpan], of: impl Fn(&pxpl5::StageSpan) -> Option
     stages.iter().map(of).collect()
 }
 
-/// Bits of pixel memory.
+/// Number of bits of pixel memory.
 const BITS: usize = 208;
 
-/// Columns and rows of the array.
+/// Number of columns and of rows of the pixel array.
 const SIDE: usize = 128;
 
-/// All bits, one byte each.
+/// Returns all bits of pixel memory, one byte for each bit.
 fn bit_planes(memory: &impl pxpl5::firmware::PixelArray) -> Array3<u8> {
     let mut planes = Array3::zeros((BITS, SIDE, SIDE));
     for bit in 0..BITS {

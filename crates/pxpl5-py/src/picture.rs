@@ -1,4 +1,4 @@
-//! Pictures: pixels of NumPy, and PNG for notebooks and files.
+//! Pictures for Python: pixels for NumPy, and PNG for notebooks and files.
 
 use crate::errors::wrong_setting;
 use image::RgbImage;
@@ -8,25 +8,25 @@ use pxpl5::views::png_bytes;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-/// A picture, as somebody sees it: red, green and blue of 8 bits.
+/// A picture with 8 bits each of red, green and blue.
 ///
-/// ``numpy.asarray(picture)`` and :attr:`array` are the pixels themselves, without a copy. A notebook shows it.
+/// ``numpy.asarray(picture)`` and :attr:`array` give the pixels without a copy. A notebook displays the picture.
 #[pyclass(frozen, module = "pxpl5")]
 pub(crate) struct Picture {
     pixels: Py<PyArray3<u8>>,
-    /// What is written into PNG files beside the pixels.
+    /// Texts that PNG files contain in addition to the pixels.
     texts: Vec<(&'static str, String)>,
 }
 
 impl Picture {
-    /// Takes over the pixels of a picture.
+    /// Creates a picture from an image without copying its pixels.
     pub(crate) fn of(py: Python<'_>, picture: RgbImage, texts: Vec<(&'static str, String)>) -> PyResult<Self> {
         let shape = (picture.height() as usize, picture.width() as usize, 3);
         let pixels = Array3::from_shape_vec(shape, picture.into_raw()).map_err(wrong_setting)?;
         Ok(Self { pixels: PyArray3::from_owned_array(py, pixels).unbind(), texts })
     }
 
-    /// A copy of the pixels.
+    /// Returns a copy of the pixels.
     fn copied(&self, py: Python<'_>) -> PyResult<RgbImage> {
         let pixels = self.pixels.bind(py);
         let height = pixels.dims()[0];
@@ -39,7 +39,7 @@ impl Picture {
 
 #[pymethods]
 impl Picture {
-    /// A picture of an array of shape (height, width, 3), uint8; the pixels are copied.
+    /// Creates a picture from an array of shape (height, width, 3), uint8. The pixels are copied.
     #[new]
     fn new(py: Python<'_>, pixels: PyReadonlyArray3<'_, u8>) -> PyResult<Self> {
         let pixels = pixels.as_array();
@@ -50,13 +50,14 @@ impl Picture {
         Ok(Self { pixels: PyArray3::from_array(py, &pixels).unbind(), texts: Vec::new() })
     }
 
-    /// The pixels: shape (height, width, 3), uint8, rows from the top. The array is the picture's own memory.
+    /// Returns the pixels as an array of shape (height, width, 3), uint8, with rows from the top. The array shares the
+    /// picture's memory.
     #[getter]
     fn array<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray3<u8>> {
         self.pixels.bind(py).clone()
     }
 
-    /// The pixels for ``numpy.asarray``: without a copy, unless another type is asked for or ``copy`` says so.
+    /// Returns the pixels for ``numpy.asarray``. They are copied only for another type or if ``copy`` is true.
     #[pyo3(signature = (dtype = None, copy = None))]
     fn __array__<'py>(
         &self,
@@ -72,29 +73,29 @@ impl Picture {
         }
     }
 
-    /// The picture as PNG, with what it was made of as texts.
+    /// Returns the picture as PNG, with its origin as texts.
     ///
-    /// Raises :class:`pxpl5.SettingError` when the encoder refuses it.
+    /// Raises :class:`pxpl5.SettingError` if the encoder refuses the picture.
     pub(crate) fn png<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let picture = self.copied(py)?;
         let bytes = py.detach(|| png_bytes(&picture, &self.texts)).map_err(wrong_setting)?;
         Ok(PyBytes::new(py, &bytes))
     }
 
-    /// What notebooks show: the picture as PNG.
+    /// Returns the picture as PNG, for notebooks.
     fn _repr_png_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         self.png(py)
     }
 
     /// Writes the picture as a PNG file.
     ///
-    /// Raises OSError when it cannot be written.
+    /// Raises OSError if the file cannot be written.
     fn save(&self, py: Python<'_>, path: std::path::PathBuf) -> PyResult<()> {
         let bytes = self.png(py)?;
         Ok(std::fs::write(path, bytes.as_bytes())?)
     }
 
-    /// Its size in pixels.
+    /// Returns a text with the size in pixels.
     fn __repr__(&self, py: Python<'_>) -> String {
         let dims = self.pixels.bind(py).dims();
         format!("<pxpl5.Picture of {} x {} pixels>", dims[1], dims[0])

@@ -1,7 +1,9 @@
-//! A pipeline whose policy is a Python callable: which renderer draws which region, and in which order.
+//! A pipeline whose policy is a Python callable. The policy decides which renderer draws which region, and in which
+//! order.
 //!
-//! The firmware is that of docs/guide/own-pipeline.md: one graphics processor draws mono frames and shows each as soon as it is
-//! finished. TRANSFORM is done when the policy is asked, so that it knows how much is in every region.
+//! The firmware is that of docs/guide/own-pipeline.md. One graphics processor draws mono frames and shows each frame as
+//! soon as it is finished. TRANSFORM ends before the policy is called, so the policy knows the number of primitives in
+//! every region.
 
 use crate::errors::wrong_setting;
 use pxpl5::firmware::{
@@ -17,13 +19,13 @@ use pyo3::types::PyDict;
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A policy, and what it has raised.
+/// A policy callable with the exception that it may have raised.
 pub(crate) struct Asked {
     policy: Py<PyAny>,
     raised: Mutex<Option<PyErr>>,
 }
 
-/// What a policy says of a region: its number and that of the renderer that draws it.
+/// Decision of a policy: the number of a region and the index of its renderer.
 type Assignment = (u16, usize);
 
 impl Asked {
@@ -31,22 +33,23 @@ impl Asked {
         Self { policy, raised: Mutex::default() }
     }
 
-    /// Whether it has raised something that nobody has heard of yet.
+    /// Returns true if the policy has raised an exception that is not reported yet.
     pub(crate) fn has_raised(&self) -> bool {
         self.raised.lock().unwrap_or_else(PoisonError::into_inner).is_some()
     }
 
-    /// Raises what it has raised.
+    /// Raises the stored exception of the policy.
     pub(crate) fn check(&self) -> PyResult<()> {
         let raised = self.raised.lock().unwrap_or_else(PoisonError::into_inner).take();
         raised.map_or(Ok(()), Err)
     }
 
-    /// Which renderer draws which region of a frame; `None` where the policy raises.
+    /// Calls the policy for a frame and returns its assignments. Returns `None` if the policy raises an exception.
     fn assignments(&self, frame: PictureNumber, now: Time, pass: &Pass, renderers: usize) -> Option<Vec<Assignment>> {
         let grid = pass.picture().viewport.grid();
         let regions = grid.regions() as u16;
         let primitives: Vec<u32> = (0..regions).map(|region| pass.counts(RegionId(region)).total()).collect();
+        // Describe the frame in a dictionary and call the policy.
         let asked = Python::attach(|py| -> PyResult<Vec<Assignment>> {
             let about = PyDict::new(py);
             about.set_item("frame", frame.0)?;
@@ -61,10 +64,11 @@ impl Asked {
     }
 }
 
-/// Every region once, each for a renderer that there is.
+/// Checks that every region occurs once, with an existing renderer.
 fn checked(found: Vec<Assignment>, regions: u16, renderers: usize) -> PyResult<Vec<Assignment>> {
     let mut seen = vec![false; usize::from(regions)];
     for (region, renderer) in &found {
+        // An unknown region, a repeated region and an unknown renderer are errors.
         let known = seen.get_mut(usize::from(*region)).filter(|seen| !**seen);
         let Some(known) = known.filter(|_| *renderer < renderers) else {
             return Err(wrong_setting(format!(
@@ -81,11 +85,12 @@ fn checked(found: Vec<Assignment>, regions: u16, renderers: usize) -> PyResult<V
     }
 }
 
-/// One graphics processor, one frame at a time, regions dealt to the renderers as a policy says.
+/// A pipeline with one graphics processor that draws one frame at a time. The policy distributes the regions over the
+/// renderers.
 pub(crate) struct PolicyPipeline {
     asked: Arc<Asked>,
     phong: bool,
-    /// What tells the policy from others.
+    /// Number from the name of the policy, which distinguishes policies in the configuration hash.
     name: u64,
 }
 
@@ -117,7 +122,7 @@ impl fmt::Debug for PolicyPipeline {
     }
 }
 
-/// What the firmware draws with.
+/// Data that the firmware needs for drawing.
 struct Drawing {
     ports: Ports,
     list: Arc<DisplayList>,
@@ -135,13 +140,15 @@ async fn firmware(gp: Gp, drawing: Drawing, mut view: impl FnMut(ViewNumber, Tim
         let view = view(ViewNumber::taken_for(frame), gp.now());
         let pass = share.transform(&view, 0, picture);
         let counts = share.counts();
+        // TRANSFORM takes the times of the table for triangles and bin entries.
         gp.spend(Span::from_ns(gp.timing().triangle_ns) * u64::from(counts.triangles)).await;
         gp.spend(Span::from_ns(gp.timing().bin_entry_ns) * pass.entries()).await;
         gp.end(Stage::Transform, frame, None);
-        // Of a policy that raised nothing more is drawn: the run is given up at the next field.
+        // After an exception, the firmware stops drawing, and the run ends at the next field.
         let Some(assignments) = asked.assignments(frame, gp.now(), &pass, ports.renderers.len()) else { return Ok(()) };
         let buffer = (frame.next().0 % 2) as u8;
         gp.begin(Stage::Render, frame, None);
+        // Send each region to its renderer. The last message contains the copy command.
         for (region, renderer) in &assignments {
             let envelope = envelope(&gp, &picture, (frame_buffer, buffer), RegionId(*region), frame);
             for message in region_messages(&pass, RegionId(*region), 0, envelope) {
@@ -150,6 +157,7 @@ async fn firmware(gp: Gp, drawing: Drawing, mut view: impl FnMut(ViewNumber, Tim
             }
         }
         gp.end(Stage::Render, frame, None);
+        // Wait for the acknowledgement of every copy, then for the swap.
         for _ in &assignments {
             gp.receive().await;
         }

@@ -1,4 +1,4 @@
-//! The i860: assembler, disassembler, and a processor with memory.
+//! The i860 for Python: assembler, disassembler, and a processor with memory.
 
 use crate::errors::{failed_run, not_assembled, wrong_setting};
 use i860::{AddressProfile, Config, Cpu, Program as NativeProgram, Ram, RunEnd};
@@ -7,15 +7,16 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::collections::BTreeMap;
 
-/// An assembled i860 program: bytes from an address on, labels and source lines.
+/// An assembled i860 program: its bytes, their address, labels and source lines.
 #[pyclass(frozen, module = "pxpl5")]
 pub(crate) struct Program {
     program: NativeProgram,
 }
 
-/// Assembles i860 source; ``base`` is the address of the first byte, ``name`` stands for the text in errors.
+/// Assembles i860 source. ``base`` is the address of the first byte. ``name`` is the name of the source in error
+/// messages.
 ///
-/// Raises :class:`pxpl5.AssemblyError` with every line that is wrong.
+/// Raises :class:`pxpl5.AssemblyError` with all invalid lines.
 #[pyfunction]
 #[pyo3(signature = (source, *, base = 0x1000, name = "source.s"))]
 pub(crate) fn assemble(source: &str, base: u32, name: &str) -> PyResult<Program> {
@@ -23,7 +24,8 @@ pub(crate) fn assemble(source: &str, base: u32, name: &str) -> PyResult<Program>
     Ok(Program { program })
 }
 
-/// The instruction of a 32-bit word as text; ``address`` is where it stands, for targets of branches.
+/// Returns a 32-bit word as the text of an instruction. ``address`` is the address of the word, which is needed for the
+/// targets of branches.
 #[pyfunction]
 #[pyo3(signature = (word, address = 0))]
 pub(crate) fn disassemble(word: u32, address: u32) -> String {
@@ -32,36 +34,36 @@ pub(crate) fn disassemble(word: u32, address: u32) -> String {
 
 #[pymethods]
 impl Program {
-    /// Address of the first byte.
+    /// Returns the address of the first byte.
     #[getter]
     fn base(&self) -> u32 {
         self.program.base
     }
 
-    /// The contents from :attr:`base` on, gaps included.
+    /// Returns the contents from :attr:`base` on, including gaps.
     #[getter]
     fn bytes<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
         PyBytes::new(py, &self.program.bytes)
     }
 
-    /// The contents as words: shape (n,), uint32.
+    /// Returns the contents as words, in an array of shape (n,), uint32.
     #[getter]
     fn words<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
         PyArray1::from_vec(py, self.program.words())
     }
 
-    /// Labels and constants by name.
+    /// Returns the values of labels and constants, by name.
     #[getter]
     fn symbols(&self) -> BTreeMap<String, u32> {
         self.program.symbols.clone()
     }
 
-    /// A line for each word: address, word, instruction or data.
+    /// Returns a listing with address, word and instruction or data, one line for each word.
     fn listing(&self) -> String {
         self.program.listing(None)
     }
 
-    /// Where it stands, how long it is, and its labels.
+    /// Returns a text with address, length and labels.
     fn __repr__(&self) -> String {
         let labels: Vec<&str> = self.program.labels.iter().map(|(name, _)| name.as_str()).collect();
         format!(
@@ -73,7 +75,7 @@ impl Program {
     }
 }
 
-/// An i860 with its clock, its caches and memory from address 0 on, a program in it.
+/// An i860 processor with clock, caches, memory from address 0 on, and a program.
 #[pyclass(module = "pxpl5")]
 pub(crate) struct Processor {
     cpu: Cpu,
@@ -82,7 +84,7 @@ pub(crate) struct Processor {
 }
 
 impl Processor {
-    /// A label of the program, or an address.
+    /// Returns the address of a label of the program, or a given address unchanged.
     fn place(&self, place: &Bound<'_, PyAny>) -> PyResult<u32> {
         let Ok(name) = place.extract::<String>() else { return place.extract() };
         self.program.symbol(&name).ok_or_else(|| {
@@ -95,15 +97,15 @@ impl Processor {
     }
 }
 
-/// Most bytes of memory: 1 GiB.
+/// Largest size of memory in bytes: 1 GiB.
 const MOST_MEMORY: usize = 1 << 30;
 
 #[pymethods]
 impl Processor {
-    /// A processor with a program in ``memory`` bytes (8 MiB, as a board's; at most 1 GiB), at its label ``start`` or at ``entry``, a
-    /// label or an address.
+    /// Creates a processor with a program. ``memory`` is the size of memory in bytes: 8 MiB by default, as on a board,
+    /// and at most 1 GiB. The processor starts at the label ``start``, or at ``entry``, which is a label or an address.
     ///
-    /// Raises :class:`pxpl5.SettingError` for a program that does not fit, and for what is no label.
+    /// Raises :class:`pxpl5.SettingError` for a program that does not fit, and for an unknown label.
     #[new]
     #[pyo3(signature = (program, *, memory = 0x0080_0000, entry = None))]
     fn new(program: &Program, memory: usize, entry: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
@@ -114,10 +116,12 @@ impl Processor {
         let mut ram = Ram::new(0, memory);
         let base = program.base;
         let size = program.bytes.len();
+        // Load the program, then choose the start address.
         ram.load(base, &program.bytes)
             .map_err(|_| wrong_setting(format!("{size} bytes at {base:#x} do not fit {memory:#x} bytes of memory")))?;
         let start = program.symbol("start").unwrap_or(base);
         let mut made = Self { cpu: Cpu::at(Config::cycle(), start), memory: ram, program };
+        // The clocks of each word are recorded for `profile`.
         made.cpu.watch(Some(AddressProfile::new(base, size.div_ceil(4))));
         if let Some(entry) = entry {
             made.cpu.state.pc = made.place(entry)?;
@@ -125,10 +129,12 @@ impl Processor {
         Ok(made)
     }
 
-    /// Runs to ``stop``, a label or an address (default: label ``end``, or the end of the program), at most ``budget`` instructions, and
-    /// without the interpreter's lock. Gives ``stopped`` or ``exhausted``.
+    /// Runs to ``stop``, which is a label or an address, or for at most ``budget`` instructions. The default is the
+    /// label ``end``, or the end of the program. The run does not hold the interpreter's lock. Returns ``stopped`` or
+    /// ``exhausted``.
     ///
-    /// Raises :class:`pxpl5.RunError` for a trap, with its cause and place, and :class:`pxpl5.SettingError` for what is no label.
+    /// Raises :class:`pxpl5.RunError` for a trap, with its cause and address, and :class:`pxpl5.SettingError` for an
+    /// unknown label.
     #[pyo3(signature = (stop = None, *, budget = 10_000_000))]
     fn run(&mut self, py: Python<'_>, stop: Option<&Bound<'_, PyAny>>, budget: u64) -> PyResult<&'static str> {
         let end = self.program.base.wrapping_add(self.program.bytes.len() as u32);
@@ -137,7 +143,7 @@ impl Processor {
             None => self.program.symbol("end").unwrap_or(end),
         };
         let mut left = budget;
-        // In pieces, so that Ctrl-C is heard.
+        // The run is divided into pieces, so that Ctrl-C can take effect.
         while left > 0 {
             let piece = left.min(PIECE);
             let Self { cpu, memory, .. } = self;
@@ -151,7 +157,8 @@ impl Processor {
         Ok("exhausted")
     }
 
-    /// Executes an instruction, or a pair in dual-instruction mode, with the slot of a delayed branch; gives the new program counter.
+    /// Executes one instruction, or a pair in dual-instruction mode, with the slot of a delayed branch. Returns the new
+    /// program counter.
     ///
     /// Raises :class:`pxpl5.RunError` for a trap.
     fn step(&mut self) -> PyResult<u32> {
@@ -160,27 +167,28 @@ impl Processor {
         Ok(self.cpu.state.pc)
     }
 
-    /// Address of the next instruction.
+    /// Returns the address of the next instruction.
     #[getter]
     fn pc(&self) -> u32 {
         self.cpu.state.pc
     }
 
-    /// Integer registers: shape (32,), uint32. A copy.
+    /// Returns a copy of the integer registers, of shape (32,), uint32.
     #[getter]
     fn r<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
         PyArray1::from_slice(py, &self.cpu.state.r)
     }
 
-    /// Floating-point registers as bits: shape (32,), uint32; ``.view(numpy.float32)`` are their values. A copy.
+    /// Returns a copy of the floating-point registers as bits, of shape (32,), uint32. ``.view(numpy.float32)`` gives
+    /// their values.
     #[getter]
     fn f<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
         PyArray1::from_slice(py, &self.cpu.state.f)
     }
 
-    /// Puts a value into an integer register, 1 to 31.
+    /// Sets an integer register, 1 to 31.
     ///
-    /// Raises :class:`pxpl5.SettingError` for another number; register 0 stays 0.
+    /// Raises :class:`pxpl5.SettingError` for another number. Register 0 is always 0.
     fn set_r(&mut self, number: usize, value: u32) -> PyResult<()> {
         if !(1..32).contains(&number) {
             return Err(wrong_setting(format!("register: expected 1 to 31, found {number}")));
@@ -189,19 +197,20 @@ impl Processor {
         Ok(())
     }
 
-    /// Clocks since the begin, freezes included.
+    /// Returns the number of clocks since the start, including freezes.
     #[getter]
     fn clocks(&self) -> u64 {
         self.cpu.clocks()
     }
 
-    /// Instructions executed; a pair counts two.
+    /// Returns the number of executed instructions. A pair counts as two.
     #[getter]
     fn instructions(&self) -> u64 {
         self.cpu.instructions()
     }
 
-    /// Where the clocks went: instructions, issue, bus_requests, page_misses, instruction_misses, data_misses, and clocks by label.
+    /// Returns a profile of the clocks: instructions, issue, bus_requests, page_misses, instruction_misses,
+    /// data_misses, and clocks by label.
     fn profile<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let profile = self.cpu.profile();
         let all = PyDict::new(py);
@@ -218,9 +227,10 @@ impl Processor {
         Ok(all)
     }
 
-    /// Words of memory from a label or an address on, a multiple of 4: shape (count,), uint32. A copy.
+    /// Returns a copy of ``count`` words of memory, of shape (count,), uint32. The words begin at a label or at an
+    /// address that is a multiple of 4.
     ///
-    /// Raises :class:`pxpl5.SettingError` where no memory is.
+    /// Raises :class:`pxpl5.SettingError` for an address outside of memory.
     #[pyo3(signature = (place, count = 1))]
     fn read<'py>(
         &self,
@@ -234,9 +244,9 @@ impl Processor {
         Ok(PyArray1::from_vec(py, words))
     }
 
-    /// Puts 32-bit words into memory from a label or an address on.
+    /// Writes 32-bit words to memory, from a label or an address on.
     ///
-    /// Raises :class:`pxpl5.SettingError` where no memory is; nothing is written then.
+    /// Raises :class:`pxpl5.SettingError` for an address outside of memory. Nothing is written then.
     fn write(&mut self, place: &Bound<'_, PyAny>, words: Vec<u32>) -> PyResult<()> {
         let address = self.place(place)?;
         let count = words.len();
@@ -246,11 +256,11 @@ impl Processor {
         Ok(())
     }
 
-    /// Where it is, and after how many clocks.
+    /// Returns a text with the program counter and the number of clocks.
     fn __repr__(&self) -> String {
         format!("<pxpl5.Processor at {:#010x} after {} clocks>", self.cpu.state.pc, self.cpu.clocks())
     }
 }
 
-/// Instructions between two looks at Ctrl-C: some tens of milliseconds.
+/// Number of instructions between two checks for Ctrl-C, which take some tens of milliseconds.
 const PIECE: u64 = 2_000_000;

@@ -1,4 +1,4 @@
-//! Scenes: built in, from files, from arrays.
+//! Scenes: built-in, from files and from arrays.
 
 use crate::errors::wrong_setting;
 use glam::Vec3;
@@ -9,9 +9,10 @@ use pyo3::prelude::*;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// What is drawn: triangles and spheres, in metres, with a light and a head that looks at it. It does not change.
+/// An immutable scene: triangles and spheres in metres, with a light and the motion of a viewer.
 ///
-/// Axes are right-handed, y up; who looks from the default place looks along -z. Triangles are anticlockwise seen from outside.
+/// Axes are right-handed with y upwards. The default viewer looks along -z. Triangles are anticlockwise when seen from
+/// outside.
 #[pyclass(frozen, module = "pxpl5")]
 pub(crate) struct Scene {
     pub(crate) scene: Arc<scene::Scene>,
@@ -25,18 +26,18 @@ impl Scene {
 
 #[pymethods]
 impl Scene {
-    /// A built-in scene, such as ``mig`` or ``full-screen:12``; :func:`pxpl5.builtin_scenes` lists them.
+    /// Returns a built-in scene, such as ``mig`` or ``full-screen:12``. :func:`pxpl5.builtin_scenes` lists all names.
     ///
-    /// Raises :class:`pxpl5.SettingError` for a name that there is not.
+    /// Raises :class:`pxpl5.SettingError` for an unknown name.
     #[staticmethod]
     fn builtin(py: Python<'_>, name: String) -> PyResult<Self> {
         py.detach(|| scene::builtin(&name)).map(Self::of).map_err(wrong_setting)
     }
 
-    /// A model file (PLY, OBJ or PDB), by its extension. It is moved and scaled into the view of both eyes; with ``fit=False`` it
-    /// stays where its coordinates say, in metres.
+    /// Loads a model file (PLY, OBJ or PDB). The extension decides the format. The model is moved and scaled into the
+    /// view of both eyes. With ``fit=False``, the model keeps its coordinates, in metres.
     ///
-    /// Raises :class:`pxpl5.SettingError` with the file, the place in it, what was expected and what was found.
+    /// Raises :class:`pxpl5.SettingError` with the file, the position in the file, and the expected and the found text.
     #[staticmethod]
     #[pyo3(signature = (path, *, fit = true))]
     fn load(py: Python<'_>, path: PathBuf, fit: bool) -> PyResult<Self> {
@@ -44,15 +45,16 @@ impl Scene {
         py.detach(|| scene::load_placed(path, placement)).map(Self::of).map_err(wrong_setting)
     }
 
-    /// A scene of arrays, which are copied.
+    /// Creates a scene from arrays, which are copied.
     ///
     /// - ``vertices``: shape (n, 3), metres, floating point; ``triangles``: shape (m, 3), indices of vertices from 0.
     /// - ``normals``: shape (n, 3), any length above 0; None for the mean of the adjacent triangles, weighted by area.
     /// - ``colours``: shape (n, 3), red, green and blue, 0 to 255; None for a light grey.
     /// - ``spheres``: shape (k, 4), centre and radius, metres; ``sphere_colours``: shape (k, 3), 0 to 255.
-    /// - ``fit``: moves and scales it as model files are; else it stays, and the head looks at it from where all of it is seen.
+    /// - ``fit``: true to move and scale the scene like a model file; otherwise the viewer is placed to see the whole
+    ///   scene.
     ///
-    /// Raises :class:`pxpl5.SettingError` with the first vertex, triangle or sphere that is wrong.
+    /// Raises :class:`pxpl5.SettingError` with the first invalid vertex, triangle or sphere.
     #[staticmethod]
     #[pyo3(signature = (vertices, triangles, *, normals = None, colours = None, spheres = None, sphere_colours = None,
                         fit = true, name = "arrays"))]
@@ -73,6 +75,7 @@ impl Scene {
         if fit {
             fit_into_view(&mut positions, &mut balls);
         }
+        // Fill in missing normals and colours.
         let normals = match &normals {
             Some(normals) => lengthened(points("normals", normals.as_array())?)?,
             None => mean_normals(&positions, &triangles),
@@ -89,6 +92,7 @@ impl Scene {
             .zip(&of_spheres)
             .map(|((centre, radius), colour)| Sphere { centre: *centre, radius: *radius, colour: *colour })
             .collect();
+        // The default motion sees the whole scene.
         let (centre, radius) = ball_around(&positions, &balls);
         let parts = SceneParts {
             name: name.to_owned(),
@@ -103,55 +107,57 @@ impl Scene {
         scene::Scene::new(parts).map(Self::of).map_err(wrong_setting)
     }
 
-    /// Its name, as reports show it.
+    /// Returns the name, as reports show it.
     #[getter]
     fn name(&self) -> &str {
         self.scene.name()
     }
 
-    /// Places of the vertices: shape (n, 3), float32, metres. A copy.
+    /// Returns a copy of the positions of the vertices, of shape (n, 3), float32, in metres.
     #[getter]
     fn vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f32>> {
         table(py, self.scene.vertices().iter().map(|vertex| vertex.position.to_array()))
     }
 
-    /// Normals of the vertices: shape (n, 3), float32, of unit length. A copy.
+    /// Returns a copy of the normals of the vertices, of shape (n, 3), float32, with unit length.
     #[getter]
     fn normals<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f32>> {
         table(py, self.scene.vertices().iter().map(|vertex| vertex.normal.to_array()))
     }
 
-    /// Red, green and blue of the vertices: shape (n, 3), uint8. A copy.
+    /// Returns a copy of the colours of the vertices: red, green and blue, of shape (n, 3), uint8.
     #[getter]
     fn colours<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<u8>> {
         table(py, self.scene.vertices().iter().map(|vertex| vertex.colour))
     }
 
-    /// The triangles: shape (m, 3), uint32, indices of vertices. A copy.
+    /// Returns a copy of the triangles as indices of vertices, of shape (m, 3), uint32.
     #[getter]
     fn triangles<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<u32>> {
         table(py, self.scene.triangles().iter().copied())
     }
 
-    /// The spheres: shape (k, 4), float32, centre and radius, metres. A copy.
+    /// Returns a copy of the spheres: centre and radius in metres, of shape (k, 4), float32.
     #[getter]
     fn spheres<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f32>> {
         table(py, self.scene.spheres().iter().map(|s| [s.centre.x, s.centre.y, s.centre.z, s.radius]))
     }
 
-    /// The same thinned out evenly to at most so many primitives, 1 or more.
+    /// Returns the scene with evenly removed primitives, so that at most ``primitives`` remain. The number must be 1 or
+    /// more.
     ///
-    /// Raises :class:`pxpl5.SettingError` for more than there are.
+    /// Raises :class:`pxpl5.SettingError` if the scene has fewer primitives.
     fn decimated(&self, py: Python<'_>, primitives: usize) -> PyResult<Self> {
         py.detach(|| self.scene.decimated(primitives)).map(Self::of).map_err(wrong_setting)
     }
 
-    /// The same without triangles that face away from the eye: of surfaces without holes nothing is missing then.
+    /// Returns the scene with back-face culling: triangles that face away from the eye are not drawn. Closed surfaces
+    /// look the same.
     fn culled(&self) -> Self {
         Self::of(scene::Scene::clone(&self.scene).culled())
     }
 
-    /// Its name, and how many triangles and spheres it has.
+    /// Returns a text with the name and the numbers of triangles and spheres.
     fn __repr__(&self) -> String {
         let scene = &self.scene;
         format!(
@@ -163,7 +169,7 @@ impl Scene {
     }
 }
 
-/// Rows of N values each as an array of shape (rows, N).
+/// Returns rows of N values each as an array of shape (rows, N).
 fn table<'py, T: numpy::Element + Copy + Default, const N: usize>(
     py: Python<'py>,
     rows: impl ExactSizeIterator<Item = [T; N]>,
@@ -200,6 +206,7 @@ fn indices(array: ArrayView2<'_, i64>, vertices: usize) -> PyResult<Vec<[u32; 3]
     for (number, row) in array.rows().into_iter().enumerate() {
         let mut corners = [0; 3];
         for (corner, found) in corners.iter_mut().zip(row) {
+            // Negative indices and indices beyond the vertices are errors.
             let index = u32::try_from(*found).ok().filter(|index| (*index as usize) < vertices);
             *corner = index.ok_or_else(|| {
                 wrong_setting(format!(
@@ -218,12 +225,12 @@ fn balls(array: Option<ArrayView2<'_, f64>>) -> PyResult<Vec<(Vec3, f32)>> {
     Ok(array.rows().into_iter().map(ball).collect())
 }
 
-/// Centre and radius.
+/// Converts a row to centre and radius.
 fn ball(row: ArrayView1<'_, f64>) -> (Vec3, f32) {
     (Vec3::new(row[0] as f32, row[1] as f32, row[2] as f32), row[3] as f32)
 }
 
-/// What has no colour is light grey.
+/// Default colour: light grey.
 const GREY: [u8; 3] = [200, 200, 200];
 
 fn rgb(name: &str, array: Option<ArrayView2<'_, u8>>, expected: usize) -> PyResult<Vec<[u8; 3]>> {
@@ -233,7 +240,7 @@ fn rgb(name: &str, array: Option<ArrayView2<'_, u8>>, expected: usize) -> PyResu
     Ok(array.rows().into_iter().map(|row| [row[0], row[1], row[2]]).collect())
 }
 
-/// Normals of unit length.
+/// Scales normals to unit length.
 fn lengthened(normals: Vec<Vec3>) -> PyResult<Vec<Vec3>> {
     let unit = normals.iter().enumerate().map(|(number, normal)| {
         let found = normal.try_normalize();
@@ -242,7 +249,8 @@ fn lengthened(normals: Vec<Vec3>) -> PyResult<Vec<Vec3>> {
     unit.collect()
 }
 
-/// Mean of the adjacent triangles, weighted by area, as the importers have it; upwards where there is none.
+/// Returns the mean normals of the adjacent triangles, weighted by area, as the importers do. A vertex without a
+/// triangle has an upward normal.
 fn mean_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     let mut sums = vec![Vec3::ZERO; positions.len()];
     for corners in triangles {
@@ -253,7 +261,7 @@ fn mean_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     sums.into_iter().map(|sum| sum.normalize_or(Vec3::Y)).collect()
 }
 
-/// Middle of the box around everything, and the farthest reach from it; 0 of nothing.
+/// Returns the centre of the bounding box and the largest distance from it. Both are 0 for an empty scene.
 fn ball_around(positions: &[Vec3], balls: &[(Vec3, f32)]) -> (Vec3, f32) {
     let all = positions.iter().map(|position| (*position, 0.0)).chain(balls.iter().copied());
     let low = all.clone().fold(Vec3::INFINITY, |low, (centre, radius)| low.min(centre - radius));
@@ -265,7 +273,7 @@ fn ball_around(positions: &[Vec3], balls: &[(Vec3, f32)]) -> (Vec3, f32) {
     (middle, all.map(|(centre, radius)| centre.distance(middle) + radius).fold(0.0, f32::max))
 }
 
-/// Moves the middle to the origin and the farthest reach to where that of model files is.
+/// Moves the centre to the origin and scales the scene to the size of fitted model files.
 fn fit_into_view(positions: &mut [Vec3], balls: &mut [(Vec3, f32)]) {
     let (middle, radius) = ball_around(positions, balls);
     if radius <= 0.0 || !radius.is_finite() {

@@ -1,4 +1,4 @@
-//! Sweeps: points, rows and the folder that keeps them.
+//! Sweeps: points, rows and the folder that stores them.
 
 use crate::attended::attended;
 use crate::catalogue::python;
@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// An experiment at every point of a space of settings.
+/// A sweep: one experiment at every point of a space of settings.
 #[pyclass(frozen, module = "pxpl5._native")]
 pub(crate) struct Sweep {
     sweep: Arc<NativeSweep>,
@@ -18,31 +18,32 @@ pub(crate) struct Sweep {
 
 #[pymethods]
 impl Sweep {
-    /// Of settings with a space.
+    /// Creates a sweep from settings with a space.
     ///
-    /// Raises :class:`pxpl5.SettingError` for a space that makes no sense.
+    /// Raises :class:`pxpl5.SettingError` for an invalid space.
     #[new]
     fn new(settings: &Settings) -> PyResult<Self> {
         let sweep = NativeSweep::new(settings.file.clone()).map_err(wrong_setting)?;
         Ok(Self { sweep: Arc::new(sweep) })
     }
 
-    /// How many points there are.
+    /// Returns the number of points.
     #[getter]
     fn points(&self) -> u64 {
         self.sweep.space().points()
     }
 
-    /// What all rows have in common: schema, version, machine, quantities with their definitions, axes.
+    /// Returns the values that all rows have in common: schema, version, machine, quantities with their definitions,
+    /// axes.
     ///
-    /// Raises :class:`pxpl5.SettingError` when no point is an experiment.
+    /// Raises :class:`pxpl5.SettingError` if no point is a valid experiment.
     fn header<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let header = py.detach(|| self.sweep.header()).map_err(wrong_setting)?;
         python(py, &header)
     }
 
-    /// Simulates some points on this thread until so many seconds are over, at least the first: for each its row as a line of JSON,
-    /// and the seconds that it took.
+    /// Simulates some points on one thread until ``seconds`` are over, and at least the first one. Returns, for each
+    /// point, its row as a line of JSON and its time in seconds.
     fn rows(&self, py: Python<'_>, points: Vec<u64>, seconds: f64) -> PyResult<Vec<(String, f64)>> {
         let sweep = Arc::clone(&self.sweep);
         let at_most = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
@@ -50,7 +51,7 @@ impl Sweep {
         Ok(rows.into_iter().map(|(row, seconds)| (line(&row), seconds)).collect())
     }
 
-    /// About how many seconds each of some points will take, by the analytic level.
+    /// Estimates the time of each point in seconds, by the analytic level.
     fn costs(&self, py: Python<'_>, points: Vec<u64>) -> PyResult<Vec<f64>> {
         let sweep = Arc::clone(&self.sweep);
         attended(py, None, false, move |_| sweep.costs(&points))
@@ -76,9 +77,9 @@ impl Store {
 
 #[pymethods]
 impl Store {
-    /// Opens a folder, or makes it; finished points are kept to ``resume``.
+    /// Opens or creates a folder. With ``resume``, rows of finished points are kept.
     ///
-    /// Raises :class:`pxpl5.SweepError` when it cannot be used, is in use, or holds another sweep.
+    /// Raises :class:`pxpl5.SweepError` if the folder cannot be used, is in use, or contains another sweep.
     #[new]
     fn new(sweep: &Sweep, folder: PathBuf, resume: bool) -> PyResult<Self> {
         let header = sweep.sweep.header().map_err(wrong_setting)?;
@@ -86,16 +87,17 @@ impl Store {
         Ok(Self { sweep: Arc::clone(&sweep.sweep), store: Some(store) })
     }
 
-    /// Numbers of the points that have no row yet, in order.
+    /// Returns the numbers of the points without a row, in order.
     fn missing(&mut self) -> PyResult<Vec<u64>> {
         let points = self.sweep.space().points();
         let store = self.open_store()?;
         Ok((0..points).filter(|point| !store.holds(*point)).collect())
     }
 
-    /// Keeps a row, given as a line of JSON, and the seconds that it took; the number of its point. A point that has a row keeps it.
+    /// Stores a row, which is a line of JSON, with its time in seconds. Returns the number of its point. An existing
+    /// row of the point is kept.
     ///
-    /// Raises :class:`pxpl5.SweepError` for a line that is no row, and when it cannot be written.
+    /// Raises :class:`pxpl5.SweepError` for an invalid line, and if the row cannot be written.
     fn append(&mut self, line: &str, seconds: f64) -> PyResult<u64> {
         let row: SweepRow = serde_json::from_str(line).map_err(failed_sweep)?;
         let points = self.sweep.space().points();
@@ -109,10 +111,10 @@ impl Store {
         Ok(row.point)
     }
 
-    /// Simulates all points that have no row yet, so many at a time on threads of this computer. After Ctrl-C the rows of finished
-    /// points are in the folder; the points in hand end first.
+    /// Simulates all points without a row, on ``threads`` threads of this computer. Ctrl-C ends the sweep after the
+    /// points that are in progress. The rows of finished points are in the folder.
     ///
-    /// Raises :class:`pxpl5.SweepError`, KeyboardInterrupt.
+    /// Raises :class:`pxpl5.SweepError` and KeyboardInterrupt.
     #[pyo3(signature = (threads, progress = None))]
     fn run(&mut self, py: Python<'_>, threads: usize, progress: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
         let mut store = self.store.take().ok_or_else(|| failed_sweep("the store is closed"))?;
@@ -131,9 +133,9 @@ impl Store {
         result.map_err(failed_sweep)
     }
 
-    /// All rows, in order of their points, each as a line of JSON.
+    /// Returns all rows in order of their points, each as a line of JSON.
     ///
-    /// Raises :class:`pxpl5.SweepError` when they cannot be read.
+    /// Raises :class:`pxpl5.SweepError` if the rows cannot be read.
     fn lines(&mut self) -> PyResult<Vec<String>> {
         let points = self.sweep.space().points();
         let store = self.open_store()?;
@@ -141,9 +143,9 @@ impl Store {
         rows.map(|row| Ok(line(&row.map_err(failed_sweep)?))).collect()
     }
 
-    /// Puts the rows in order of their points, writes results.csv, and closes the folder.
+    /// Sorts the rows by point, writes results.csv and closes the folder.
     ///
-    /// Raises :class:`pxpl5.SweepError` when it cannot be written.
+    /// Raises :class:`pxpl5.SweepError` if the files cannot be written.
     fn finish(&mut self) -> PyResult<()> {
         let store = self.store.take().ok_or_else(|| failed_sweep("the store is closed"))?;
         store.finish().map_err(failed_sweep)

@@ -1,4 +1,4 @@
-//! Rows: typed columns that leave through the Arrow PyCapsule interface.
+//! Tables with typed columns that Python reads through the Arrow PyCapsule interface.
 
 use crate::errors::wrong_setting;
 use arrow_array::ffi_stream::FFI_ArrowArrayStream;
@@ -15,10 +15,10 @@ use serde_json::{Map, Value};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// A column: what it is called, what it is, and its values.
+/// A column of a table: name, description and values.
 pub(crate) struct Column {
     pub(crate) name: String,
-    /// What its values are, with their unit; it becomes the field's metadata `about`.
+    /// Description of the values with their unit. It becomes the field's metadata `about`.
     pub(crate) about: String,
     pub(crate) values: ArrayRef,
 }
@@ -33,19 +33,19 @@ impl Column {
     }
 }
 
-/// Rows of named, typed columns.
+/// A table with named, typed columns.
 ///
-/// pandas, polars, pyarrow and DuckDB take it as it is, through ``__arrow_c_stream__``, without a copy of the columns:
-/// ``pyarrow.table(table)``, ``polars.DataFrame(table)``, ``pandas.DataFrame.from_arrow(table)``. A column is of whole numbers
-/// (int64), real numbers (float64), truth values or text; a missing value is null. Each column says what it is, and its unit, in
-/// :attr:`definitions`, and in the metadata ``about`` of its Arrow field.
+/// pandas, polars, pyarrow and DuckDB read the table through ``__arrow_c_stream__`` without a copy of the columns:
+/// ``pyarrow.table(table)``, ``polars.DataFrame(table)``, ``pandas.DataFrame.from_arrow(table)``. A column has whole
+/// numbers (int64), real numbers (float64), truth values or text. A missing value is null. :attr:`definitions` has a
+/// description and the unit of each column. The metadata ``about`` of the Arrow fields has the same texts.
 #[pyclass(frozen, module = "pxpl5")]
 pub(crate) struct Table {
     batch: RecordBatch,
 }
 
 impl Table {
-    /// Of columns that are all as long.
+    /// Creates a table from columns of equal length.
     pub(crate) fn of(columns: Vec<Column>) -> PyResult<Self> {
         let fields = columns.iter().map(|column| {
             let about = HashMap::from([("about".to_owned(), column.about.clone())]);
@@ -57,8 +57,8 @@ impl Table {
         Ok(Self { batch })
     }
 
-    /// Of objects: a column for each key in the order in which keys first come, nested ones joined with a point. Lists become their
-    /// JSON text.
+    /// Creates a table from objects, with a column for each key in order of first occurrence. A nested key is joined to
+    /// its parent with a point. Lists become JSON text.
     pub(crate) fn of_rows(rows: &[Map<String, Value>], about: &HashMap<String, String>) -> PyResult<Self> {
         let flat: Vec<Map<String, Value>> = rows.iter().map(flattened).collect();
         let mut names: Vec<&str> = Vec::new();
@@ -78,7 +78,7 @@ impl Table {
     }
 }
 
-/// Nested objects as keys with points.
+/// Returns an object whose nested keys are joined with points.
 fn flattened(row: &Map<String, Value>) -> Map<String, Value> {
     let mut flat = Map::new();
     for (key, value) in row {
@@ -94,11 +94,13 @@ fn flattened(row: &Map<String, Value>) -> Map<String, Value> {
     flat
 }
 
-/// The column of a key: truth values, whole or real numbers where all values are, else text.
+/// Returns the column of a key. The type is truth values, whole numbers or real numbers if all values have that type,
+/// otherwise text.
 fn column_of(name: &str, rows: &[Map<String, Value>], about: &str) -> Column {
     let known: Vec<Option<&Value>> = rows.iter().map(|row| row.get(name).filter(|value| !value.is_null())).collect();
     let all = |is: fn(&Value) -> bool| known.iter().flatten().all(|value| is(value));
     let none = known.iter().all(Option::is_none);
+    // A column without values, or with any real number among numbers, is float64.
     let values: ArrayRef = if none || (!all(Value::is_i64) && all(Value::is_number)) {
         Arc::new(known.iter().map(|value| value.and_then(Value::as_f64)).collect::<Float64Array>())
     } else if all(Value::is_i64) {
@@ -115,9 +117,9 @@ fn plain(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 
-/// A table of dictionaries, given as the JSON text of a list of objects; a column for each key in the order in which keys first come.
+/// Creates a table from the JSON text of a list of objects, with a column for each key in order of first occurrence.
 ///
-/// Raises :class:`pxpl5.SettingError` for text that is no such list.
+/// Raises :class:`pxpl5.SettingError` for invalid text.
 #[pyfunction]
 pub(crate) fn table_of_rows(json: &str, about: HashMap<String, String>) -> PyResult<Table> {
     let rows: Vec<Map<String, Value>> = serde_json::from_str(json).map_err(wrong_setting)?;
@@ -126,7 +128,8 @@ pub(crate) fn table_of_rows(json: &str, about: HashMap<String, String>) -> PyRes
 
 #[pymethods]
 impl Table {
-    /// The rows as an Arrow stream of one batch, for the Arrow PyCapsule interface; ``requested_schema`` is not looked at.
+    /// Returns the rows as an Arrow stream of one batch, for the Arrow PyCapsule interface. ``requested_schema`` is
+    /// ignored.
     #[pyo3(signature = (requested_schema = None))]
     fn __arrow_c_stream__<'py>(
         &self,
@@ -138,18 +141,19 @@ impl Table {
         PyCapsule::new_with_value(py, FFI_ArrowArrayStream::new(Box::new(batches)), c"arrow_array_stream")
     }
 
-    /// How many rows there are.
+    /// Returns the number of rows.
     fn __len__(&self) -> usize {
         self.batch.num_rows()
     }
 
-    /// Names of the columns, in order.
+    /// Returns the names of the columns, in order.
     #[getter]
     fn names(&self) -> Vec<String> {
         self.batch.schema().fields().iter().map(|field| field.name().clone()).collect()
     }
 
-    /// What each column is, with its unit, by name; empty text where its name says all.
+    /// Returns the description of each column with its unit, by column name. The text is empty if the name says
+    /// everything.
     #[getter]
     fn definitions(&self) -> HashMap<String, String> {
         let schema = self.batch.schema();
@@ -157,13 +161,14 @@ impl Table {
         fields.map(|field| (field.name().clone(), field.metadata().get("about").cloned().unwrap_or_default())).collect()
     }
 
-    /// A column by its name, one value a row: numbers as a NumPy array of shape (rows,), int64 or float64, where a missing
-    /// value makes the array float64 with NaN; text and truth values as a list with None. The numbers are copied: Arrow's own
-    /// readers take them without.
+    /// Returns a column by its name. Numbers are a NumPy array of shape (rows,), int64 or float64. With a missing
+    /// value, the array is float64 with NaN. Text and truth values are a list with None. The numbers are copied, unlike
+    /// those of Arrow's own readers.
     ///
-    /// Raises KeyError, with the names that there are.
+    /// Raises KeyError with the existing names.
     fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let column = self.batch.column(self.column_index(name)?);
+        // NumPy has no missing integers, so a column with gaps becomes float64.
         if let Some(whole) = column.as_any().downcast_ref::<Int64Array>() {
             if whole.null_count() == 0 {
                 return Ok(PyArray1::from_slice(py, whole.values()).into_any());
@@ -178,9 +183,9 @@ impl Table {
         Ok(PyList::new(py, values.collect::<PyResult<Vec<_>>>()?)?.into_any())
     }
 
-    /// A row as a dictionary, by its number from 0; None for what is missing.
+    /// Returns a row by its number, from 0, as a dictionary. A missing value is None.
     ///
-    /// Raises IndexError behind the last one.
+    /// Raises IndexError for a number beyond the last row.
     fn row<'py>(&self, py: Python<'py>, number: usize) -> PyResult<Bound<'py, PyDict>> {
         if number >= self.batch.num_rows() {
             let rows = self.batch.num_rows();
@@ -195,12 +200,12 @@ impl Table {
         Ok(row)
     }
 
-    /// All rows as dictionaries, in order.
+    /// Returns all rows as dictionaries, in order.
     fn rows<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         (0..self.batch.num_rows()).map(|number| self.row(py, number)).collect()
     }
 
-    /// For notebooks: the first rows, with the definitions of the columns as titles.
+    /// Returns the first rows as HTML for notebooks. The definitions of the columns are tooltips.
     fn _repr_html_(&self) -> String {
         let schema = self.batch.schema();
         let head = schema.fields().iter().map(|field| {
@@ -212,6 +217,7 @@ impl Table {
             let cells = self.batch.columns().iter().map(|column| format!("<td>{}</td>", escaped(&text(column, row))));
             format!("<tr>{}</tr>", cells.collect::<String>())
         });
+        // A line below the table tells how many rows are left out.
         let more = self.batch.num_rows() - rows;
         let foot = if more > 0 { format!("<p>and {more} more rows</p>") } else { String::new() };
         format!(
@@ -221,20 +227,20 @@ impl Table {
         )
     }
 
-    /// How many rows and columns there are, and the names of these.
+    /// Returns a text with the number of rows and the names of the columns.
     fn __repr__(&self) -> String {
         format!("<pxpl5.Table of {} rows: {}>", self.batch.num_rows(), self.names().join(", "))
     }
 }
 
-/// Rows that a notebook shows.
+/// Number of rows that a notebook shows.
 const SHOWN_ROWS: usize = 40;
 
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// A value for people: four significant digits of a real number, nothing of what is missing.
+/// Returns a value as text: four significant digits of a real number, and nothing for a missing value.
 fn text(column: &ArrayRef, row: usize) -> String {
     if column.is_null(row) {
         return String::new();
@@ -242,6 +248,7 @@ fn text(column: &ArrayRef, row: usize) -> String {
     let any = column.as_any();
     if let Some(values) = any.downcast_ref::<Float64Array>() {
         let value = values.value(row);
+        // Four significant digits, but at most six after the decimal point.
         let digits = 3 - value.abs().max(1e-3).log10().floor() as i32;
         return format!("{value:.*}", digits.clamp(0, 6) as usize);
     }
@@ -251,7 +258,7 @@ fn text(column: &ArrayRef, row: usize) -> String {
     whole.or(flag).or(words).unwrap_or_default()
 }
 
-/// A value as Python has it.
+/// Converts a value to Python.
 fn cell<'py>(py: Python<'py>, column: &ArrayRef, row: usize) -> PyResult<Bound<'py, PyAny>> {
     if column.is_null(row) {
         return Ok(py.None().into_bound(py));

@@ -13,19 +13,19 @@ use pxpl5::volume::{Volume as Native, VolumeSettings, figures};
 use pyo3::prelude::*;
 use std::sync::Arc;
 
-/// A volume that has been drawn: the slices of one turn of a spinning screen.
+/// A drawn volume: the slices of one turn of a spinning screen.
 #[pyclass(frozen, module = "pxpl5")]
 pub(crate) struct Volume {
     volume: Arc<Native>,
 }
 
-/// Paths of everything that decides what a volume is, in order.
+/// Returns the paths of all settings of a volume, in order.
 #[pyfunction]
 pub(crate) fn volume_keys() -> Vec<String> {
     VolumeSettings::paper().keys()
 }
 
-/// The figures of the SpatialGL paper beside the model's: a dictionary with figures and shown.
+/// Returns the figures of the SpatialGL paper beside those of the model: a dictionary with figures and shown.
 ///
 /// Raises :class:`pxpl5.SettingError` for a scene that cannot be drawn.
 #[pyfunction]
@@ -44,9 +44,10 @@ pub(crate) fn volume_figures<'py>(
 
 #[pymethods]
 impl Volume {
-    /// Draws a scene with settings ``PATH=VALUE``; what is not set is as in the paper. See :func:`pxpl5.volume_keys`.
+    /// Draws a scene with settings ``PATH=VALUE``. Other settings have the values of the paper. See
+    /// :func:`pxpl5.volume_keys`.
     ///
-    /// Raises :class:`pxpl5.SettingError` with the path, what was expected and what was found.
+    /// Raises :class:`pxpl5.SettingError` with the path, and the expected and the found text.
     #[staticmethod]
     fn draw(py: Python<'_>, scene: &Scene, assignments: Vec<String>) -> PyResult<Self> {
         let mut settings = VolumeSettings::paper();
@@ -60,20 +61,21 @@ impl Volume {
         Ok(Self { volume: Arc::new(drawn.map_err(wrong_setting)?) })
     }
 
-    /// Everything as numbers: counts, occupancy, times of the model, and the hash of the volume.
+    /// Returns the report as a dictionary: counts, occupancy, times of the model, and the hash of the volume.
     fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         python(py, &py.detach(|| self.volume.report()))
     }
 
-    /// How many slices a turn has.
+    /// Returns the number of slices in a turn.
     #[getter]
     fn slices(&self) -> u32 {
         self.volume.frame.planes.slices()
     }
 
-    /// The pixels of a slice that are lit, by colour: shape (height, width, 3), uint8, 0 or 1 of red, green and blue. A copy.
+    /// Returns a copy of the lit pixels of a slice by colour, of shape (height, width, 3), uint8. The values of red,
+    /// green and blue are 0 or 1.
     ///
-    /// Raises :class:`pxpl5.SettingError` for a slice that there is not.
+    /// Raises :class:`pxpl5.SettingError` for an unknown slice.
     fn bits<'py>(&self, py: Python<'py>, slice: u32) -> PyResult<Bound<'py, PyArray3<u8>>> {
         let slice = self.volume.check_slice(slice).map_err(wrong_setting)?;
         let planes = &self.volume.frame.planes;
@@ -86,9 +88,10 @@ impl Volume {
         Ok(PyArray3::from_owned_array(py, bits))
     }
 
-    /// A slice as a picture: after halftoning, or, undithered, in its colours before.
+    /// Returns a slice as a picture after halftoning. With ``undithered``, the picture has the colours before
+    /// halftoning.
     ///
-    /// Raises :class:`pxpl5.SettingError` for a slice that there is not.
+    /// Raises :class:`pxpl5.SettingError` for an unknown slice.
     #[pyo3(signature = (number, *, undithered = false))]
     fn slice(&self, py: Python<'_>, number: u32, undithered: bool) -> PyResult<Picture> {
         let number = self.volume.check_slice(number).map_err(wrong_setting)?;
@@ -97,13 +100,14 @@ impl Volume {
         Picture::of(py, picture, Vec::new())
     }
 
-    /// All slices as thumbnails, row by row.
+    /// Returns all slices as thumbnails in one picture, row by row.
     fn sheet(&self, py: Python<'_>) -> PyResult<Picture> {
         let picture = py.detach(|| sheet(&self.volume));
         Picture::of(py, picture, Vec::new())
     }
 
-    /// What an eye sees of one turn, four radii away: azimuth from +z to +x and elevation in degrees, ``size`` pixels wide and high.
+    /// Returns the view of an eye over one turn, from a distance of four radii. The azimuth goes from +z to +x. Azimuth
+    /// and elevation are in degrees, and the picture is ``size`` pixels wide and high.
     ///
     /// Raises :class:`pxpl5.SettingError` for an eye that sees nothing.
     #[pyo3(signature = (azimuth_deg = 40.0, elevation_deg = 25.0, *, size = 512))]
@@ -117,12 +121,12 @@ impl Volume {
         Picture::of(py, picture.map_err(wrong_setting)?, Vec::new())
     }
 
-    /// For notebooks: what an eye sees.
+    /// Returns the view of an eye as PNG, for notebooks.
     fn _repr_png_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, pyo3::types::PyBytes>> {
         self.view(py, 40.0, 25.0, 384)?.png(py)
     }
 
-    /// What it shows, and how many slices it has.
+    /// Returns a text with the scene and the number of slices.
     fn __repr__(&self) -> String {
         format!("<pxpl5.Volume of {}: {} slices>", self.volume.scene, self.slices())
     }

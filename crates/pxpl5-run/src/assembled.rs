@@ -1,4 +1,4 @@
-//! A run as it stands: what all hold of it who look back.
+//! A machine with its programs, and the records of its run.
 
 use crate::face_notes::FaceNotes;
 use crate::head_views::HeadViews;
@@ -6,7 +6,7 @@ use pxpl5_machine::Machine;
 use pxpl5_sim::Time;
 use std::sync::Arc;
 
-/// A machine with its programs, and what is written of a run while it goes on.
+/// A machine with its programs, and the records that are written during the run.
 #[derive(Debug)]
 pub(crate) struct Assembled {
     pub(crate) machine: Machine,
@@ -15,14 +15,14 @@ pub(crate) struct Assembled {
 }
 
 impl Assembled {
-    /// Records that are held of the run.
+    /// Returns the number of records in memory.
     pub(crate) fn records(&self) -> usize {
         let observation = self.machine.record().observation();
         let traffic = observation.traffic.as_ref().map_or(0, |traffic| traffic.records());
         observation.records() + traffic + self.head.as_ref().map_or(0, |head| head.records())
     }
 
-    /// Gives up what was observed before one instant, and what is known of the head before another: nobody looks so far back.
+    /// Discards observations before `instant` and records of the head before `of_head`. No later result needs them.
     pub(crate) fn forget_before(&mut self, instant: Time, of_head: Time) {
         self.machine.forget_before(instant);
         self.head.iter().for_each(|head| head.forget_before(of_head));

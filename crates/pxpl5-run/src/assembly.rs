@@ -1,4 +1,4 @@
-//! A machine with its programs, ready to run.
+//! Builds the machine of an experiment with its programs.
 
 use crate::assembled::Assembled;
 use crate::cut::moves;
@@ -22,6 +22,7 @@ impl Experiment {
         if !(FIELDS_RANGE.0..=FIELDS_RANGE.1).contains(&self.fields) {
             return Err(ExperimentError::Fields { expected: FIELDS_RANGE, found: self.fields });
         }
+        // Adapt the machine to the pipeline, the scene's background and the level of modelling.
         let mut adapted = self.pipeline.adapt(self.config.clone());
         check_faces(&adapted, self.pipeline.as_ref())?;
         let [red, green, blue] = self.scene.lighting().background;
@@ -37,6 +38,7 @@ impl Experiment {
         if self.level == Level::Cycle {
             machine.run_code();
         }
+        // Load the programs, then apply the options that change no simulated time.
         let (setup, head) = self.setup(&config, &machine, preparation)?;
         let notes = setup.notes.clone();
         self.pipeline.load(&mut machine, &setup)?;
@@ -60,6 +62,7 @@ impl Experiment {
         machine: &Machine,
         preparation: Preparation,
     ) -> Result<(Setup, Option<Arc<HeadViews>>), ExperimentError> {
+        // Functions for a viewer who follows the scene's own motion without any delay.
         let surface = machine.record().display().surfaces().first().cloned();
         let hmd = hmd_before(surface.as_ref());
         let eyes = self.pipeline.eyes();
@@ -78,6 +81,7 @@ impl Experiment {
         let cells = cut.as_ref().map_or_else(Arc::default, |cut| Arc::clone(&cut.cells));
         let host = config.host;
         let setup = Setup { list, views, wanted, poses, moving, cells, notes, aim, reports, starts, host, pixels };
+        // With a tracked head, views and reports come from the tracker instead.
         let Some(head) = preparation.head.or_else(|| self.head.clone()) else { return Ok((setup, None)) };
         let until = machine.record().tick(self.end());
         check_recording(&head, until)?;
@@ -87,22 +91,25 @@ impl Experiment {
         if !self.on_demand {
             return Ok((setup, Some(head)));
         }
+        // On demand, a frame begins with the first report at which the host is ready.
         let asked = Arc::clone(&head);
         let free = Arc::clone(&setup.starts);
         Ok((Setup { starts: Arc::new(move |ready| asked.report_from(free(ready)?)), ..setup }, Some(head)))
     }
 }
 
-/// A host that is ready for a frame begins it when its application has taken its time.
+/// Returns the function that gives the start of a frame. A host that is ready begins the frame after its application's
+/// computing time.
 fn frame_starts(host: HostTiming, seed: u64) -> FrameStarts {
     Arc::new(move |ready| Some(ready + host.application_span(mix(seed ^ mix(ready.0)))))
 }
 
-/// A display that shows faces needs a pipeline that draws them, and the other way round.
+/// Checks that display and pipeline match. A display that takes faces needs a pipeline that draws faces, and the
+/// reverse.
 ///
 /// # Errors
 ///
-/// [`ConfigError`] says what was expected of the pipeline and what was found.
+/// [`ConfigError`] states what was expected of the pipeline and what was found.
 pub fn check_faces(config: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), ConfigError> {
     let Some(display) = config.displays.first() else { return Ok(()) };
     let name = display.name();
@@ -118,7 +125,7 @@ pub fn check_faces(config: &MachineConfig, pipeline: &dyn Pipeline) -> Result<()
     }
 }
 
-/// A motion that ends must not end before the run, and the run must not need what the motion does not know.
+/// Checks that a recorded motion has poses for the whole run.
 fn check_recording(head: &Head, until: Time) -> Result<(), ExperimentError> {
     if let Some((from_ps, to_ps)) = head.motion.gap_ps(until.0) {
         return Err(ExperimentError::RecordingGap { from: Time(from_ps), to: Time(to_ps), run: until });

@@ -1,4 +1,4 @@
-//! Segmentation at load time: a scene in pieces, each of which lies in one cell of the world.
+//! Segmentation at load time: cuts a scene into pieces that each lie in one cell of the world.
 
 use glam::{DVec3, Vec3};
 use priority_rendering::{Cell, CutVertex, PriorityError, Segmentation};
@@ -7,23 +7,24 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A scene, and where each of its structures lies among square cells.
+/// A scene with the square cells in which each structure lies.
 #[derive(Clone, Debug)]
 pub struct CutScene {
-    /// What is loaded in the place of the scene that was given.
+    /// Scene to load in place of the original one.
     pub scene: Arc<Scene>,
-    /// The cells of each structure: one of a segment, all of what was not cut, none of what moves by itself or with the head.
+    /// Cells of each structure. A segment has one cell. A structure that was not cut has all cells that it touches. A
+    /// structure that moves has none.
     pub cells: Arc<[Vec<Cell>]>,
 }
 
 impl CutScene {
-    /// Structures cut at the borders of cells of this side, m. A cut through an edge makes one place, from which all pieces that share
-    /// the edge take their vertex: they meet bit for bit. Its colour and its normal are interpolated. A sphere is not cut, and
-    /// belongs to the cell of its centre; what moves stays whole.
+    /// Cuts structures at the borders of square cells with this side, in metres. A cut through an edge creates one
+    /// vertex that all adjacent pieces share, so the pieces meet bit for bit. Its colour and normal are interpolated. A
+    /// sphere is not cut and belongs to the cell of its centre. A structure that moves stays whole.
     ///
     /// # Errors
     ///
-    /// [`PriorityError`] for what cannot be cut: see [`Segmentation::new`].
+    /// [`PriorityError`] if the scene cannot be cut: see [`Segmentation::new`].
     pub fn segmented(scene: &Scene, side_m: f64) -> Result<Self, PriorityError> {
         let mut pieces = Pieces::of(scene);
         for structure in scene.structures() {
@@ -36,7 +37,7 @@ impl CutScene {
         pieces.finish()
     }
 
-    /// The scene as it is, with the cells that each structure touches.
+    /// Keeps the scene uncut and finds the cells that each structure touches.
     ///
     /// # Errors
     ///
@@ -47,7 +48,7 @@ impl CutScene {
     }
 }
 
-/// Whether a structure has no place in the world that it keeps.
+/// Returns true if a structure moves by itself or with the head, and so has no fixed place in the world.
 pub(crate) const fn moves(structure: &Structure) -> bool {
     structure.hinge.is_some() || matches!(structure.frame, Frame::Head)
 }
@@ -66,7 +67,7 @@ fn cell_of(sphere: &Sphere, side_m: f64) -> Cell {
     Cell::of(f64::from(sphere.centre.x), f64::from(sphere.centre.z), side_m)
 }
 
-/// The triangles of a structure, whose vertices are counted from its own first one.
+/// Cuts the triangles of a structure. Vertices are counted from the structure's first one.
 fn cut(scene: &Scene, structure: &Structure, side_m: f64) -> Result<Segmentation, PriorityError> {
     let own = &scene.vertices()[structure.vertices.clone()];
     let places: Vec<DVec3> = own.iter().map(|vertex| vertex.position.as_dvec3()).collect();
@@ -76,14 +77,14 @@ fn cut(scene: &Scene, structure: &Structure, side_m: f64) -> Result<Segmentation
     Segmentation::new(&places, &triangles, side_m)
 }
 
-/// A scene that is put together of segments.
+/// A scene under construction, made of segments.
 struct Pieces {
     parts: SceneParts,
     cells: Vec<Vec<Cell>>,
 }
 
 impl Pieces {
-    /// No piece of a scene.
+    /// Creates an empty scene with the settings of another scene.
     fn of(scene: &Scene) -> Self {
         let parts = SceneParts {
             vertices: Vec::new(),
@@ -106,15 +107,18 @@ impl Pieces {
 
     fn add_segments(&mut self, scene: &Scene, structure: &Structure, side_m: f64) -> Result<(), PriorityError> {
         let cut = cut(scene, structure, side_m)?;
+        // Append the vertices of the cuts. A cut may depend on earlier cuts, so the order matters.
         let mut vertices = scene.vertices()[structure.vertices.clone()].to_vec();
         for (place, made) in cut.vertices[vertices.len()..].iter().zip(&cut.cuts) {
             vertices.push(between(&vertices, *place, made));
         }
+        // Assign each sphere to the cell of its centre.
         let mut spheres: BTreeMap<Cell, Vec<Sphere>> = BTreeMap::new();
         for sphere in &scene.spheres()[structure.spheres.clone()] {
             spheres.entry(cell_of(sphere, side_m)).or_default().push(*sphere);
         }
         let in_cells: BTreeSet<Cell> = cut.segments.keys().chain(spheres.keys()).copied().collect();
+        // Each cell with primitives becomes a structure of its own.
         for cell in in_cells {
             let triangles = cut.segments.get(&cell).map_or(&[][..], Vec::as_slice);
             let (vertices, triangles) = own_vertices(&vertices, triangles);
@@ -124,7 +128,7 @@ impl Pieces {
         Ok(())
     }
 
-    /// A structure like another one, of these primitives.
+    /// Adds a structure with the given primitives. All other properties are those of `like`.
     fn add(&mut self, like: &Structure, vertices: &[Vertex], triangles: &[[u32; 3]], spheres: &[Sphere]) {
         let first = self.parts.vertices.len() as u32;
         let structure = Structure {
@@ -142,14 +146,14 @@ impl Pieces {
     }
 }
 
-/// The places at which elements were added.
+/// Appends elements to a list and returns their indices.
 fn appended<T>(all: &mut Vec<T>, more: impl Iterator<Item = T>) -> Range<usize> {
     let first = all.len();
     all.extend(more);
     first..all.len()
 }
 
-/// A vertex of a cut.
+/// Returns the vertex at which a cut crosses an edge.
 fn between(vertices: &[Vertex], place: DVec3, made: &CutVertex) -> Vertex {
     let [from, to] = made.between.map(|i| vertices[i as usize]);
     let share = made.share as f32;
@@ -161,7 +165,7 @@ fn between(vertices: &[Vertex], place: DVec3, made: &CutVertex) -> Vertex {
     Vertex { position: place.as_vec3(), normal, colour: [0, 1, 2].map(part) }
 }
 
-/// The vertices that some triangles name, in their order, and the triangles in their numbers.
+/// Returns the vertices that some triangles use, in order, and the triangles with renumbered vertices.
 fn own_vertices(all: &[Vertex], triangles: &[[u32; 3]]) -> (Vec<Vertex>, Vec<[u32; 3]>) {
     let named: BTreeSet<u32> = triangles.iter().flatten().copied().collect();
     let numbers: BTreeMap<u32, u32> = named.iter().copied().zip(0..).collect();

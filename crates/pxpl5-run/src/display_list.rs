@@ -1,4 +1,4 @@
-//! From a scene to what graphics processors hold and hosts send.
+//! Converts scenes to display lists for graphics processors and to views for hosts.
 
 use crate::views::{Poses, Views, ViewsWanted};
 use pphigs::{
@@ -11,8 +11,10 @@ use pxpl5_sim::Time;
 use pxpl5_wire::ViewNumber;
 use std::sync::Arc;
 
-/// The scene's primitives as a display list.
+/// Returns the scene's primitives as a display list. Fails if the scene is empty, or if more structures move than the
+/// host can send.
 pub fn display_list(scene: &Scene) -> Result<DisplayList, String> {
+    // Check that the scene has primitives and that its edits fit into a frame message.
     if scene.triangles().is_empty() && scene.spheres().is_empty() {
         return Err(format!("scene {} has neither triangles nor spheres", scene.name()));
     }
@@ -23,6 +25,7 @@ pub fn display_list(scene: &Scene) -> Result<DisplayList, String> {
             scene.name()
         ));
     }
+    // Convert structures, spheres and vertices to the types of the display list.
     let structure = |s: &pxpl5_scene::Structure| DisplayStructure {
         triangles: s.triangles.clone(),
         spheres: s.spheres.clone(),
@@ -51,13 +54,13 @@ pub fn display_list(scene: &Scene) -> Result<DisplayList, String> {
     Ok(list.with_vertices_in_order())
 }
 
-/// The same for a pipeline that computes colours in such a way.
+/// Returns the scene's primitives as a display list for a pipeline with the given shading.
 pub(crate) fn display_list_for(scene: &Scene, shading: Shading) -> Result<DisplayList, String> {
     let list = display_list(scene)?;
     Ok(if shading == Shading::Precomputed { list.with_precomputed_colours() } else { list })
 }
 
-/// The view of a scene at a time from a pose, through the papers' head-mounted display.
+/// Returns the view of a scene at a time from a pose, through the papers' head-mounted display.
 pub(crate) fn view(scene: &Scene, hmd: &Hmd, eyes: usize, number: ViewNumber, time: Time, pose: &Pose) -> FrameView {
     let views = if eyes == 1 { vec![hmd.mono(pose)] } else { hmd.stereo(pose).to_vec() };
     let eye = |v: &pxpl5_scene::View| EyeView {
@@ -73,7 +76,7 @@ pub(crate) fn view(scene: &Scene, hmd: &Hmd, eyes: usize, number: ViewNumber, ti
     }
 }
 
-/// The papers' head-mounted display, before a surface of so many pixels.
+/// Returns the papers' head-mounted display, adapted to the number of pixels of a surface.
 ///
 /// # Panics
 ///
@@ -84,13 +87,14 @@ pub(crate) fn hmd_before(surface: Option<&Surface>) -> Hmd {
     Hmd::new(config).expect("a surface has pixels")
 }
 
-/// The scene's own head motion with a seed, which a host follows without any delay.
+/// Returns the poses of the scene's own head motion. The host follows this motion without any delay.
 pub(crate) fn poses(scene: &Scene, seed: u64) -> Poses {
     let motion: HeadMotion = scene.motion().with_seed(seed);
     Arc::new(move |known, _| motion.pose(known.0))
 }
 
-/// The views of the scene's own head motion with a seed: as sampled, and for the moment when they are seen.
+/// Returns two functions that give views of the scene's own head motion. The first gives the view at the sample time,
+/// the second the view at the time when it is seen.
 pub fn views(scene: &Arc<Scene>, seed: u64, hmd: Hmd, eyes: usize) -> (Views, ViewsWanted) {
     let motion: HeadMotion = scene.motion().with_seed(seed);
     let at = {

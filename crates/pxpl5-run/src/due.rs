@@ -1,52 +1,54 @@
-//! Which pictures were due in a run, and what became of each of them.
+//! Counts of the pictures that were due in a run, by result.
 //!
 //! | word | meaning |
 //! |---|---|
-//! | due | a display's period in which a new picture should be seen, by the pipeline's own cadence |
-//! | shown | it was there, whole and in time |
-//! | late | it was whole before its period ended, but came after its time |
-//! | incomplete | it was begun, and not whole when its period ended |
-//! | missed | it was never begun, or left out |
+//! | due | a period of the display in which a new picture should be seen, by the pipeline's own rate |
+//! | shown | the picture was complete and in time |
+//! | late | the picture was complete before its period ended, but after its deadline |
+//! | incomplete | the picture was begun, and not complete when its period ended |
+//! | missed | the picture was never begun, or left out |
 //!
-//! A picture is judged when its period ends, so that none is judged otherwise in a longer run.
+//! A picture is evaluated when its period ends, so a longer run does not change the result.
 
 use crate::picture_ends::{PictureEnd, PictureEnds};
 use crate::result_window::ResultWindow;
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 
-/// Fewest pictures in a window that have a rate.
+/// Smallest number of pictures in a window that defines a rate.
 pub(crate) const LEAST_UPDATES: u64 = 2;
 
-/// The pictures that were due in a window of a run, each of which ended in one of four ways.
+/// Counts of the pictures that were due in a window of a run. Each picture has one of four results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct DuePictures {
     /// First period of the window.
     pub first_period: PeriodNumber,
-    /// Last period of the window.
+    /// Last period of the window. This period is part of the window.
     pub last_period: PeriodNumber,
-    /// Periods from one picture that is due to the next.
+    /// Number of periods from one picture that is due to the next.
     pub periods_a_picture: u64,
-    /// Pictures due: the periods of the window over those of a picture.
+    /// Number of pictures due: the periods of the window divided by `periods_a_picture`.
     pub due: u64,
-    /// Those that were whole and in time.
+    /// Number of due pictures that were complete and in time.
     pub shown: u64,
-    /// Those that were whole before their period ended, but not in time.
+    /// Number of due pictures that were complete before their period ended, but not in time.
     pub late: u64,
-    /// Those that were not whole when their period ended.
+    /// Number of due pictures that were incomplete when their period ended.
     pub incomplete: u64,
-    /// Those that were never begun, or left out.
+    /// Number of due pictures that were never begun, or left out.
     pub missed: u64,
-    /// Pictures that were whole and in time, due or not, in the periods of the window. More than `shown` where pictures come more
-    /// often than they are due.
+    /// Number of periods of the window in which a picture was shown in time, due or not. The number exceeds `shown` if
+    /// pictures come more often than they are due.
     pub pictures: u64,
 }
 
 impl DuePictures {
-    /// Counts them. `pictures` gives the period in which each picture that was begun should be seen, and its end, in the order of
-    /// periods; `periods_a_picture` is the cadence, and `reached` the first period that was not over when the run ended.
+    /// Counts the pictures of a run by result. `pictures` gives the period in which each begun picture should be seen,
+    /// and its result, in order of periods. `periods_a_picture` is the number of periods between due pictures.
+    /// `reached` is the first period that was not over when the run ended.
     ///
-    /// A picture that comes before it is due, but after the one before it was, is shown. `None` when no whole picture was due.
+    /// A picture also counts as shown if it comes before its due period, but after the due period of the picture
+    /// before. Returns `None` if no complete picture was due.
     #[must_use]
     pub fn count(
         pictures: impl Iterator<Item = (PeriodNumber, PictureEnd)>,
@@ -59,10 +61,11 @@ impl DuePictures {
         Some(Self::of_ends(&ends, periods_a_picture, &window))
     }
 
-    /// Counts those of a window.
+    /// Counts the pictures that were due in a window.
     pub(crate) fn of_ends(ends: &PictureEnds, periods_a_picture: u64, window: &ResultWindow) -> Self {
         let every = periods_a_picture.max(1);
         let ResultWindow { first_period, last_period, .. } = *window;
+        // Each due picture may be shown in any of the periods since the last due picture.
         let due = (first_period.0 + every - 1..=last_period.0).step_by(every as usize);
         let mut counts = [0; 4];
         due.for_each(|period| counts[ends.best(period, every).map_or(3, |end| end as usize)] += 1);
@@ -72,27 +75,27 @@ impl DuePictures {
         Self { first_period, last_period, periods_a_picture: every, due, shown, late, incomplete, missed, pictures }
     }
 
-    /// Pictures that were due and not shown: late, incomplete and missed.
+    /// Returns the number of due pictures that were not shown: late, incomplete and missed ones.
     #[must_use]
     pub const fn not_shown(&self) -> u64 {
         self.due - self.shown
     }
 
-    /// Their share of all that were due, 0 to 1.
+    /// Returns the share of due pictures that were not shown, from 0 to 1.
     #[must_use]
     pub const fn not_shown_share(&self) -> f64 {
         self.not_shown() as f64 / self.due as f64
     }
 
-    /// Whether the load is too heavy for the pipeline: pictures were begun that were not whole in time; or, where pictures have
-    /// no time and only become fewer, fewer than half of those due were shown.
+    /// Returns true if the load is too heavy for the pipeline. In a pipeline with deadlines, some pictures were late or
+    /// incomplete. In a pipeline without deadlines, fewer than half of the due pictures were shown.
     #[must_use]
     pub const fn is_too_heavy(&self) -> bool {
         self.late + self.incomplete > 0 || 2 * self.shown < self.due
     }
 
-    /// Returns the pictures shown a second, where a period of the display takes `period_ms`; `None` where fewer than two were
-    /// shown, since a single one has no rate.
+    /// Returns the number of pictures shown a second, for a display period of `period_ms` milliseconds. Returns `None`
+    /// if fewer than two pictures were shown, because a single picture has no rate.
     #[must_use]
     pub fn updates_hz(&self, period_ms: f64) -> Option<f64> {
         let window_ms = (self.due * self.periods_a_picture) as f64 * period_ms;

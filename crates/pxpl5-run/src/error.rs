@@ -1,4 +1,4 @@
-//! Why an experiment gives no result.
+//! Errors of experiments.
 
 use crate::outcome::Outcome;
 use crate::picture_ends::WARM_UP_PICTURES;
@@ -6,22 +6,22 @@ use pxpl5_machine::{ConfigError, RunError};
 use pxpl5_sim::Time;
 use thiserror::Error;
 
-/// Why an experiment gave no result.
+/// Error of an experiment.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ExperimentError {
-    /// The machine or its numbers are impossible, or the pipeline cannot run on it.
+    /// The machine or its numbers are impossible, or the pipeline cannot run on the machine.
     #[error(transparent)]
     Config(#[from] ConfigError),
     /// The number of fields is out of range.
     #[error("fields must be {} to {}, found {found}", expected.0, expected.1)]
     Fields {
-        /// Smallest and largest number.
+        /// Smallest and largest number of fields.
         expected: (u64, u64),
-        /// What was asked for.
+        /// Number of fields that was requested.
         found: u64,
     },
-    /// Nothing but pictures of the warm-up was shown in the time given; what was observed is kept.
+    /// Only pictures of the warm-up were shown. The observations of the run are kept.
     #[error(
         "only {} shown in {} and the first {WARM_UP_PICTURES} are discarded; {}",
         were(*pictures as u64, "picture"),
@@ -29,17 +29,18 @@ pub enum ExperimentError {
         advice(*needed)
     )]
     TooShort {
-        /// Fields simulated.
+        /// Number of simulated fields.
         fields: u64,
-        /// Pictures that were shown; the first ones are discarded.
+        /// Number of pictures that were shown. The first ones are not evaluated.
         pictures: usize,
-        /// About how many fields it takes until a picture after the warm-up is shown, by the pipeline's closed form;
-        /// `None` where there is none ([`crate::Experiment::estimated_by`]).
+        /// Approximate number of fields until a picture after the warm-up is shown, by the pipeline's closed form
+        /// ([`crate::Experiment::estimated_by`]). Without a closed form, the number is extrapolated from the run.
+        /// `None` if no picture was shown.
         needed: Option<u64>,
-        /// Everything that was observed.
+        /// Outcome of the run, with all observations.
         partial: Box<Outcome>,
     },
-    /// The head's motion ends before the run does.
+    /// The recording of the head's motion ends before the run.
     #[error(
         "the recording of the head ends after {:.3} s and the run takes {:.3} s: simulate fewer fields, or say what comes after its end \
          (head.end = \"hold\" or \"loop\")",
@@ -47,12 +48,12 @@ pub enum ExperimentError {
         seconds(*run)
     )]
     Recording {
-        /// The end of the recording.
+        /// End of the recording.
         recording: Time,
-        /// The end of the run.
+        /// End of the run.
         run: Time,
     },
-    /// The run needs a stretch of which the recording of the head has no pose.
+    /// The recording of the head's motion has a gap within the time of the run.
     #[error(
         "the recording of the head has no pose from {:.3} s to {:.3} s and the run takes {:.3} s: simulate fewer fields, or let the head \
          stand still there (head.end = \"hold\")",
@@ -61,28 +62,29 @@ pub enum ExperimentError {
         seconds(*run)
     )]
     RecordingGap {
-        /// The last pose before it.
+        /// Last pose before the gap.
         from: Time,
-        /// The first pose after it.
+        /// First pose after the gap.
         to: Time,
-        /// The end of the run.
+        /// End of the run.
         run: Time,
     },
-    /// The analytic level has no events that an experiment could observe.
+    /// The analytic level has no events, so no run at this level is possible.
     #[error("level: expected transaction or cycle, found analytic, which has no events (it is for sweeps and limits)")]
     Level,
     /// The scene has nothing to draw, or too many moving structures.
     #[error("{0}")]
     Scene(String),
-    /// Whoever watched the run ended it ([`crate::Experiment::run_stopping`]).
+    /// The observer of the run ended it ([`crate::Experiment::run_stopping`]), or the host did
+    /// ([`crate::Host::is_given_up`]).
     #[error("{0}")]
     Stopped(String),
-    /// The run ended early; what was observed until then is kept.
+    /// The machine failed. The observations until then are kept.
     #[error("{error} ({} had been shown)", count_of(partial.tally().pictures, "picture"))]
     Run {
-        /// What the machine could not do.
+        /// Error of the machine.
         error: RunError,
-        /// Everything until then.
+        /// Outcome of the run until the error.
         partial: Box<Outcome>,
     },
 }
@@ -91,7 +93,7 @@ fn seconds(at: Time) -> f64 {
     at.since(Time::ZERO).as_ms() * 1e-3
 }
 
-/// A number of things with their name in the right form.
+/// Returns a count with the singular or plural of a noun.
 fn count_of(count: u64, name: &str) -> String {
     format!("{count} {name}{}", if count == 1 { "" } else { "s" })
 }
@@ -100,7 +102,7 @@ fn were(count: u64, name: &str) -> String {
     format!("{} {}", count_of(count, name), if count == 1 { "was" } else { "were" })
 }
 
-/// How long a run must be.
+/// Returns advice about the number of fields to simulate.
 fn advice(needed: Option<u64>) -> String {
     match needed {
         Some(fields) => format!("simulate more fields: the next one is shown after about {fields}"),

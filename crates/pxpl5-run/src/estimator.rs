@@ -1,4 +1,4 @@
-//! What a host knows of its head at an instant: from the reports of the run, or as it would be without one cause of error.
+//! Estimates of the head's pose as the host knows it, from the reports of a run or with one cause of error removed.
 
 use crate::head_views::{Follower, HeadViews};
 use crate::report_schedule::Coming;
@@ -12,30 +12,31 @@ use tracking::predict::ExactPredictor;
 use tracking::time::PS_PER_S;
 use tracking::tracker::{TrackerConfig, TrackerModel};
 
-/// Why content is seen where it should not be. Each can be turned off in the reports and poses of a run that has ended; the
-/// machine's times stay as they were.
+/// Cause of misregistration, which is an offset between displayed and ideal positions. Each cause can be removed from
+/// the reports and poses of a run that has ended. The machine's times stay unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
-    /// Reports are old when they come, and pictures when they are shown. Without it every measurement made up to the instant
-    /// that a picture is drawn for is known.
+    /// Age of tracker reports when they arrive, and of pictures when they are shown. With this cause removed, the host
+    /// knows all measurements up to the instant that a picture is drawn for.
     Latency,
-    /// A picture is drawn for one instant and lights over many. Without it all of it is judged at that instant.
+    /// Duration of the scan: a picture is drawn for one instant and lights over a time span. With this cause removed,
+    /// the whole picture is evaluated at that instant.
     ScanOut,
-    /// The tracker's noise and bias. Without them reports say where the head was.
+    /// Noise and bias of the tracker. With this cause removed, reports contain the true pose.
     Noise,
-    /// What the predictor makes of the reports. Without it the newest one is carried on by the true motion.
+    /// Error of the predictor. With this cause removed, the true motion extrapolates the newest report.
     Prediction,
-    /// The tracker measures, and the host's kernel looks, only now and then. Without it a measurement arrives at the very
-    /// instant at which it is wanted.
+    /// Intervals at which the tracker measures and the host polls. With this cause removed, a measurement arrives at
+    /// the very instant at which it is needed.
     Sampling,
 }
 
 impl Cause {
-    /// Every cause, in the order of tables.
+    /// All causes, in the order of tables.
     pub const ALL: [Self; 5] = [Self::Latency, Self::ScanOut, Self::Noise, Self::Prediction, Self::Sampling];
 
-    /// Its name in tables and files.
+    /// Returns the name of the cause in tables and files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -48,21 +49,21 @@ impl Cause {
     }
 }
 
-/// Time over which a predictor is fed before it is asked, where each question has reports of its own, ps.
+/// Time for which a predictor receives reports before a question with reports of its own, in picoseconds.
 const FED_PS: u64 = 2 * PS_PER_S;
 
-/// Answers where the head is thought to be, with what is known by an instant.
+/// Estimator of the head's pose from the reports that are known at an instant.
 pub struct Estimator {
     views: Arc<HeadViews>,
     way: Way,
 }
 
 enum Way {
-    /// Reports are fed to one predictor as time goes on.
+    /// One predictor receives all reports in order of time.
     Following(Follower),
-    /// The same, with all measurements up to the wanted instant.
+    /// One predictor receives all measurements up to the requested instant.
     AtOnce(Follower),
-    /// Every question has reports of its own, the newest of which arrives as it is asked.
+    /// Each question has reports of its own. The newest of them arrives at the instant of the question.
     Fresh(TrackerModel),
 }
 
@@ -73,10 +74,12 @@ impl fmt::Debug for Estimator {
 }
 
 impl Estimator {
-    /// As the run's host, or without one cause of error. [`Cause::ScanOut`] is none of poses: it changes nothing here.
+    /// Creates the estimator of the run's host, optionally without one cause of error. [`Cause::ScanOut`] does not
+    /// affect poses, so it changes nothing here.
     #[must_use]
     pub fn new(views: &Arc<HeadViews>, without: Option<Cause>) -> Self {
         let head = views.head();
+        // Each cause is removed from the tracker or from the predictor, and the rest stays as in the run.
         let tracker = head.tracker().config().clone();
         let way = match without {
             None | Some(Cause::ScanOut) => Way::Following(views.follower()),
@@ -91,7 +94,8 @@ impl Estimator {
         Self { views: Arc::clone(views), way }
     }
 
-    /// The pose in the scene at an instant, with what had arrived by `known`. To be asked in rising order of `known`.
+    /// Returns the pose in the scene at the instant `at`, from reports that had arrived by `known`. Calls must have
+    /// non-decreasing values of `known`.
     pub fn pose(&mut self, known: Time, at: Time) -> Pose {
         let start = self.views.start();
         let tracked = match &mut self.way {
@@ -103,12 +107,12 @@ impl Estimator {
     }
 }
 
-/// A tracker that leaves out something of one that was checked.
+/// Returns a tracker from a configuration from which a cause of error was removed.
 fn model_of(tracker: TrackerConfig) -> TrackerModel {
     TrackerModel::new(tracker).expect("less of what was checked by Head::new")
 }
 
-/// The run's predictor behind another tracker, for as long as the run's reports go.
+/// Returns the run's predictor behind another tracker, for the length of the run's reports.
 fn follower_of(views: &HeadViews, tracker: TrackerConfig) -> Follower {
     let head = views.head();
     let model = model_of(tracker);
@@ -118,15 +122,17 @@ fn follower_of(views: &HeadViews, tracker: TrackerConfig) -> Follower {
     Follower::new(Box::new(arrivals), Box::new(reports()), head.build_predictor())
 }
 
-/// A pose from reports the newest of which arrives at `known`: those of a head that is so much further in its motion as the newest
-/// of the run had waited.
+/// Returns a pose from reports of which the newest arrives at `known`. The reports come from a motion that is shifted
+/// in time, by the age of the run's newest report at `known`.
 fn fresh(views: &HeadViews, tracker: &TrackerModel, known: Time, at: Time) -> Pose {
     let head = views.head();
+    // Find the newest report of the run.
     let from = known.0.saturating_sub(FED_PS);
     let arrivals = tracker.reports(head.motion(), head.seed).from(from).map(|report| report.arrives_ps);
     let Some(newest) = arrivals.take_while(|arrival| *arrival <= known.0).last() else {
         return *views.start();
     };
+    // Shift the motion by the age of that report, and feed a new predictor.
     let ahead_ps = known.0 - newest;
     let motion = Shifted { motion: head.motion(), by_ps: ahead_ps };
     let mut predictor = head.build_predictor();

@@ -18,23 +18,23 @@ use pxpl5_wire::PeriodNumber;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// Which pixels are computed. It changes no time and no trace.
+/// Choice of the pixels that a run computes. The choice changes no simulated time and no trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Pixels {
-    /// No pixel is computed; firmware keeps counts where it would keep bins.
+    /// No pixel is computed. The firmware counts commands instead of storing them in bins.
     Off,
-    /// Those that somebody looks at, when he does.
+    /// A pixel is computed when it is read.
     Lazy,
-    /// All, on worker threads, while the simulation goes on.
+    /// Every pixel is computed, on worker threads, while the simulation runs.
     All,
 }
 
-/// Smallest and largest number of fields.
+/// Smallest and largest number of fields that an experiment may simulate.
 pub const FIELDS_RANGE: (u64, u64) = (1, 10_000_000);
 
-/// Parameters that no source allows for a pipeline: outside their stated range, and neither what the preset says nor what the
-/// pipeline's own code makes of it.
+/// Returns the parameters whose values no source supports. Such a value lies outside the stated range of its parameter,
+/// and neither the preset nor the pipeline sets it.
 #[must_use]
 pub fn out_of_range(config: &MachineConfig, pipeline: &dyn Pipeline) -> Vec<Parameter> {
     let usual = MachineConfig::preset(&config.preset).map(|preset| pipeline.adapt(preset).parameters());
@@ -42,7 +42,8 @@ pub fn out_of_range(config: &MachineConfig, pipeline: &dyn Pipeline) -> Vec<Para
     config.out_of_range().into_iter().filter(|parameter| !usual.contains(parameter)).collect()
 }
 
-/// What has no i860 code although clocks of code are asked for: a sentence, or `None` where all is code or none is asked for.
+/// Returns a warning if an experiment at the cycle level contains work without i860 code. Such work takes the times of
+/// the table (`gp.*`). Returns `None` if all work has code, or if the level is not [`Level::Cycle`].
 #[must_use]
 pub fn times_of_table(level: Level, config: &MachineConfig, pipeline: &dyn Pipeline) -> Option<String> {
     let what = (level == Level::Cycle).then(|| pipeline.without_code(config)).flatten()?;
@@ -52,7 +53,7 @@ pub fn times_of_table(level: Level, config: &MachineConfig, pipeline: &dyn Pipel
     ))
 }
 
-/// What is to be run.
+/// An experiment: a machine, a pipeline, a scene, a number of fields and all further settings of a run.
 #[derive(Clone, Debug)]
 pub struct Experiment {
     pub(crate) config: MachineConfig,
@@ -74,24 +75,26 @@ pub struct Experiment {
     pub(crate) rehearsed: Option<Arc<Rehearsed>>,
 }
 
-/// What a closed form can say of an experiment before or after it is run.
+/// Functions by which a closed form estimates an experiment, before or after a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Estimates {
-    /// Fields after which the first picture behind the warm-up has been shown; `None` if none ever will be, or if it cannot be
-    /// said.
+    /// Function that returns the number of fields until the first picture after the warm-up is shown. The function
+    /// returns `None` if no such picture will be shown, or if the closed form cannot tell.
     pub fields_needed: fn(&Experiment) -> Option<u64>,
-    /// The most primitives of the scene, its first ones, that would all be shown in time; `None` if it cannot be said.
+    /// Function that returns the largest number of primitives, counted from the first of the scene, that are all shown
+    /// in time. The function returns `None` if the closed form cannot tell.
     pub triangles_in_time: fn(&Experiment) -> Option<u64>,
 }
 
 impl Experiment {
-    /// A pipeline on a machine with a scene; 120 fields, pixels when looked at, seed 1.
+    /// Creates an experiment with a pipeline, a machine and a scene. The defaults are 120 fields, [`Pixels::Lazy`] and
+    /// seed 1.
     #[must_use]
     pub fn new(config: MachineConfig, pipeline: impl Pipeline + 'static, scene: impl Into<Arc<Scene>>) -> Self {
         Self::with(config, Arc::new(pipeline), scene.into())
     }
 
-    /// The same with a pipeline that was chosen at run time.
+    /// Creates an experiment like [`Experiment::new`], with a pipeline that was chosen at run time.
     #[must_use]
     pub fn with(config: MachineConfig, pipeline: Arc<dyn Pipeline>, scene: Arc<Scene>) -> Self {
         Self {
@@ -115,103 +118,110 @@ impl Experiment {
         }
     }
 
-    /// Number of fields to simulate.
+    /// Sets the number of fields to simulate. The range is [`FIELDS_RANGE`].
     #[must_use]
     pub const fn fields(mut self, fields: u64) -> Self {
         self.fields = fields;
         self
     }
 
-    /// Which pixels are computed.
+    /// Sets which pixels are computed.
     #[must_use]
     pub const fn pixels(mut self, pixels: Pixels) -> Self {
         self.pixels = pixels;
         self
     }
 
-    /// Seed of the head motion.
+    /// Sets the seed of the head motion.
     #[must_use]
     pub const fn seed(mut self, seed: u64) -> Self {
         self.seed = seed;
         self
     }
 
-    /// The computer that it runs on: its clock, and who computes the pixels of [`Pixels::All`]. No result changes.
+    /// Sets the host computer. A host supplies a clock and the worker that computes the pixels of [`Pixels::All`]. The
+    /// host changes no result.
     #[must_use]
     pub fn host(mut self, host: impl Host + 'static) -> Self {
         self.host = Arc::new(host);
         self
     }
 
-    /// Takes simultaneous events in an order hashed from a seed; no result may change.
+    /// Handles simultaneous events in an order that is hashed from a seed. A correct model gives the same results in
+    /// every order.
     #[must_use]
     pub const fn shuffle_ties(mut self, seed: u64) -> Self {
         self.shuffle = Some(seed);
         self
     }
 
-    /// Records messages, busy channels and FIFOs; no time changes.
+    /// Records messages, busy channels and FIFO contents. The recording changes no simulated time.
     #[must_use]
     pub const fn record_traffic(mut self, record: bool) -> Self {
         self.traffic = record;
         self
     }
 
-    /// What of the observations is kept: [`Keep::Everything`], the default, or [`Keep::Statistics`] for runs of any length.
+    /// Sets which observations are kept: [`Keep::Everything`], the default, or [`Keep::Statistics`] for runs of any
+    /// length.
     #[must_use]
     pub const fn keep(mut self, keep: Keep) -> Self {
         self.keep = keep;
         self
     }
 
-    /// Does without a saving; no time and no pixel changes, but the run is slower.
+    /// Disables an optimization of the simulator. No simulated time and no pixel changes, but the run takes longer.
     #[must_use]
     pub fn without(mut self, saving: Saving) -> Self {
         self.given_up.insert(saving);
         self
     }
 
-    /// How literally the machine is modelled: [`Level::Transaction`], the default, or [`Level::Cycle`].
+    /// Sets the level of modelling: [`Level::Transaction`], the default, or [`Level::Cycle`].
     #[must_use]
     pub const fn level(mut self, level: Level) -> Self {
         self.level = level;
         self
     }
 
-    /// A head with its tracker instead of the scene's own motion, which the pipeline follows without any delay.
+    /// Sets a head with a tracker. Without a head, the pipeline follows the scene's own motion without any delay.
     ///
-    /// With prediction the experiment is run twice: the first run tells when each view will be seen.
+    /// If the head predicts, the experiment runs twice. The first run, a dry run without prediction, finds the time at
+    /// which each view is seen.
     #[must_use]
     pub fn head(mut self, head: impl Into<Arc<Head>>) -> Self {
         self.head = Some(head.into());
         self
     }
 
-    /// Lets the host begin a frame only when its tracker reports something, so that pipelines are not full: as a measurement
-    /// from outside does. Without a head, or where the host does not begin frames, nothing changes.
+    /// Makes the host begin a frame only when its tracker reports a pose, so that the pipeline is never full. A latency
+    /// measurement from outside the machine works in the same way. Without a head, or if the host does not begin
+    /// frames, the setting has no effect.
     #[must_use]
     pub const fn on_demand(mut self) -> Self {
         self.on_demand = true;
         self
     }
 
-    /// By what a run that is too short says how many fields it would take, and one that is too heavy how many triangles would
-    /// do: a pipeline's closed form knows.
+    /// Sets the functions that estimate values for error messages, by the pipeline's closed form. The message about a
+    /// run that is too short can then recommend a number of fields. The message about a scene that is too large can
+    /// recommend a number of triangles.
     #[must_use]
     pub const fn estimated_by(mut self, estimates: Option<Estimates>) -> Self {
         self.estimates = estimates;
         self
     }
 
-    /// Who sums up a run that keeps statistics only ([`Keep::Statistics`]) what its tally does not know: what a report says of a head rests on
-    /// records that such a run gives up. Of a run that keeps everything it is summed up when somebody asks.
+    /// Sets the streaming observer of a run with [`Keep::Statistics`]. A report about a head needs records that such a
+    /// run discards, so an observer must process these records during the run. A run with [`Keep::Everything`] needs no
+    /// observer.
     #[must_use]
     pub const fn summed_by(mut self, sums: Option<Sums>) -> Self {
         self.sums = sums;
         self
     }
 
-    /// All that is kept of a run of it, but for its pictures.
+    /// Returns all records of a run of this experiment that are kept, without pictures.
     pub(crate) fn settled<'a>(
         &'a self,
         record: &'a Record,
@@ -234,41 +244,44 @@ impl Experiment {
         }
     }
 
-    /// The most primitives of its scene that would all be shown in time, by the closed form; `None` where there is none.
+    /// Returns the largest number of primitives of the scene that are all shown in time, by the closed form. Returns
+    /// `None` without a closed form.
     #[must_use]
     pub fn triangles_in_time(&self) -> Option<u64> {
         (self.estimates?.triangles_in_time)(self)
     }
 
-    /// The same experiment with another scene.
+    /// Replaces the scene.
     #[must_use]
     pub fn with_scene(self, scene: impl Into<Arc<Scene>>) -> Self {
         Self { scene: scene.into(), ..self }
     }
 
-    /// The same experiment without a head: the pipeline follows the scene's own motion without any delay.
+    /// Removes the head. The pipeline then follows the scene's own motion without any delay.
     #[must_use]
     pub fn without_head(self) -> Self {
         Self { head: None, ..self }
     }
 
-    /// How the raster before the head's eyes shows the picture.
+    /// Returns the raster correction of the head-mounted display.
     #[must_use]
     pub fn raster(&self) -> Raster {
         self.head.as_ref().map(|head| head.raster()).unwrap_or_default()
     }
 
-    /// For which instant of what is shown from them views are drawn.
+    /// Returns the instant of a picture's display time for which its view is drawn, such as the middle or the first
+    /// pixel.
     #[must_use]
     pub fn aim(&self) -> Aim {
         self.head.as_ref().map(|head| head.aim()).unwrap_or_default()
     }
 
-    /// Name of everything on which the trace depends: machine, pipeline with its settings, contents of the scene, fields,
-    /// seed, level and head.
+    /// Returns a hash of everything on which the trace depends: machine, pipeline with its settings, contents of the
+    /// scene, fields, seed, level and head.
     #[must_use]
     pub fn config_hash(&self) -> Fingerprint {
         let mut hash = Fingerprint::default();
+        // Machine: the code version, the displays, the number of boards, and all parameters that affect the trace.
         hash.setting("code", self.config.code_name());
         self.config.displays.iter().for_each(|display| hash.setting("display", display.name()));
         let [n_gps, n_renderers] = self.config.boards();
@@ -276,6 +289,7 @@ impl Experiment {
         hash.setting("n_renderers", n_renderers);
         self.config.telling_parameters().iter().for_each(|parameter| hash.setting(&parameter.path, parameter.value));
         self.config.i860.unusual_settings().iter().for_each(|(key, value)| hash.setting(key, value));
+        // Pipeline, scene and settings of the run.
         hash.setting("pipeline", self.pipeline.name());
         self.pipeline.settings().iter().for_each(|(key, value)| hash.setting(key, value));
         hash.setting("scene", Fingerprint::of_scene(&self.scene));
@@ -291,15 +305,17 @@ impl Experiment {
         hash
     }
 
-    /// Parameters of the machine and of what tracks the head that no source allows: see [`out_of_range`].
+    /// Returns the parameters of the machine, the tracker and the predictor whose values no source supports. See
+    /// [`out_of_range`].
     #[must_use]
     pub fn out_of_range(&self) -> Vec<Parameter> {
         let of_head = self.head.iter().flat_map(|head| head.suppositions()).cloned();
         out_of_range(&self.config, self.pipeline.as_ref()).into_iter().chain(of_head).collect()
     }
 
-    /// What cannot be taken for the machine: see [`out_of_range`] and [`times_of_table`]. And what is to be said of the files of the
-    /// head's motion and of the scene.
+    /// Returns warnings about parameter values that no source supports ([`out_of_range`]), and about work without code
+    /// at the cycle level ([`times_of_table`]). Problems in the files of the head's motion and of the scene are
+    /// included.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let supposed = self.out_of_range();
@@ -309,54 +325,54 @@ impl Experiment {
         supposed.iter().map(Parameter::warning).chain(of_table).chain(of_head).chain(of_scene).collect()
     }
 
-    /// The scene that is drawn.
+    /// Returns the scene that the pipeline draws.
     #[must_use]
     pub const fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
 
-    /// The machine as it was configured, before the pipeline adapted it.
+    /// Returns the machine as it was configured, before the pipeline adapted it.
     #[must_use]
     pub const fn config(&self) -> &MachineConfig {
         &self.config
     }
 
-    /// The pipeline that runs.
+    /// Returns the pipeline of the experiment.
     #[must_use]
     pub const fn pipeline(&self) -> &Arc<dyn Pipeline> {
         &self.pipeline
     }
 
-    /// Fields that are simulated.
+    /// Returns the number of fields to simulate.
     #[must_use]
     pub const fn length(&self) -> u64 {
         self.fields
     }
 
-    /// The period of the first display at whose begin the run ends: the first that is not simulated.
+    /// Returns the first period of the first display that is not simulated. The run ends when this period begins.
     pub(crate) const fn end(&self) -> PeriodNumber {
         PeriodNumber::FIRST.after(self.fields)
     }
 
-    /// Seed of the head motion's sway.
+    /// Returns the seed of the sway of the head motion.
     #[must_use]
     pub const fn seed_of_motion(&self) -> u64 {
         self.seed
     }
 
-    /// The level of modelling.
+    /// Returns the level of modelling.
     #[must_use]
     pub const fn level_of_modelling(&self) -> Level {
         self.level
     }
 
-    /// Whether somebody may want pixels.
+    /// Returns which pixels are computed.
     #[must_use]
     pub const fn pixels_wanted(&self) -> Pixels {
         self.pixels
     }
 
-    /// The head with its tracker, if there is one.
+    /// Returns the head with its tracker, or `None` if the experiment has none.
     #[must_use]
     pub const fn tracked_head(&self) -> Option<&Arc<Head>> {
         self.head.as_ref()

@@ -1,34 +1,35 @@
-//! What a host asked a machine to draw onto faces around a head.
+//! Record of the face updates that a host has requested.
 
 use pxpl5_sim::Time;
 use pxpl5_wire::{PictureNumber, ViewNumber};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// An update of a display memory, as the host asked for it.
+/// A requested update of a display memory.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FaceNote {
-    /// Its number among all updates.
+    /// Number of the update, counted over all memories.
     pub picture: PictureNumber,
-    /// The view whose eye it was drawn from.
+    /// View whose eye the update was drawn from.
     pub view: ViewNumber,
-    /// The memory that it is for.
+    /// Index of the display memory.
     pub memory: usize,
-    /// When the policy found the memory due.
+    /// Time at which the policy decided that the memory must be redrawn.
     pub due_at: Time,
-    /// Structures of the scene that the memory holds, by their place.
+    /// For each structure of the scene, true if the memory contains the structure.
     pub structures: Arc<[bool]>,
 }
 
-/// The updates of a run, written while it goes on, as far as they were not given up.
+/// Record of the updates of a run, except discarded ones. The record grows while the run goes on. Clones share the same
+/// record.
 #[derive(Clone, Debug, Default)]
 pub struct FaceNotes(Arc<Mutex<Held>>);
 
 #[derive(Debug, Default)]
 struct Held {
-    /// How many updates each memory was asked for so far.
+    /// Number of updates that were requested so far, by memory.
     asked: BTreeMap<usize, u64>,
-    /// Updates that are held, in order, each with how many of its memory came before it.
+    /// Kept updates, in order. Each has the number of earlier updates of its memory.
     notes: Vec<(u64, FaceNote)>,
 }
 
@@ -40,20 +41,21 @@ impl FaceNotes {
         *asked += 1;
     }
 
-    /// All that are held, in order.
+    /// Returns all kept updates, in order.
     #[must_use]
     pub fn all(&self) -> Vec<FaceNote> {
         self.held().notes.iter().map(|(_, note)| note.clone()).collect()
     }
 
-    /// Those of a memory that are held, each with how many came before it.
+    /// Returns the kept updates of a memory, by the number of earlier updates of that memory.
     pub(crate) fn of_memory(&self, memory: usize) -> BTreeMap<u64, FaceNote> {
         let held = self.held();
         let of_memory = held.notes.iter().filter(|(_, note)| note.memory == memory);
         of_memory.cloned().collect()
     }
 
-    /// Gives up the updates of a memory before one of them: it shows that one, or a later one.
+    /// Discards the updates of a memory before the update `number`, because the memory shows this update or a later
+    /// one.
     pub(crate) fn keep_from(&self, memory: usize, number: u64) {
         self.held().notes.retain(|(before, note)| note.memory != memory || *before >= number);
     }

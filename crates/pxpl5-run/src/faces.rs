@@ -1,4 +1,4 @@
-//! What was drawn onto faces around a head, and where the time of a turn goes.
+//! History of the faces that were drawn around a head, and the latency of head rotation.
 
 use crate::face_notes::{FaceNote, FaceNotes};
 use crate::latched_head::{LatchedHead, ORIENTATION_WORDS, RotationLatency};
@@ -9,29 +9,31 @@ use pxpl5_display::Display;
 use pxpl5_machine::Record;
 use pxpl5_wire::{Eye, FieldParity, NodeId, PeriodNumber};
 
-/// What a display memory shows.
+/// An update that a display memory shows, from a period on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShownMemory {
-    /// The update that is shown.
+    /// Update that is shown.
     pub note: FaceNote,
-    /// The period from whose begin on it is shown.
+    /// First period in which the update is shown.
     pub from: PeriodNumber,
 }
 
-/// What every memory of a run showed from when on.
+/// Updates that each display memory of a run has shown, in order.
 #[derive(Clone, Debug, Default)]
 pub struct FaceHistory {
     memories: Vec<Vec<ShownMemory>>,
 }
 
 impl FaceHistory {
-    /// Of a run, as far as it is kept; `None` where its display takes no faces.
+    /// Returns the history of a run, as far as its records are kept. Returns `None` if the display of the run takes no
+    /// faces.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Option<Self> {
         Self::held(outcome.record(), outcome.face_notes())
     }
 
-    /// The same of what is held while a run goes on.
+    /// Returns the history from the records of a run that may still be going on. Returns `None` if the display of the
+    /// run takes no faces.
     #[must_use]
     pub fn held(record: &Record, notes: &FaceNotes) -> Option<Self> {
         let display = display(record)?;
@@ -39,7 +41,8 @@ impl FaceHistory {
         Some(Self { memories: memories.collect() })
     }
 
-    /// What each memory that shows something shows in a period, the lowest first.
+    /// Returns the update that each memory shows in a period, from the lowest memory to the highest. Memories that show
+    /// nothing are left out.
     pub fn at(&self, period: PeriodNumber) -> impl Iterator<Item = &ShownMemory> {
         (0..self.memories.len()).filter_map(move |memory| self.memory_at(memory, period))
     }
@@ -57,14 +60,14 @@ impl FaceHistory {
         shown[..shown.partition_point(|shown| shown.from <= period)].last()
     }
 
-    /// Everything that a memory showed, in order.
+    /// Returns all updates that a memory has shown, in order.
     #[must_use]
     pub fn memory(&self, memory: usize) -> &[ShownMemory] {
         self.memories.get(memory).map_or(&[], Vec::as_slice)
     }
 }
 
-/// The updates of a memory are shown in their order, each by a swap; those of the swaps that are held.
+/// Returns the updates of a memory whose swaps are recorded. A memory shows its updates in order, each from a swap on.
 fn shown(record: &Record, notes: &FaceNotes, memory: usize, port: NodeId) -> Vec<ShownMemory> {
     let of_memory = notes.of_memory(memory);
     let swaps = record.observation().swaps.iter().filter(|swap| swap.port == port);
@@ -78,13 +81,14 @@ pub(crate) fn display(record: &Record) -> Option<&AddressRecalculationPipeline> 
 }
 
 impl LatchedHead {
-    /// Of a run; `None` where its display takes no faces.
+    /// Returns the orientation timing of a run, or `None` if the display of the run takes no faces.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Option<Self> {
         Self::of_run(&outcome.settled())
     }
 
-    /// The same while a run goes on.
+    /// Returns the orientation timing of a run that may still be going on. Returns `None` if the display of the run
+    /// takes no faces.
     #[must_use]
     pub fn of_run(settled: &Settled<'_>) -> Option<Self> {
         let link = settled.record.config().host.link_span(ORIENTATION_WORDS);
@@ -93,14 +97,15 @@ impl LatchedHead {
 }
 
 impl Outcome {
-    /// The memories of a display with faces, the one that is drawn most often first; none of any other display.
+    /// Returns the memories of a display with faces, in order of decreasing update rate. The slice is empty for any
+    /// other display.
     #[must_use]
     pub fn display_memories(&self) -> &[DisplayMemory] {
         display(self.record()).map_or(&[], |display| display.memories(Eye::Left))
     }
 
-    /// The rotation latency of the middle pixel of every field from the first that has one: empty without a tracked head, and
-    /// where the display takes no faces.
+    /// Returns the rotation latency of the middle pixel of every field, from the first field that has one. The list is
+    /// empty without a tracked head, or if the display takes no faces.
     #[must_use]
     pub fn rotation_latencies(&self) -> Vec<RotationLatency> {
         let run = self.settled();
@@ -109,7 +114,8 @@ impl Outcome {
 }
 
 impl Settled<'_> {
-    /// The rotation latency of the middle pixel of some settled fields, as far as they have one.
+    /// Returns the rotation latency of the middle pixel of each given field. Fields without a latency are left out. The
+    /// fields must be final.
     #[must_use]
     pub fn rotation_latencies(&self, fields: impl Iterator<Item = PeriodNumber>) -> Vec<RotationLatency> {
         let Some((latched, head)) = LatchedHead::of_run(self).zip(self.head) else { return Vec::new() };

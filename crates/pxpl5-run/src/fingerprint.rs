@@ -1,4 +1,5 @@
-//! A short name for contents: 128-bit FNV-1a (Fowler, Noll, Vo), the same on every host. It finds accidents, not malice.
+//! Hashes of contents: 128-bit FNV-1a (Fowler, Noll, Vo), the same on every host. The hash detects accidental changes,
+//! not malicious ones.
 
 use glam::Vec3;
 use pxpl5_scene::{Frame, HeadPath, Hinge, Lighting, Scene, Sphere, Structure, Vertex};
@@ -8,7 +9,7 @@ use std::ops::Range;
 const OFFSET_BASIS: u128 = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d;
 const PRIME: u128 = 0x0000_0000_0100_0000_0000_0000_0000_013b;
 
-/// The hash of some contents; shown as 32 hexadecimal digits.
+/// A 128-bit hash of contents, printed as 32 hexadecimal digits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Fingerprint(u128);
 
@@ -19,7 +20,7 @@ impl Default for Fingerprint {
 }
 
 impl Fingerprint {
-    /// The name of some bytes alone: FNV-1a with 128 bits.
+    /// Returns the 128-bit FNV-1a hash of some bytes.
     #[must_use]
     pub fn of(bytes: &[u8]) -> Self {
         let mut fingerprint = Self::default();
@@ -27,14 +28,16 @@ impl Fingerprint {
         fingerprint
     }
 
-    /// Of everything in a scene that can be seen or that takes time: primitives, structures, light and motion; not its
-    /// name, and not the seed of its motion, which is the experiment's.
+    /// Returns a hash of everything in a scene that can be seen or that takes time: primitives, structures, light and
+    /// motion. The scene's name is not part of the hash. The seed of the motion is not part of it either, because an
+    /// experiment sets the seed.
     ///
-    /// The numbers follow each other bit for bit, the least significant byte first: lists as their length (64 bits) and
-    /// their entries, choices as a byte that counts from 0 in the order of their declaration.
+    /// The hash covers the numbers one after the other, with the least significant byte first. A list is its length (64
+    /// bits) and its entries. An enum value is a byte, counted from 0 in the order of declaration.
     #[must_use]
     pub fn of_scene(scene: &Scene) -> Self {
         let mut all = Self::default();
+        // The order of these lines defines the hash, so it must not change.
         all.length(scene.vertices());
         scene.vertices().iter().for_each(|vertex| all.vertex(vertex));
         all.length(scene.triangles());
@@ -49,13 +52,13 @@ impl Fingerprint {
         all
     }
 
-    /// Adds a setting: its key and its value, written out.
+    /// Adds a setting to the hash, as a line of text with key and value.
     pub fn setting(&mut self, key: &str, value: impl fmt::Display) {
-        // Adding bytes cannot fail.
+        // Writing to the hash cannot fail.
         let _ = writeln!(self, "{key}={value}");
     }
 
-    /// Takes further bytes into the name.
+    /// Adds bytes to the hash.
     pub fn add(&mut self, bytes: &[u8]) {
         self.0 = bytes.iter().fold(self.0, |hash, byte| (hash ^ u128::from(*byte)).wrapping_mul(PRIME));
     }
@@ -95,7 +98,7 @@ impl Fingerprint {
         self.add(colour);
     }
 
-    /// Its name is for people.
+    /// Adds a structure without its name, which is for users only.
     fn structure(&mut self, structure: &Structure) {
         let Structure { name: _, vertices, triangles, spheres, frame, hinge, culls_back_faces } = structure;
         self.range(vertices);
@@ -172,7 +175,7 @@ mod tests {
 
     #[test]
     fn it_agrees_with_the_published_vectors_of_fnv_1a() {
-        // From the test vectors of the reference program (128 bits): "" and "a".
+        // These values are test vectors of the reference program for 128 bits: "" and "a".
         assert_eq!(Fingerprint::of(b"").to_string(), "6c62272e07bb014262b821756295c58d");
         assert_eq!(Fingerprint::of(b"a").to_string(), "d228cb696f1a8caf78912b704e4a8964");
     }

@@ -1,4 +1,4 @@
-//! A head, its tracker and a predictor in front of a pipeline.
+//! A head, a tracker and a predictor, from which a pipeline gets its views.
 
 use crate::fingerprint::Fingerprint;
 use crate::raster::Raster;
@@ -13,27 +13,29 @@ use tracking::predict::{Predictor, PredictorConfig, PredictorKind, Start, Traini
 use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
 use tracking::{Pose, SettingError};
 
-/// A motion that whoever follows it shares.
+/// A motion that several readers share.
 pub(crate) type Moving = Arc<dyn Motion + Send + Sync>;
 
-/// Why a head cannot be simulated.
+/// Error for a head that cannot be simulated.
 pub type HeadError = SettingError;
 
-/// Where the numbers of a predictor come from.
+/// Origin of the numbers of a predictor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Numbers {
-    /// They are as they were given.
+    /// The user has given the numbers.
     Given,
-    /// They are found when the experiment is run, for the interval that its pipeline has to predict over.
+    /// A dry run will find the numbers, for the interval over which the pipeline predicts.
     ToBeTuned,
-    /// They were found so, if there was anything to find; those of turns by themselves, where turns are predicted over another interval.
+    /// A dry run found the numbers. The first training covers all poses. The second one covers orientations alone, for
+    /// a display that predicts orientations over another interval.
     Tuned(Option<Training>, Option<Training>),
 }
 
-/// How a predictor is tuned, in names of experiments; the numbers follow from it and from everything else there.
+/// Identifier of the tuning method in names of experiments. The tuned numbers follow from the method and from all other
+/// settings.
 const TUNING: &str = "for its interval and motion, version 1";
 
-/// A head, its tracker, a predictor, and the display before its eyes.
+/// A head with its motion, tracker and predictor, and with the raster correction of its display.
 #[derive(Clone)]
 pub struct Head {
     pub(crate) motion: Moving,
@@ -45,7 +47,6 @@ pub struct Head {
     raster: Raster,
     aim: Aim,
     reports: Option<Arc<[TrackerReport]>>,
-    /// Numbers of its tracker and predictor that no source allows.
     suppositions: Vec<Parameter>,
 }
 
@@ -63,13 +64,13 @@ impl fmt::Debug for Head {
     }
 }
 
-/// Distances, in metres, at which errors can be judged.
+/// Distances, in metres, at which pixel errors can be evaluated.
 const JUDGED_AT_M: (f64, f64) = (1e-3, 1e6);
 
 impl Head {
-    /// A head that moves, a tracker and a predictor that knows the tracker's noise, and whose numbers are tuned, when the
-    /// experiment is run, for the interval that the pipeline has to predict over and for the motion
-    /// ([`tune`](tracking::predict::tune)).
+    /// Creates a head with a motion, a tracker and a predictor. The predictor knows the noise of the tracker. A dry run
+    /// tunes the predictor's numbers for the motion and for the interval over which the pipeline predicts. See
+    /// [`tune`](tracking::predict::tune).
     ///
     /// # Errors
     ///
@@ -84,7 +85,7 @@ impl Head {
         Ok(Self { numbers: Numbers::ToBeTuned, ..Self::predicted_by(motion, tracker, predictor, seed)? })
     }
 
-    /// The same with a predictor whose numbers are given, and not tuned.
+    /// Creates a head whose predictor has the given numbers and is not tuned.
     ///
     /// # Errors
     ///
@@ -95,6 +96,7 @@ impl Head {
         predictor: PredictorConfig,
         seed: u64,
     ) -> Result<Self, HeadError> {
+        // Check both configurations now, so that later calls cannot fail.
         predictor.build()?;
         let tracker = TrackerModel::new(tracker)?;
         Ok(Self {
@@ -111,27 +113,29 @@ impl Head {
         })
     }
 
-    /// Moves otherwise: the same tracker and predictor before another motion.
+    /// Replaces the motion. Tracker and predictor stay the same.
     #[must_use]
     pub fn moving(self, motion: Arc<dyn Motion + Send + Sync>) -> Self {
         Self { motion, ..self }
     }
 
-    /// Has the numbers of its predictor tuned when the experiment is run; they are searched from the present ones.
+    /// Makes the run tune the numbers of the predictor. The search begins at the present numbers.
     #[must_use]
     pub const fn tuned(mut self) -> Self {
         self.numbers = Numbers::ToBeTuned;
         self
     }
 
-    /// Has another predictor in the place of its own, with the same numbers, or tuned if its own is.
+    /// Replaces the kind of the predictor. The numbers stay the same. If the old predictor is tuned, the new one is
+    /// tuned too.
     #[must_use]
     pub const fn predicting(mut self, kind: PredictorKind) -> Self {
         self.predictor.kind = kind;
         self
     }
 
-    /// Says at which distance from the eye, in metres, pixel errors are judged; else it is where the scene's content lies.
+    /// Sets the distance from the eye, in metres, at which pixel errors are evaluated. The default is the distance of
+    /// the scene's content.
     ///
     /// # Errors
     ///
@@ -145,56 +149,60 @@ impl Head {
         Ok(Self { judge_at_m: Some(metres), ..self })
     }
 
-    /// The distance at which pixel errors are judged, metres; `None` where the scene's content lies.
+    /// Returns the distance at which pixel errors are evaluated, in metres. `None` stands for the distance of the
+    /// scene's content.
     #[must_use]
     pub const fn judge_at_m(&self) -> Option<f64> {
         self.judge_at_m
     }
 
-    /// Puts a raster before its eyes.
+    /// Sets the raster correction of the head-mounted display.
     #[must_use]
     pub const fn before(mut self, raster: Raster) -> Self {
         self.raster = raster;
         self
     }
 
-    /// Says for which instant of what is shown from them views are predicted.
+    /// Sets the instant of a picture's display time for which its view is predicted, such as the middle or the first
+    /// pixel.
     #[must_use]
     pub const fn aiming(mut self, aim: Aim) -> Self {
         self.aim = aim;
         self
     }
 
-    /// Says which numbers of its tracker and predictor lie outside of what their sources allow, so that reports warn of them.
+    /// Stores the parameters of the tracker and the predictor whose values no source supports. Reports warn of these
+    /// parameters.
     #[must_use]
     pub fn supposing(self, suppositions: Vec<Parameter>) -> Self {
         Self { suppositions, ..self }
     }
 
-    /// The numbers of its tracker and predictor that no source allows, as far as they were said.
+    /// Returns the parameters of the tracker and the predictor whose values no source supports, as set by
+    /// [`Head::supposing`].
     #[must_use]
     pub fn suppositions(&self) -> &[Parameter] {
         &self.suppositions
     }
 
-    /// Puts these reports, in order of arrival, in the place of those that its tracker would make of the motion.
+    /// Replaces the tracker's reports by the given ones. The given reports must be in order of arrival.
     #[must_use]
     pub fn reporting(self, reports: Vec<TrackerReport>) -> Self {
         Self { reports: Some(reports.into()), ..self }
     }
 
-    /// The reports that reach the host before an instant.
+    /// Returns the arrival and measurement times of the reports that reach the host before an instant.
     pub(crate) fn arrivals(&self, until: Time) -> Arrivals {
         let reports = self.reports_of(Arc::new(Still(Pose::IDENTITY)));
         Box::new(reports.map(Coming::of).take_while(move |coming| coming.arrives < until))
     }
 
-    /// What all of its reports say.
+    /// Returns the contents of all reports.
     pub(crate) fn contents(&self) -> Contents {
         self.reports_of(Arc::clone(&self.motion))
     }
 
-    /// What its tracker says of a motion, or what was put in the place of that, in order of arrival.
+    /// Returns the reports of the tracker about a motion, or the reports that replace them, in order of arrival.
     fn reports_of(&self, motion: Moving) -> Contents {
         match &self.reports {
             Some(given) => Box::new(GivenReports { given: Arc::clone(given), next: 0 }),
@@ -202,23 +210,25 @@ impl Head {
         }
     }
 
-    /// For which instant of what is shown from them views are predicted.
+    /// Returns the instant of a picture's display time for which its view is predicted, such as the middle or the first
+    /// pixel.
     #[must_use]
     pub const fn aim(&self) -> Aim {
         self.aim
     }
 
-    /// How the raster before its eyes shows the picture.
+    /// Returns the raster correction of the head-mounted display.
     #[must_use]
     pub const fn raster(&self) -> Raster {
         self.raster
     }
 
-    /// Name of everything that it is, the motion included.
+    /// Returns a hash of the motion and of all settings of the head.
     #[must_use]
     pub fn fingerprint(&self) -> Fingerprint {
         let mut hash = Fingerprint::default();
         let mut add = |key: &str, value: &dyn fmt::Display| hash.setting(key, value);
+        // Motion, tracker and predictor, with the method or the result of the tuning.
         self.motion.identify(&mut add);
         self.tracker.config().identify(&mut add);
         self.predictor.identify(&mut add);
@@ -232,6 +242,7 @@ impl Head {
             }
             Numbers::Given | Numbers::ToBeTuned => {}
         }
+        // Settings that affect evaluation and display, then the given reports.
         if let Some(metres) = self.judge_at_m {
             hash.setting("judge_at_m", metres);
         }
@@ -244,34 +255,37 @@ impl Head {
         hash
     }
 
-    /// Whether poses are predicted.
+    /// Returns true if poses are predicted.
     #[must_use]
     pub fn predicts(&self) -> bool {
         self.predictor.kind != PredictorKind::None
     }
 
-    /// Whether the numbers of its predictor are found when the experiment is run, or were.
+    /// Returns true if a run tunes, or has tuned, the numbers of the predictor.
     #[must_use]
     pub fn is_tuned(&self) -> bool {
         self.numbers != Numbers::Given
     }
 
-    /// Whether the numbers of its predictor are still to be found.
+    /// Returns true if the numbers of the predictor are still to be tuned.
     pub(crate) fn is_to_be_tuned(&self) -> bool {
         self.numbers == Numbers::ToBeTuned && self.predicts()
     }
 
-    /// The same with the numbers with which its predictor errs least so far ahead of the tracker's reports.
+    /// Returns this head with a predictor that is tuned for an interval, in picoseconds, between a report and the
+    /// predicted instant.
     pub(crate) fn tuned_for(&self, interval_ps: u64) -> Self {
         let tuned = tune(self.motion.as_ref(), &self.tracker, interval_ps, &self.predictor, self.seed);
         let tuned = tuned.expect("checked by Head::new");
         Self { predictor: tuned.config, numbers: Numbers::Tuned(tuned.training, None), ..self.clone() }
     }
 
-    /// The same with numbers for orientations with which its predictor errs least in turns so far ahead; those for places stay.
+    /// Returns this head with the predictor's numbers for orientations tuned for an interval in picoseconds. The
+    /// numbers for positions stay the same.
     pub(crate) fn tuned_for_turns(&self, interval_ps: u64) -> Self {
         let tuned = tune(self.motion.as_ref(), &self.tracker, interval_ps, &self.predictor, self.seed);
         let Tuned { config: of_turns, training } = tuned.expect("checked by Head::new");
+        // Only the numbers for orientations are taken from the tuned predictor.
         let own = self.predictor;
         let start =
             Start { turn: of_turns.start.turn, turn_acceleration: of_turns.start.turn_acceleration, ..own.start };
@@ -281,41 +295,43 @@ impl Head {
             start,
             ..own
         };
+        // The training for positions stays on record.
         let of_all = if let Numbers::Tuned(of_all, _) = self.numbers { of_all } else { None };
         Self { predictor, numbers: Numbers::Tuned(of_all, training), ..self.clone() }
     }
 
-    /// The predictor with its numbers: in an outcome those with which it ran.
+    /// Returns the predictor with its numbers. In an outcome, the numbers are those with which the run was done.
     #[must_use]
     pub const fn predictor(&self) -> &PredictorConfig {
         &self.predictor
     }
 
-    /// On what its predictor was tuned; `None` where its numbers were given, or before the experiment is run.
+    /// Returns the data on which the predictor was tuned. Returns `None` if the numbers were given, or before the run.
     #[must_use]
     pub const fn training(&self) -> Option<&Training> {
         if let Numbers::Tuned(Some(training), _) = &self.numbers { Some(training) } else { None }
     }
 
-    /// On what the numbers of orientations were tuned by themselves, for a display that latches turns alone; `None` elsewhere.
+    /// Returns the data on which the numbers for orientations were tuned separately. Only a display that latches
+    /// orientations alone needs them. Returns `None` otherwise.
     #[must_use]
     pub const fn training_of_turns(&self) -> Option<&Training> {
         if let Numbers::Tuned(_, Some(training)) = &self.numbers { Some(training) } else { None }
     }
 
-    /// Which filter makes poses of the tracker's reports.
+    /// Returns the kind of filter that computes poses from the tracker's reports.
     #[must_use]
     pub const fn predictor_kind(&self) -> PredictorKind {
         self.predictor.kind
     }
 
-    /// The tracker that reports where the head is.
+    /// Returns the tracker that reports the pose of the head.
     #[must_use]
     pub const fn tracker(&self) -> &TrackerModel {
         &self.tracker
     }
 
-    /// The motion, in the tracker's coordinates.
+    /// Returns the motion, in the tracker's coordinates.
     #[must_use]
     pub fn motion(&self) -> &(dyn Motion + Send + Sync) {
         self.motion.as_ref()
@@ -330,7 +346,7 @@ impl Head {
     }
 }
 
-/// Reports that were said, one after the other.
+/// Iterator over reports that were given by the caller.
 struct GivenReports {
     given: Arc<[TrackerReport]>,
     next: usize,

@@ -1,4 +1,4 @@
-//! The poses that a pipeline asked for, and what became of each.
+//! Records of the poses that a pipeline requested, with the reports from which each pose was computed.
 
 use crate::display_list::view;
 use crate::head::Head;
@@ -17,33 +17,35 @@ use tracking::Pose;
 use tracking::predict::Predictor;
 use tracking::tracker::TrackerReport;
 
-/// A pose that a pipeline asked for.
+/// A pose that a pipeline requested.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampled {
-    /// The view that the pose is for, in the pipeline's own count.
+    /// Number of the view that the pose is for, as the pipeline counts views.
     pub number: ViewNumber,
-    /// Reports that had reached the host by then could be used.
+    /// Instant up to which arrived reports could be used.
     pub known: Time,
-    /// When the newest report used was true; `None` before the first.
+    /// Measurement time of the newest report that was used. `None` before the first report.
     pub measured_at: Option<Time>,
-    /// When that report reached the host.
+    /// Arrival time of the newest report that was used. `None` before the first report.
     pub arrived_at: Option<Time>,
-    /// The moment that the view's picture is drawn for, by the head's [`Aim`](crate::Aim): moving objects stand where they are then.
+    /// Instant that the view's picture is drawn for, by the head's [`Aim`](crate::Aim). Moving objects are placed as of
+    /// this instant.
     pub objects_at: Time,
-    /// The same where the pose was predicted; `None` where the newest was taken as it is.
+    /// Instant that the pose was predicted for. `None` without prediction: the newest report was used unchanged.
     pub predicted_for: Option<Time>,
-    /// The pose in the scene's coordinates.
+    /// Pose in the scene's coordinates.
     pub pose: Pose,
 }
 
-/// What a pose of the predictor rests on.
+/// Times of the newest report that a predictor has accepted.
 #[derive(Clone, Copy, Debug, Default)]
 struct Newest {
     measured_at: Option<Time>,
     arrived_at: Option<Time>,
 }
 
-/// Reports fed to a predictor as time goes on. Each is made when it has arrived: of a head that somebody moves no more is known.
+/// A predictor that receives reports as simulated time advances. A report's content is computed only after its arrival,
+/// because the motion of an interactive head is unknown before that.
 pub(crate) struct Follower {
     arrivals: Peekable<Arrivals>,
     contents: Contents,
@@ -52,17 +54,18 @@ pub(crate) struct Follower {
 }
 
 impl Follower {
-    /// Follows what some reports say, as far as they come.
+    /// Creates a follower of the given reports.
     pub(crate) fn new(arrivals: Arrivals, contents: Contents, predictor: Box<dyn Predictor + Send>) -> Self {
         Self { arrivals: arrivals.peekable(), contents, predictor, newest: Newest::default() }
     }
 
-    /// Follows what reaches the host of a head before an instant.
+    /// Creates a follower of the reports that reach the host of a head before an instant.
     fn of_head(head: &Head, until: Time) -> Self {
         Self::new(head.arrivals(until), head.contents(), head.build_predictor())
     }
 
-    /// Takes what had arrived by `known`; asked for earlier times it does not forget.
+    /// Feeds the predictor all reports that had arrived by `known`. For an earlier `known` than before, the predictor
+    /// does not go back.
     fn follow(&mut self, known: Time) {
         while self.arrivals.next_if(|coming| coming.arrives <= known).is_some() {
             let Some(report) = self.contents.next() else { return };
@@ -79,25 +82,25 @@ impl Follower {
         }
     }
 
-    /// The pose at a time with what had arrived by `known`, in the tracker's coordinates; the start of the motion before the first
-    /// report.
+    /// Returns the pose at an instant, in the tracker's coordinates, from the reports that had arrived by `known`.
+    /// Before the first report, returns the start of the motion.
     pub(crate) fn pose(&mut self, known: Time, at: Time, start: &Pose) -> Pose {
         self.follow(known);
         if self.newest.measured_at.is_none() { *start } else { self.predictor.predict(at.0) }
     }
 }
 
-/// The views of a head as its tracker tells of them, with a record of each that was not given up.
+/// The views that a head's tracker and predictor give to a pipeline, with records of the requested poses.
 pub struct HeadViews {
     head: Arc<Head>,
     scene: Arc<Scene>,
     hmd: Hmd,
     eyes: usize,
-    /// When the run ends: what comes later is no report of it.
+    /// End of the run. Reports that arrive later are ignored.
     until: Time,
     schedule: Mutex<ReportSchedule>,
     rehearsal: Option<Rehearsal>,
-    /// Where the scene wants its viewer at time zero.
+    /// Pose of the viewer in the scene at time zero.
     base: Pose,
     start: Pose,
     state: Mutex<(Follower, Vec<Sampled>)>,
@@ -110,7 +113,8 @@ impl fmt::Debug for HeadViews {
 }
 
 impl HeadViews {
-    /// Reports until `until`. The motion begins where the scene's own begins and goes on from there.
+    /// Creates the views of a head for reports until `until`. The tracked motion begins at the start of the scene's own
+    /// motion.
     pub(crate) fn new(
         head: Arc<Head>,
         scene: &Arc<Scene>,
@@ -126,7 +130,7 @@ impl HeadViews {
         Self { head, scene: Arc::clone(scene), hmd, eyes, until, schedule, rehearsal, base, start, state }
     }
 
-    /// The functions that a pipeline is set up with.
+    /// Returns the three functions by which a pipeline requests views and report times.
     pub(crate) fn functions(this: &Arc<Self>) -> (Views, ViewsWanted, ReportTimes) {
         let [a, b, c] = [(); 3].map(|()| Arc::clone(this));
         (
@@ -136,7 +140,8 @@ impl HeadViews {
         )
     }
 
-    /// What its host knows of the head alone; the predictor is one of its own.
+    /// Returns the function by which a host requests the pose of the head alone. The function has a predictor of its
+    /// own.
     pub(crate) fn poses(this: &Arc<Self>) -> Poses {
         let follower = Mutex::new(this.follower());
         let views = Arc::clone(this);
@@ -146,29 +151,32 @@ impl HeadViews {
         })
     }
 
-    /// When what a report says was true, by the report's arrival at the host; `None` where there is no such report.
+    /// Returns the measurement time of the first report that reaches the host at `arrived` or later. Returns `None` if
+    /// no such report exists.
     #[must_use]
     pub fn measured_at(&self, arrived: Time) -> Option<Time> {
         Some(self.schedule().from(arrived)?.measured)
     }
 
-    /// The last report that had reached the host by an instant; `None` before the first.
+    /// Returns the arrival time of the last report that had reached the host by an instant. Returns `None` before the
+    /// first report.
     #[must_use]
     pub fn report_by(&self, instant: Time) -> Option<Time> {
         Some(self.schedule().by(instant)?.arrives)
     }
 
-    /// The last report of the run; `None` where there is none.
+    /// Returns the arrival time of the last report of the run, or `None` if the run has none.
     pub(crate) fn last_report(&self) -> Option<Time> {
         self.report_by(self.until)
     }
 
-    /// Poses and reports that are held.
+    /// Returns the number of records of poses and reports in memory.
     pub(crate) fn records(&self) -> usize {
         self.state().1.len() + self.schedule().held()
     }
 
-    /// Gives up poses that were asked for before an instant, and reports that were old then: nobody looks so far back.
+    /// Discards the records of poses that were requested before an instant, and of reports that were out of date by
+    /// then.
     pub(crate) fn forget_before(&self, instant: Time) {
         self.state().1.retain(|sampled| sampled.known >= instant);
         self.schedule().forget_before(instant);
@@ -196,51 +204,53 @@ impl HeadViews {
         view(&self.scene, &self.hmd, self.eyes, number, shown_at, &pose.in_single_precision())
     }
 
-    /// The first report that reaches the host at an instant or later.
+    /// Returns the arrival time of the first report that reaches the host at an instant or later.
     pub(crate) fn report_from(&self, instant: Time) -> Option<Time> {
         Some(self.schedule().from(instant)?.arrives)
     }
 
-    /// The first report that reaches the host after an instant; `None` if none does.
+    /// Returns the arrival time of the first report that reaches the host after an instant, or `None` if no report
+    /// does.
     #[must_use]
     pub fn report_after(&self, after: Time) -> Option<Time> {
         Some(self.schedule().after(after)?.arrives)
     }
 
-    /// A pose of the tracker in the scene: the motion's start is where the scene's own motion starts.
+    /// Converts a pose from the tracker's coordinates to the scene's. The start of the tracked motion maps to the start
+    /// of the scene's own motion.
     pub(crate) fn in_scene(&self, tracked: &Pose) -> Pose {
         let turn: DQuat = self.base.orientation * self.start.orientation.conjugate();
         let way: DVec3 = turn * (tracked.position - self.start.position);
         Pose { position: self.base.position + way, orientation: (turn * tracked.orientation).normalize() }
     }
 
-    /// Where the head truly is.
+    /// Returns the true pose of the head at a time, in the scene's coordinates.
     #[must_use]
     pub fn truth(&self, time: Time) -> Pose {
         self.in_scene(&self.head.motion.pose(time.0))
     }
 
-    /// The head that is tracked, with its tracker and predictor.
+    /// Returns the head with its tracker and predictor.
     #[must_use]
     pub fn head(&self) -> &Head {
         &self.head
     }
 
-    /// The scene that the head looks at.
+    /// Returns the scene in which the head moves.
     #[must_use]
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// Where what has no place of its own is judged, metres: the distance that was said, else that from the head's start to the middle
-    /// of the scene, at least 0.1.
+    /// Returns the distance, in metres, at which errors of content without a position of its own are evaluated. The
+    /// default is the distance from the head's start to the centre of the scene, at least 0.1.
     #[must_use]
     pub fn distance_m(&self) -> f64 {
         let (centre, _) = self.scene.bounding_sphere();
         self.head.judge_at_m().unwrap_or_else(|| self.base.position.distance(centre.as_dvec3()).max(0.1))
     }
 
-    /// Every pose that was asked for and not given up ([`Keep`](crate::Keep)), in order of the numbers.
+    /// Returns the records of all requested poses that are still kept ([`Keep`](crate::Keep)), sorted by view number.
     #[must_use]
     pub fn sampled(&self) -> Vec<Sampled> {
         let mut all = self.state().1.clone();
@@ -248,12 +258,12 @@ impl HeadViews {
         all
     }
 
-    /// Somebody who follows the same reports from the first one on, with a predictor of his own.
+    /// Creates a second follower of the same reports, from the first report on, with a predictor of its own.
     pub(crate) fn follower(&self) -> Follower {
         Follower::of_head(&self.head, self.until)
     }
 
-    /// What reaches the host while the run goes on.
+    /// Returns the times of the reports that reach the host during the run.
     pub(crate) fn arrivals(&self) -> Arrivals {
         self.head.arrivals(self.until)
     }

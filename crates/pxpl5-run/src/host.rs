@@ -1,28 +1,28 @@
-//! The computer that a simulation runs on.
+//! Services of the host computer that a simulation uses.
 
 use pxpl5_machine::{PixelWorker, SameThread};
 use std::fmt::Debug;
 
-/// What a simulation may ask of the computer that it runs on. Nothing of it reaches the trace.
+/// Services of the host computer that a simulation uses. They do not affect the trace.
 pub trait Host: Debug + Send + Sync {
-    /// Seconds since some moment; `None` without a clock.
+    /// Returns the time of the host's clock in seconds, or `None` without a clock. The clock may start at any moment.
     fn seconds(&self) -> Option<f64> {
         None
     }
 
-    /// Whether nobody wants the result any more. Runs ask now and then, rehearsals too, and end with
-    /// [`ExperimentError::Stopped`](crate::ExperimentError::Stopped).
+    /// Returns true if the result is no longer wanted. Runs, including dry runs, call this method from time to time. If
+    /// it returns true, they end with [`ExperimentError::Stopped`](crate::ExperimentError::Stopped).
     fn is_given_up(&self) -> bool {
         false
     }
 
-    /// Who computes the pixels of [`Pixels::All`](crate::Pixels::All).
+    /// Returns the worker that computes the pixels of [`Pixels::All`](crate::Pixels::All).
     fn pixel_worker(&self) -> Box<dyn PixelWorker> {
         Box::new(SameThread::default())
     }
 }
 
-/// One thread, no clock and no files, as in a browser: what an [`Experiment`](crate::Experiment) runs on unless said.
+/// Default host of an [`Experiment`](crate::Experiment): one thread, no clock and no files, as in a browser.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BareHost;
 

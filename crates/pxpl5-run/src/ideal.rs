@@ -1,4 +1,4 @@
-//! What an ideal renderer would show in an outcome's place.
+//! Ideal pictures, for comparison with the pictures of a run.
 
 use crate::display_list::{display_list_for, hmd_before, view, views};
 use crate::experiment::Experiment;
@@ -12,19 +12,19 @@ use pxpl5_sim::Time;
 use pxpl5_wire::{Lines, SurfaceId, ViewNumber};
 
 impl Outcome {
-    /// What a viewer of a surface should see of the scene as it is at a time: all lines of it, drawn by an ideal renderer
-    /// with the shading and the widths of the pipeline. The head is where the scene's own motion has it at that time, or a
-    /// tracked head truly is.
+    /// Returns the ideal picture of a surface at a time. An ideal renderer draws all lines, with the shading and the
+    /// number widths of the pipeline. The head is at its true pose, or at the pose of the scene's own motion if no head
+    /// is tracked.
     ///
-    /// Of a still scene and a still head every complete picture of the machine is this one, but for its
-    /// [ties](IdealPicture::ties). `None` for a surface that the first display or the pipeline does not have.
+    /// For a still scene and a still head, every complete picture of the machine equals the ideal picture, except at
+    /// [ties](IdealPicture::ties). Returns `None` for a surface that the first display or the pipeline does not have.
     #[must_use]
     pub fn ideal_picture(&self, surface: impl Into<SurfaceId>, time: Time) -> Option<IdealPicture> {
         ideal_picture(self.experiment(), self.record(), self.head().map(AsRef::as_ref), surface.into(), time)
     }
 }
 
-/// The same of an experiment that is still running.
+/// Returns the ideal picture of an experiment that may still be running.
 pub(crate) fn ideal_picture(
     experiment: &Experiment,
     record: &Record,
@@ -37,9 +37,11 @@ pub(crate) fn ideal_picture(
     let surface = surface.index();
     let eyes = pipeline.eyes();
     let surfaces = record.display().surfaces();
+    // The pipeline may draw fewer eyes than the display has surfaces.
     let size = surfaces.get(surface).filter(|_| surface < eyes)?;
     let list = display_list_for(scene, pipeline.shading()).ok()?;
     let hmd = hmd_before(surfaces.first());
+    // A tracked head is at its true pose, not at the predicted one.
     let view = match head {
         Some(head) => view(scene, &hmd, eyes, ViewNumber::FIRST, time, &head.truth(time).in_single_precision()),
         None => views(scene, experiment.seed_of_motion(), hmd, eyes).0(ViewNumber::FIRST, time),

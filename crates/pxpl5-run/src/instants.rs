@@ -1,12 +1,15 @@
-//! Instants by rising numbers, in two or three bytes each: those of 10^7 views take 30 MB and not 300.
+//! Compact storage of instants by rising numbers, in two or three bytes each. The instants of 10^7 views take 30 MB
+//! instead of 300 MB.
 
 use pxpl5_sim::Time;
 
-/// Numbers from one place where reading can begin to the next: so many at most are read for a question.
+/// Number of entries from one place where decoding can begin to the next. A lookup decodes at most this number of
+/// entries.
 const BLOCK: u64 = 256;
 
-/// Instants by numbers that rise. Of each it is written how many numbers are left out before it, and how far it is from where the last step but one
-/// would have led: where every second step is the same (fields of two kinds, two periods and three in turn) that is nothing, in a byte.
+/// Compressed instants by rising numbers. Each entry stores how many numbers were skipped before it, and the difference
+/// from the expected instant. The expected instant repeats the last step but one. If every second step is equal, as for
+/// two fields or for two and three periods in turn, the difference is 0 and takes one byte.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Instants {
     written: Vec<u8>,
@@ -15,14 +18,14 @@ pub(crate) struct Instants {
     count: u64,
 }
 
-/// A place where reading can begin: an entry, and where the next one is written.
+/// A place where decoding can begin: an entry, and the position of the next one in the bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Begin {
     at: At,
     next: usize,
 }
 
-/// An entry, and the last two steps that led to it, the older first, ps.
+/// An entry, with the last two steps before it in picoseconds, the older first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct At {
     number: u64,
@@ -31,7 +34,8 @@ struct At {
 }
 
 impl At {
-    /// Where the last step but one would lead. Steps wrap, so that an instant may lie before the one before it.
+    /// Returns the instant that repeats the last step but one. Steps wrap around, so an instant may lie before its
+    /// predecessor.
     const fn expected(&self) -> u64 {
         self.instant.wrapping_add(self.steps[0])
     }
@@ -42,17 +46,19 @@ impl At {
 }
 
 impl Instants {
-    /// One more, of a number above all others.
+    /// Adds the instant of a number, which must be greater than all others.
     pub(crate) fn push(&mut self, number: u64, instant: Time) {
         let at = match self.last {
             None => At { number, instant: instant.0, steps: [0; 2] },
             Some(last) => {
                 assert!(number > last.number, "{number} after {}", last.number);
+                // Store only the differences from the expected entry, which are small.
                 write(&mut self.written, number - last.number - 1);
                 write(&mut self.written, folded(instant.0.wrapping_sub(last.expected())));
                 last.followed_by(number, instant.0)
             }
         };
+        // Decoding can begin at every block.
         if self.count.is_multiple_of(BLOCK) {
             self.begins.push(Begin { at, next: self.written.len() });
         }
@@ -60,7 +66,7 @@ impl Instants {
         self.count += 1;
     }
 
-    /// The instant of a number; `None` of one that was left out.
+    /// Returns the instant of a number, or `None` if the number was skipped.
     pub(crate) fn of(&self, number: u64) -> Option<Time> {
         let block = self.begins.partition_point(|begin| begin.at.number <= number);
         let Begin { mut at, mut next } = *self.begins.get(block.checked_sub(1)?)?;
@@ -73,7 +79,7 @@ impl Instants {
     }
 }
 
-/// Small numbers for what is near 0 on either side.
+/// Maps small positive and negative differences to small numbers (zigzag code).
 const fn folded(difference: u64) -> u64 {
     let signed = difference.cast_signed();
     (signed << 1 ^ signed >> 63).cast_unsigned()
@@ -83,7 +89,7 @@ const fn unfolded(folded: u64) -> u64 {
     folded >> 1 ^ (folded & 1).wrapping_neg()
 }
 
-/// Seven bits a byte, the lowest first; the eighth says that more follow.
+/// Writes a number with seven bits in a byte, the lowest first. The eighth bit is set if more bytes follow.
 fn write(bytes: &mut Vec<u8>, mut value: u64) {
     while value >= 0x80 {
         bytes.push(value as u8 | 0x80);
@@ -130,7 +136,7 @@ mod tests {
         }
     }
 
-    /// Steps of two and of three fields in turn, each to the picosecond below it: at most three bytes.
+    /// Steps of two and three fields in turn, each rounded down to a picosecond, take at most three bytes.
     #[test]
     fn even_steps_take_three_bytes_at_most() {
         let field_ps = |n: u64| n * 1_001_000_000_000 / 60;

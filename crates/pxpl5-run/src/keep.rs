@@ -1,19 +1,23 @@
-//! What a run keeps of what was observed.
+//! Choice of the observations that a run keeps.
 
-/// What is kept of a run. No time, trace or statistic depends on it but in the last digits of means over more than
-/// [`KEPT_SAMPLES`](crate::KEPT_SAMPLES) pictures.
+/// Choice of the observations that a run keeps. The choice changes no time and no trace. Statistics change only in the
+/// last digits of means over more than [`KEPT_SAMPLES`](crate::KEPT_SAMPLES) pictures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Keep {
-    /// Every mark, arrival, swap and picture: for timelines, traces, and lists of pictures. 2 KB (Slats) to 100 KB (frameless) a
-    /// field.
+    /// All marks, arrivals, swaps and pictures, for timelines, traces and lists of pictures. A field takes 2 KB (Slats)
+    /// to 100 KB (frameless).
     #[default]
     Everything,
-    /// Statistics of the whole run, and everything of its last pictures: memory and time a field do not depend on the length of
-    /// the run. What is said of a head is summed up too, by whoever was handed in ([`Experiment::summed_by`](crate::Experiment::summed_by)); a
-    /// report of a run with a head and without such a one says that this is missing. A run whose messages are recorded keeps everything, and
-    /// so does a pipeline that cannot do without ([`Pipeline::can_forget`](crate::Pipeline::can_forget)).
+    /// Statistics of the whole run, and all observations of its last pictures. Memory, and computing time per field, do
+    /// not depend on the length of the run.
+    ///
+    /// The streaming observer of [`Experiment::summed_by`](crate::Experiment::summed_by) computes the results for a
+    /// tracked head. Without an observer, the report marks these results as missing. Two kinds of runs keep everything
+    /// nevertheless: a run that records messages, and a run of a pipeline that needs old records
+    /// ([`Pipeline::can_forget`](crate::Pipeline::can_forget)).
     Statistics,
-    /// As [`Keep::Statistics`], where messages are recorded too, and without sums of a head: what a page needs that shows a run as it goes on
-    /// for hours. Of such a run pixel errors can be told of its last pictures alone, and traffic of its last periods.
+    /// Like [`Keep::Statistics`], but also with recorded messages, and without a streaming observer. A page that
+    /// displays a run for hours uses this choice. Pixel errors are available for the last pictures only, and traffic
+    /// for the last periods only.
     Recent,
 }

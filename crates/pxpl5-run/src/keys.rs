@@ -1,20 +1,20 @@
-//! The keys of pipelines: what experiment files and the command line may set of them.
+//! Keys of pipelines: the settings that experiment files and the command line can change.
 
 use address_recalculation::{ArpError, Lens};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 
-/// The value of a pipeline's key.
+/// Value of a pipeline's key.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum KeyValue {
-    /// Whether something is done: true or false.
+    /// A choice between true and false.
     Flag(bool),
     /// A whole number within the range of its key.
     Whole(u64),
-    /// One of some names.
+    /// One of the names that the key allows.
     Name(&'static str),
-    /// A text in the form of its key.
+    /// A text in the format of its key.
     Text(Arc<str>),
 }
 
@@ -29,25 +29,25 @@ impl fmt::Display for KeyValue {
     }
 }
 
-/// The values that a key takes.
+/// Values that a key allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeyValues {
-    /// It takes true or false.
+    /// The key allows true and false.
     Flag,
-    /// Whole numbers from the first to the second.
+    /// The key allows whole numbers from the first to the second, inclusive.
     Whole(u64, u64),
-    /// It takes one of these names.
+    /// The key allows one of these names.
     Names(&'static [&'static str]),
-    /// It takes the text of a [`Lens`].
+    /// The key allows the text of a [`Lens`].
     Lens,
 }
 
 impl KeyValues {
-    /// The value of a text for a key that takes a lens.
+    /// Checks the text of a lens and returns it as a value.
     ///
     /// # Errors
     ///
-    /// [`ArpError::Lens`] with the texts that it takes.
+    /// [`ArpError::Lens`] with the allowed texts.
     pub fn lens(text: &str) -> Result<KeyValue, ArpError> {
         text.parse::<Lens>()?;
         Ok(KeyValue::Text(text.into()))
@@ -67,50 +67,50 @@ impl fmt::Display for KeyValues {
     }
 }
 
-/// A key of a pipeline: in experiment files `name = value`, on the command line `--name value`.
+/// A key of a pipeline: `name = value` in experiment files, `--name value` on the command line.
 #[derive(Clone, Copy, Debug)]
 pub struct Key {
-    /// Its name in experiment files; on the command line `_` is written `-`.
+    /// Name in experiment files. On the command line, `-` replaces `_`.
     pub name: &'static str,
-    /// What it sets, in a line of help.
+    /// Help text of the key, in one line.
     pub about: &'static str,
-    /// Which values it takes, with their range.
+    /// Allowed values with their range.
     pub values: KeyValues,
-    /// Machine parameters that it sets too, and that must therefore not be given beside it.
+    /// Machine parameters that the key sets too. They must not be given together with the key.
     pub sets: &'static [&'static str],
 }
 
-/// The keys of a pipeline that somebody has given, checked against its [`Key`]s.
+/// Values of a pipeline's keys that the user has set. Each value must have been checked against its [`Key`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PipelineSettings {
     values: BTreeMap<&'static str, KeyValue>,
 }
 
 impl PipelineSettings {
-    /// Gives a key a value.
+    /// Sets the value of a key.
     pub fn set(&mut self, key: &'static str, value: KeyValue) {
         self.values.insert(key, value);
     }
 
-    /// The value of a key that takes true or false; `None` if it was not given.
+    /// Returns the value of a key that takes true or false, or `None` if the key was not set.
     #[must_use]
     pub fn flag(&self, key: &str) -> Option<bool> {
         if let Some(KeyValue::Flag(flag)) = self.values.get(key) { Some(*flag) } else { None }
     }
 
-    /// The value of a key that takes whole numbers; `None` if it was not given.
+    /// Returns the value of a key that takes whole numbers, or `None` if the key was not set.
     #[must_use]
     pub fn whole(&self, key: &str) -> Option<u64> {
         if let Some(KeyValue::Whole(number)) = self.values.get(key) { Some(*number) } else { None }
     }
 
-    /// The value of a key that takes a lens; `None` if it was not given.
+    /// Returns the value of a key that takes a lens, or `None` if the key was not set.
     #[must_use]
     pub fn lens(&self, key: &str) -> Option<Lens> {
         if let Some(KeyValue::Text(text)) = self.values.get(key) { text.parse().ok() } else { None }
     }
 
-    /// The value of a key that takes names; `None` if it was not given.
+    /// Returns the value of a key that takes names, or `None` if the key was not set.
     #[must_use]
     pub fn name(&self, key: &str) -> Option<&'static str> {
         if let Some(KeyValue::Name(name)) = self.values.get(key) { Some(name) } else { None }

@@ -1,4 +1,4 @@
-//! Which orientation a display with faces latched when.
+//! Timing of the orientations that a display with faces latches.
 
 use crate::head_views::HeadViews;
 use crate::load_schedule::LoadSchedule;
@@ -7,7 +7,7 @@ use pxpl5_display::{Aim, Display, LightSpan};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{FieldParity, PeriodNumber};
 
-/// When a field of a scan lights.
+/// Returns the time span in which a field of a scan lights.
 pub(crate) fn lights_of(scan: &Scan, field: PeriodNumber) -> LightSpan {
     let tick = scan.retrace(field);
     let top = FieldParity::of_field(field).first_line();
@@ -15,13 +15,15 @@ pub(crate) fn lights_of(scan: &Scan, field: PeriodNumber) -> LightSpan {
     LightSpan { tick, first: light(0, top), last: light(scan.width() - 1, scan.height() - 2 + top) }
 }
 
-/// Words that an orientation takes on the host's own line.
+/// Number of words of an orientation message on the host's connection to the display.
 pub(crate) const ORIENTATION_WORDS: u32 = 9;
 
-/// Which of a tracker's reports is in a display's orientation register when, and for which instant it is predicted.
+/// Timing of the orientation register of a display with faces: the report from which each orientation comes, and the
+/// instant that it is predicted for.
 ///
-/// A display that latches fields gets an orientation for each report. One that latches lines or pixels gets more than there are reports:
-/// the host predicts from the newest report for every line, or for as many parts of a line as its own line to the display carries.
+/// A display that latches by field gets one orientation for each report. A display that latches by line or by pixel
+/// gets more orientations than reports. The host then predicts from the newest report, for each line or for as many
+/// parts of a line as its connection to the display can carry.
 #[derive(Clone, Copy, Debug)]
 pub struct LatchedHead {
     scan: Scan,
@@ -33,7 +35,8 @@ pub struct LatchedHead {
 }
 
 impl LatchedHead {
-    /// In front of a display; `None` where it takes no faces. `link` is what an orientation takes from the host to the register.
+    /// Creates the timing for a display. Returns `None` if the display takes no faces. `link` is the transfer time of
+    /// an orientation from the host to the register.
     pub(crate) fn before(display: &dyn Display, link: Span, aim: Aim) -> Option<Self> {
         let display: &AddressRecalculationPipeline = (display as &dyn std::any::Any).downcast_ref()?;
         let config = display.config();
@@ -43,20 +46,22 @@ impl LatchedHead {
         Some(Self { scan, schedule, latch: config.latch, depth, link, aim })
     }
 
-    /// When a report's orientation is in the register.
+    /// Returns the time at which a report's orientation is in the register.
     #[must_use]
     pub fn loaded(&self, report: Time) -> Time {
         report + self.link
     }
 
-    /// When a pixel's orientation is latched; `None` for one that the field does not scan.
+    /// Returns the time at which a pixel's orientation is latched. Returns `None` for a pixel that the field does not
+    /// scan.
     #[must_use]
     pub fn latches(&self, x: u32, y: u32, field: PeriodNumber) -> Option<Time> {
         self.scan.latches(self.latch, x, y, field)
     }
 
-    /// When an orientation is in the register for the first time after an instant: the first one as soon as the machine runs, then one
-    /// for each report, or for each line or as many pixels as the host's line carries. `reports` gives the first report after an instant.
+    /// Returns the first time after an instant at which a new orientation is in the register. The first orientation
+    /// arrives at the start of the machine. Later ones follow each report, or the schedule of lines or pixels.
+    /// `reports` gives the first report after an instant.
     pub(crate) fn next(&self, after: Time, reports: impl Fn(Time) -> Option<Time>) -> Option<Time> {
         let first = self.loaded(Time::ZERO);
         if after < first {
@@ -68,7 +73,8 @@ impl LatchedHead {
         }
     }
 
-    /// What the host knew when it sent what is in the register from an instant on, and the instant that it predicted for.
+    /// Returns the instant at which the host sent the orientation that is in the register from `loaded` on, and the
+    /// instant that it was predicted for.
     pub(crate) fn predicted(&self, loaded: Time) -> (Time, Time) {
         let aimed = match self.schedule {
             Some(schedule) => schedule.aimed(schedule.at(loaded)),
@@ -77,12 +83,13 @@ impl LatchedHead {
         (self.sent(loaded), aimed)
     }
 
-    /// When the host sends what is in the register from an instant on.
+    /// Returns the time at which the host sends the orientation that is in the register from `loaded` on.
     fn sent(&self, loaded: Time) -> Time {
         Time(loaded.0.saturating_sub(self.link.0))
     }
 
-    /// The instant of the aim in the first field that latches what is in the register from an instant on.
+    /// Returns the aimed instant in the first field that latches the orientation that is in the register from `loaded`
+    /// on.
     fn aimed_at_field(&self, loaded: Time) -> Time {
         let mut field = self.scan.field_at(loaded);
         let y = |field: PeriodNumber| FieldParity::of_field(field).first_line();
@@ -92,8 +99,9 @@ impl LatchedHead {
         self.aim.instant(&lights_of(&self.scan, field))
     }
 
-    /// What the host knew when it sent the orientation that a pixel was turned by (all reports that had come by then), and the instant
-    /// that it predicted for. Before the first report it knows the head's start; `None` before anything is loaded.
+    /// Returns the time up to which reports were known for the orientation of a pixel, and the instant that the
+    /// orientation was predicted for. Before the first report, the host knows the head's start. Returns `None` before
+    /// an orientation is loaded.
     #[must_use]
     pub fn turned_by(&self, head: &HeadViews, x: u32, y: u32, field: PeriodNumber) -> Option<(Time, Time)> {
         let latched = self.latches(x, y, field)?;
@@ -106,15 +114,18 @@ impl LatchedHead {
         Some((report, self.aimed_at_field(self.loaded(report))))
     }
 
-    /// Where the time from the measurement of an orientation to the light of a pixel goes; `None` before the first report.
+    /// Returns the parts of the time from the measurement of an orientation to the light of a pixel. Returns `None`
+    /// before the first report.
     #[must_use]
     pub fn latency(&self, head: &HeadViews, x: u32, y: u32, field: PeriodNumber) -> Option<RotationLatency> {
         let latched = self.latches(x, y, field)?;
         let (known, _) = self.turned_by(head, x, y, field)?;
+        // The orientation comes from the newest report that the host knew.
         let report = head.report_by(known)?;
         let measured = head.measured_at(report)?;
         let scanned = self.scan.lights(x, y, field)?;
         let loaded = self.loaded(report);
+        // Each part begins at the end of the part before.
         Some(RotationLatency {
             tracker: report.since(measured),
             host: self.link,
@@ -125,23 +136,25 @@ impl LatchedHead {
     }
 }
 
-/// Parts of the time from the measurement of an orientation to the light of a pixel that was turned by it, which add up to it.
+/// Parts of the rotation latency: the time from the measurement of an orientation to the light of a pixel that uses the
+/// orientation. The sum of the parts is the latency.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct RotationLatency {
-    /// From the tracker's measurement to the arrival of its report at the host.
+    /// Time from the tracker's measurement to the arrival of its report at the host.
     pub tracker: Span,
-    /// From there until the orientation is in the display's register.
+    /// Time from the report's arrival at the host until the orientation is in the display's register.
     pub host: Span,
-    /// From there until it is latched. Where lines or pixels latch the host keeps the report as long and predicts from it.
+    /// Time from the arrival in the register until the orientation is latched. For latching by line or pixel, the host
+    /// holds the report for this time and predicts from it.
     pub wait_for_latch: Span,
-    /// The stages of the display's pipeline.
+    /// Time through the stages of the display's pipeline.
     pub pipeline: Span,
-    /// From the light of the first pixel that was latched with it to that of this one.
+    /// Time from the light of the first pixel that uses the latched orientation to the light of this pixel.
     pub scan: Span,
 }
 
 impl RotationLatency {
-    /// The parts in the order of time, with their names.
+    /// Returns the parts with their names, in order of time.
     #[must_use]
     pub const fn parts(&self) -> [(&'static str, Span); 5] {
         [
@@ -153,7 +166,7 @@ impl RotationLatency {
         ]
     }
 
-    /// All of it.
+    /// Returns the sum of all parts.
     #[must_use]
     pub fn total(&self) -> Span {
         self.parts().iter().map(|(_, span)| *span).sum()

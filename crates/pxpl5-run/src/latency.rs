@@ -1,8 +1,8 @@
-//! Where a picture's latency goes: parts that add up to the whole, to the picosecond.
+//! Division of a picture's latency into parts, which add up to the latency to the picosecond.
 //!
-//! The way is that of the last eye, because it decides when the picture can be shown. A part begins where the one
-//! before it ends; what had already happened by then costs nothing, so a stage that is hidden behind another counts
-//! only as far as it comes out behind it. Parts that a pipeline does not have are zero.
+//! The parts follow the last eye, because the last eye decides when the picture can be shown. Each part begins at the
+//! end of the part before. A stage that overlaps an earlier stage counts only from the end of the earlier stage. Parts
+//! that a pipeline does not have are zero.
 
 use crate::pipeline::PictureTimes;
 use pxpl5_gp::Stage;
@@ -10,18 +10,18 @@ use pxpl5_machine::{Record, StageSpan};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{PictureNumber, SurfaceId};
 
-/// A part of the way from the tracker's sample to light.
+/// Definition of one part of the time from the tracker's sample to light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PartDefinition {
-    /// Its name in tables, files and timelines.
+    /// Name of the part in tables, files and timelines.
     pub name: &'static str,
-    /// From when to when.
+    /// Start and end of the part, in words.
     pub definition: &'static str,
-    /// Whether it belongs to the latency that the papers state.
+    /// True if the part belongs to the latency that the papers state.
     pub published: bool,
 }
 
-/// All parts, in order of time.
+/// All parts of the latency, in order of time.
 pub const LATENCY_PARTS: [PartDefinition; 12] = [
     part("send", "from the sample of the pose to the end of SEND", false),
     part("wait_for_edit", "from there to the begin of EDIT on the first GP", false),
@@ -45,38 +45,38 @@ const fn part(name: &'static str, definition: &'static str, published: bool) -> 
     PartDefinition { name, definition, published }
 }
 
-/// The parts of one picture's latency, in the order of [`LATENCY_PARTS`].
+/// Parts of one picture's latency, in the order of [`LATENCY_PARTS`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LatencyParts {
-    /// The picture whose latency is taken apart.
+    /// Picture to which the latency belongs.
     pub picture: PictureNumber,
-    /// When its pose was sampled; the start of TRANSFORM if that is not known.
+    /// Time at which the pose was sampled. If this time is unknown, the start of TRANSFORM.
     pub begin: Time,
-    /// How long each part of [`LATENCY_PARTS`] took, in that order; they add up to the latency.
+    /// Duration of each part of [`LATENCY_PARTS`], in the same order. The sum is the latency.
     pub spans: [Span; LATENCY_PARTS.len()],
 }
 
 impl LatencyParts {
-    /// When the first pixel lights up.
+    /// Returns the time at which the first pixel lights.
     #[must_use]
     pub fn end(&self) -> Time {
         self.begin + self.spans.iter().copied().sum::<Span>()
     }
 
-    /// The latency that the papers state: from the start of TRANSFORM to the retrace.
+    /// Returns the latency that the papers state, from the start of TRANSFORM to the retrace.
     #[must_use]
     pub fn published(&self) -> Span {
         LATENCY_PARTS.iter().zip(self.spans).filter(|(part, _)| part.published).map(|(_, span)| span).sum()
     }
 }
 
-/// The parts of a picture's latency; `stages` are those of the picture.
+/// Returns the latency parts of a picture. `stages` must contain the stages of this picture only.
 pub(crate) fn parts(record: &Record, times: &PictureTimes, stages: &[StageSpan]) -> LatencyParts {
     let PictureTimes { picture, sampled_at, transform_at, shown_at, .. } = *times;
     let light = first_light(record, shown_at);
     let last = last_surface(stages);
     let first = last.map(|_| SurfaceId(0));
-    // The end of each part but the last, and the time that it cannot pass.
+    // Each entry holds the end of a part and the limit that this end cannot pass.
     let ends = [
         (end_of(stages, Stage::Send, None).filter(|_| sent_for_it(stages, sampled_at)), transform_at),
         (begin_of(stages, Stage::Edit, None), transform_at),
@@ -92,6 +92,7 @@ pub(crate) fn parts(record: &Record, times: &PictureTimes, stages: &[StageSpan])
         (Some(light), light),
     ];
     let begin = sampled_at.unwrap_or(transform_at);
+    // Each part ends no earlier than the part before it.
     let mut before = begin;
     let spans = ends.map(|(time, limit)| {
         let at = time.unwrap_or(before).min(limit).max(before);
@@ -100,13 +101,13 @@ pub(crate) fn parts(record: &Record, times: &PictureTimes, stages: &[StageSpan])
     LatencyParts { picture, begin, spans }
 }
 
-/// When the first visible pixel lights in the period that begins, or goes on, at an instant.
+/// Returns the time at which the first visible pixel lights in the period that contains an instant.
 fn first_light(record: &Record, shown_at: Time) -> Time {
     let display = record.display();
     display.first_light(0, display.period_at(shown_at)).unwrap_or(shown_at)
 }
 
-/// Starts of TRANSFORM and ends of COPY of both surfaces, the swap and the light of a frame.
+/// Times of a stereo frame: start of TRANSFORM and end of COPY of each surface, the swap and the light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Pair {
     pub(crate) transform_at: [Time; 2],
@@ -115,20 +116,21 @@ pub(crate) struct Pair {
     pub(crate) light_at: Time,
 }
 
-/// The surfaces that begin and end a latency: the first, the second, both.
+/// Surfaces that begin and end a latency: the first surface, the second surface, or from the first to the second.
 pub(crate) const WHOSE: [(usize, usize); 3] = [(0, 0), (1, 1), (0, 1)];
 
-/// When what ends a latency of a surface happens.
+/// Function that returns the time of the event that ends a surface's latency.
 pub(crate) type End = fn(&Pair, usize) -> Time;
 
-/// Name, definition and time of what ends a latency.
+/// Name, definition and time function of each event that ends a latency.
 pub(crate) const ENDS: [(&str, &str, End); 3] = [
     ("end_of_copy", "the end of its COPY", |pair, surface| pair.copied_at[surface]),
     ("swap", "the retrace at which the frame is swapped in", |pair, _| pair.shown_at),
     ("light", "the beam at the first visible pixel", |pair, _| pair.light_at),
 ];
 
-/// Of a picture that has them; `stages` are those of the picture.
+/// Returns the times of a stereo frame, or `None` if a surface has no TRANSFORM or COPY of its own. `stages` must
+/// contain the stages of this picture only.
 pub(crate) fn pair(record: &Record, shown_at: Time, stages: &[StageSpan]) -> Option<Pair> {
     let [Some(first), Some(second)] = [SurfaceId(0), SurfaceId(1)].map(|surface| own_times(stages, surface)) else {
         return None;
@@ -141,7 +143,7 @@ pub(crate) fn pair(record: &Record, shown_at: Time, stages: &[StageSpan]) -> Opt
     })
 }
 
-/// The start of a surface's own TRANSFORM and the end of its own COPY.
+/// Returns the start of a surface's own TRANSFORM and the end of its own COPY.
 fn own_times(stages: &[StageSpan], surface: SurfaceId) -> Option<(Time, Time)> {
     let own = || stages.iter().filter(|span| span.surface == Some(surface));
     let transform_at = own().filter(|span| span.stage == Stage::Transform).map(|span| span.begin).min()?;
@@ -149,7 +151,7 @@ fn own_times(stages: &[StageSpan], surface: SurfaceId) -> Option<(Time, Time)> {
     Some((transform_at, copied_at))
 }
 
-/// The spans of a stage: those of one surface, and those of all.
+/// Returns the spans of a stage that belong to one surface or to all surfaces.
 fn spans_of(stages: &[StageSpan], stage: Stage, surface: Option<SurfaceId>) -> impl Iterator<Item = &StageSpan> {
     let concerned = move |span: &StageSpan| span.surface.is_none() || surface.is_none() || span.surface == surface;
     stages.iter().filter(move |span| span.stage == stage && concerned(span))
@@ -163,12 +165,13 @@ fn end_of(stages: &[StageSpan], stage: Stage, surface: Option<SurfaceId>) -> Opt
     spans_of(stages, stage, surface).filter_map(|span| span.end).max()
 }
 
-/// The last surface that has a TRANSFORM of its own.
+/// Returns the last surface that has a TRANSFORM of its own.
 fn last_surface(stages: &[StageSpan]) -> Option<SurfaceId> {
     stages.iter().filter(|span| span.stage == Stage::Transform).filter_map(|span| span.surface).max()
 }
 
-/// Whether SEND counts pictures as the other stages do: it begins with the sample.
+/// Returns true if a SEND begins with the sample of this picture. Then SEND has the same picture numbers as the other
+/// stages.
 fn sent_for_it(stages: &[StageSpan], sampled_at: Option<Time>) -> bool {
     spans_of(stages, Stage::Send, None).any(|span| Some(span.begin) == sampled_at)
 }

@@ -1,4 +1,4 @@
-//! Three levels of modelling: what is to be run, and what comes out, do not depend on the level.
+//! The three levels of modelling. An experiment and the form of its results do not depend on the level.
 //!
 //! | level | graphics processors | ring | renderers |
 //! |---|---|---|---|
@@ -6,36 +6,39 @@
 //! | [`Level::Transaction`] | timing table per primitive | an event per message | timing table per command: the clocks of its program in Rendering Control's layout |
 //! | [`Level::Cycle`] | clocks of the i860 code that runs for every triangle, over the board's memory | as the transaction level | the clocks of every instruction of a command's program in the pipeline's own layout |
 //!
-//! The ring needs no third form: its word-by-word reference and the event form give the same picosecond for every
-//! message (a property test of the ring's crate), so the cycle level uses the event form.
+//! The ring needs no third form. A property test of the ring's crate shows that the events and a word-by-word reference
+//! model give the same picosecond for every message.
 //!
-//! All that graphics processors do under Rendering Control, Slats, just-in-time pixels, frameless rendering and the pipelines that draw six
-//! faces is i860 code (docs/gp-timing.md), so that no time of the cycle level is the table's; `tests/cycle.rs` holds it to that. Pipelines of
-//! others keep the table's times for what has no code ([`Pipeline::without_code`](crate::Pipeline::without_code)), and their
-//! reports say so. Which code runs is a value of the machine ([`MachineConfig::code`]), whatever its table of times says. The table may be
-//! that of the code ([`MachineConfig::with_times_of_code`]): then the transaction level says in the mean what the cycle level does.
+//! All work of graphics processors in the pipelines of this crate is i860 code (docs/gp-timing.md): Rendering Control,
+//! Slats, just-in-time pixels, frameless rendering and the pipelines with six faces. No time of the cycle level comes
+//! from the table, which `tests/cycle.rs` checks. Other pipelines take the times of the table for work without code
+//! ([`Pipeline::without_code`](crate::Pipeline::without_code)), and their reports say so.
+//!
+//! The machine selects the code that runs ([`MachineConfig::code`]), independent of its table of times. With the times
+//! of the code in the table ([`MachineConfig::with_times_of_code`]), the transaction level agrees with the cycle level
+//! on average.
 
 use pxpl5_machine::MachineConfig;
 use pxpl5_renderer::{CommandKind, Layout, RendererTiming};
 use serde::{Deserialize, Serialize};
 
-/// How literally the machine is modelled.
+/// Level of modelling, from closed forms to single instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Level {
-    /// Closed form of the stage rules; no events.
+    /// Closed form of the stage rules, without events.
     Analytic,
-    /// An event per message and command list.
+    /// One event per message and command list.
     Transaction,
-    /// The same, with clocks that come from instructions instead of the timing tables.
+    /// Like [`Level::Transaction`], with clocks from executed instructions instead of timing tables.
     Cycle,
 }
 
 impl Level {
-    /// All, from the fastest to the most literal.
+    /// All levels, from the fastest to the most detailed.
     pub const ALL: [Self; 3] = [Self::Analytic, Self::Transaction, Self::Cycle];
 
-    /// As experiment files name it.
+    /// Returns the name of the level in experiment files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -46,8 +49,8 @@ impl Level {
     }
 }
 
-/// The machine with every clock of a renderer that follows from an instruction list; what an experiment has changed
-/// stays changed.
+/// Returns the machine with the renderer clocks that follow from instruction lists. Values that an experiment has
+/// changed stay.
 pub(crate) fn with_clocks_of_instructions(machine: &MachineConfig, layout: &Layout) -> MachineConfig {
     let mut machine = machine.clone();
     let timing = &mut machine.renderer;
@@ -61,8 +64,9 @@ pub(crate) fn with_clocks_of_instructions(machine: &MachineConfig, layout: &Layo
         (CommandKind::PhongSphere, &mut timing.phong_sphere_clocks, table.phong_sphere_clocks),
         (CommandKind::Shade, &mut timing.shade_clocks, table.shade_clocks),
     ] {
-        // A layout without the fields that a command needs never gets that command.
+        // A layout without the fields of a command never gets that command.
         let of_program = kind.clocks(layout).map_or(of_table, u64::from);
+        // A value that differs from the table was set by the experiment and stays.
         *clocks = if *clocks == of_table { of_program } else { *clocks };
     }
     machine

@@ -1,4 +1,5 @@
-//! One experiment on the emulated Pixel-Planes 5: a machine, a pipeline, a scene and a head; and what came of it, as data.
+//! Runs one experiment on the emulated Pixel-Planes 5: a machine, a pipeline, a scene and a head. The result is an
+//! [`Outcome`].
 //!
 //! ```text
 //!   MachineConfig --+
@@ -7,9 +8,11 @@
 //!   Head (tracker) -+                           +--> pxpl5-measure: latencies, errors in pixels, pictures
 //! ```
 //!
-//! Pipelines are entries of a [`Registry`]: whoever offers, reads or compares them iterates over it and names none.
+//! A [`Registry`] lists all pipelines. Code that offers, reads or compares pipelines iterates over the registry and
+//! names no pipeline.
 //!
-//! **Not here:** the computer that it runs on. A clock and threads are handed in by a [`Host`]; scenes come as values.
+//! **Not here:** access to the host computer. A [`Host`] supplies the clock and the threads. Scenes are passed as
+//! values.
 
 #![warn(missing_docs)]
 

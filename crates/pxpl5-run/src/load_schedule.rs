@@ -1,28 +1,30 @@
-//! When a host loads which orientation into a display that latches lines or pixels.
+//! Schedule of the orientations that a host sends to a display that latches lines or pixels.
 
 use address_recalculation::{Latch, Scan};
 use pxpl5_display::{Aim, LightSpan};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{FieldParity, PeriodNumber};
 
-/// Orientations that a host predicts for parts of a field, each there when its first pixel is latched.
+/// Schedule of the orientations that a host predicts for parts of a field. Each orientation is in the display's
+/// register when its first pixel is latched.
 ///
-/// A line has one. Where pixels latch, as many as the host's line carries, one after the other; it is idle from the last one of a
-/// line to the next line. Where one takes longer than a line, it serves as many lines as it takes.
+/// With line latching, a line has one orientation. With pixel latching, a line has as many orientations as the host's
+/// connection can carry. The connection is idle from the last orientation of a line to the next line. If the transfer
+/// of an orientation takes longer than a line, the orientation serves several lines.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LoadSchedule {
     scan: Scan,
-    /// All stages of the display.
+    /// Delay through all stages of the display.
     depth: Span,
-    /// From one load to the next in a line.
+    /// Time from one load to the next within a line.
     link: Span,
-    /// Lines of a field that a load serves, and loads in a line.
+    /// Number of lines of a field that one load serves.
     lines: u32,
     loads: u32,
     aim: Aim,
 }
 
-/// A load: its first line among those of the field, and which one it is there.
+/// Identifier of a load: its field, its first line within the field, and its number within that line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Load {
     field: PeriodNumber,
@@ -31,7 +33,8 @@ pub(crate) struct Load {
 }
 
 impl LoadSchedule {
-    /// `None` where a field is latched as a whole: its host loads what it knows when it knows it.
+    /// Creates a schedule. Returns `None` for a display that latches whole fields: its host sends each orientation as
+    /// soon as it is known.
     pub(crate) fn new(scan: Scan, depth: Span, latch: Latch, link: Span, aim: Aim) -> Option<Self> {
         let line = scan.lights(0, 2, PeriodNumber::FIRST)?.since(scan.lights(0, 0, PeriodNumber::FIRST)?);
         let lines = link.0.div_ceil(line.0.max(1)).max(1) as u32;
@@ -43,31 +46,32 @@ impl LoadSchedule {
         Some(Self { scan, depth, link, lines, loads, aim })
     }
 
-    /// Lines of a field.
+    /// Returns the number of lines of a field.
     const fn height(&self) -> u32 {
         self.scan.height() / 2
     }
 
-    /// When a pixel of a line of a field lights.
+    /// Returns the instant at which a pixel of a line of a field lights.
     fn light(&self, x: u32, line: u32, field: PeriodNumber) -> Time {
         let y = 2 * line + FieldParity::of_field(field).first_line();
         self.scan.lights(x, y, field).unwrap_or_else(|| self.scan.retrace(field))
     }
 
-    /// The load that a pixel is turned by; `None` for one that the field does not scan.
+    /// Returns the load whose orientation a pixel uses. Returns `None` for a pixel that the field does not scan.
     pub(crate) fn load_of(&self, x: u32, y: u32, field: PeriodNumber) -> Option<Load> {
         let into_line = self.scan.lights(x, y, field)?.since(self.light(0, y / 2, field));
         let number = (into_line.0 / self.link.0.max(1)).min(u64::from(self.loads) - 1) as u32;
         Some(Load { field, line: y / 2 / self.lines * self.lines, number })
     }
 
-    /// When a load is in the register: as its first pixel is latched, or a pixel's time before.
+    /// Returns the instant at which a load is in the register. The instant lies at most one pixel's time before its
+    /// first pixel is latched.
     pub(crate) fn loaded(&self, load: Load) -> Time {
         let first = self.light(0, load.line, load.field) + self.link * u64::from(load.number);
         Time(first.0.saturating_sub(self.depth.0))
     }
 
-    /// The instant that a load is predicted for: what the aim says of the light of its pixels.
+    /// Returns the instant that a load is predicted for, by the aim, within the time in which the load's pixels light.
     pub(crate) fn aimed(&self, load: Load) -> Time {
         let Load { field, line, number } = load;
         let last_line = (line + self.lines).min(self.height()) - 1;
@@ -81,26 +85,29 @@ impl LoadSchedule {
         self.aim.instant(&light)
     }
 
-    /// The first pixel of a line that lights when a load of it can be latched.
+    /// Returns the first pixel of a line that can use the load with this number.
     fn first_pixel(&self, line: u32, number: u32, field: PeriodNumber) -> u32 {
         let from = self.light(0, line, field) + self.link * u64::from(number);
         partition(self.scan.width() - 1, |x| self.light(x, line, field) < from)
     }
 
-    /// The first load that is in the register after an instant.
+    /// Returns the first load that is in the register after an instant.
     pub(crate) fn next(&self, after: Time) -> Load {
         let mut field = self.scan.field_at(after);
         loop {
             let groups = self.height().div_ceil(self.lines);
             let begun = |group: u32| self.loaded(Load { field, line: group * self.lines, number: 0 }) <= after;
+            // Find the last group of lines whose first load lies at or before the instant.
             let groups_begun = partition(groups, begun);
             if let Some(group) = groups_begun.checked_sub(1) {
                 let line = group * self.lines;
+                // A later load of the same group comes next, if the group has one.
                 let loads_begun = partition(self.loads, |number| self.loaded(Load { field, line, number }) <= after);
                 if loads_begun < self.loads {
                     return Load { field, line, number: loads_begun };
                 }
             }
+            // Otherwise the first load of the next group comes next, or the first load of the next field.
             if groups_begun < groups {
                 return Load { field, line: groups_begun * self.lines, number: 0 };
             }
@@ -108,13 +115,14 @@ impl LoadSchedule {
         }
     }
 
-    /// The load that is in the register from exactly this instant on, or the first one after it.
+    /// Returns the load that is in the register from exactly this instant on, or the first load after the instant.
     pub(crate) fn at(&self, loaded: Time) -> Load {
         self.next(Time(loaded.0.saturating_sub(1)))
     }
 }
 
-/// How many of the numbers below `end` satisfy what the first ones alone do.
+/// Returns the number of values below `end` for which `is_first` returns true. The function must return true for the
+/// first values and false for all others.
 fn partition(end: u32, is_first: impl Fn(u32) -> bool) -> u32 {
     let mut from = 0;
     let mut to = end;
@@ -141,7 +149,7 @@ mod tests {
         LoadSchedule::new(scan, config.timing.depth(), latch, link, Aim::Middle).expect("no field")
     }
 
-    /// Every load in order, of two fields.
+    /// Returns all loads of two fields, in order.
     fn all(schedule: &LoadSchedule) -> Vec<Load> {
         let mut at = Time::ZERO;
         let mut found = Vec::new();
@@ -155,7 +163,8 @@ mod tests {
         }
     }
 
-    /// Nine words take 7.2 us, of which a line of 63.56 us has room for 8; the last one begins before the 640 pixels of 52.1 us end.
+    /// A message of nine words takes 7.2 us. A line of 63.56 us has room for 8 messages, and the last one begins before
+    /// the 640 pixels (52.1 us) end.
     #[test]
     fn a_line_has_one_load_and_with_pixels_as_many_as_the_line_carries() {
         for (latch, link_ns, expected) in [
@@ -202,7 +211,7 @@ mod tests {
         let load = line.load_of(17, 2, PeriodNumber::FIRST).expect("scanned");
         let first = line.light(0, 1, PeriodNumber::FIRST).0 as f64;
         assert!((line.aimed(load).0 as f64 - first - 319.5 * pixel_ps).abs() < 100.0);
-        // 7.2 us are 88.4 pixels: the third load of a line has those from 177 to 265.
+        // 7.2 us are 88.4 pixels, so the third load of a line covers the pixels from 177 to 265.
         let pixels = schedule(Latch::Pixel, 7_200);
         let load = pixels.load_of(200, 2, PeriodNumber::FIRST).expect("scanned");
         assert_eq!(load.number, 2);

@@ -1,4 +1,4 @@
-//! What came of an experiment, as data.
+//! Result of an experiment.
 
 use crate::assembled::Assembled;
 use crate::due::{DuePictures, LEAST_UPDATES};
@@ -19,9 +19,11 @@ use pxpl5_wire::PeriodNumber;
 use std::fmt;
 use std::sync::Arc;
 
-/// What came of an experiment: the machine's [`Record`] and the pictures that were shown. It may be sent to another thread.
+/// Result of an experiment: the machine's [`Record`] and the pictures that were shown. An outcome can be sent to
+/// another thread.
 ///
-/// It prints as a line: errors carry one, and whoever unwraps a result shall not be shown every vertex of the scene.
+/// `Debug` prints one line only, because errors contain an outcome, and a panic message must not list every vertex of
+/// the scene.
 pub struct Outcome {
     experiment: Experiment,
     record: Record,
@@ -58,56 +60,58 @@ impl Outcome {
         Self { experiment, record, head, notes, closed, reached, host_seconds }
     }
 
-    /// All of the run, as far as it is kept, for whoever sums it up afterwards.
+    /// Returns all final results and kept records of the run, for evaluation after the run.
     #[must_use]
     pub fn settled(&self) -> Settled<'_> {
         let all = self.experiment.settled(&self.record, self.head.as_ref(), &self.notes);
         Settled { pictures: self.pictures(), window: self.closed.window, ..all }
     }
 
-    /// What came of the sum that was taken while the run went on ([`Experiment::summed_by`]), if that is of this kind.
+    /// Returns the result of the streaming observer ([`Experiment::summed_by`]), if the result has the type `T`.
     #[must_use]
     pub fn said<T: 'static>(&self) -> Option<&T> {
         self.closed.said.as_deref()?.downcast_ref()
     }
 
-    /// Whether records of the run were given up ([`Keep`](crate::Keep)): what is asked now and was not summed up is of its last periods alone.
+    /// Returns true if old records of the run were discarded ([`Keep`](crate::Keep)). Results that the sums do not
+    /// contain then cover only the last periods.
     #[must_use]
     pub fn has_forgotten(&self) -> bool {
         self.observation().forgotten.before > Time::ZERO
     }
 
-    /// What was summed up over the whole run.
+    /// Returns the sums over the whole run.
     #[must_use]
     pub const fn tally(&self) -> &Tally {
         &self.closed.tally
     }
 
-    /// The experiment that was run, as it was asked for.
+    /// Returns the experiment that was run, as requested by the caller.
     #[must_use]
     pub const fn experiment(&self) -> &Experiment {
         &self.experiment
     }
 
-    /// All pictures that were begun and judged, complete or not; of a run that keeps statistics only ([`Keep`](crate::Keep)) the last
-    /// of [`Tally::pictures`].
+    /// Returns all pictures that were begun and evaluated, complete or not. A run that keeps statistics only
+    /// ([`Keep`](crate::Keep)) returns only the last of its [`Tally::pictures`].
     #[must_use]
     pub fn pictures(&self) -> &[PictureTimes] {
         &self.closed.pictures
     }
 
-    /// The window over which latencies, pictures due, errors and rates are computed; `None` of a run that was over before it began.
+    /// Returns the window over which latencies, pictures due, errors and rates are computed. Returns `None` if the run
+    /// ended before the window began.
     #[must_use]
     pub const fn window(&self) -> Option<ResultWindow> {
         self.closed.window
     }
 
-    /// Those of them in the window.
+    /// Returns the pictures in the window.
     #[must_use]
     pub fn steady_pictures(&self) -> &[PictureTimes] {
         let Some(window) = self.closed.window else { return &[] };
         let display = self.record.display();
-        // They are in the order in which they are shown.
+        // Pictures are in the order in which they are shown.
         let is_in = |times: &PictureTimes| window.holds_picture(display.period_at(times.shown_at));
         let pictures = self.pictures();
         let first = pictures.iter().position(is_in).unwrap_or(pictures.len());
@@ -115,51 +119,55 @@ impl Outcome {
         &pictures[first..end]
     }
 
-    /// Those of the steady ones that were complete in time: the others have no latency.
+    /// Returns the pictures in the window that were complete in time. Other pictures have no latency.
     pub fn complete_pictures(&self) -> impl Iterator<Item = &PictureTimes> {
         self.steady_pictures().iter().filter(|times| times.is_shown())
     }
 
-    /// Complete pictures that were shown in the whole run, the warm-up included.
+    /// Returns the number of complete pictures in the whole run, including the warm-up.
     #[must_use]
     pub const fn shown(&self) -> u64 {
         self.closed.tally.shown
     }
 
-    /// The pictures that were due, and what became of them; `None` of a pipeline whose pictures never are, and of a run that
-    /// was over before any was.
+    /// Returns the counts of due pictures by result. Returns `None` if the pipeline has no due pictures, or if the run
+    /// ended before the first.
     #[must_use]
     pub fn due(&self) -> Option<DuePictures> {
         let every = self.pipeline().periods_a_picture(&self.record)?;
         Some(DuePictures::of_ends(self.closed.tally.ends(), every, &self.closed.window?))
     }
 
-    /// When a picture is due here, what it takes to be in time, and which are counted.
+    /// Returns a text that tells when a picture is due and in time, and which pictures are counted.
     #[must_use]
     pub fn due_definition(&self) -> String {
         format!("{}; {WINDOW_DEFINITION}", self.pipeline().due_definition())
     }
 
-    /// Whole new pictures a second, over the window: at most one a period of the display, since no more can be seen. `None` where
-    /// fewer than two were shown, since a single one has no rate, and where all that were shown belong to start-up.
+    /// Returns the number of complete new pictures a second, over the window. At most one picture a period of the
+    /// display counts, because no more can be seen. Returns `None` if fewer than two were shown, or if all of them
+    /// belong to start-up.
     #[must_use]
     pub fn updates_hz(&self) -> Option<f64> {
         let complete = self.closed.tally.complete;
+        // A single picture has no rate.
         if complete < LEAST_UPDATES {
             return None;
         }
+        // Pipelines with due pictures have the rate of the pictures that were shown in time.
         if self.pipeline().periods_a_picture(&self.record).is_some() {
             return self.due()?.updates_hz(self.field_ms());
         }
         let window = self.closed.window?;
+        // Otherwise several updates make up a picture, and each period counts at most once.
         let pictures = complete as f64 / self.pipeline().updates_per_picture(&self.record);
         let seen =
             pictures.min(self.closed.tally.ends().periods_shown([window.first_period, window.last_period]) as f64);
         Some(seen * 1e3 / (window.periods() as f64 * self.field_ms()))
     }
 
-    /// Whether what a viewer sees at the end is complete: made of as many pictures as a whole screen takes (two fields,
-    /// where lines are interlaced), all of them in time.
+    /// Returns true if the viewer sees a complete screen at the end. A screen consists of one picture, or of the
+    /// pictures of two fields with interlaced lines. All of them must be in time.
     #[must_use]
     pub fn ends_complete(&self) -> bool {
         let (_, fields_of_a_screen) = self.record.display().rows_lit(PeriodNumber::FIRST);
@@ -168,79 +176,81 @@ impl Outcome {
         self.closed.tally.shown_in_a_row >= needed as u64
     }
 
-    /// The machine's boards as they stand at the end, and everything observed.
+    /// Returns the state of the machine's boards at the end, and all observations.
     #[must_use]
     pub const fn record(&self) -> &Record {
         &self.record
     }
 
-    /// The views that the head's tracker gave, if there was one.
+    /// Returns the views of the tracked head, or `None` without a tracked head.
     #[must_use]
     pub const fn head(&self) -> Option<&Arc<HeadViews>> {
         self.head.as_ref()
     }
 
-    /// The updates of display memories that were asked for, in order; none of a pipeline that draws no faces.
+    /// Returns the requested updates of display memories, in order. A pipeline without faces has none.
     #[must_use]
     pub const fn face_notes(&self) -> &FaceNotes {
         &self.notes
     }
 
-    /// Time that the run took on this host, in seconds; `None` on a host without a clock.
+    /// Returns the time that the run took on the host, in seconds. Returns `None` on a host without a clock.
     #[must_use]
     pub const fn host_seconds(&self) -> Option<f64> {
         self.host_seconds
     }
 
-    /// Marks of firmware, arrivals at displays and swaps, in the order of time.
+    /// Returns the marks of firmware, the arrivals at displays and the swaps, in order of time.
     #[must_use]
     pub const fn observation(&self) -> &Observation {
         self.record.observation()
     }
 
-    /// All stages of all pictures, COPY as the displays saw it.
+    /// Returns all stages of all pictures. The times of COPY are those at the displays.
     #[must_use]
     pub fn stages(&self) -> Vec<StageSpan> {
         self.record.stages()
     }
 
-    /// The software time of a message that a GP receives.
+    /// Returns the software time for receiving a message on a GP.
     #[must_use]
     pub const fn receive_span(&self) -> Span {
         Span::from_ns(self.experiment.config.gp.message_ns)
     }
 
-    /// The pipeline that ran.
+    /// Returns the pipeline that was run.
     #[must_use]
     pub fn pipeline(&self) -> &dyn Pipeline {
         self.experiment.pipeline.as_ref()
     }
 
-    /// Periods of the first display that were asked for: NTSC fields.
+    /// Returns the requested number of periods of the first display. For NTSC, a period is a field.
     #[must_use]
     pub const fn fields(&self) -> u64 {
         self.experiment.fields
     }
 
-    /// The end of the run.
+    /// Returns the end of the run.
     #[must_use]
     pub fn end(&self) -> Time {
         self.record.tick(self.experiment.end())
     }
 
-    /// Latency in milliseconds over the complete pictures in the window, as the pipeline defines it.
+    /// Returns the statistics of the latencies in milliseconds, over the complete pictures in the window. The pipeline
+    /// defines latency.
     #[must_use]
     pub fn latency_ms(&self) -> Statistics {
         self.closed.tally.latency_ms.statistics()
     }
 
-    /// The same in periods of the first display: for NTSC, fields of 1001/60000 s.
+    /// Returns the statistics of the latencies in periods of the first display. For NTSC, a period is a field of
+    /// 1001/60000 s.
     #[must_use]
     pub fn latency_fields(&self) -> Statistics {
         self.closed.tally.latency_ms.statistics_in(self.field_ms())
     }
 
-    /// The parts of the latency of the complete pictures in the window, as far as they are kept.
+    /// Returns the latency parts of the complete pictures in the window whose records are kept.
     #[must_use]
     pub fn latency_parts(&self) -> Vec<LatencyParts> {
         let stages = self.stages();
@@ -249,12 +259,12 @@ impl Outcome {
         parts.collect()
     }
 
-    /// The few numbers that every level of modelling gives, over the pictures in the window.
+    /// Returns the summary that all levels of modelling provide, over the pictures in the window.
     #[must_use]
     pub fn summary(&self) -> Summary {
         let tally = self.tally();
         let [first_copy_ms, last_copy_ms] = tally.copy_ms.each_ref().map(|samples| samples.statistics().mean);
-        // A pipeline without a second copy spends no time on it; where nothing was copied nothing is known.
+        // A pipeline without a second copy spends no time on it. Without any copy, the time is unknown.
         let last_copy_ms = if last_copy_ms.is_nan() && !first_copy_ms.is_nan() { 0.0 } else { last_copy_ms };
         Summary {
             latencies_ms: tally.latency_ms.clone(),
@@ -271,7 +281,7 @@ impl Outcome {
         }
     }
 
-    /// A period of the first display in milliseconds, from 60,000 of them.
+    /// Returns the mean period of the first display over 60,000 periods, in milliseconds.
     #[must_use]
     pub fn field_ms(&self) -> f64 {
         field_ms(&self.record)

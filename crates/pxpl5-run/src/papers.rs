@@ -1,11 +1,12 @@
-//! The pipelines and displays of the papers.
+//! Registry of the papers' pipelines and displays.
 
 use crate::displays;
 use crate::pipelines;
 use crate::registry::Registry;
 
 impl Registry {
-    /// Those of the papers. Their closed forms are added by the crate that has them.
+    /// Returns a registry with the pipelines and displays of the papers. The crate pxpl5-analytic adds the closed
+    /// forms.
     #[must_use]
     pub fn of_papers() -> Self {
         Self::with(pipelines::entries(), displays::entries())

@@ -1,4 +1,4 @@
-//! Pipelines as experiments see them.
+//! Interface between pipelines and experiments.
 
 use crate::cut::CutScene;
 use crate::face_notes::FaceNotes;
@@ -21,119 +21,124 @@ use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// Where a part of the screen comes from.
+/// View or views from which a part of the screen was drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Source {
-    /// One view, by its number in the pipeline's own count.
+    /// One view, by its number as the pipeline counts views.
     View(ViewNumber),
-    /// Places between those of two views.
+    /// Interpolation between two views.
     Between {
-        /// The view at the begin.
+        /// View at the start of the interpolation.
         from: ViewNumber,
-        /// The view at the end.
+        /// View at the end of the interpolation.
         to: ViewNumber,
-        /// How much of the way, 0 to 1.
+        /// Weight of the view `to`, from 0 to 1.
         part: f64,
-        /// Whether places on the screen are interpolated, or positions in the view.
+        /// True if positions on the screen are interpolated. False if positions in the view, before projection, are
+        /// interpolated.
         on_screen: bool,
     },
 }
 
-/// What a pipeline is given to draw.
+/// Input of a pipeline: the scene as a display list, and the functions that supply views.
 #[derive(Clone)]
 pub struct Setup {
-    /// The primitives that are drawn in every picture.
+    /// Primitives that are drawn in every picture.
     pub list: Arc<DisplayList>,
-    /// The host's answer to "which view now": transforms and edits.
+    /// Function that returns the newest view: transforms and edits.
     pub views: Views,
-    /// The same for firmware that knows when a view will be seen.
+    /// Function that returns a view for firmware that knows when the view will be seen.
     pub wanted: ViewsWanted,
-    /// The head alone, for displays that turn with it.
+    /// Function that returns the pose of the head alone, for displays that follow its rotation.
     pub poses: Poses,
-    /// Which structures of the scene move by themselves, or with the head.
+    /// For each structure of the scene, true if the structure moves by itself or with the head.
     pub moving: Arc<[bool]>,
-    /// The cells that each of them lies in, where the pipeline has cut the scene ([`Pipeline::cut`]); else empty.
+    /// Cells in which each structure lies. Empty unless the pipeline has cut the scene ([`Pipeline::cut`]).
     pub cells: Arc<[Vec<Cell>]>,
-    /// Where pipelines that draw faces say what they drew.
+    /// Record of the updates that a pipeline with faces has requested.
     pub notes: FaceNotes,
-    /// For which instant of what is shown from it a view is drawn, for firmware that knows when that is.
+    /// Instant of a picture's display time for which its view is drawn, such as the middle or the first pixel. Only
+    /// firmware that knows the display time uses the setting.
     pub aim: Aim,
-    /// When the host has something new.
+    /// Function that returns the arrival time of the next tracker report at the host.
     pub reports: ReportTimes,
-    /// When a host that waits for the pipeline begins a frame.
+    /// Function that returns the start of a frame, for a host that waits for the pipeline.
     pub starts: FrameStarts,
-    /// How long the host takes for what it does, nanoseconds.
+    /// Times of the host's operations, in nanoseconds.
     pub host: HostTiming,
-    /// Whether somebody may want pixels.
+    /// True if pixels may be computed.
     pub pixels: bool,
 }
 
-/// One picture (a frame, or a field) and when it went through the machine.
+/// Times of one picture, which is a frame or a field, on its way through the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PictureTimes {
-    /// Its number in the pipeline's own count.
+    /// Number of the picture, as the pipeline counts pictures.
     pub picture: PictureNumber,
-    /// The view that it shows, or that its middle shows.
+    /// View that the picture shows. If the picture shows several views, the view of its middle.
     pub view: ViewNumber,
-    /// When its pose was sampled.
+    /// Time at which the pose of the picture was sampled.
     pub sampled_at: Option<Time>,
-    /// When TRANSFORM began to work for it.
+    /// Time at which TRANSFORM began to work for the picture.
     pub transform_at: Time,
-    /// When the last of its pixels was in the display; `None` while some are missing.
+    /// Time at which the last pixel of the picture was in the display. `None` while pixels are missing.
     pub copied_at: Option<Time>,
-    /// The retrace from which on it is shown, or when the beam meets the part that stands for it.
+    /// Retrace from which on the picture is shown. Without a swap, the time at which the beam meets the part that
+    /// represents the picture.
     pub shown_at: Time,
-    /// Whether all of it was there, and in time.
+    /// Result of the picture: shown, late or incomplete.
     pub end: PictureEnd,
 }
 
 impl PictureTimes {
-    /// Whether all of it was there in time: what was not has no latency.
+    /// Returns true if the picture was complete in time. Other pictures have no latency.
     #[must_use]
     pub fn is_shown(&self) -> bool {
         self.end == PictureEnd::Shown
     }
 }
 
-/// A program of a whole machine, and what its pictures' times are.
+/// A program for a whole machine, and the rules by which the times of its pictures are found.
 pub trait Pipeline: Any + Debug + Send + Sync {
-    /// Name on the command line.
+    /// Returns the name of the pipeline on the command line.
     fn name(&self) -> &'static str;
 
-    /// Its keys and their values, as they take effect: with the name, everything that it is.
+    /// Returns the keys of the pipeline with their effective values. Name and settings together identify the pipeline.
     fn settings(&self) -> Vec<(&'static str, KeyValue)> {
         Vec::new()
     }
 
-    /// Pictures that it draws at a time, each for a surface of the first display: 1, or 2 for two eyes.
+    /// Returns the number of pictures that are drawn at a time, each for one surface of the first display. The number
+    /// is 1, or 2 for two eyes.
     fn eyes(&self) -> usize;
 
-    /// How it divides pixel memory.
+    /// Returns the layout of pixel memory.
     fn layout(&self) -> Layout;
 
-    /// Where it computes colours: at the corners, unless said.
+    /// Returns the method of shading. The default is Gouraud: colours are computed at the corners.
     fn shading(&self) -> Shading {
         Shading::Gouraud
     }
 
-    /// Use that the pipeline makes of the i860 code, for the times of the code: PPHIGS, unless said otherwise.
+    /// Returns the use that the pipeline makes of the i860 code, for the times of the code. The default is PPHIGS.
     fn code_use(&self) -> CodeUse {
         CodeUse::Pphigs
     }
 
-    /// The machine with what the pipeline's variant changes in it, such as the time of its code.
+    /// Returns the machine as this variant of the pipeline needs it, for example with the times of other code.
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         config
     }
 
-    /// Whether it draws faces of a cube around the head, for a display that takes them
-    /// ([`DisplayConfig::takes_faces`](pxpl5_display::DisplayConfig::takes_faces)), and before what such a display latches the
-    /// orientation.
+    /// Returns the latch mode of a pipeline that draws the faces of a cube around the head, for a display that takes
+    /// faces ([`DisplayConfig::takes_faces`](pxpl5_display::DisplayConfig::takes_faces)). The latch mode tells whether
+    /// the display latches orientations by field, by line or by pixel. Returns `None` for other pipelines.
     fn draws_faces(&self) -> Option<Latch> {
         None
     }
 
-    /// The scene as its host loads it, cut into pieces that are drawn at different times; `None` where it loads what it is given.
+    /// Returns the scene in pieces that are drawn at different times. Returns `None` if the host loads the scene
+    /// unchanged.
     ///
     /// # Errors
     ///
@@ -142,73 +147,77 @@ pub trait Pipeline: Any + Debug + Send + Sync {
         Ok(None)
     }
 
-    /// What its graphics processors do without i860 code, in a few words; `None` where all of it is code. At the cycle level that takes the
-    /// times of the table.
+    /// Returns a short description of the work of the graphics processors that has no i860 code. Returns `None` if all
+    /// work has code. At the cycle level, work without code takes the times of the table.
     fn without_code(&self, _config: &MachineConfig) -> Option<&'static str> {
         Some("what its firmware does besides messages")
     }
 
-    /// Loads its programs onto the boards.
+    /// Loads the pipeline's programs onto the boards.
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] when the machine is not one on which it can run.
+    /// [`ConfigError`] if the pipeline cannot run on the machine.
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError>;
 
-    /// The pictures that were begun and, at `end`, are shown or have missed their time, in order.
+    /// Returns the begun pictures that, at `end`, are shown or have missed their deadline, in order.
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes>;
 
-    /// Periods of the first display before `end` in which what was drawn earlier is shown in a direction of their own: each is a picture
-    /// for which nothing had to be drawn, and a run that shows some has shown something.
+    /// Returns the number of display periods before `end` in which the display turned old faces to a new head
+    /// direction. Each such period counts as a picture, although the pipeline drew nothing for it.
     fn turned_periods(&self, _record: &Record, _end: Time) -> u64 {
         0
     }
 
-    /// Whether [`Pipeline::pictures`] and [`Pipeline::late_regions`] give the same for what happened later when records before an
-    /// instant have been given up ([`Machine::forget_before`]): only then can a long run do without them.
+    /// Returns true if [`Pipeline::pictures`] and [`Pipeline::late_regions`] need no old records. After
+    /// [`Machine::forget_before`], both must give the same results for later times. Only then can a long run discard
+    /// records.
     fn can_forget(&self) -> bool {
         false
     }
 
-    /// Regions that missed their deadline before `end`.
+    /// Returns the regions that missed their deadline before `end`.
     fn late_regions(&self, _record: &Record, _end: Time) -> Vec<LateRegion> {
         Vec::new()
     }
 
-    /// Periods of the first display from one picture to the next that is due; `None` where none ever is. All counts and
-    /// rates follow from it and from [`Pipeline::pictures`]: see [`DuePictures`](crate::DuePictures).
+    /// Returns the number of periods of the first display between pictures that are due. Returns `None` if no picture
+    /// is ever due. All counts and rates follow from this number and from [`Pipeline::pictures`]: see
+    /// [`DuePictures`](crate::DuePictures).
     fn periods_a_picture(&self, _record: &Record) -> Option<u64> {
         None
     }
 
-    /// What latency means here, in a sentence.
+    /// Returns the definition of latency for this pipeline, in a sentence.
     fn latency_definition(&self) -> &'static str;
 
-    /// When a picture is due here, and what it takes to be in time; or why none ever is.
+    /// Returns a sentence that tells when a picture is due and when it is in time, or why no picture is ever due.
     fn due_definition(&self) -> &'static str;
 
-    /// How many entries of [`Pipeline::pictures`] make a whole picture.
+    /// Returns the number of entries of [`Pipeline::pictures`] that make up one whole picture.
     fn updates_per_picture(&self, _record: &Record) -> f64 {
         1.0
     }
 
-    /// Whether its firmware itself says when a view will be seen.
+    /// Returns true if the firmware itself knows when a view will be seen.
     fn knows_when_seen(&self) -> bool {
         false
     }
 
-    /// Whether all of a picture is drawn for one pose, so that a raster can be shifted by what that was wrong.
+    /// Returns true if a whole picture is drawn for one pose. Only such a picture can be shifted by a raster to correct
+    /// the pose.
     fn has_one_pose(&self) -> bool {
         true
     }
 
-    /// Which of a picture's copies an arrival belongs to, where they are timed apart: 0, or 1 for the second.
+    /// Returns the index of the copy to which an arrival belongs, for copies that are timed separately: 0, or 1 for the
+    /// second.
     fn copy_part(&self, _arrival: &Arrival) -> u8 {
         0
     }
 
-    /// The view that a part of a picture shows; `views` gives the view of a picture as in [`PictureTimes`], `aim` the instant that
-    /// the part was drawn for.
+    /// Returns the view that a part of a picture shows. `views` gives the view of each picture as in [`PictureTimes`].
+    /// `aim` is the instant that the part was drawn for.
     fn source(
         &self,
         _record: &Record,
@@ -219,7 +228,7 @@ pub trait Pipeline: Any + Debug + Send + Sync {
         views.get(&target.picture).copied().map(Source::View)
     }
 
-    /// When that which is drawn of a picture's view is shown: until the next picture takes its place, or the run ends.
+    /// Returns the time span in which a picture is shown: until the next picture replaces it, or until the run ends.
     fn shown(&self, record: &Record, times: &PictureTimes, next: Option<&PictureTimes>) -> LightSpan {
         let first = record.display().period_at(times.shown_at);
         let next = next.map(|next| record.display().period_at(next.shown_at));
@@ -227,20 +236,20 @@ pub trait Pipeline: Any + Debug + Send + Sync {
         light_span(record, first, periods)
     }
 
-    /// When the light of a picture's middle comes.
+    /// Returns the time at which the middle of a picture lights.
     fn light(&self, record: &Record, times: &PictureTimes) -> Time {
         let display = record.display();
         display.middle_light(0, display.period_at(times.shown_at)).unwrap_or(times.shown_at)
     }
 
-    /// What stands before a viewer of a surface at the end of the run.
+    /// Returns the picture that the viewer of a surface sees at the end of the run.
     fn picture(&self, record: &Record, surface: SurfaceId) -> Option<RgbImage> {
         let display = record.display();
         display.seen(surface.index(), display.last_seen()?)
     }
 }
 
-/// When the first surface lights in so many periods of the first display, at least one.
+/// Returns the time span in which the first surface lights, over `periods` periods of the first display, at least one.
 pub(crate) fn light_span(record: &Record, first: PeriodNumber, periods: u64) -> LightSpan {
     let display = record.display();
     let tick = display.tick(first);

@@ -1,4 +1,4 @@
-//! What is known before a run: when views are seen, and the numbers of a predictor that is tuned for it.
+//! Preparation of a run: the dry run that finds when views are seen, and the tuning of the predictor.
 
 use crate::error::ExperimentError;
 use crate::experiment::{Experiment, Pixels};
@@ -10,22 +10,22 @@ use crate::rehearsal_sum::RehearsalSum;
 use crate::sums::{Summing, Sums};
 use std::sync::Arc;
 
-/// Fields of the run that tells how far ahead firmware predicts that knows itself when its views are seen. As many as its
-/// statistics need; of all fields where no picture is complete in so few.
+/// Number of fields of a dry run for firmware that itself knows when its views are seen. So many fields are enough for
+/// the statistics of the prediction interval. If no picture is complete in so few fields, the dry run takes all fields.
 const INTERVAL_FIELDS: u64 = 60;
 
-/// What a run is begun with.
+/// Results of the preparation.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Preparation {
-    /// When each view is seen; `None` where nobody predicts, or the firmware knows.
+    /// Time at which each view is seen. `None` without prediction, or if the firmware knows these times.
     pub(crate) rehearsal: Option<Rehearsal>,
-    /// The head with its predictor tuned; `None` where there is nothing to tune.
+    /// Head with a tuned predictor. `None` if there is nothing to tune.
     pub(crate) head: Option<Arc<Head>>,
 }
 
 impl Experiment {
-    /// With what a run without prediction tells, as far as its predictor needs it: what is run with another predictor afterwards
-    /// need not run without one again. Nothing else may be changed after this.
+    /// Performs the dry run now and stores its result in the experiment. A later run with another predictor reuses the
+    /// stored result. No other setting may change after this call.
     ///
     /// # Errors
     ///
@@ -36,19 +36,19 @@ impl Experiment {
         Ok(Self { rehearsed, ..self })
     }
 
-    /// What it was given by [`Experiment::rehearsed`].
+    /// Returns the result that [`Experiment::rehearsed`] has stored.
     #[must_use]
     pub const fn rehearsal(&self) -> Option<&Arc<Rehearsed>> {
         self.rehearsed.as_ref()
     }
 
-    /// With what the same experiment with another predictor was given by [`Experiment::rehearsed`].
+    /// Stores the result of [`Experiment::rehearsed`] from an experiment that differs in the predictor only.
     #[must_use]
     pub fn rehearsed_as(self, rehearsed: Option<Arc<Rehearsed>>) -> Self {
         Self { rehearsed, ..self }
     }
 
-    /// Runs without prediction, as far as somebody predicts who does not know what that run tells.
+    /// Performs a dry run if the predictor needs its result, and tunes the predictor if required.
     pub(crate) fn prepare(&self) -> Result<Preparation, ExperimentError> {
         let Some(head) = self.rehearsing_head() else { return Ok(Preparation::default()) };
         let known = self.rehearsed.clone().map_or_else(|| self.rehearse(head), Ok)?;
@@ -57,7 +57,7 @@ impl Experiment {
         Ok(Preparation { rehearsal, head: tuned.map(Arc::new) })
     }
 
-    /// The head, where somebody predicts who does not know what a run without prediction tells.
+    /// Returns the head if it predicts and needs the result of a dry run.
     fn rehearsing_head(&self) -> Option<&Arc<Head>> {
         let needs = |head: &&Arc<Head>| !self.pipeline.knows_when_seen() || head.is_to_be_tuned();
         self.head.as_ref().filter(|head| head.predicts()).filter(needs)
@@ -72,13 +72,14 @@ impl Experiment {
         Ok(Arc::new(rehearsed))
     }
 
-    /// Sums up while it runs: however long that is, it keeps two or three bytes a view.
+    /// Runs the experiment without prediction. A streaming observer keeps two or three bytes a view, for any length of
+    /// the run.
     fn without_prediction(&self, head: &Head, fields: u64) -> Result<Rehearsed, ExperimentError> {
         let plain = Some(Arc::new(head.without_prediction()));
         let (keep, sums): (Keep, Sums) = (Keep::Statistics, || Box::<RehearsalSum>::default());
         let plain =
             Self { head: plain, pixels: Pixels::Off, traffic: false, keep, sums: Some(sums), fields, ..self.clone() };
-        // A run of few pictures is rehearsed by as few.
+        // A run with few pictures is also preceded by a dry run with few pictures.
         let outcome = match plain.perform(Preparation::default(), &[], |_, _| Ok(())) {
             Err(ExperimentError::TooShort { partial, .. }) => *partial,
             run => run?,
@@ -95,7 +96,7 @@ impl Experiment {
     }
 }
 
-/// What a run tells that kept everything.
+/// Computes the result of a dry run that has kept all records.
 fn rehearsed(outcome: &Outcome) -> Rehearsed {
     let mut sum = RehearsalSum::default();
     sum.take(&outcome.settled());

@@ -1,21 +1,21 @@
-//! What happens to a picture between the frame buffer and the eye.
+//! Correction of a picture during its scan, between the frame buffer and the eye.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// How a raster shows what its frame buffer holds.
+/// Correction that a display applies while it scans its frame buffer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Raster {
-    /// Every pixel in its own place.
+    /// No correction: each pixel is displayed in its own place.
     #[default]
     Plain,
-    /// Shifted while it is scanned, by what the pose that it was drawn for was wrong (VDRT, Breglia 1981).
+    /// The picture is shifted during the scan by the error of the pose that it was drawn for (VDRT, Breglia 1981).
     Vdrt,
 }
 
 impl Raster {
-    /// All, by the name on the command line.
+    /// All corrections, with their names on the command line.
     pub const ALL: [(&str, Self); 2] = [("plain", Self::Plain), ("vdrt", Self::Vdrt)];
 }
 

@@ -1,4 +1,4 @@
-//! Which pipelines and displays there are. Whoever offers, reads, compares or limits them iterates over a [`Registry`].
+//! Registry of pipelines and displays. Code that offers, reads or compares pipelines iterates over a [`Registry`].
 
 use crate::error::ExperimentError;
 use crate::experiment::{Estimates, Experiment};
@@ -11,33 +11,34 @@ use pxpl5_machine::{MachineConfig, NamedTable};
 use serde::Serialize;
 use std::sync::Arc;
 
-/// What must hold when a pipeline is said to draw a scene in time.
+/// Condition under which a pipeline draws a scene in time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Goal {
     /// Every picture that is due is shown in time.
     NoMissedRetrace,
-    /// At least so many updates per second, counted as the papers count: 30 and 60 stand for NTSC's 29.97 and 59.94.
+    /// At least this number of updates a second, in the rounded rates of the papers: 30 stands for 29.97 Hz of NTSC,
+    /// and 60 for 59.94 Hz.
     RateHz(f64),
-    /// A mean latency of at most so many fields.
+    /// A mean latency of at most this number of fields.
     LatencyFields(f64),
 }
 
-/// What the scene of a limit is made of as it grows.
+/// Kind of triangles in the growing scene of a limit search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TestScene {
     /// Triangles that cover the whole screen.
     FullScreen,
-    /// Small triangles spread over the screen, of a size that touches 1.3 regions an eye on average (TR94).
+    /// Small triangles spread over the screen. Their size touches 1.3 regions an eye on average (TR94).
     Typical,
 }
 
 impl TestScene {
-    /// Both kinds of triangles, the larger first.
+    /// All kinds of triangles, the larger first.
     pub const ALL: [Self; 2] = [Self::FullScreen, Self::Typical];
 
-    /// Its name on the command line and in tables.
+    /// Returns the name on the command line and in tables.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -47,61 +48,61 @@ impl TestScene {
     }
 }
 
-/// How the most triangles that a pipeline draws in time are found.
+/// Criterion by which the largest number of triangles that a pipeline draws in time is found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LimitCriterion {
-    /// What must hold for every size that counts as reached.
+    /// Condition that every scene within the limit must meet.
     pub goal: Goal,
-    /// What the scene is made of as it grows.
+    /// Kind of triangles in the growing scene.
     pub scene: TestScene,
-    /// Fields that each size is simulated for: enough to show a steady state.
+    /// Number of fields to simulate for each size, enough to reach a steady state.
     pub fields: u64,
 }
 
 /// The closed form of a pipeline: an experiment without events.
 #[derive(Clone, Copy, Debug)]
 pub struct ClosedForm {
-    /// What comes of an experiment.
+    /// Function that returns the summary of an experiment.
     pub summary: fn(&Experiment) -> Result<Summary, ExperimentError>,
-    /// What else it can say of an experiment.
+    /// Functions that return estimates for an experiment.
     pub estimates: Estimates,
 }
 
-/// A pipeline as everybody finds it.
+/// Description of a pipeline in the registry.
 #[derive(Clone, Copy, Debug)]
 pub struct PipelineEntry {
-    /// Its name in experiment files and on the command line.
+    /// Name in experiment files and on the command line.
     pub name: &'static str,
-    /// The name that it shares with its variants.
+    /// Name of the family, which all variants of the pipeline share.
     pub family: &'static str,
-    /// What it is and where it was published, in a line.
+    /// Description with the place of publication, in a line.
     pub about: &'static str,
-    /// The preset of the machine on which its papers ran it, or could have.
+    /// Preset of the machine on which the papers ran the pipeline, or could have run it.
     pub preset: &'static str,
-    /// The keys that only it takes, with values, help and range.
+    /// Keys of the pipeline, with values, help and ranges.
     pub keys: &'static [Key],
-    /// Makes it of its keys; those not given have the values of its papers.
+    /// Function that builds the pipeline from its settings. Keys that are not set have the values of the papers.
     pub build: fn(&PipelineSettings) -> Arc<dyn Pipeline>,
-    /// When it is said to draw a scene in time, with the keys given.
+    /// Function that returns the criterion for the largest scene, for the given settings.
     pub limit: fn(&PipelineSettings) -> LimitCriterion,
-    /// Tables of its firmware's own numbers, each with the first part of their paths, such as `jitp`.
+    /// Tables of the firmware's numbers. Each table has a name that begins the paths of its parameters, such as `jitp`.
     pub tables: &'static [NamedTable],
-    /// Its closed form, if it has one.
+    /// Closed form, or `None` if the pipeline has none.
     pub closed_form: Option<ClosedForm>,
-    /// Whether `compare` has a row of it.
+    /// True if the command `compare` has a row for the pipeline.
     pub compared: bool,
 }
 
-/// A display as everybody finds it.
+/// Description of a display in the registry.
 #[derive(Clone, Copy, Debug)]
 pub struct DisplayEntry {
-    /// Its name in experiment files and on the command line.
+    /// Name in experiment files and on the command line.
     pub name: &'static str,
-    /// The numbers of its papers.
+    /// Function that returns the configuration from the papers.
     pub config: fn() -> Box<dyn DisplayConfig>,
 }
 
-/// The pipelines and displays that are known.
+/// All known pipelines and displays.
 #[derive(Clone, Debug)]
 pub struct Registry {
     pipelines: Vec<PipelineEntry>,
@@ -109,13 +110,13 @@ pub struct Registry {
 }
 
 impl Registry {
-    /// With these; more may be added.
+    /// Creates a registry with the given pipelines and displays. More can be added later.
     #[must_use]
     pub const fn with(pipelines: Vec<PipelineEntry>, displays: Vec<DisplayEntry>) -> Self {
         Self { pipelines, displays }
     }
 
-    /// A machine with the numbers of every pipeline's firmware beside those of its boards.
+    /// Adds the firmware tables of all pipelines to a machine.
     #[must_use]
     pub fn machine_of(&self, config: MachineConfig) -> MachineConfig {
         let mut config = config;
@@ -125,7 +126,7 @@ impl Registry {
         config
     }
 
-    /// Adds a pipeline, or puts it in the place of the one of the same name.
+    /// Adds a pipeline. A pipeline with the same name is replaced.
     pub fn add(&mut self, entry: PipelineEntry) {
         match self.pipelines.iter_mut().find(|known| known.name == entry.name) {
             Some(known) => *known = entry,
@@ -133,7 +134,7 @@ impl Registry {
         }
     }
 
-    /// Adds a display, or puts it in the place of the one of the same name.
+    /// Adds a display. A display with the same name is replaced.
     pub fn add_display(&mut self, entry: DisplayEntry) {
         match self.displays.iter_mut().find(|known| known.name == entry.name) {
             Some(known) => *known = entry,
@@ -141,45 +142,45 @@ impl Registry {
         }
     }
 
-    /// Says the closed form of a family.
+    /// Sets the closed form of all pipelines of a family.
     pub fn closed_form(&mut self, family: &str, form: ClosedForm) {
         let of_family = self.pipelines.iter_mut().filter(|entry| entry.family == family);
         of_family.for_each(|entry| entry.closed_form = Some(form));
     }
 
-    /// All pipelines, in the order in which they were added.
+    /// Returns all pipelines, in the order in which they were added.
     #[must_use]
     pub fn pipelines(&self) -> &[PipelineEntry] {
         &self.pipelines
     }
 
-    /// All displays, in the order in which they were added.
+    /// Returns all displays, in the order in which they were added.
     #[must_use]
     pub fn displays(&self) -> &[DisplayEntry] {
         &self.displays
     }
 
-    /// The pipeline of this name.
+    /// Returns the pipeline with a name.
     ///
     /// # Errors
     ///
-    /// The nearest valid name.
+    /// The nearest valid name, if no pipeline has the name.
     pub fn pipeline(&self, name: &str) -> Result<&PipelineEntry, &'static str> {
         let found = self.pipelines.iter().find(|entry| entry.name == name);
         found.ok_or_else(|| nearest(name, self.pipelines.iter().map(|entry| entry.name)).unwrap_or_default())
     }
 
-    /// The display of this name.
+    /// Returns the display with a name.
     ///
     /// # Errors
     ///
-    /// The nearest valid name.
+    /// The nearest valid name, if no display has the name.
     pub fn display(&self, name: &str) -> Result<&DisplayEntry, &'static str> {
         let found = self.displays.iter().find(|entry| entry.name == name);
         found.ok_or_else(|| nearest(name, self.displays.iter().map(|entry| entry.name)).unwrap_or_default())
     }
 
-    /// The keys of all pipelines, each once, with the families that have it.
+    /// Returns the keys of all pipelines, each once, with the families that have the key.
     #[must_use]
     pub fn keys(&self) -> Vec<(Key, Vec<&'static str>)> {
         let mut all: Vec<(Key, Vec<&'static str>)> = Vec::new();

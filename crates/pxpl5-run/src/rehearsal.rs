@@ -1,45 +1,48 @@
-//! For which instants views are drawn, known from a run without prediction.
+//! Result of a dry run without prediction: the instants that views are drawn for.
 
 use crate::head::Head;
 use crate::instants::Instants;
 use pxpl5_sim::Time;
 use pxpl5_wire::ViewNumber;
 
-/// For which instants views are drawn, found by a run without prediction.
+/// Instants that views are drawn for, as found by a dry run without prediction.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rehearsal {
-    /// The instant of each view that was shown, by the view's number.
+    /// Instant of each view that was shown, by view number.
     aimed_at: Instants,
-    /// Mean time from the sample of a view to its instant, picoseconds.
+    /// Mean time from the sample of a view to its instant, in picoseconds.
     mean_lead_ps: u64,
 }
 
 impl Rehearsal {
-    /// The instants of the views that were shown, and how long after its sample a view is shown on average, picoseconds.
+    /// Creates the result from the instants of the views that were shown, and the mean time in picoseconds from a
+    /// view's sample to its instant.
     pub(crate) const fn new(aimed_at: Instants, mean_lead_ps: u64) -> Self {
         Self { aimed_at, mean_lead_ps }
     }
 
-    /// The instant that a view is drawn for; of a view that was not shown, so long after its sample as the others on average.
+    /// Returns the instant that a view is drawn for. For a view that the dry run did not show, the instant is the
+    /// sample time plus the mean lead.
     pub(crate) fn aimed_at(&self, number: ViewNumber, sampled_at: Time) -> Time {
         let expected = Time(sampled_at.0 + self.mean_lead_ps);
         self.aimed_at.of(number.0).filter(|at| *at >= sampled_at).unwrap_or(expected)
     }
 }
 
-/// What a run without prediction tells whoever predicts: the same for every predictor.
+/// Results of a dry run that a predictor needs. They are the same for every predictor.
 #[derive(Clone, Debug)]
 pub struct Rehearsed {
-    /// When each view is seen.
+    /// Instants at which views are seen.
     pub(crate) rehearsal: Rehearsal,
-    /// How far ahead views have to be predicted, and orientations that a display latches; `None` where nothing was.
+    /// Mean interval over which views must be predicted, in picoseconds. `None` if no view was predicted.
     pub(crate) interval_ps: Option<u64>,
     pub(crate) turn_interval_ps: Option<u64>,
 }
 
 impl Rehearsed {
-    /// A head whose predictor errs least so far ahead as the run had to predict: places over the interval of pictures; orientations too,
-    /// or over that of a display that latches turns alone. `None` where there is no interval.
+    /// Returns the head with a tuned predictor. Positions are tuned for the interval of pictures. Orientations are
+    /// tuned for the interval of latched orientations, if the display latches them. Returns `None` if the dry run found
+    /// no interval.
     pub(crate) fn tuned(&self, head: &Head) -> Option<Head> {
         let of_pictures = self.interval_ps.map(|interval_ps| head.tuned_for(interval_ps));
         match self.turn_interval_ps {

@@ -1,4 +1,4 @@
-//! What a run without prediction tells, summed up while it goes on.
+//! Streaming observer of a dry run without prediction.
 
 use crate::head_views::{HeadViews, Sampled};
 use crate::instants::Instants;
@@ -13,34 +13,35 @@ use pxpl5_wire::{FieldParity, PeriodNumber, PictureNumber, ViewNumber};
 use std::any::Any;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Least step of an interval for which a predictor is tuned, picoseconds: a millisecond. A finer one changes no number of a filter
-/// by a per cent.
+/// Step, in picoseconds, to which the tuning interval of a predictor is rounded: one millisecond. A finer step changes
+/// the numbers of a filter by less than one per cent.
 const INTERVAL_STEP_PS: u64 = 1_000_000_000;
 
-/// When views are shown, how long after their samples, and how far ahead orientations that a display latches are predicted.
+/// Streaming observer that collects the times at which views are shown, and the prediction intervals of views and
+/// latched orientations.
 #[derive(Debug, Default)]
 pub(crate) struct RehearsalSum {
     pictures: usize,
-    /// Views of which another picture may come.
+    /// Views that later pictures may show too.
     going_on: BTreeMap<ViewNumber, ShownView>,
     aimed_at: Instants,
     leads: Mean,
     intervals: Mean,
     turns: Mean,
     turned_to: PeriodNumber,
-    /// A picture of which it is not known yet which one takes its place.
+    /// Picture whose successor is not known yet.
     waiting: Option<PictureTimes>,
 }
 
-/// When a view is shown, in as many pictures as are of it.
+/// Time span in which a view is shown, over all pictures of the view.
 #[derive(Clone, Copy, Debug)]
 struct ShownView {
     shown: LightSpan,
-    /// Whether a picture of it behind the warm-up was complete.
+    /// True if a picture of the view was complete and came after the warm-up.
     is_complete: bool,
 }
 
-/// A mean of milliseconds, summed up in the order in which they come.
+/// Mean of time spans in milliseconds, summed in the order of arrival.
 #[derive(Clone, Copy, Debug, Default)]
 struct Mean {
     sum_ms: f64,
@@ -53,12 +54,13 @@ impl Mean {
         self.n += 1;
     }
 
-    /// No number of nothing.
+    /// Returns the mean, or NaN for an empty sum.
     fn ms(self) -> f64 {
         self.sum_ms / self.n as f64
     }
 
-    /// In whole steps; `None` of nothing.
+    /// Returns the mean in picoseconds, rounded to whole steps of [`INTERVAL_STEP_PS`]. Returns `None` for an empty
+    /// sum.
     fn rounded_ps(self) -> Option<u64> {
         let steps = (self.ms() * 1e9 / INTERVAL_STEP_PS as f64).round();
         (self.n > 0).then_some(steps as u64 * INTERVAL_STEP_PS)
@@ -83,7 +85,7 @@ impl Summing for RehearsalSum {
 }
 
 impl RehearsalSum {
-    /// What was told so far.
+    /// Returns the results so far.
     pub(crate) fn rehearsed(self) -> Rehearsed {
         Rehearsed {
             rehearsal: Rehearsal::new(self.aimed_at, (self.leads.ms() * 1e9) as u64),
@@ -92,16 +94,19 @@ impl RehearsalSum {
         }
     }
 
-    /// Pictures, each with the one that takes its place. Of display memories only the first is timed, which holds what must be drawn
-    /// most often; its last picture waits while the next one that is shown is of another memory.
+    /// Returns the pictures, each with the picture that replaces it. For a display with several memories, only the
+    /// first memory is timed, because it holds the structures that must be drawn most often. The last picture of this
+    /// memory waits until the picture that replaces it is known.
     fn timed(&mut self, settled: &Settled<'_>) -> Vec<(PictureTimes, Option<PictureTimes>)> {
         let notes = settled.notes.all();
+        // Leave out the updates of all memories except the first.
         let of_others: BTreeSet<PictureNumber> =
             notes.iter().filter(|note| note.memory > 0).map(|note| note.picture).collect();
         let is_timed = |times: &&PictureTimes| !of_others.contains(&times.picture);
         let timed = settled.pictures.iter().filter(is_timed).copied();
         let mut timed: Vec<PictureTimes> = self.waiting.take().into_iter().chain(timed).collect();
         let next = settled.next.filter(is_timed).copied();
+        // If another memory is shown next, the successor of the last picture is not known yet.
         if settled.next.is_some() && next.is_none() {
             self.waiting = timed.pop();
         }
@@ -117,7 +122,8 @@ impl RehearsalSum {
         view.is_complete |= is_complete;
     }
 
-    /// Ends all views but the newest, of which the next picture may be too; that one with the run.
+    /// Finishes all views except the newest one, which the next picture may show too. At the end of the run, finishes
+    /// the newest one too.
     fn end_views(&mut self, settled: &Settled<'_>, sampled: &[Sampled]) {
         let newest = self.going_on.pop_last();
         let ended = std::mem::take(&mut self.going_on);
@@ -128,7 +134,8 @@ impl RehearsalSum {
         }
     }
 
-    /// Firmware that knows itself when its views are seen asks for no instant; it may show them in another order than that of their numbers.
+    /// Finishes a view. Firmware that itself knows when views are seen needs no instants, and may show views in another
+    /// order than that of their numbers.
     fn end_view(&mut self, settled: &Settled<'_>, sampled: &[Sampled], view: ViewNumber, shown: ShownView) {
         let ShownView { shown, is_complete } = shown;
         let instant = settled.aim.instant(&shown);
@@ -144,7 +151,8 @@ impl RehearsalSum {
         }
     }
 
-    /// From the instant at which an orientation was true to the one that it is latched for, of the middle pixel of each field.
+    /// Adds the prediction interval of the middle pixel of each field: from the measurement of an orientation to the
+    /// instant that it was predicted for.
     fn take_turns(&mut self, settled: &Settled<'_>, head: &HeadViews) {
         let display = settled.record.display();
         let Some((latched, surface)) = LatchedHead::of_run(settled).zip(display.surfaces().first()) else { return };
@@ -157,7 +165,7 @@ impl RehearsalSum {
     }
 }
 
-/// Of a pixel; `None` before the first report.
+/// Returns the prediction interval of a pixel's orientation, or `None` before the first report.
 fn turned(latched: &LatchedHead, head: &HeadViews, [x, y]: [u32; 2], field: PeriodNumber) -> Option<Span> {
     let (known, aimed): (Time, Time) = latched.turned_by(head, x, y, field)?;
     let measured = head.measured_at(head.report_by(known)?)?;

@@ -1,22 +1,23 @@
-//! When a tracker's reports reach their host. It does not depend on what they say, so it is known ahead of a head that somebody moves.
+//! Arrival times of a tracker's reports at the host. They do not depend on the reports' contents, so they are known in
+//! advance even for an interactive head.
 
 use pxpl5_sim::Time;
 use std::collections::VecDeque;
 use tracking::tracker::TrackerReport;
 
-/// A report without what it says.
+/// Times of a report, without its content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Coming {
-    /// When it reaches the host.
+    /// Arrival time at the host.
     pub(crate) arrives: Time,
-    /// When what it says was true.
+    /// Time at which the content of the report was measured.
     pub(crate) measured: Time,
 }
 
-/// Reports to come, in order of arrival.
+/// Times of future reports, in order of arrival.
 pub(crate) type Arrivals = Box<dyn Iterator<Item = Coming> + Send>;
 
-/// What reports say, in order of arrival, each made when somebody takes it.
+/// Contents of reports, in order of arrival. Each content is computed on demand.
 pub(crate) type Contents = Box<dyn Iterator<Item = TrackerReport> + Send>;
 
 impl Coming {
@@ -25,7 +26,8 @@ impl Coming {
     }
 }
 
-/// The reports of a run, as far as somebody has asked about them and they were not given up: memory does not depend on the length of the run.
+/// Times of the reports of a run. Only requested reports that have not been discarded are in memory, so memory does not
+/// depend on the length of the run.
 pub(crate) struct ReportSchedule {
     arrivals: Arrivals,
     known: VecDeque<Coming>,
@@ -36,39 +38,39 @@ impl ReportSchedule {
         Self { arrivals, known: VecDeque::new() }
     }
 
-    /// The first report at an instant or later; `None` where the run has none.
+    /// Returns the first report at an instant or later, or `None` if the run has none.
     pub(crate) fn from(&mut self, instant: Time) -> Option<Coming> {
         self.know_beyond(instant);
         let earlier = self.known.partition_point(|coming| coming.arrives < instant);
         self.known.get(earlier).copied()
     }
 
-    /// The first report after an instant; `None` where the run has none.
+    /// Returns the first report after an instant, or `None` if the run has none.
     pub(crate) fn after(&mut self, instant: Time) -> Option<Coming> {
         self.from(Time(instant.0.saturating_add(1)))
     }
 
-    /// The last report that was there at an instant; `None` before the first.
+    /// Returns the last report that had arrived by an instant, or `None` before the first.
     pub(crate) fn by(&mut self, instant: Time) -> Option<Coming> {
         self.know_beyond(instant);
         let there = self.known.partition_point(|coming| coming.arrives <= instant);
         self.known.get(there.checked_sub(1)?).copied()
     }
 
-    /// Gives up what nobody asks about who asks about this instant or later: what came before the last that was there then. What came
-    /// with that one stays.
+    /// Discards reports that no question about this instant or later needs. The last report before the instant stays,
+    /// and so do reports that arrived together with it.
     pub(crate) fn forget_before(&mut self, instant: Time) {
         let Some(last) = self.by(instant) else { return };
         let earlier = self.known.partition_point(|coming| coming.arrives < last.arrives);
         self.known.drain(..earlier);
     }
 
-    /// Reports that are held.
+    /// Returns the number of reports in memory.
     pub(crate) fn held(&self) -> usize {
         self.known.len()
     }
 
-    /// Makes reports until one comes after an instant.
+    /// Computes reports until one arrives after an instant.
     fn know_beyond(&mut self, instant: Time) {
         while self.known.back().is_none_or(|last| last.arrives <= instant) {
             let Some(coming) = self.arrivals.next() else { return };
@@ -89,7 +91,7 @@ mod tests {
     }
 
     proptest! {
-        /// A list of all of them is the model; several may come at one look of a kernel.
+        /// The reference model is a list of all reports. Several reports may arrive at the same poll of a kernel.
         #[test]
         fn what_was_given_up_is_not_missed_by_whoever_asks_about_later_instants(
             mut all in proptest::collection::vec(0u64..200, 0..60), questions in proptest::collection::vec(0u64..220, 1..60),

@@ -1,43 +1,45 @@
-//! The one window of a run over which its results are computed: latencies, pictures due, errors and rates.
+//! The window of a run over which all its results are computed: latencies, pictures due, errors and rates.
 //!
-//! Start-up is over when [`WARM_UP_PERIODS`] have passed and [`WARM_UP_PICTURES`](crate::WARM_UP_PICTURES) pictures were begun, whichever comes later. The
-//! window begins then, with the turn of the next picture: the periods up to and with the one in which it is due. No failure behind the
-//! first periods is left out: if a picture due in the first half of the run was not shown, the window begins with the first such picture.
-//! Those before it may owe their time to queues that were still empty. The pictures of start-up have no latency and no error in any case.
-//! The window ends with the last period that was over, and a period earlier where no picture is due.
+//! Start-up is over when [`WARM_UP_PERIODS`] have passed and [`WARM_UP_PICTURES`](crate::WARM_UP_PICTURES) pictures
+//! were begun. The window begins after start-up, with the periods of the next picture that is due. If a due picture in
+//! the first half of the run was not shown, the window begins with the first such picture, so no failure is left out.
+//! Earlier pictures may have profited from queues that were still empty. Pictures of start-up never have a latency or
+//! an error.
+//!
+//! The window ends with the last period that was over, or one period earlier if no picture is ever due.
 
 use crate::picture_ends::{PictureEnd, PictureEnds};
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 
-/// Periods of the display at the start of a run that are not evaluated: the first views are on their way, and the first pictures
-/// were ordered when their time had nearly passed (assumed).
+/// Number of display periods at the start of a run that are not evaluated. In these periods, the first views are in
+/// progress, and the first pictures were ordered too late (assumed).
 pub const WARM_UP_PERIODS: u64 = 8;
 
-/// The rule by which the window of a run is found, for readers of a report.
+/// Rule for the window of a run, in words for readers of a report.
 pub const WINDOW_DEFINITION: &str = "latencies, pictures due, errors and rates are over one window: from the 9th period of the display, or \
     from the turn of the fifth picture if that is later, to the last period that was over; where a picture due in the first half of the \
     run was not shown, from the first such picture, since those before it may owe their time to queues that were still empty; the first \
     four pictures have no latency and no error";
 
-/// The periods of the first display over which all results of a run are computed.
+/// Periods of the first display over which all results of a run are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct ResultWindow {
     /// First period of the window.
     pub first_period: PeriodNumber,
-    /// Last period of the window.
+    /// Last period of the window. This period is part of the window.
     pub last_period: PeriodNumber,
-    /// The period of the first picture behind start-up; `None` where the run shows no picture behind it.
+    /// Period of the first picture after start-up. `None` if the run shows no picture after start-up.
     #[serde(skip)]
     steady_from: Option<PeriodNumber>,
 }
 
 impl ResultWindow {
-    /// Finds the window of a run that is over, of which `reached` is the first period that was not simulated to its end.
+    /// Returns the window of a run that has ended. `reached` is the first period that was not simulated to its end.
     ///
-    /// `every` is the number of periods from one picture due to the next; `None` where none is ever due. `planned` is the first
-    /// period behind the run as it was asked for, and decides where its first half ends. `None` if the run has no period behind
-    /// start-up, or too few for a picture that is due.
+    /// `every` is the number of periods between pictures that are due, or `None` if no picture is ever due. `planned`
+    /// is the first period after the requested length of the run, and defines the first half of the run. Returns `None`
+    /// if no period remains after start-up, or if the rest is too short for a due picture.
     pub(crate) fn of(
         ends: &PictureEnds,
         every: Option<u64>,
@@ -45,21 +47,24 @@ impl ResultWindow {
         planned: PeriodNumber,
     ) -> Option<Self> {
         let begun = Self::begun(ends, every, reached, planned);
-        // Where no picture is due, one that is seen in the last period may not be whole before a later one.
+        // Without due pictures, a picture that is seen in the last period may become complete in a later period.
         let end = if every.is_some() { reached.0 } else { reached.0.checked_sub(1)? };
         let periods = end.checked_sub(begun.first_period.0)?;
         let every = every.unwrap_or(1).max(1);
+        // The window covers whole intervals between due pictures.
         let whole = periods / every * every;
         let last_period = PeriodNumber((begun.first_period.0 + whole).checked_sub(1)?);
         (whole > 0).then_some(Self { last_period, ..begun })
     }
 
-    /// The window of a run that goes on, all of whose pictures are known in the periods before `known`. Its end is that of the run.
+    /// Returns the window of a run that is still going on. All pictures in the periods before `known` must be known.
+    /// The window ends with the requested end of the run.
     pub(crate) fn begun(ends: &PictureEnds, every: Option<u64>, known: PeriodNumber, planned: PeriodNumber) -> Self {
         let steady_from = ends.steady_from();
+        // Start-up may take at most the first half of the requested run.
         let middle = WARM_UP_PERIODS + planned.0.saturating_sub(WARM_UP_PERIODS) / 2;
         let start = ends.first_from(0).unwrap_or_default().min(middle);
-        // Where start-up takes more than half of the run, what is due is counted from the first picture on.
+        // If start-up takes more than half of the run, due pictures are counted from the first picture on.
         let steady = steady_from.map(|period| period.0).filter(|period| *period < middle).unwrap_or(start);
         let first = every.map_or(steady.max(WARM_UP_PERIODS), |every| {
             let every = every.max(1);
@@ -77,23 +82,23 @@ impl ResultWindow {
         (self.first_period..=self.last_period).contains(&period)
     }
 
-    /// Returns true if a picture that is shown from a period on lies in the window, behind those of start-up.
+    /// Returns true if a picture that is shown from `period` on lies in the window and after start-up.
     #[must_use]
     pub fn holds_picture(&self, period: PeriodNumber) -> bool {
         self.steady_from.is_some_and(|steady| steady <= period) && self.holds(period)
     }
 
-    /// Periods of the window.
+    /// Returns the number of periods in the window.
     #[must_use]
     pub const fn periods(&self) -> u64 {
         self.last_period.0 + 1 - self.first_period.0
     }
 }
 
-/// The period in which the first picture that is counted is due: the first that was not shown, from `start` on and before `end`; else the
-/// first at or behind `steady`.
+/// Returns the period in which the first counted picture is due. If a picture that is due between `start` and `end` was
+/// not shown, the first such picture is taken. Otherwise, the first one that is due at or after `steady` is taken.
 fn first_due(ends: &PictureEnds, every: u64, [start, steady]: [u64; 2], end: u64) -> u64 {
-    // The first picture there says in which periods pictures are due.
+    // The first picture defines in which periods pictures are due.
     let anchor = ends.first_from(start).unwrap_or(start);
     let first = start + (anchor - start) % every;
     let failed = (first..end).step_by(every as usize).find(|due| ends.best(*due, every) != Some(PictureEnd::Shown));

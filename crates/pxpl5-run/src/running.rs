@@ -1,4 +1,4 @@
-//! Running an experiment.
+//! Runs experiments.
 
 use crate::error::ExperimentError;
 use crate::experiment::Experiment;
@@ -9,7 +9,8 @@ use pxpl5_machine::Machine;
 use pxpl5_wire::PeriodNumber;
 
 impl Experiment {
-    /// Builds the machine, switched on, with the pipeline's programs loaded; with prediction, after a rehearsal.
+    /// Builds the machine, loads the pipeline's programs and switches the machine on. With prediction, a dry run comes
+    /// first.
     ///
     /// # Errors
     ///
@@ -18,17 +19,18 @@ impl Experiment {
         Ok(self.assemble(self.prepare()?)?.machine)
     }
 
-    /// Runs it.
+    /// Runs the experiment and returns the outcome.
     ///
     /// # Errors
     ///
-    /// As [`Experiment::build`]; [`ExperimentError::Run`] with everything observed so far when the run ends early;
-    /// [`ExperimentError::TooShort`], with the same, when nothing but pictures of the warm-up was shown.
+    /// As [`Experiment::build`]. Returns [`ExperimentError::Run`] with all observations so far if the run ends early.
+    /// Returns [`ExperimentError::TooShort`] with all observations if only pictures of the warm-up were shown.
     pub fn run(&self) -> Result<Outcome, ExperimentError> {
         self.run_with(|_, _| {})
     }
 
-    /// Runs it and reports progress: fields simulated, of all.
+    /// Runs the experiment and reports progress. `progress` receives the number of simulated fields and the number of
+    /// all fields.
     ///
     /// # Errors
     ///
@@ -40,12 +42,13 @@ impl Experiment {
         })
     }
 
-    /// Runs it and stops at the retrace that begins each of some fields, and now and then between: `at` sees the field
-    /// and the machine, before anything of that field has happened, and may end the run.
+    /// Runs the experiment and calls `at` at the beginning of each field in `stops`, and at further fields for
+    /// progress. `at` receives the field and the machine before any event of that field. An error from `at` ends the
+    /// run.
     ///
     /// # Errors
     ///
-    /// As [`Experiment::run`], and what `at` says.
+    /// As [`Experiment::run`], and any error that `at` returns.
     pub fn run_stopping(
         &self,
         stops: &[PeriodNumber],
@@ -54,8 +57,10 @@ impl Experiment {
         self.perform(self.prepare()?, stops, at)
     }
 
-    /// The machine of the experiment, switched on, to be run in pieces and looked at between them; with prediction, after a rehearsal.
-    /// [`Stepper::finish`] gives what [`Experiment::run`] does.
+    /// Builds the machine, switches it on and returns a stepper, which runs the experiment in pieces. With prediction,
+    /// a dry run comes first. [`Stepper::finish`] returns the same result as [`Experiment::run`].
+    ///
+    /// With [`Experiment::record_traffic`], a stepper can also read the words in FIFOs and pixel memory.
     ///
     /// With [`Experiment::record_traffic`] more can be seen: the words in FIFOs, and pixel memory.
     ///
@@ -72,6 +77,7 @@ impl Experiment {
         stops: &[PeriodNumber],
         mut at: impl FnMut(PeriodNumber, &mut Machine) -> Result<(), ExperimentError>,
     ) -> Result<Outcome, ExperimentError> {
+        // Run from stop to stop. A failed machine ends the loop, and `finish` returns the error.
         let mut stepper = Stepper::begin(self, preparation)?;
         for field in self.stops(stops) {
             stepper.run_to(stepper.record().tick(field));
@@ -84,7 +90,7 @@ impl Experiment {
         stepper.finish()
     }
 
-    /// Whether somebody still wants the result.
+    /// Returns an error if the host no longer wants the result.
     pub(crate) fn go_on(&self) -> Result<(), ExperimentError> {
         if self.host.is_given_up() {
             return Err(ExperimentError::Stopped("the run was given up".to_owned()));

@@ -1,16 +1,17 @@
-//! Numbers whose statistics are wanted, with bounded memory where a run is long.
+//! Collections of numbers for statistics. A limit bounds the memory of long runs.
 
 use crate::statistics::Statistics;
 use std::ops::Deref;
 
-/// How many numbers of each kind a run keeps that keeps statistics only: 512 KiB. Fields of a run of Slats, pictures of any other.
+/// Largest number of samples of each kind in a run that keeps statistics only. The samples of one kind take 512 KiB. A
+/// sample is a field under Slats and a picture under any other pipeline.
 pub const KEPT_SAMPLES: usize = 65_536;
 
-/// Numbers in the order in which they came. Up to a limit all of them are kept, and statistics are those of [`Statistics::of`],
-/// bit for bit. Beyond it the limit's first numbers are kept and the statistics come from sums of twice the precision of `f64`,
-/// so that they differ from the former in the last digits at most, and no number of additions blurs them.
+/// Numbers in order of arrival, with a limit. Up to the limit, all numbers are kept, and the statistics equal those of
+/// [`Statistics::of`] bit for bit. Beyond the limit, only the first numbers are kept. The statistics then come from
+/// sums with twice the precision of `f64`, and differ from the exact ones in the last digits at most.
 ///
-/// As a slice they are the numbers that are kept.
+/// As a slice, the samples are the kept numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Samples {
     kept: Vec<f64>,
@@ -25,13 +26,13 @@ impl Default for Samples {
 }
 
 impl Samples {
-    /// None yet; at most `limit` will be kept.
+    /// Creates an empty collection that keeps at most `limit` numbers.
     #[must_use]
     pub const fn keeping(limit: usize) -> Self {
         Self { kept: Vec::new(), limit, moments: None }
     }
 
-    /// One more.
+    /// Adds a number.
     pub fn push(&mut self, value: f64) {
         if let Some(moments) = &mut self.moments {
             moments.push(value);
@@ -44,19 +45,19 @@ impl Samples {
         }
     }
 
-    /// How many there were, whether they are kept or not.
+    /// Returns how many numbers were added, including those that are not kept.
     #[must_use]
     pub fn count(&self) -> u64 {
         self.moments.as_ref().map_or(self.kept.len() as u64, |moments| moments.n)
     }
 
-    /// Mean, deviation, least and greatest of all of them.
+    /// Returns the statistics of all added numbers.
     #[must_use]
     pub fn statistics(&self) -> Statistics {
         self.statistics_in(1.0)
     }
 
-    /// The same of the numbers over a unit.
+    /// Returns the statistics of all added numbers, each divided by `unit`.
     #[must_use]
     pub fn statistics_in(&self, unit: f64) -> Statistics {
         match &self.moments {
@@ -92,13 +93,14 @@ impl IntoIterator for Samples {
     type Item = f64;
     type IntoIter = std::vec::IntoIter<f64>;
 
-    /// Those that are kept.
+    /// Iterates over the kept numbers.
     fn into_iter(self) -> Self::IntoIter {
         self.kept.into_iter()
     }
 }
 
-/// Sums of numbers and of their squares, counted from the first number, so that little is lost where all are alike.
+/// Sums of numbers and of their squares, both relative to the first number. The offset keeps precision when all numbers
+/// are similar.
 #[derive(Clone, Debug, PartialEq)]
 struct Moments {
     n: u64,
@@ -141,7 +143,7 @@ impl Moments {
     }
 }
 
-/// A sum with what rounding took from it (Neumaier 1974).
+/// A sum that compensates for rounding errors (Neumaier 1974).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct DoubleSum {
     sum: f64,

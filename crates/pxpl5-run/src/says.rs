@@ -1,4 +1,4 @@
-//! What boards of a run that stands do, in words: as the debugger and the page say it.
+//! Descriptions of the state of boards in words, for the debugger and the live page.
 
 use crate::stepper::Stepper;
 use pxpl5_gp::{GpLook, Priority, ProgramLook};
@@ -9,7 +9,7 @@ use pxpl5_wire::REGION_SIZE;
 use std::fmt::Write as _;
 
 impl Stepper {
-    /// The boards that can be asked: host, graphics processors, renderers, displays.
+    /// Returns the boards whose state can be described: host, graphics processors, renderers and displays.
     pub fn boards(&self) -> impl Iterator<Item = Board> + use<> {
         let record = self.record();
         let [gps, renderers, displays] = [record.ports().gps.len(), record.renderers().len(), record.displays().len()];
@@ -17,7 +17,8 @@ impl Stepper {
         processors.chain((0..renderers).map(Board::Renderer)).chain((0..displays).map(Board::Display))
     }
 
-    /// What a board does, in a line; `None` of the ring, and of a board that the machine does not have.
+    /// Returns a description of a board's activity in one line. Returns `None` for the ring, and for a board that the
+    /// machine does not have.
     #[must_use]
     pub fn says(&self, board: Board) -> Option<String> {
         match board {
@@ -28,11 +29,12 @@ impl Stepper {
         }
     }
 
-    /// What there is to say of a processor besides its line, each with its kind before it; empty for other boards.
+    /// Returns details of a processor, one line each, with the kind of detail first. Other boards have none.
     #[must_use]
     pub fn details(&self, board: Board) -> Vec<String> {
         let Some(look) = self.processor(board) else { return Vec::new() };
         let ports = self.record().ports();
+        // Messages that have arrived, that are being sent, and that wait.
         let mut lines: Vec<String> = Vec::new();
         lines.extend(
             look.inbox
@@ -42,6 +44,7 @@ impl Stepper {
         lines.extend(look.unaccepted.iter().map(|node| format!("sent    to {}, not accepted yet", ports.board(*node))));
         let chains = look.chains.iter().enumerate();
         lines.extend(chains.map(|(place, messages)| format!("queued  chain {place}: messages {messages}")));
+        // Memory use and busy time, then the loaded program.
         let memory = look.memory.iter().filter(|(_, bytes)| *bytes > 0);
         lines.extend(memory.map(|(account, bytes)| format!("memory  {account}: {bytes} bytes")));
         lines.push(format!("busy    {} of {}", in_us(look.busy), in_us(self.now().since(Time::ZERO))));
@@ -51,7 +54,8 @@ impl Stepper {
         lines
     }
 
-    /// The last line of the first display's first surface that has begun to light in its period.
+    /// Returns the last line of the first display's first surface that has begun to light in the present period.
+    /// Returns `None` before the first line.
     #[must_use]
     pub fn beam_line(&self) -> Option<u32> {
         let display = self.record().display();
@@ -60,8 +64,8 @@ impl Stepper {
         (0..lines).rev().find(lit)
     }
 
-    /// The fields of a pixel's memory in a renderer's array, as far as its commands have started; `None` as of [`Stepper::array`], and
-    /// beside the array.
+    /// Returns the fields of a pixel's memory in a renderer's array, after all commands that have started. Returns
+    /// `None` under the same conditions as [`Stepper::array`], and for a position outside the array.
     #[must_use]
     pub fn pixel_fields(&self, renderer: usize, x: u32, y: u32) -> Option<Vec<PixelField>> {
         if x >= REGION_SIZE || y >= REGION_SIZE {
@@ -79,6 +83,7 @@ impl Stepper {
 
     fn renderer_line(&self, number: usize) -> Option<String> {
         let look = self.renderer(number)?;
+        // The level of the FIFO comes first, then activities of the renderer.
         let mut text = format!("fifo {}/{}", look.fifo_words.unwrap_or_default(), look.fifo_depth_words);
         if let Some(order) = look.copying {
             let display = self.record().ports().board(order.target.frame_buffer);
@@ -104,26 +109,26 @@ impl Stepper {
     }
 }
 
-/// A field of a pixel's memory and what it holds.
+/// A field of a pixel's memory with its value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PixelField {
-    /// What the layout calls it.
+    /// Name of the field in the layout.
     pub name: String,
-    /// Its first bit of the 208.
+    /// First bit of the field, among the 208 bits of a pixel.
     pub first: u32,
-    /// How many bits it has.
+    /// Width of the field in bits.
     pub width: u32,
-    /// What they are, the first one lowest.
+    /// Value of the field. The first bit is the lowest.
     pub value: u128,
 }
 
-/// The bit of a pixel, column `x` and row `y` of the array, in a plane.
+/// Returns the bit of a pixel in a plane. `x` is the column and `y` the row of the array.
 #[must_use]
 pub const fn bit_of(plane: &Plane, x: u32, y: u32) -> bool {
     plane[(2 * y + x / 64) as usize] >> (x % 64) & 1 == 1
 }
 
-/// What a processor's programs do, and what waits at it.
+/// Returns a description of a processor's programs and of the messages that wait.
 fn processor_line(look: &GpLook) -> String {
     let mut parts: Vec<String> = look.programs.iter().map(program).collect();
     if parts.is_empty() {
@@ -148,13 +153,13 @@ fn program(program: &ProgramLook) -> String {
     }
 }
 
-/// An instant in milliseconds to the nanosecond: `16.683333 ms`.
+/// Formats an instant in milliseconds, to the nanosecond: `16.683333 ms`.
 #[must_use]
 pub fn in_ms(at: Time) -> String {
     format!("{}.{:06} ms", at.0 / 1_000_000_000, at.0 % 1_000_000_000 / 1_000)
 }
 
-/// A span in microseconds to the nanosecond: `21.700 us`.
+/// Formats a span in microseconds, to the nanosecond: `21.700 us`.
 #[must_use]
 pub fn in_us(span: Span) -> String {
     format!("{}.{:03} us", span.0 / 1_000_000, span.0 % 1_000_000 / 1_000)

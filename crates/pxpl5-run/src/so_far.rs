@@ -1,4 +1,4 @@
-//! A run as far as it has come: what timelines and tables of a run need, whether it is over or goes on.
+//! The part of a run that has been simulated, as timelines and tables need it.
 
 use crate::experiment::Experiment;
 use crate::latency::{LatencyParts, parts};
@@ -10,7 +10,7 @@ use pxpl5_machine::{Observation, Record, StageSpan};
 use pxpl5_sim::{Span, Time};
 use std::borrow::Cow;
 
-/// What was observed of a run up to an instant: of an [`Outcome`] all of it, of a [`Stepper`] what has happened.
+/// Observations of a run up to an instant: all of an [`Outcome`], or the simulated part of a [`Stepper`].
 #[derive(Clone, Debug)]
 pub struct SoFar<'a> {
     experiment: &'a Experiment,
@@ -20,7 +20,7 @@ pub struct SoFar<'a> {
 }
 
 impl Outcome {
-    /// All of the run.
+    /// Returns the observations of the whole run.
     #[must_use]
     pub fn so_far(&self) -> SoFar<'_> {
         let pictures = Cow::Borrowed(self.pictures());
@@ -29,7 +29,7 @@ impl Outcome {
 }
 
 impl Stepper {
-    /// The run up to now, with its pictures that have been shown, as far as records of them are [kept](crate::Keep).
+    /// Returns the observations up to now, with the pictures that have been shown and are still [kept](crate::Keep).
     #[must_use]
     pub fn so_far(&self) -> SoFar<'_> {
         let pictures = self.experiment().pipeline().pictures(self.record(), self.now());
@@ -38,55 +38,55 @@ impl Stepper {
 }
 
 impl SoFar<'_> {
-    /// The machine's boards and everything observed.
+    /// Returns the machine's boards and all observations.
     #[must_use]
     pub const fn record(&self) -> &Record {
         self.record
     }
 
-    /// Marks of firmware, arrivals at displays and swaps, in the order of time.
+    /// Returns the marks of firmware, the arrivals at displays and the swaps, in order of time.
     #[must_use]
     pub const fn observation(&self) -> &Observation {
         self.record.observation()
     }
 
-    /// The pictures that were begun and judged, in order.
+    /// Returns the pictures that were begun and evaluated, in order.
     #[must_use]
     pub fn pictures(&self) -> &[PictureTimes] {
         &self.pictures
     }
 
-    /// The pipeline that runs.
+    /// Returns the pipeline that runs.
     #[must_use]
     pub fn pipeline(&self) -> &dyn Pipeline {
         self.experiment.pipeline().as_ref()
     }
 
-    /// All stages of all pictures, COPY as the displays saw it.
+    /// Returns all stages of all pictures. The times of COPY are those at the displays.
     #[must_use]
     pub fn stages(&self) -> Vec<StageSpan> {
         self.record.stages()
     }
 
-    /// Periods of the first display that the run takes in all.
+    /// Returns the number of periods of the first display that the whole run takes.
     #[must_use]
     pub const fn fields(&self) -> u64 {
         self.experiment.length()
     }
 
-    /// The instant up to which it is known.
+    /// Returns the instant at which the observations end.
     #[must_use]
     pub const fn end(&self) -> Time {
         self.end
     }
 
-    /// The software time of a message that a GP receives.
+    /// Returns the software time for receiving a message on a GP.
     #[must_use]
     pub const fn receive_span(&self) -> Span {
         Span::from_ns(self.experiment.config().gp.message_ns)
     }
 
-    /// Where the latency of the last complete pictures went, at most so many, the newest last.
+    /// Returns the latency parts of the last complete pictures, at most `most` of them, the newest last.
     #[must_use]
     pub fn last_latencies(&self, most: usize) -> Vec<LatencyParts> {
         let stages = self.stages();

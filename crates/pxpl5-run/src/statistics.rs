@@ -1,28 +1,29 @@
-//! Mean and spread of some numbers.
+//! Mean and spread of a list of numbers.
 
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 
-/// How many numbers there are, their mean, sample standard deviation, least and greatest. Of none there is none of these, and
-/// of one no deviation (NaN; null in JSON).
+/// Statistics of a list of numbers: count, mean, sample standard deviation, least and greatest. An empty list has NaN
+/// for all but the count. A single number has NaN as its deviation. JSON shows NaN as null.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Statistics {
-    /// How many numbers there are.
+    /// Count of the numbers.
     pub n: u64,
-    /// Sum of the numbers over how many there are.
+    /// Sum of the numbers divided by their count.
     pub mean: f64,
-    /// Sample standard deviation (n - 1), of two numbers or more.
+    /// Sample standard deviation, with n - 1 as divisor. NaN for fewer than two numbers.
     pub sd: f64,
-    /// The smallest of the numbers.
+    /// Smallest of the numbers.
     pub min: f64,
-    /// The largest of the numbers.
+    /// Largest of the numbers.
     pub max: f64,
 }
 
-/// A picosecond in milliseconds, and a little more: what times that are the same differ by, since they are whole picoseconds.
+/// Slightly more than a picosecond, in milliseconds. Times are whole picoseconds, so equal times differ by less than
+/// this value after rounding.
 const PICOSECOND_MS: f64 = 1.001e-9;
 
-/// As it is told: see [`Statistics::told`].
+/// Serializes the rounded form that [`Statistics::told`] returns.
 impl Serialize for Statistics {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Self { n, mean, sd, min, max } = self.told();
@@ -37,8 +38,8 @@ impl Serialize for Statistics {
 }
 
 impl Statistics {
-    /// The same as reports and tables tell it: of numbers that differ by no more than a picosecond the deviation is 0, and a mean lies
-    /// between the least and the greatest, whatever the last digits of a sum are.
+    /// Returns the statistics as reports and tables show them, without effects of rounding. If all numbers lie within a
+    /// picosecond, the deviation is 0. The mean lies between the least and the greatest number.
     #[must_use]
     pub fn told(self) -> Self {
         if self.n == 0 {
@@ -46,11 +47,11 @@ impl Statistics {
         }
         let is_constant = self.max - self.min <= PICOSECOND_MS;
         let sd = if is_constant && !self.sd.is_nan() { 0.0 } else { self.sd };
-        // Not `clamp`, which panics where a number is none.
+        // `clamp` would panic if a bound were NaN.
         Self { sd, mean: self.mean.max(self.min).min(self.max), ..self }
     }
 
-    /// Of some numbers, in any order, none of them NaN.
+    /// Computes the statistics of numbers in any order. None of them may be NaN.
     #[must_use]
     pub fn of(values: impl Iterator<Item = f64>) -> Self {
         let values: Vec<f64> = values.collect();
@@ -59,6 +60,7 @@ impl Statistics {
         }
         let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
+        // Two passes over the values avoid the loss of precision of a sum of squares.
         let squares = values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>();
         Self {
             n: values.len() as u64,
@@ -69,20 +71,20 @@ impl Statistics {
         }
     }
 
-    /// With what they are statistics of.
+    /// Adds a definition of the numbers.
     #[must_use]
     pub fn defined(self, definition: &str) -> DefinedStatistics {
         DefinedStatistics { statistics: self, definition: definition.to_owned() }
     }
 }
 
-/// Statistics with their definition beside them.
+/// Statistics together with the definition of their numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DefinedStatistics {
-    /// Mean, deviation, least and greatest of what is defined beside.
+    /// Statistics of the numbers that `definition` describes.
     #[serde(flatten)]
     pub statistics: Statistics,
-    /// What they are of, in a sentence.
+    /// Definition of the numbers, in a sentence.
     pub definition: String,
 }
 
@@ -104,7 +106,7 @@ mod tests {
         assert!([mean, sd, min, max].iter().all(|number| number.is_nan()));
     }
 
-    /// 0.1 three times has a mean of 0.10000000000000002 and a deviation of 1.7e-17 by the formula.
+    /// By the formula, three times 0.1 has a mean of 0.10000000000000002 and a deviation of 1.7e-17.
     #[test]
     fn what_does_not_vary_is_told_without_deviation() {
         for values in [[0.1; 3], [30.949_033_339, 30.949_033_340, 30.949_033_340]] {

@@ -1,4 +1,4 @@
-//! A run in pieces: the machine at work, to be looked at whenever it stands.
+//! Runs an experiment in pieces. Between two pieces, the state of the machine can be read.
 
 use crate::assembled::Assembled;
 use crate::error::ExperimentError;
@@ -20,23 +20,23 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{PeriodNumber, SurfaceId};
 use std::collections::BTreeSet;
 
-/// Why a piece of a run is over.
+/// Reason for which a piece of a run ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Pause {
-    /// The instant has come, or what was waited for has happened.
+    /// The given instant has come, or the awaited event has happened.
     Reached,
-    /// Code has met breakpoints: what was found there.
+    /// Code has reached one or more breakpoints. The list has an entry for each.
     Breakpoints(Vec<BreakpointHit>),
     /// All fields of the experiment have been simulated.
     End,
-    /// The machine cannot go on.
+    /// The machine has failed and cannot continue.
     Failed(RunError),
 }
 
-/// A running experiment that goes on when it is told to: to an instant, by a field, a line or an event, to an event of a board, to a
-/// condition. [`Experiment::run`] is a stepper that goes to the end.
+/// A running experiment that advances on request, for example by a field, a line or an event, or up to a condition.
+/// [`Experiment::run`] is a stepper that runs to the end.
 ///
-/// How it is divided and how often somebody looks changes nothing of the run: the same trace, pictures and report come of it.
+/// The division into pieces and the reading of state change no result: trace, pictures and report stay the same.
 #[derive(Debug)]
 pub struct Stepper {
     experiment: Experiment,
@@ -51,6 +51,7 @@ pub struct Stepper {
 
 impl Stepper {
     pub(crate) fn begin(experiment: &Experiment, preparation: Preparation) -> Result<Self, ExperimentError> {
+        // The time on the host includes the building of the machine.
         let begun_s = experiment.host.seconds();
         let run = experiment.assemble(preparation.clone())?;
         let window = Window::new(experiment, run.machine.record());
@@ -66,13 +67,15 @@ impl Stepper {
         })
     }
 
-    /// Runs up to, and not including, an instant; one that has passed is reached at once.
+    /// Runs up to an instant. Events at this instant itself stay pending. For an instant in the past, nothing happens.
     pub fn run_to(&mut self, time: Time) -> Pause {
         let target = time.min(self.end());
+        // Breakpoints must be checked after every event. Without any, the machine runs in chunks.
         if !self.breakpoints.is_empty() {
             let pause = self.run_until(target, |_, _| false);
             return if pause == Pause::End && time <= self.end() { Pause::Reached } else { pause };
         }
+        // Final results are added to the sums after each chunk.
         while self.now < target {
             let chunk = self.record().tick(self.period().after(PROGRESS_FIELDS)).min(target);
             if let Err(error) = self.run.machine.run_until(chunk) {
@@ -84,10 +87,11 @@ impl Stepper {
         self.reached(time)
     }
 
-    /// Takes events one after the other until one has happened of which `is_it` says so, and not beyond `limit`.
+    /// Handles events one after the other until `is_it` returns true for an event. Stops at `limit` at the latest.
     pub fn run_until(&mut self, limit: Time, mut is_it: impl FnMut(&Self, &Happening) -> bool) -> Pause {
         let target = limit.min(self.end());
         loop {
+            // The next event is read before it is handled, because a handled event cannot be read any more.
             let next = self.run.machine.next_happening();
             match self.run.machine.step_before(target) {
                 Err(error) => {
@@ -102,6 +106,7 @@ impl Stepper {
                 Ok(Some(time)) => self.now = time,
             }
             self.last = next;
+            // Breakpoints take precedence over the condition.
             if !self.breakpoints.is_empty() {
                 let hits = self.run.machine.take_hits();
                 if !hits.is_empty() {
@@ -114,34 +119,35 @@ impl Stepper {
         }
     }
 
-    /// Takes one event: see [`Stepper::last`].
+    /// Handles one event. [`Stepper::last`] returns the event.
     pub fn step_event(&mut self) -> Pause {
         self.run_until(self.end(), |_, _| true)
     }
 
-    /// Takes events until one of a board has happened.
+    /// Handles events until an event of the given board has been handled.
     pub fn step_board(&mut self, board: Board) -> Pause {
         self.run_until(self.end(), |_, happening| happening.board == board)
     }
 
-    /// Runs until the next line of the first display's first surface begins to light, or the next period where none is left.
+    /// Runs until the next line of the first display's first surface begins to light. After the last line of a period,
+    /// runs to the next period.
     pub fn step_line(&mut self) -> Pause {
         self.run_to(self.next_line())
     }
 
-    /// Runs to the next tick of the first display: the begin of a field.
+    /// Runs to the next tick of the first display, which is the beginning of a field.
     pub fn step_period(&mut self) -> Pause {
         self.run_to(self.record().tick(self.period().next()))
     }
 
-    /// Has code that comes to some addresses stop the run, instead of the addresses given before; only where the time of work comes from
-    /// code ([`Level::Cycle`](crate::Level::Cycle)) does any.
+    /// Sets the code addresses at which the run stops. They replace all earlier addresses. Only a run at
+    /// [`Level::Cycle`](crate::Level::Cycle) executes code and can stop at an address.
     pub fn break_at(&mut self, addresses: BTreeSet<u32>) {
         self.run.machine.break_at(&addresses);
         self.breakpoints = addresses;
     }
 
-    /// Runs what is left, and gives what came of all.
+    /// Runs to the end and returns the outcome.
     ///
     /// # Errors
     ///
@@ -153,13 +159,14 @@ impl Stepper {
             self.run_to(self.record().tick(self.period().after(PROGRESS_FIELDS)));
         }
         self.run.machine.finish_pixels();
-        // What a look for a deadlock takes, behind the end of the run, is no time of it.
+        // The search for a deadlock simulates time after the end of the run, so its host time is not counted.
         let host_seconds = self.begun_s.zip(self.experiment.host.seconds()).map(|(begin, end)| end - begin);
         let mut error = self.failure().cloned();
-        // Where frames are begun on demand, a host without a further report is at rest for good reason.
+        // With frames on demand, a host without a further report waits for a legitimate reason.
         if error.is_none() && !self.experiment.on_demand && self.may_be_stuck() {
             error = self.deadlock();
         }
+        // The outcome ends at the end of the run, or in the period in which the machine failed.
         let Self { experiment, run, window, .. } = self;
         let display = run.machine.record().display();
         let stopped = error.as_ref().map(|error| display.period_at(error.time()));
@@ -172,25 +179,26 @@ impl Stepper {
         }
     }
 
-    /// The simulated instant: where the last piece of the run ended.
+    /// Returns the simulated instant at which the last piece of the run ended.
     #[must_use]
     pub const fn now(&self) -> Time {
         self.now
     }
 
-    /// The instant at which the run ends.
+    /// Returns the instant at which the run ends.
     #[must_use]
     pub fn end(&self) -> Time {
         self.record().tick(self.experiment.end())
     }
 
-    /// The period of the first display that goes on: its field.
+    /// Returns the current period of the first display. For NTSC, a period is a field.
     #[must_use]
     pub fn period(&self) -> PeriodNumber {
         self.record().display().period_at(self.now)
     }
 
-    /// When the next line of the first surface begins to light, or the next period begins where none is left.
+    /// Returns the instant at which the next line of the first surface begins to light. After the last line, returns
+    /// the beginning of the next period.
     #[must_use]
     pub fn next_line(&self) -> Time {
         let display = self.record().display();
@@ -200,19 +208,19 @@ impl Stepper {
         begins.filter(|at| *at > self.now).min().unwrap_or_else(|| display.tick(period.next()))
     }
 
-    /// What happened last, where the last piece of the run ended with an event.
+    /// Returns the last event, if the last piece of the run ended with an event.
     #[must_use]
     pub const fn last(&self) -> Option<Happening> {
         self.last
     }
 
-    /// Why the machine goes on no more, if it does not.
+    /// Returns the error with which the machine failed, or `None` if the machine has not failed.
     #[must_use]
     pub const fn failure(&self) -> Option<&RunError> {
         self.run.machine.failure()
     }
 
-    /// The machine with its boards and all that was observed so far.
+    /// Returns the machine with its boards and all observations so far.
     #[must_use]
     pub const fn machine(&self) -> &Machine {
         &self.run.machine
@@ -222,44 +230,46 @@ impl Stepper {
         &mut self.run.machine
     }
 
-    /// What was observed so far; its hash is that of the trace up to now.
+    /// Returns the observations so far. The hash of the record is that of the trace up to now.
     #[must_use]
     pub const fn record(&self) -> &Record {
         self.run.machine.record()
     }
 
-    /// The experiment that is run.
+    /// Returns the experiment that is running.
     #[must_use]
     pub const fn experiment(&self) -> &Experiment {
         &self.experiment
     }
 
-    /// What the host or a graphics processor does; `None` for other boards, and those that the machine does not have.
+    /// Returns a snapshot of the host or of a graphics processor. Returns `None` for other boards and for boards that
+    /// the machine does not have.
     #[must_use]
     pub fn processor(&self, board: Board) -> Option<GpLook> {
         Some(self.run.machine.board(board)?.look(self.now))
     }
 
-    /// What a renderer does.
+    /// Returns a snapshot of a renderer, or `None` if the machine does not have that renderer.
     #[must_use]
     pub fn renderer(&self, number: usize) -> Option<RendererLook> {
         Some(self.record().renderers().get(number)?.look(self.now))
     }
 
-    /// The pixel array of a renderer, as far as its commands have started; `None` without
-    /// [recorded traffic](Experiment::record_traffic), and where no pixels are wanted.
+    /// Returns the pixel array of a renderer after all commands that have started. Returns `None` without [recorded
+    /// traffic](Experiment::record_traffic), and if no pixels are computed.
     #[must_use]
     pub fn array(&self, renderer: usize) -> Option<Lanes> {
         self.record().renderers().get(renderer)?.array_at(self.now)
     }
 
-    /// The messages that are on channels of the ring.
+    /// Returns the messages that occupy channels of the ring now.
     #[must_use]
     pub fn channels(&self) -> Vec<OnChannel> {
         self.record().ring().on_channels(self.now).collect()
     }
 
-    /// What stands before a viewer of a surface: what the beam has drawn so far, and before it what still stands.
+    /// Returns the picture on a surface as the viewer sees it now: the lines that the beam has drawn, above the lines
+    /// that remain from before.
     #[must_use]
     pub fn seen(&self, surface: SurfaceId) -> Option<RgbImage> {
         let mut left = surface.index();
@@ -273,13 +283,13 @@ impl Stepper {
         None
     }
 
-    /// What a viewer of a surface should see of the scene as it is now: see [`Outcome::ideal_picture`].
+    /// Returns the ideal picture of a surface for the present state of the scene. See [`Outcome::ideal_picture`].
     #[must_use]
     pub fn ideal_picture(&self, surface: SurfaceId) -> Option<IdealPicture> {
         ideal_picture(&self.experiment, self.record(), self.run.head.as_deref(), surface, self.now)
     }
 
-    /// The run has come to an instant: what nobody will change any more is summed up.
+    /// Sets the present instant and adds all final results to the sums.
     fn stand_at(&mut self, now: Time) {
         self.now = now;
         self.last = None;
@@ -293,15 +303,16 @@ impl Stepper {
         if time > self.end() { Pause::End } else { Pause::Reached }
     }
 
-    /// Whether a machine at the end of the run may never go on. A pipeline that waits for a swap is at rest until the next tick; only
-    /// a run that was over soon could have come to rest for ever in the last periods before its end, and not before.
+    /// Returns true if a machine at the end of the run may be in a deadlock. A pipeline that waits for a swap is at
+    /// rest until the next tick. In a long run, the machine itself detects a deadlock. A deadlock can be undetected
+    /// only in a short run, or after idle ticks at the end.
     fn may_be_stuck(&self) -> bool {
         let is_long = self.experiment.fields > SHORT_RUN && self.run.machine.idle_ticks() < IDLE_TICKS;
         self.run.machine.is_at_rest() && !is_long
     }
 
-    /// Whether a machine that is at rest at the end of the run, which may be too short to tell, would be so for ever: the run
-    /// is repeated for as long as that takes, so that the record of this one ends where it was asked to.
+    /// Returns a deadlock error if a machine that is at rest at the end of the run would never continue. The method
+    /// repeats the run with enough additional fields for the detection. The record of the original run stays as it is.
     fn deadlock(&self) -> Option<RunError> {
         let fields = self.experiment.fields + DEADLOCK_TICKS + 2;
         let longer = Experiment { fields, pixels: Pixels::Off, ..self.experiment.clone() };
@@ -324,8 +335,8 @@ fn too_short(experiment: &Experiment, partial: Outcome) -> ExperimentError {
     ExperimentError::TooShort { fields: experiment.fields, pictures, needed, partial: Box::new(partial) }
 }
 
-/// About how many fields it takes until a picture behind the warm-up is shown, if pictures go on coming as they came: by the time
-/// from the first to the last of them, or of one alone by the time that it took.
+/// Estimates the number of fields until a picture after the warm-up is shown. The estimate assumes that pictures keep
+/// their mean interval. For a single picture, the interval is the time until this picture was shown.
 fn needed_by_run(partial: &Outcome) -> Option<u64> {
     let pictures = partial.pictures();
     if !pictures.iter().any(PictureTimes::is_shown) {
@@ -333,22 +344,23 @@ fn needed_by_run(partial: &Outcome) -> Option<u64> {
     }
     let shown = || pictures.iter().map(|times| times.shown_at);
     let (first, last) = (shown().min()?, shown().max()?);
+    // Estimate the interval between pictures.
     let each = match pictures.len() {
         1 => first.since(Time::ZERO),
         more => Span(last.since(first).0 / (more as u64 - 1)),
     };
+    // Extrapolate to the first picture after the warm-up.
     let missing = (WARM_UP_PICTURES + 1).saturating_sub(pictures.len()).max(1) as u64;
     let at = last + Span(each.0.saturating_mul(missing));
     let field = partial.record().display().period_at(at).since(PeriodNumber::FIRST);
     Some((field + 1).max(partial.fields() + 1))
 }
 
-/// Pictures of a run, those included for which nothing had to be drawn.
+/// Returns the number of pictures of a run, including periods that show old faces in a new direction.
 fn shown_in(outcome: &Outcome) -> u64 {
     outcome.tally().pictures.max(outcome.pipeline().turned_periods(outcome.record(), outcome.end()))
 }
 
-/// Fields of a run that may be over before a deadlock has been noticed, and ticks without work from which on a longer one may be in one
-/// that it was too short to notice.
+/// Length of a run, in fields, below which a deadlock may remain undetected.
 const SHORT_RUN: u64 = 2 * DEADLOCK_TICKS;
 const IDLE_TICKS: u64 = 2;

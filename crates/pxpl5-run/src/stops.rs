@@ -1,14 +1,14 @@
-//! Where a run stops on its way, to report progress and to be looked at.
+//! Stops of a run, for progress reports and for user functions.
 
 use crate::experiment::Experiment;
 use pxpl5_wire::PeriodNumber;
 use std::collections::BTreeSet;
 
-/// Fields between two reports of progress, and after which what is over is summed up.
+/// Number of fields between two progress reports. After so many fields, final results are added to the sums.
 pub(crate) const PROGRESS_FIELDS: u64 = 60;
 
 impl Experiment {
-    /// Fields at which to stop: those asked for, every so many for the progress, the last.
+    /// Returns the fields at which a run stops: the requested fields, every [`PROGRESS_FIELDS`]-th field, and the last.
     pub(crate) fn stops(&self, asked: &[PeriodNumber]) -> impl Iterator<Item = PeriodNumber> {
         let end = self.end();
         let mut asked: BTreeSet<PeriodNumber> = asked.iter().copied().filter(|field| *field < end).collect();

@@ -1,4 +1,4 @@
-//! Sums over a run that are taken while it goes on, so that what they were taken of can be given up.
+//! Streaming observers: they process the records of a run while it goes on, so that old records can be discarded.
 
 use crate::face_notes::FaceNotes;
 use crate::head_views::HeadViews;
@@ -11,38 +11,40 @@ use std::any::Any;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// What of a run will not change any more and was not handed on before: of a run that keeps everything all of it, at its end.
+/// Final results and records of a run that a streaming observer has not received before. After a run that keeps
+/// everything, one value holds the whole run.
 #[derive(Clone, Copy, Debug)]
 pub struct Settled<'a> {
-    /// What draws.
+    /// Pipeline that draws the pictures.
     pub pipeline: &'a dyn Pipeline,
-    /// For which instant of what is shown from them views are drawn.
+    /// Instant of a picture's display time for which its view is drawn, such as the middle or the first pixel.
     pub aim: Aim,
-    /// Periods of the first display that are simulated in all.
+    /// Number of periods of the first display that the run simulates.
     pub fields: u64,
-    /// The machine and its records, as far as they are kept; those of later pictures and periods among them.
+    /// Machine and kept records, including records of later pictures and periods.
     pub record: &'a Record,
-    /// The views of the head with its tracker, if there is one, as far as they are kept.
+    /// Views of the tracked head that are kept, or `None` without a head.
     pub head: Option<&'a Arc<HeadViews>>,
-    /// The updates of display memories that were asked for, as far as they are kept.
+    /// Requested updates of display memories that are kept.
     pub notes: &'a FaceNotes,
-    /// Regions that have arrived since what was handed on before. They may belong to later pictures.
+    /// Regions that have arrived since the last call of the observer. Some may belong to later pictures.
     pub arrivals: &'a [Arrival],
-    /// Pictures, in the order in which they are shown.
+    /// Final pictures, in the order in which they are shown.
     pub pictures: &'a [PictureTimes],
-    /// The picture that is shown after them; `None` after the last of the run.
+    /// Picture that is shown after all of `pictures`. `None` at the end of the run.
     pub next: Option<&'a PictureTimes>,
-    /// All periods before this one: each picture that is shown in them, part or whole, was handed on by now.
+    /// First period that is not final. Every picture that is shown, at least in part, before this period has been
+    /// handed over.
     pub until: PeriodNumber,
-    /// How many numbers of a kind are kept one by one: [`Samples::keeping`](crate::Samples::keeping).
+    /// Largest number of samples of a kind that are kept one by one: see [`Samples::keeping`](crate::Samples::keeping).
     pub samples: usize,
-    /// The window over which results are computed, as far as it is known by now: it may still begin later, never earlier. Then all
-    /// that was handed on before lies outside. `None` where the run has none.
+    /// Window of the results, as far as it is known. The begin of the window may still move to a later period. Then all
+    /// data that was handed over before lies outside the window. `None` if the run has no window.
     pub window: Option<ResultWindow>,
 }
 
 impl Settled<'_> {
-    /// The pictures that lie in the window.
+    /// Returns the pictures that lie in the window.
     pub fn steady_pictures(&self) -> impl Iterator<Item = &PictureTimes> {
         let display = self.record.display();
         let window = self.window;
@@ -52,7 +54,8 @@ impl Settled<'_> {
         self.pictures.iter().filter(is_held)
     }
 
-    /// The periods of the window, from one that was not handed on before to the last one that will not change.
+    /// Returns the final periods of the window, from `next` on. `next` is the first period that was not handed over
+    /// before.
     pub fn periods_from(&self, next: PeriodNumber) -> impl DoubleEndedIterator<Item = PeriodNumber> + Clone + use<> {
         let Self { until, window, .. } = *self;
         let (first, end) = window
@@ -61,15 +64,15 @@ impl Settled<'_> {
     }
 }
 
-/// Somebody who sums up a run while it goes on. He is handed everything once, in order, and keeps of it what he needs later: records are
-/// given up behind him.
+/// A streaming observer of a run. The observer receives every record once, in order, and must store what it needs
+/// later, because the run discards old records.
 pub trait Summing: Debug + Send {
-    /// Takes what will not change any more.
+    /// Processes records that are final.
     fn take(&mut self, settled: &Settled<'_>);
 
-    /// What comes of it when all was taken.
+    /// Returns the result after the last call of `take`.
     fn said(self: Box<Self>) -> Box<dyn Any + Send + Sync>;
 }
 
-/// Who begins to sum up a run.
+/// Function that creates the streaming observer of a run.
 pub type Sums = fn() -> Box<dyn Summing>;

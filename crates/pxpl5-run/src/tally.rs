@@ -1,7 +1,7 @@
-//! What a run is said to have been in the end, summed up while it goes on.
+//! Streaming sums of a run's results.
 //!
-//! Pictures are taken in the order in which they are shown, each once, when everything that belongs to it has been observed. What
-//! is held does not grow with the run but for a byte a period ([`PictureEnds`]), where samples have a limit.
+//! Pictures are processed in the order in which they are shown, each once, after all its records are complete. With a
+//! limit on samples, memory stays constant except for one byte a period ([`PictureEnds`]).
 
 use crate::face_notes::FaceNotes;
 use crate::latency::{ENDS, LATENCY_PARTS, Pair, WHOSE, pair, parts};
@@ -16,85 +16,88 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{PeriodNumber, PictureNumber, SurfaceId};
 use std::collections::BTreeMap;
 
-/// How many of the late regions are listed.
+/// Largest number of late regions that a [`Tally`] lists one by one.
 pub const LATE_REGIONS_LISTED: usize = 20;
 
-/// Sums over a run. Times are over the pictures in its [`ResultWindow`](crate::ResultWindow), in milliseconds; latencies are those of complete ones.
+/// Sums of a run's results. Times are in milliseconds and cover the pictures in the run's
+/// [`ResultWindow`](crate::ResultWindow). Latencies cover the complete pictures only.
 #[derive(Clone, Debug)]
 pub struct Tally {
-    /// Pictures that were begun and judged, complete or not.
+    /// Number of pictures that were begun and evaluated, complete or not.
     pub pictures: u64,
-    /// Complete pictures that were shown, the warm-up included.
+    /// Number of complete pictures that were shown, including the warm-up.
     pub shown: u64,
-    /// Complete pictures in the window.
+    /// Number of complete pictures in the window.
     pub complete: u64,
-    /// Complete pictures since the last one that was not.
+    /// Number of complete pictures since the last incomplete or late one.
     pub shown_in_a_row: u64,
-    /// From the start of TRANSFORM to the light, or as the pipeline defines it.
+    /// Latencies from the start of TRANSFORM until the picture is shown, or as the pipeline defines latency.
     pub latency_ms: Samples,
-    /// The parts of [`LATENCY_PARTS`], in that order.
+    /// Samples for each part of [`LATENCY_PARTS`], in the same order.
     pub parts_ms: Vec<Samples>,
-    /// From the start of an eye's TRANSFORM to the end of its COPY, of all pictures.
+    /// Times from the start of an eye's TRANSFORM to the end of its COPY, for all pictures in the window.
     pub eye_ms: Samples,
-    /// From the start of an eye's TRANSFORM to the swap of its picture.
+    /// Times from the start of an eye's TRANSFORM to the swap that shows its picture.
     pub eye_swap_ms: Samples,
-    /// The same in retraces, that of the swap included.
+    /// Times from the start of an eye's TRANSFORM to the swap, in retraces. The retrace of the swap counts.
     pub eye_retraces: Samples,
-    /// First to last word of a picture's first and of its second copy, of all pictures.
+    /// Times from the first to the last word of a picture's first copy and of its second copy, for all pictures in the
+    /// window.
     pub copy_ms: [Samples; 2],
-    /// From the start of a picture to the first word of its first copy.
+    /// Times from the start of a picture to the first word of its first copy.
     pub copy_begins_ms: Samples,
-    /// Time of TRANSFORM and of RENDER, of all pictures.
+    /// Durations of TRANSFORM and of RENDER, for all pictures in the window.
     pub stage_ms: [(Stage, Samples); 2],
-    /// Updates in the window that were shown, of each display memory that had any; empty where there is none.
+    /// Number of updates in the window that were shown, by display memory. Memories without updates have no entry.
     pub memory_updates: BTreeMap<usize, u64>,
-    /// Regions that came after their deadline.
+    /// Number of regions that arrived after their deadline.
     pub late_regions: u64,
-    /// The first of them, [`LATE_REGIONS_LISTED`] at most.
+    /// The first late regions, at most [`LATE_REGIONS_LISTED`].
     pub first_late_regions: Vec<LateRegion>,
-    /// Marks, arrivals and swaps that were gone through, once for each time: what it costs to sum up.
+    /// Number of records (marks, arrivals, swaps) that were read to compute the sums. A record that is read twice
+    /// counts twice.
     pub records_looked_at: u64,
-    /// Of surfaces and pairs of them, in the order of [`WHOSE`] and [`ENDS`].
+    /// Latencies by surface or pair of surfaces, in the order of [`WHOSE`] and [`ENDS`].
     surfaces_ms: Vec<Samples>,
     ends: PictureEnds,
-    /// The first period of the window as it is known by now.
+    /// First period of the window, as far as the window is known.
     window_from: Option<PeriodNumber>,
-    /// Port time of all regions, and their pixels.
+    /// Sum of the port times of all regions, in milliseconds.
     region_ms: f64,
     region_pixels: u64,
-    /// The period at whose begin the run ends, and a period in milliseconds.
+    /// First period after the run.
     end: PeriodNumber,
     field_ms: f64,
-    /// Samples of each kind that are kept at most.
+    /// Largest number of samples of each kind that are kept.
     limit: usize,
 }
 
-/// Latency of a surface, or of a pair of them.
+/// Latencies of one surface, or from the first to the second surface of a pair.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceLatency<'a> {
-    /// The surface with whose TRANSFORM it begins.
+    /// Surface whose TRANSFORM begins the latency.
     pub first: usize,
-    /// The surface that ends it.
+    /// Surface whose event ends the latency.
     pub last: usize,
-    /// `end_of_copy`, `swap` or `light`.
+    /// Short name of the event that ends the latency: `end_of_copy`, `swap` or `light`.
     pub until: &'static str,
-    /// The same in words.
+    /// Description of the event that ends the latency.
     pub event: &'static str,
-    /// The numbers.
+    /// Latencies in milliseconds.
     pub ms: &'a Samples,
 }
 
-/// First and last word of regions that are copied one after the other: an eye of Rendering Control, a half of Slats.
+/// Times of the first and the last word of a copy: one eye under Rendering Control, one half of a field under Slats.
 struct CopySpan {
     begin: Time,
     end: Time,
 }
 
-/// Copies by picture and place in it.
 type Copies = BTreeMap<(PictureNumber, u8), CopySpan>;
 
 impl Tally {
-    /// Of nothing yet, of a run that ends at a period's begin, with so many samples of each kind at most.
+    /// Creates empty sums for a run that ends when the period `end` begins. At most `limit` samples of each kind are
+    /// kept.
     pub(crate) fn new(end: PeriodNumber, field_ms: f64, limit: usize) -> Self {
         let none = || Samples::keeping(limit);
         Self {
@@ -125,12 +128,12 @@ impl Tally {
         }
     }
 
-    /// The run ends in an earlier period.
+    /// Moves the end of the run to an earlier period.
     pub(crate) fn end_early(&mut self, reached: PeriodNumber) {
         self.end = self.end.min(reached);
     }
 
-    /// Counts pictures, in the order in which they are shown: whatever the window is, they are part of the run.
+    /// Counts pictures in the order in which they are shown. These counts cover the whole run, not only the window.
     pub(crate) fn count(&mut self, record: &Record, pictures: &[PictureTimes]) {
         for times in pictures {
             let period = record.display().period_at(times.shown_at);
@@ -143,18 +146,19 @@ impl Tally {
         }
     }
 
-    /// Takes the times of counted pictures that lie in the window, of which the record has everything.
+    /// Adds the times of counted pictures that lie in the window. All records of these pictures must be complete.
     pub(crate) fn take(&mut self, settled: &Settled<'_>) {
         let Settled { pipeline, record, notes, window, .. } = *settled;
         let Some(window) = window else { return };
         if self.window_from != Some(window.first_period) {
-            // All that was taken before lies before the window.
+            // The window begins later than assumed, so all samples so far lie before the window.
             self.restart(window.first_period);
         }
         let steady: Vec<PictureTimes> = settled.steady_pictures().copied().collect();
         if steady.is_empty() {
             return;
         }
+        // Copies and stages of all pictures in the window count; latencies count for complete pictures only.
         let stages = record.stages();
         self.take_copies(pipeline, record, &steady);
         let complete = steady.iter().filter(|times| times.is_shown());
@@ -172,7 +176,7 @@ impl Tally {
         }
     }
 
-    /// Begins the window's samples anew; what is counted over the whole run stays.
+    /// Clears the samples of the window. Counts over the whole run stay.
     fn restart(&mut self, first_period: PeriodNumber) {
         let fresh = Self::new(self.end, self.field_ms, self.limit);
         let before = std::mem::replace(self, fresh);
@@ -208,7 +212,8 @@ impl Tally {
         }
     }
 
-    /// Latencies of both surfaces and of the pair; none where surfaces have no TRANSFORM of their own.
+    /// Returns the latencies of both surfaces and of the pair. The iterator is empty if surfaces have no TRANSFORM of
+    /// their own.
     pub fn latencies_of_surfaces(&self) -> impl Iterator<Item = SurfaceLatency<'_>> {
         let latencies = WHOSE.into_iter().flat_map(|whose| ENDS.map(|end| (whose, end)));
         let with = self.surfaces_ms.iter().zip(latencies).filter(|(ms, _)| ms.count() > 0);
@@ -227,10 +232,11 @@ impl Tally {
         }
     }
 
-    /// From an eye's first TRANSFORM on any slave to the swap of its picture.
+    /// Adds the times from an eye's first TRANSFORM on any slave to the swap that shows the picture.
     fn take_eye_swaps<'a>(&mut self, stages: &[StageSpan], complete: impl Iterator<Item = &'a PictureTimes>) {
         let shown: BTreeMap<PictureNumber, Time> = complete.map(|times| (times.picture, times.shown_at)).collect();
         let mut begins: BTreeMap<(PictureNumber, SurfaceId), Time> = BTreeMap::new();
+        // The begin of an eye is the earliest TRANSFORM over all slaves.
         let transforms =
             stages.iter().filter(|span| span.stage == Stage::Transform && shown.contains_key(&span.picture));
         for stage in transforms {
@@ -238,6 +244,7 @@ impl Tally {
             let begin = begins.entry((stage.picture, eye)).or_insert(stage.begin);
             *begin = stage.begin.min(*begin);
         }
+        // All eyes of a picture are swapped in at the same instant.
         for ((picture, _), begin) in &begins {
             let ms = shown[picture].since(*begin).as_ms();
             self.eye_swap_ms.push(ms);
@@ -245,14 +252,15 @@ impl Tally {
         }
     }
 
-    /// Takes the stages of pictures.
     fn take_stages(&mut self, stages: &[StageSpan], pictures: &[PictureTimes]) {
         for times in pictures {
             let own = of_picture(stages, times.picture);
             for (stage, samples) in &mut self.stage_ms {
+                // A stage without an end has no duration and is left out.
                 let spans = own.iter().filter(|span| span.stage == *stage);
                 samples.extend(spans.filter_map(|span| Some((span.end? - span.begin).as_ms())));
             }
+            // An eye's time ends with the end of its own COPY.
             let of_eyes = own.iter().filter(|span| span.stage == Stage::Transform && span.surface.is_some());
             self.eye_ms.extend(of_eyes.filter_map(|span| {
                 let copy = own.iter().find(|copy| copy.stage == Stage::Copy && copy.surface == span.surface)?;
@@ -261,7 +269,7 @@ impl Tally {
         }
     }
 
-    /// Takes regions that have arrived, each once; a message occupies a channel for `message`.
+    /// Adds regions that have arrived, each once. A message occupies a channel for the span `message`.
     pub(crate) fn take_arrivals(&mut self, arrivals: &[Arrival], message: Span) {
         for arrival in arrivals {
             let [_, _, width, height] = arrival.target.grid.rectangle(arrival.target.region);
@@ -270,14 +278,15 @@ impl Tally {
         }
     }
 
-    /// Takes regions that came too late, each once.
+    /// Adds regions that arrived late, each once.
     pub(crate) fn take_late(&mut self, late: &[LateRegion]) {
         self.late_regions += late.len() as u64;
         let room = LATE_REGIONS_LISTED - self.first_late_regions.len();
         self.first_late_regions.extend(late.iter().take(room));
     }
 
-    /// Port time of a region of 15,360 pixels, microseconds; no number where none came.
+    /// Returns the mean port time of a region, in microseconds, scaled to 15,360 pixels. Returns NaN if no region
+    /// arrived.
     #[must_use]
     pub fn region_copy_us(&self) -> f64 {
         self.region_ms * 1e3 * 15_360.0 / self.region_pixels as f64
@@ -288,7 +297,7 @@ impl Tally {
     }
 }
 
-/// The stages of a picture; all of them are in order of picture.
+/// Returns the stages of a picture. The given stages must be in order of pictures.
 pub(crate) fn of_picture(stages: &[StageSpan], picture: PictureNumber) -> &[StageSpan] {
     let first = stages.partition_point(|span| span.picture < picture);
     let count = stages[first..].iter().take_while(|span| span.picture == picture).count();

@@ -1,4 +1,4 @@
-//! The functions that a pipeline asks for views.
+//! Types of the functions by which a pipeline requests views.
 
 use pphigs::FrameView;
 use pxpl5_sim::Time;
@@ -6,18 +6,21 @@ use pxpl5_wire::ViewNumber;
 use std::sync::Arc;
 use tracking::Pose;
 
-/// The view of a number whose pose is sampled at a time.
+/// Function that returns the view with a number, from the pose that is sampled at a time.
 pub type Views = Arc<dyn Fn(ViewNumber, Time) -> FrameView + Send + Sync>;
 
-/// The view that firmware with a clock of its own asks for: number, the instant up to which the host's tracking data have
-/// reached it, and the moment that the view is drawn for.
+/// Function by which firmware with a clock of its own requests a view. The arguments are the view's number, the instant
+/// up to which tracker reports have arrived, and the instant that the view is drawn for.
 pub type ViewsWanted = Arc<dyn Fn(ViewNumber, Time, Time) -> FrameView + Send + Sync>;
 
-/// The pose that a host knows of at an instant, for another one: in rising order of the first.
+/// Function that returns the pose that a host knows at one instant, predicted for another instant. Calls must have
+/// non-decreasing first arguments.
 pub type Poses = Arc<dyn Fn(Time, Time) -> Pose + Send + Sync>;
 
-/// When the first report of the tracker after an instant reaches the host; `None` if none will.
+/// Function that returns the arrival time of the first tracker report after an instant, or `None` if no report will
+/// arrive.
 pub type ReportTimes = Arc<dyn Fn(Time) -> Option<Time> + Send + Sync>;
 
-/// When a host that waits for its pipeline and is ready for a frame begins it, at that instant or later; `None` for never.
+/// Function that returns the time at which a host begins a frame. The argument is the instant at which the host is
+/// ready. `None` means never.
 pub type FrameStarts = Arc<dyn Fn(Time) -> Option<Time> + Send + Sync>;

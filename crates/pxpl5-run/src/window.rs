@@ -1,4 +1,4 @@
-//! How a long run goes on with bounded memory: what is behind it is summed up, and its records are given up.
+//! Memory management of long runs: adds old records to the sums and discards them.
 
 use crate::assembled::Assembled;
 use crate::experiment::Experiment;
@@ -16,34 +16,35 @@ use pxpl5_wire::PeriodNumber;
 use std::any::Any;
 use std::sync::Arc;
 
-/// Records (marks, arrivals, swaps, poses and reports) from which on it is worth looking which can be given up. They take about 80 bytes each.
+/// Number of records (marks, arrivals, swaps, poses and reports) below which no record is discarded. A record takes
+/// about 80 bytes.
 const LEAST_RECORDS: usize = 32_768;
 
-/// Pictures that are held back, so that what still comes of them, and of those that are drawn beside them, is there when they are
-/// summed up; and periods for which a picture is held back, and for which records from before it are.
+/// Number of newest pictures that are not final, because later records may still belong to them.
 const PICTURES_HELD: usize = 32;
 const PERIODS_HELD: u64 = 32;
 
-/// What of a run has been summed up, and how far back anybody may look: all who hold something of it are told here what they may give up.
+/// State of the sums of a run, and of the records that are still needed.
 ///
-/// Pictures are settled when they are not among the last [`PICTURES_HELD`] and [`PERIODS_HELD`] have passed. Records of what came
-/// [`PERIODS_HELD`] before those that are not settled are given up, and periods before that are settled too. Of a head as many periods more
-/// are held: what is shown in a period was predicted before it from reports that are older.
+/// A picture is final after [`PICTURES_HELD`] later pictures and [`PERIODS_HELD`] display periods. Records are
+/// discarded if they are [`PERIODS_HELD`] periods older than the first picture that is not final. All periods before
+/// these records are final too. Records of the head are kept for [`PERIODS_HELD`] periods more, because views are
+/// predicted from older reports.
 #[derive(Debug)]
 pub(crate) struct Window {
     tally: Tally,
     sum: Option<Box<dyn Summing>>,
     forgets: bool,
     samples: usize,
-    /// Pictures that were shown up to this instant have been taken.
+    /// Latest instant for which all pictures that were shown by then are in the sums.
     taken_to: Option<Time>,
-    /// Arrivals that have been taken, of those that are held.
+    /// Number of kept arrivals that are in the sums already.
     arrivals_taken: usize,
-    /// Records from which on the next look is taken.
+    /// Number of records at which the next pass over the records begins.
     next_look: usize,
 }
 
-/// What came of a run: its sums, and the pictures that are still known one by one.
+/// Results of a run that has ended: its sums, and the pictures whose records are kept.
 #[derive(Debug)]
 pub(crate) struct Closed {
     pub(crate) tally: Tally,
@@ -67,33 +68,37 @@ impl Window {
         Self { tally, sum, forgets, samples, taken_to: None, arrivals_taken: 0, next_look: LEAST_RECORDS }
     }
 
-    /// Sums up what nobody will change any more and gives up its records, if that is wanted and there are many.
+    /// Adds final results to the sums and discards their records, if the run may discard records and has many.
     pub(crate) fn look(&mut self, experiment: &Experiment, run: &mut Assembled, now: Time) {
         if !self.forgets || run.records() < self.next_look {
             return;
         }
         let record = run.machine.record();
         self.tally.records_looked_at += record.observation().records() as u64;
+        // Late regions are counted before their records are discarded.
         if let Some(begin) = self.take_old(experiment, run, now) {
             self.tally.take_late(&experiment.pipeline.late_regions(record, begin));
             let of_head = before(record, begin).unwrap_or_default();
             run.forget_before(begin, of_head);
             self.arrivals_taken = run.machine.record().observation().arrivals.len();
         }
+        // The next pass begins when the number of records has doubled, so the cost a record is bounded.
         self.next_look = LEAST_RECORDS.max(2 * run.records());
     }
 
-    /// Takes the pictures that are not held back; the instant from which on records are needed for those that are.
+    /// Adds final pictures to the sums. Returns the instant from which on records are still needed for the other
+    /// pictures.
     fn take_old(&mut self, experiment: &Experiment, run: &Assembled, now: Time) -> Option<Time> {
         let record = run.machine.record();
         let fresh = self.fresh(experiment.pipeline.as_ref(), record, now);
         let newest_taken = fresh.len().checked_sub(PICTURES_HELD + 1)?;
-        // Whole periods are taken, so that all pictures of each are known.
+        // Only whole periods become final, so that all pictures of each period are known.
         let last = fresh[newest_taken].shown_at.min(before(record, now)?);
         let known = record.display().period_at(last);
         let settled_to = Time(record.tick(known).0.checked_sub(1)?);
         let held = fresh.partition_point(|times| times.shown_at <= settled_to);
         let (pictures, held) = fresh.split_at(held);
+        // Records are needed from the earliest sample or TRANSFORM of a picture that is not final.
         let needed =
             held.iter().map(|times| times.sampled_at.unwrap_or(times.transform_at).min(times.transform_at)).min()?;
         let begin = before(record, needed).filter(|begin| *begin > record.observation().forgotten.before)?;
@@ -101,6 +106,7 @@ impl Window {
         let arrivals = &record.observation().arrivals[self.arrivals_taken..];
         let (next, samples) = (held.first(), self.samples);
         let all = experiment.settled(record, run.head.as_ref(), &run.notes);
+        // The counts are updated first, because the window depends on them.
         self.tally.count(record, pictures);
         let every = experiment.pipeline.periods_a_picture(record);
         let window = Some(ResultWindow::begun(self.tally.ends(), every, known, experiment.end()));
@@ -109,20 +115,20 @@ impl Window {
         Some(begin)
     }
 
-    /// Pictures that have not been taken, in the order in which they are shown.
+    /// Returns the pictures that are not in the sums yet, in the order in which they are shown.
     fn fresh(&self, pipeline: &dyn Pipeline, record: &Record, now: Time) -> Vec<PictureTimes> {
         let pictures = pipeline.pictures(record, now).into_iter();
         pictures.filter(|times| Some(times.shown_at) > self.taken_to).collect()
     }
 
-    /// Hands on what is settled to all who sum up.
+    /// Hands final results to all streaming observers.
     fn take(&mut self, settled: &Settled<'_>) {
         self.tally.take_arrivals(settled.arrivals, settled.record.message_span());
         self.tally.take(settled);
         self.sum.iter_mut().for_each(|sum| sum.take(settled));
     }
 
-    /// Sums up what is left of a run at its end; it reached a period.
+    /// Adds the rest of a run that ended in the period `reached`, and returns the results.
     pub(crate) fn close(
         mut self,
         experiment: &Experiment,
@@ -132,10 +138,12 @@ impl Window {
     ) -> Closed {
         let pipeline = experiment.pipeline.as_ref();
         let end = record.tick(experiment.end());
+        // Periods that were not simulated do not count.
         self.tally.end_early(reached);
         self.tally.records_looked_at += record.observation().records() as u64;
         self.tally.take_late(&pipeline.late_regions(record, end));
         let pictures = self.fresh(pipeline, record, end);
+        // All remaining pictures and arrivals are final at the end of the run.
         let arrivals = &record.observation().arrivals[self.arrivals_taken..];
         let samples = self.samples;
         let all = experiment.settled(record, head, notes);
@@ -147,13 +155,13 @@ impl Window {
     }
 }
 
-/// So many periods as are held before an instant.
+/// Returns the instant that lies [`PERIODS_HELD`] periods before an instant.
 fn before(record: &Record, instant: Time) -> Option<Time> {
     let period = record.display().period_at(instant).before(PERIODS_HELD)?;
     Some(record.tick(period))
 }
 
-/// A period of the first display in milliseconds, from 60,000 of them.
+/// Returns the mean period of the first display over 60,000 periods, in milliseconds.
 pub(crate) fn field_ms(record: &Record) -> f64 {
     record.tick(PeriodNumber(60_000)).since(Time::ZERO).as_ms() / 60_000.0
 }

@@ -1,4 +1,5 @@
-//! A run in which nobody can go on is a deadlock, however few fields were asked for, and names who waits for what.
+//! Tests of deadlocks: a run in which no program can continue fails for any number of fields, and the error names the
+//! waiting programs.
 
 use pxpl5_gp::Priority;
 use pxpl5_machine::{Board, ConfigError, Machine, MachineConfig, Record, RunError};
@@ -7,7 +8,7 @@ use pxpl5_run::{Experiment, ExperimentError, Pause, PictureTimes, Pipeline, Pixe
 use pxpl5_scene::builtin;
 use pxpl5_sim::Time;
 
-/// A pipeline that waits for what nobody does.
+/// A pipeline whose program waits for a message that is never sent.
 #[derive(Debug)]
 struct Waiting;
 
@@ -75,7 +76,7 @@ fn a_run_that_is_too_short_is_no_deadlock() {
     }
 }
 
-/// The machine stands where it failed and can be looked at; going on changes nothing.
+/// After a failure, the state of the machine can be read, and running on changes nothing.
 #[test]
 fn a_stepper_stands_at_a_deadlock_and_gives_the_same_error_in_the_end() {
     let scene = builtin("full-screen:1").expect("built in");

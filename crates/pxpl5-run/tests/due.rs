@@ -1,4 +1,5 @@
-//! Pictures due: each ends in exactly one way, the window is the load's and not the run's, and loads are in order.
+//! Tests of the pictures due. Each picture has exactly one result, the window depends on the load and not on the length
+//! of the run, and heavier loads have worse results.
 
 use proptest::prelude::*;
 use pxpl5_run::PictureEnd::{Incomplete, Late, Shown};
@@ -14,12 +15,12 @@ fn counted(pictures: &[(u64, PictureEnd)], every: u64, periods: u64) -> Option<D
     DuePictures::count(pictures, every, PeriodNumber(periods))
 }
 
-/// Periods of the window.
+/// Returns the number of periods from the first to the last period of the window.
 fn window(due: &DuePictures) -> u64 {
     due.last_period.next().since(due.first_period)
 }
 
-/// A picture every `apart` periods from `first` on, all with the same end.
+/// Returns a picture every `apart` periods from `first` on, all with the same result.
 fn regular(first: u64, apart: u64, periods: u64, end: PictureEnd) -> Vec<(u64, PictureEnd)> {
     (first..periods).step_by(apart as usize).map(|period| (period, end)).collect()
 }
@@ -37,7 +38,7 @@ fn each_kind_of_end_is_counted_once() {
     pictures[10].1 = Late;
     pictures[11].1 = Incomplete;
     pictures.remove(12);
-    // The window begins with the first that was not shown, in period 12.
+    // The window begins with the first picture that was not shown, in period 12.
     let due = count(&pictures, 1, 108);
     assert_eq!((due.first_period.0, due.last_period.0, due.due), (12, 107, 96));
     assert_eq!((due.shown, due.late, due.incomplete, due.missed), (93, 1, 1, 1));
@@ -45,7 +46,7 @@ fn each_kind_of_end_is_counted_once() {
 
 #[test]
 fn of_pictures_three_periods_apart_that_are_due_every_second_a_third_is_missed() {
-    // Swaps at 9, 12, 15, 18 ... against 9, 11, 13, 15, 17, 19 ...: of three pictures due two find a new one.
+    // Swaps come at 9, 12, 15, 18 ..., due periods at 9, 11, 13, 15, 17, 19 .... Two of three due pictures are new.
     let due = count(&regular(9, 3, 609, Shown), 2, 609);
     assert!((due.not_shown_share() - 1.0 / 3.0).abs() < 1.0 / due.due as f64, "{due:?}");
     assert_eq!(window(&due), 2 * due.due);
@@ -80,8 +81,8 @@ fn a_run_within_the_warm_up_says_nothing() {
     }
 }
 
-/// Frames that come every second period from 5 on: the fifth is swapped in at 13, and due in 12 and 13. Of single pictures of every
-/// period the ninth period comes later than the fifth picture.
+/// Frames come every second period from 5 on. The fifth frame is swapped in at 13 and due in 12 and 13. With a picture
+/// every period, the ninth period comes later than the fifth picture.
 #[test]
 fn the_window_begins_with_the_ninth_period_or_the_fifth_picture_whichever_is_later() {
     for (first, apart, every, expected) in [(5, 2, 2, 12), (2, 1, 1, 8), (0, 2, 2, 9), (20, 10, 10, 51)] {
@@ -90,7 +91,8 @@ fn the_window_begins_with_the_ninth_period_or_the_fifth_picture_whichever_is_lat
     }
 }
 
-/// A pipeline that begins a picture every seventh period, none of them in time, was late from the ninth period on.
+/// If a pipeline begins a picture every seventh period, and no picture is in time, then the pictures count as late from
+/// the ninth period on.
 #[test]
 fn start_up_hides_no_failure_behind_the_first_periods() {
     let due = count(&regular(2, 7, 60, Late), 1, 60);
@@ -121,7 +123,8 @@ fn a_rate_is_the_pictures_shown_over_the_time_of_the_window() {
     assert!((hz - 30_000.0 / 1_001.0).abs() < 1e-9, "{hz}");
 }
 
-/// A pipeline whose queues are empty at first: pictures are in time until `filled`, and of those after it every `apart`-th is.
+/// Returns the pictures of a pipeline whose queues are empty at first. Pictures are in time until `filled`. Later, only
+/// every `apart`-th picture is in time.
 fn filling(filled: u64, apart: u64, periods: u64) -> Vec<(u64, PictureEnd)> {
     let in_time = |period: u64| period < filled || (period - filled) % apart == apart - 1;
     (2..periods).map(|period| (period, if in_time(period) { Shown } else { Incomplete })).collect()
@@ -143,8 +146,8 @@ proptest! {
         }
     }
 
-    /// Start-up does not decide a rate: as long as it is shorter than half of the run, a run twice as long says the same within
-    /// one picture.
+    /// Start-up does not affect the rate if it takes less than half of the run. A run of twice the length has the same
+    /// rate, to within one picture.
     #[test]
     fn a_rate_does_not_depend_on_the_length_of_the_run(filled in 2u64..190, apart in 1u64..9) {
         let [short, long] = [400, 800].map(|periods| count(&filling(filled, apart, periods), 1, periods));
@@ -152,7 +155,7 @@ proptest! {
         prop_assert!((short.shown as f64 - expected).abs() <= 1.0, "{:?} {:?}", short, long);
     }
 
-    /// Pictures that come further apart never make a smaller share missed.
+    /// A larger distance between pictures never reduces the share of missed pictures.
     #[test]
     fn the_share_missed_rises_with_the_time_a_picture_takes(first in 0u64..40, every in 1u64..4, apart in 1u64..20) {
         let share = |apart| count(&regular(first, apart, 2_000, Shown), every, 2_000).not_shown_share();

@@ -1,5 +1,5 @@
-//! Short runs of each firmware on small machines: a still scene is shown as an ideal renderer draws it, and pictures come as the rules of the
-//! papers have them.
+//! Short runs of each firmware on small machines. A still scene must look like the ideal picture, and pictures must
+//! follow the rules of the papers.
 
 use glam::Vec3;
 use pphigs::{Picture, RegionBinning, Shading, Share};
@@ -19,7 +19,7 @@ use pxpl5_wire::{
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Spheres or triangles before a head that stands.
+/// Returns spheres or triangles in front of a still head.
 fn still(name: &str) -> Arc<Scene> {
     let scene = builtin(name).expect("built in");
     let (target, radius) = scene.bounding_sphere();
@@ -50,8 +50,8 @@ fn assert_ideal(outcome: &Outcome, what: &str) {
     }
 }
 
-/// A field that is drawn in time is shown at the retrace after the one at which it began (TR94): each field has a picture, and of one
-/// that is late the last complete one is shown again, where there is a backup.
+/// A field that is drawn in time is shown at the retrace after its begin (TR94), so each field has a picture. With a
+/// backup, the last complete picture replaces a late one.
 #[test]
 fn slats_shows_each_field_a_field_after_it_began() {
     let scene = still("sphere:10");
@@ -75,7 +75,8 @@ fn slats_shows_each_field_a_field_after_it_began() {
     }
 }
 
-/// With more than a field's time of primitives each picture takes two fields or more, and what is shown stays whole.
+/// With primitives for more than a field's time, each picture takes two fields or more, and only complete pictures are
+/// shown.
 #[test]
 fn slats_goes_on_when_fields_are_late() {
     let scene = still("molecules");
@@ -113,7 +114,8 @@ fn rendering_control_shows_every_frame_whole_and_in_order() {
     }
 }
 
-/// The first word and the last word of each COPY of a stereo run that is over, in the order of the drawings: left eye, right eye, left eye.
+/// Returns the times of the first and the last word of each COPY of a finished stereo run, in the order of drawing:
+/// left eye, right eye, left eye.
 fn copies(outcome: &Outcome) -> Vec<(Time, Time)> {
     let record = outcome.record();
     let message = record.ring().timing().occupancy(MAX_MESSAGE_WORDS);
@@ -131,8 +133,8 @@ fn copies(outcome: &Outcome) -> Vec<(Time, Time)> {
     whole.filter_map(span).collect()
 }
 
-/// TR94: Rendering Control works on one eye after the other, so that at any time one frame buffer is copied to, although each has a ring
-/// port of its own.
+/// TR94: Rendering Control works on one eye after the other. At any time, only one frame buffer receives a copy,
+/// although each frame buffer has a ring port of its own.
 #[test]
 fn copy_of_an_eye_begins_after_copy_of_the_eye_before_has_ended() {
     let light = builtin("full-screen:2").map(Arc::new).expect("built in");
@@ -158,9 +160,9 @@ fn copy_of_an_eye_begins_after_copy_of_the_eye_before_has_ended() {
     }
 }
 
-/// COPY of both eyes takes 31.2 ms of the 33.4 ms of two fields, so a light scene is shown every second field however many renderers there
-/// are. TRANSFORM of a frame begins at the earliest when COPY of the third previous eye has ended: 31.2 ms after a swap, three
-/// frames before its own. Renderers beyond that only let frames wait longer.
+/// COPY of both eyes takes 31.2 ms of the 33.4 ms of two fields. A light scene is thus shown every second field, with
+/// any number of renderers. TRANSFORM of a frame begins at the earliest when COPY of the third previous eye has ended,
+/// 31.2 ms after a swap and three frames before its own swap. Additional renderers only make frames wait longer.
 #[test]
 fn a_scene_bound_by_copy_keeps_its_rate_and_its_latency_with_any_number_of_renderers() {
     let scene = builtin("typical:2000").map(Arc::new).expect("built in");
@@ -182,7 +184,8 @@ fn a_scene_bound_by_copy_keeps_its_rate_and_its_latency_with_any_number_of_rende
     }
 }
 
-/// Triangles of `full-screen:12` in one eye's picture: those on the screen, and those that were clipped.
+/// Returns the number of triangles of `full-screen:12` in one eye's picture that are on the screen, and the number that
+/// were clipped.
 fn on_screen_and_clipped(hmd: HmdConfig, grid: RegionGrid, lines: Lines) -> [(u64, u64); 2] {
     let scene = builtin("full-screen:12").map(Arc::new).expect("built in");
     let share = Share::new(Arc::new(display_list(&scene).expect("it has triangles")), 0, 1);
@@ -197,7 +200,7 @@ fn on_screen_and_clipped(hmd: HmdConfig, grid: RegionGrid, lines: Lines) -> [(u6
     })
 }
 
-/// The papers' test scene has its triangles on the screen, none of which costs a clipper anything.
+/// The triangles of the papers' test scene are on the screen, and none of them takes time in the clipper.
 #[test]
 fn full_screen_triangles_are_clipped_before_no_display_and_no_separation_of_eyes() {
     let ntsc = RegionGrid::FRAME;
@@ -221,7 +224,8 @@ fn full_screen_triangles_are_clipped_before_no_display_and_no_separation_of_eyes
     }
 }
 
-/// When RENDER of each frame ended, over all eyes, beside the instant from which the frame before it is shown: its buffer is free then.
+/// Returns the end of RENDER of each frame, over all eyes. Beside it stands the instant at which the frame before is
+/// shown, when the buffer becomes free.
 fn rendered_and_free(outcome: &Outcome) -> Vec<(Time, Time)> {
     let shown = outcome.pictures().iter().map(|picture| (picture.picture.next(), picture.shown_at));
     let stages = outcome.stages();
@@ -229,8 +233,8 @@ fn rendered_and_free(outcome: &Outcome) -> Vec<(Time, Time)> {
     shown.filter_map(|(frame, free)| Some((ends(frame).max()??, free))).collect()
 }
 
-/// Three renderers hold three regions of a frame until its buffer is free, so that RENDER waits; what is put into their backing stores
-/// lets it go on.
+/// Three renderers hold three regions of a frame until its buffer is free, so RENDER waits. With the backing stores in
+/// use, RENDER continues.
 #[test]
 fn regions_that_are_stored_let_render_end_before_the_buffer_is_free() {
     let scene = still("sphere:10");
@@ -243,8 +247,8 @@ fn regions_that_are_stored_let_render_end_before_the_buffer_is_free() {
     }
 }
 
-/// TR94: 7,700 triangles that cover the screen on 12 slaves, 642 each, in 20 bins of 4 bytes a pointer. As many for the next frame wait until
-/// those are drawn.
+/// TR94: 7,700 triangles cover the screen. Each of the 12 slaves has 642 of them in 20 bins, at 4 bytes a pointer. The
+/// bins of the next frame take the same space until the first are drawn.
 #[test]
 fn bins_of_rendering_control_hold_642_triangles_that_cover_the_screen_and_no_more() {
     let run = |triangles: u32| {

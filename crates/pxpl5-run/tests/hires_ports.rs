@@ -1,11 +1,11 @@
-//! The ports of the high-resolution frame buffer: how many pictures a second they let through.
+//! Tests of the ports of the high-resolution frame buffer: the number of pictures a second that the ports can receive.
 
 use pxpl5_hires::HiResConfig;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, Outcome, Pixels, RenderingControl};
 use pxpl5_scene::builtin;
 
-/// Scans a second of the display.
+/// Rate of the display's scans.
 const SCANS_HZ: f64 = 72.0;
 
 /// A region of 128 x 128 words in 16 messages, each with 16 word times of overhead, at 50 ns a word.
@@ -19,7 +19,7 @@ fn run(ports: u64) -> Outcome {
     experiment.run().expect("it is small")
 }
 
-/// Pictures a second that the pixels of 80 regions allow: whole scans for each.
+/// Returns the pictures a second for a picture of 80 regions. Each picture takes a whole number of scans.
 fn allowed_hz(ports: f64) -> f64 {
     SCANS_HZ / ((80.0 / ports).ceil() * REGION_S * SCANS_HZ).ceil()
 }

@@ -1,4 +1,5 @@
-//! Names of contents: made of the contents, bit by bit and setting by setting, whatever types they are kept in.
+//! Tests of fingerprints. A fingerprint depends on the contents, bit by bit and setting by setting, and not on the
+//! types that store them.
 
 use glam::Vec3;
 use parameters::{ParameterTable, Value};
@@ -25,7 +26,7 @@ fn fnv_1a(bytes: &[u8]) -> String {
 const HINGE: Hinge =
     Hinge { point: Vec3::X, axis: Vec3::Y, amplitude_deg: 20.0, period_ps: 2_000_000_000_000, phase_turns: 0.25 };
 
-/// One triangle that swings and one sphere before a still head.
+/// Returns a scene with one triangle that swings and one sphere, in front of a still head.
 fn parts() -> SceneParts {
     let vertex = |x: f32| Vertex { position: Vec3::new(x, 0.5, -3.0), normal: Vec3::Z, colour: [1, 2, 3] };
     let structure = Structure {
@@ -154,7 +155,7 @@ fn a_head_is_named_by_its_settings_a_line_each() {
     assert_eq!(found, fnv_1a(lines.concat().as_bytes()));
 }
 
-/// A user's motion whose `Debug` says nothing.
+/// A motion in a user's crate whose `Debug` output is empty.
 struct Nod {
     hz: f64,
 }

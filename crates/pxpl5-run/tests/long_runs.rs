@@ -1,5 +1,5 @@
-//! A run that keeps statistics only says the same as one that keeps everything, holds no more records the longer it is, and
-//! handles no more of them a field.
+//! Tests of long runs. A run that keeps statistics only has the same results as one that keeps everything. Its number
+//! of records, and the work for them per field, do not grow with the length of the run.
 
 use pxpl5_machine::{LateRegion, MachineConfig};
 use pxpl5_run::{
@@ -26,13 +26,14 @@ fn faces(name: &'static str, policy: FacePolicy, source: FaceSource, fields: u64
     (name, experiment(MachineConfig::small_hmd(), pipeline, scene("gallery", 0), fields))
 }
 
-/// A head in use behind a tracker, its pose predicted.
+/// Returns a moving head with a tracker and a predictor.
 fn tracked() -> Head {
     let motion = Arc::new(Synthetic::recorded_use(2));
     Head::new(motion, TrackerConfig::fastrak(), PredictorKind::Kalman, 1).expect("in range")
 }
 
-/// Long enough that records are given up several times. What is said of heads is held by tests/long_runs.rs of pxpl5-measure.
+/// Returns experiments of every kind, each with so many fields that records are discarded several times.
+/// tests/long_runs.rs of pxpl5-measure covers the results for heads.
 fn experiments() -> [(&'static str, Experiment); 9] {
     let small = MachineConfig::small_hmd;
     let slats = MachineConfig::slats;
@@ -53,7 +54,7 @@ fn run(experiment: &Experiment, keep: Keep) -> Outcome {
     experiment.clone().keep(keep).run().expect("it runs")
 }
 
-/// Everything that is said of a run over all of it.
+/// Returns all results of a run that cover the whole run.
 fn said(outcome: &Outcome) -> Vec<String> {
     let tally = outcome.tally();
     let all: Vec<&Samples> =
@@ -90,7 +91,8 @@ fn what_is_kept_changes_nothing_that_is_said() {
     }
 }
 
-/// Most records and most events that wait, at any stop of a run; records that were looked at, of all; events; poses that are held at its end.
+/// Counts of a run: the largest numbers of records and of pending events at any stop, all records that passes have
+/// read, all events, and the poses kept at the end.
 fn work(experiment: &Experiment, fields: u64) -> [u64; 5] {
     let mut most = [0, 0];
     let watched = experiment.clone().fields(fields).keep(Keep::Statistics).run_stopping(&[], |_, machine| {
@@ -103,7 +105,7 @@ fn work(experiment: &Experiment, fields: u64) -> [u64; 5] {
     [most[0], most[1], outcome.tally().records_looked_at, outcome.record().events(), poses]
 }
 
-/// A page watches messages, and keeps what the last periods need.
+/// A page reads recorded messages, and a run for it keeps the records of the last periods.
 #[test]
 fn recent_records_of_a_watched_run_do_not_grow_with_it() {
     let most = |fields| {
@@ -120,7 +122,8 @@ fn recent_records_of_a_watched_run_do_not_grow_with_it() {
         (most, stepper.record().trace_hash())
     };
     let [(short, _), (long, hash)] = [600, 1_800].map(most);
-    // The next look is taken at twice what the last one left, which varies with what is visible; without looks it would be three times.
+    // The next pass begins at twice the number of records that the last pass has left. This number varies with the
+    // visible part of the scene. Without passes, the number of records would be three times as large.
     assert!(long <= short + short / 4, "{long} records, {short} in a third of the time");
     let everything = experiment(MachineConfig::slats(), Slats::split(), scene("mig", 60), 1).fields(1_800);
     assert_eq!(hash, everything.run().expect("it runs").record().trace_hash());
@@ -143,9 +146,10 @@ fn twenty_times_the_fields_hold_no_more_and_take_twenty_times_the_work() {
         let [_, _, _, events, _] = work(&experiment, fields);
         let [records_5, waiting_5, looked_at_5, _, poses_5] = work(&experiment, 5 * fields);
         let [records_20, waiting_20, looked_at_20, events_20, poses_20] = work(&experiment, 20 * fields);
-        // The run may end just before a look or just behind one, which leaves half of what there was before.
+        // A run that ends just before a pass has twice as many records as one that ends just after it.
         assert!(poses_20 <= 2 * poses_5, "{name}: {poses_20} poses, {poses_5} in a quarter of the time");
-        // A head's sway changes what is visible a little; 60 fields may come between two looks.
+        // The sway of the head changes the visible part of the scene a little. Up to 60 fields may lie between two
+        // passes.
         assert!(
             records_20 <= records_5 + records_5 / 20,
             "{name}: {records_20} records, {records_5} in a quarter of the time"

@@ -1,4 +1,4 @@
-//! A run without prediction tells every predictor the same.
+//! Test that the result of a dry run without prediction is the same for every predictor.
 
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, Head, PipelineSettings, Pixels, Registry};

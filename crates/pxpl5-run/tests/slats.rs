@@ -1,4 +1,4 @@
-//! COPY of Slats: top regions before bottom ones, and a backup field for retraces that are missed.
+//! Tests of COPY under Slats: top regions come before bottom ones, and a backup field is shown for a missed retrace.
 
 use pxpl5_framebuffer::NtscDisplay;
 use pxpl5_machine::{Arrival, MachineConfig};
@@ -20,7 +20,7 @@ fn is_top(arrival: &Arrival) -> bool {
     u32::from(arrival.target.region.0) < RegionGrid::FIELD.columns()
 }
 
-/// Regions of both eyes by picture.
+/// Returns the regions of both eyes, by picture.
 fn by_picture(outcome: &Outcome) -> BTreeMap<PictureNumber, Vec<Arrival>> {
     let mut pictures: BTreeMap<PictureNumber, Vec<Arrival>> = BTreeMap::new();
     for arrival in &outcome.observation().arrivals {
@@ -29,8 +29,8 @@ fn by_picture(outcome: &Outcome) -> BTreeMap<PictureNumber, Vec<Arrival>> {
     pictures
 }
 
-/// TR94: the GP makes sure that all top regions go before any bottom one, also when the top ones are late, as they are with more triangles
-/// than the limit.
+/// TR94: the GP sends all top regions before any bottom region. The order also holds for late top regions, with more
+/// triangles than the limit.
 #[test]
 fn no_bottom_region_of_a_field_is_copied_before_all_top_ones() {
     for slats in [Slats::split(), Slats::backup()] {
@@ -53,8 +53,9 @@ fn no_bottom_region_of_a_field_is_copied_before_all_top_ones() {
     }
 }
 
-/// What either eye's beam finds in each field: all of it is of the newest picture of its lines whose top regions were there before the
-/// retrace, nothing comes behind the beam, and nothing of a newer picture is written into the buffer meanwhile.
+/// Checks each field that the beam of an eye scans. All of the field comes from the newest picture of its lines whose
+/// top regions had arrived before the retrace. No pixel arrives behind the beam, and no newer picture is written into
+/// the displayed buffer.
 #[test]
 fn with_a_backup_the_last_complete_field_is_shown_and_never_a_torn_one() {
     for scene in ["full-screen:147", "full-screen:160", "full-screen:200", "typical:147", "typical:160", "typical:200"]
@@ -66,7 +67,7 @@ fn with_a_backup_the_last_complete_field_is_shown_and_never_a_torn_one() {
         for field in (8..28).map(PeriodNumber) {
             let parity = FieldParity::of_field(field);
             let [begins, ends] = [field, field.next()].map(|field| display.video().retrace(field));
-            // The software of five acknowledgements and of the request, and what they take on the ring.
+            // Software time of five acknowledgements and of the request, and their time on the ring.
             let on_its_way = Span::from_ns(6 * 12_000 + 28_000);
             let of_lines = |arrival: &&Arrival| arrival.target.lines == Lines::Field(parity);
             let top_at = |regions: &[Arrival]| {
@@ -77,7 +78,7 @@ fn with_a_backup_the_last_complete_field_is_shown_and_never_a_torn_one() {
             let complete: Vec<_> = complete.filter(|(_, at)| *at < begins).collect();
             let seen = display.boards().iter().map(|board| board.seen(field).expect("it was scanned"));
             let seen: Vec<_> = seen.collect();
-            // The newest; the one before it, if that came while the request could no longer arrive.
+            // The newest picture is expected, or the picture before, if the request could no longer arrive in time.
             let may_be_seen = |picture: &PictureNumber| seen[0].buffer() == pictures[picture][0].target.buffer;
             let newest =
                 complete.iter().rev().take(2).find(|(picture, at)| *at + on_its_way < begins || may_be_seen(picture));
@@ -94,7 +95,7 @@ fn with_a_backup_the_last_complete_field_is_shown_and_never_a_torn_one() {
             assert_eq!(torn.count(), 0, "{scene}, {field:?}: {picture:?}");
             seen_pictures[parity as usize].push(**picture);
         }
-        // New fields go on coming, of both lines.
+        // New fields of both parities keep coming.
         for of_lines in &mut seen_pictures {
             assert!(of_lines.len() >= 9, "{scene}: {of_lines:?}");
             of_lines.dedup();

@@ -1,21 +1,22 @@
-//! Animated PNG: pictures of one size, one after the other.
+//! Writer of animated PNG files.
 
 use crate::picture::{PngError, encoder};
 use image::RgbImage;
 use std::io::Write;
 
-/// An animated PNG that is being written.
+/// An animated PNG file during writing.
 pub struct Animation<W: Write> {
     writer: png::Writer<W>,
 }
 
 impl<W: Write> Animation<W> {
-    /// Begins a file of so many pictures of a width and height, each shown for a fraction of seconds, in a loop. `texts` go
-    /// into its text chunks, as those of [`png_bytes`](crate::png_bytes).
+    /// Starts a file with `pictures` pictures of the same size. Each picture is shown for `delay` (numerator and
+    /// denominator, in seconds), and the animation repeats. `texts` become text chunks of the file, as in
+    /// [`png_bytes`](crate::png_bytes).
     ///
     /// # Errors
     ///
-    /// [`PngError`] when the encoder refuses it, such as an animation without pictures.
+    /// [`PngError`] if the encoder refuses the values, for example an animation without pictures.
     pub fn begin(
         out: W,
         size: (u32, u32),
@@ -33,16 +34,16 @@ impl<W: Write> Animation<W> {
     ///
     /// # Errors
     ///
-    /// [`PngError`] when it has another size, or there are too many.
+    /// [`PngError`] if the picture has another size, or if the animation already has all its pictures.
     pub fn add(&mut self, picture: &RgbImage) -> Result<(), PngError> {
         Ok(self.writer.write_image_data(picture.as_raw())?)
     }
 
-    /// Ends the file, in which all pictures must be.
+    /// Ends the file after the last picture.
     ///
     /// # Errors
     ///
-    /// [`PngError`] when some are missing.
+    /// [`PngError`] if pictures are missing.
     pub fn finish(self) -> Result<(), PngError> {
         Ok(self.writer.finish()?)
     }

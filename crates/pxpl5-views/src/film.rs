@@ -1,4 +1,4 @@
-//! Films: what a viewer sees, period by period, as animated PNG.
+//! Films of the displayed pictures, period by period, as animated PNG.
 
 use crate::animation::Animation;
 use crate::frame_time::frame_seconds;
@@ -13,17 +13,17 @@ use pxpl5_wire::{PeriodNumber, SurfaceId};
 use std::io::Write;
 use thiserror::Error;
 
-/// Which surfaces of the first display a film shows.
+/// Surfaces of the first display that a film shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FilmOf {
-    /// A single one, such as an eye's.
+    /// A single surface, such as that of an eye.
     One(SurfaceId),
-    /// All, side by side, the first one left.
+    /// All surfaces side by side, the first one on the left.
     All,
 }
 
-/// A film of an experiment: a frame for each period of the display, as a viewer sees it at the period's end. Of an NTSC
-/// display the lines of the field before stand between those of its own.
+/// A film of an experiment. A film has a frame for each period of the display, which shows the screen at the end of the
+/// period. With an NTSC display, the lines of the previous field stand between those of the present one.
 #[derive(Clone, Debug)]
 pub struct Film {
     experiment: Experiment,
@@ -32,57 +32,58 @@ pub struct Film {
     of: FilmOf,
 }
 
-/// Why a film could not be made.
+/// Error of a film.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum FilmError {
     /// The experiment cannot be run.
     #[error(transparent)]
     Experiment(#[from] ExperimentError),
-    /// The machine stopped before the last picture of the film.
+    /// The machine failed before the last frame of the film.
     #[error(transparent)]
     Run(#[from] RunError),
-    /// A film of no period, or of more than a PNG can hold.
+    /// The number of periods is zero or too large for a PNG file.
     #[error("a film has {} to {} periods of the display, found {found}", expected.0, expected.1)]
     Periods {
-        /// Smallest and largest number.
+        /// Smallest and largest number of periods.
         expected: (u64, u64),
-        /// What was asked for.
+        /// Number of periods that was requested.
         found: u64,
     },
-    /// The display has no such surface.
+    /// The display does not have the surface.
     #[error("a film of surface {}: the display has {there}, counted from 0", found.0)]
     Surface {
-        /// How many there are.
+        /// Number of surfaces of the display.
         there: usize,
-        /// What was asked for.
+        /// Surface that was requested.
         found: SurfaceId,
     },
-    /// The PNG could not be written.
+    /// The PNG file could not be written.
     #[error("the film: {0}")]
     Png(#[from] PngError),
 }
 
-/// Smallest and largest number of periods in a film: an hour of NTSC and more.
+/// Smallest and largest number of periods in a film. The largest number takes more than an hour of NTSC.
 pub const FILM_PERIODS: (u64, u64) = (1, 250_000);
 
 impl Film {
-    /// A film of an experiment, from a period of the display on.
+    /// Creates a film of an experiment, from a period of the display on.
     #[must_use]
     pub const fn new(experiment: Experiment, first_period: PeriodNumber, periods: u64, of: FilmOf) -> Self {
         Self { experiment, first_period, periods, of }
     }
 
-    /// Runs the experiment and writes the film as animated PNG. `texts` go into the file's text chunks, as those of
+    /// Runs the experiment and writes the film as animated PNG. `texts` become text chunks of the file, as in
     /// [`png_bytes`](crate::png_bytes).
     ///
     /// # Errors
     ///
-    /// [`FilmError`]; the file is then not complete.
+    /// [`FilmError`]. The file is then incomplete.
     pub fn write(&self, texts: &[(&str, String)], out: impl Write) -> Result<(), FilmError> {
         if !(FILM_PERIODS.0..=FILM_PERIODS.1).contains(&self.periods) {
             return Err(FilmError::Periods { expected: FILM_PERIODS, found: self.periods });
         }
+        // A raster that shifts its picture needs the offsets of a run without pixels.
         let plain = self.without_pixels()?;
         let offsets = plain.as_ref().and_then(RasterOffsets::of);
         let mut machine = self.experiment.build()?;
@@ -91,7 +92,7 @@ impl Film {
         let size = size(machine.record().display(), &surfaces);
         let mut animation = Animation::begin(out, size, self.periods as u32, delay, texts)?;
         for period in self.first_period.until(self.first_period.after(self.periods)) {
-            // A period is over when the next one has begun, all of whose events are taken.
+            // A period is over when all events at the beginning of the next one have been handled.
             let begun = machine.record().tick(period.next()) + Span(1);
             machine.run_until(begun)?;
             animation.add(&frame(&machine, &surfaces, period, offsets.as_ref()))?;
@@ -99,15 +100,15 @@ impl Film {
         Ok(animation.finish()?)
     }
 
-    /// A run of the same length without pixels, from which it is known how the raster shifts each period; `None` where it
-    /// shifts nothing.
+    /// Runs the experiment for the same length without pixels, to find the offset of the raster in each period. Returns
+    /// `None` for a raster that shifts nothing.
     fn without_pixels(&self) -> Result<Option<Outcome>, FilmError> {
         if self.experiment.raster() == Raster::Plain {
             return Ok(None);
         }
         let length = self.first_period.after(self.periods).next().since(PeriodNumber::FIRST);
         match self.experiment.clone().pixels(Pixels::Off).fields(length).run() {
-            // Too short for statistics is long enough for a film.
+            // A run that is too short for statistics is long enough for a film.
             Err(ExperimentError::TooShort { partial, .. }) => Ok(Some(*partial)),
             run => Ok(Some(run?)),
         }
@@ -123,7 +124,7 @@ impl Film {
     }
 }
 
-/// Width and height of some surfaces of a display side by side.
+/// Returns the width and height of some surfaces side by side.
 fn size(display: &dyn Display, surfaces: &[SurfaceId]) -> (u32, u32) {
     let shown: Vec<&Surface> = surfaces.iter().filter_map(|id| display.surfaces().get(id.index())).collect();
     let width = shown.iter().map(|surface| surface.width).sum();

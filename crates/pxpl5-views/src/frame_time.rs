@@ -1,14 +1,14 @@
-//! How long a frame of a film is shown.
+//! Duration of a film's frame.
 
 use pxpl5_display::Display;
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 
-/// The time of a frame of a film as a fraction of seconds, as animated PNG has it: of all fractions of two numbers of 16
-/// bits the one that is nearest to a period of the display.
+/// Returns the duration of a film's frame as a fraction of a second, in the form that animated PNG needs. Numerator and
+/// denominator have 16 bits each. The fraction is the one nearest to the period of the display.
 #[must_use]
 pub fn frame_seconds(display: &dyn Display) -> (u16, u16) {
-    // Ticks are whole picoseconds; over so many periods what is lost does not count.
+    // Ticks are rounded to picoseconds. Over so many periods, the rounding is negligible.
     const PERIODS: u64 = 60_000;
     let span = display.tick(PeriodNumber(PERIODS)).since(Time::ZERO);
     let nearest = nearest_fraction(Fraction { over: span.0.into(), under: u128::from(PERIODS) * PS_PER_S });
@@ -17,7 +17,7 @@ pub fn frame_seconds(display: &dyn Display) -> (u16, u16) {
 
 const PS_PER_S: u128 = 1_000_000_000_000;
 
-/// Greatest number above and below the line.
+/// Largest numerator and denominator.
 const LIMIT: u128 = u16::MAX as u128;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,25 +27,26 @@ struct Fraction {
 }
 
 impl Fraction {
-    /// The distance from another, times both denominators.
+    /// Returns the distance from another fraction, times both denominators.
     const fn distance(self, other: Self) -> u128 {
         (self.over * other.under).abs_diff(other.over * self.under)
     }
 
-    /// The next fraction of a chain: so many times this one, and the one before it.
+    /// Returns the next fraction of a chain: `times` times this fraction, plus the fraction before.
     const fn followed(self, times: u128, before: Self) -> Self {
         Self { over: times * self.over + before.over, under: times * self.under + before.under }
     }
 
-    /// How many times this one fits into a fraction within the limit that has the one before it in it too.
+    /// Returns the largest number `times` for which `followed(times, before)` has a numerator and a denominator of at
+    /// most [`LIMIT`].
     fn fits(self, before: Self) -> u128 {
         let above = (LIMIT - before.over).checked_div(self.over).unwrap_or(u128::MAX);
         above.min((LIMIT - before.under).checked_div(self.under).unwrap_or(u128::MAX))
     }
 }
 
-/// The nearest fraction within the limit, from the chain of continued fractions: the last that is within it, or the one
-/// between it and the next.
+/// Returns the nearest fraction within the limit, by continued fractions. The result is the last fraction of the chain
+/// within the limit, or one between this and the next.
 fn nearest_fraction(exact: Fraction) -> Fraction {
     let mut before = Fraction { over: 0, under: 1 };
     let mut last = Fraction { over: 1, under: 0 };
@@ -54,10 +55,12 @@ fn nearest_fraction(exact: Fraction) -> Fraction {
         let times = rest.over / rest.under;
         let fits = last.fits(before);
         if times > fits {
+            // The next fraction of the chain is too large, so the best one lies between it and the last.
             let between = last.followed(fits, before);
             let last_is_nearer = exact.distance(last) * between.under <= exact.distance(between) * last.under;
             return if last_is_nearer && last.under > 0 { last } else { between };
         }
+        // Continue with the remainder, as in Euclid's algorithm.
         let next = last.followed(times, before);
         before = last;
         last = next;
@@ -83,7 +86,8 @@ mod tests {
         assert_eq!(seconds(&FrameBufferConfig::NTSC), (1_001, 60_000));
     }
 
-    /// A line is 4004/63 us and a field half of the frame's lines: with 625, 625 x 4004 / (2 x 63 x 10^6) s = 143/7200 s.
+    /// A line takes 4004/63 us, and a field has half of the frame's lines. With 625 lines, a field takes 625 x 4004 /
+    /// (2 x 63 x 10^6) s = 143/7200 s.
     #[test]
     fn a_frame_of_625_lines_takes_longer_in_the_same_proportion() {
         let video = VideoTiming { frame_lines: 625, ..FrameBufferConfig::NTSC.video };

@@ -1,4 +1,4 @@
-//! What people look at: drawings, traces, tables, pages and films of a run.
+//! Output of runs for people: drawings, traces, tables, pages and films.
 //!
 //! ```text
 //!   Outcome --+--> timeline, trace_export, results --> SVG, Perfetto, Chrome's JSON, CSV, Parquet
@@ -7,25 +7,25 @@
 //!   numbers ----> charts --> SVG
 //! ```
 //!
-//! | module | a run as |
+//! | module | output |
 //! |---|---|
-//! | [`timeline`] | the papers' pipeline figures: a row for each board that works by itself |
-//! | [`trace_export`] | everything that happened, for a trace viewer |
-//! | [`results`] | a row for each picture, and what every file opens with so that it can be made again |
-//! | [`charts`] | speed against error of the levels of modelling, error against time, spread of latencies |
-//! | [`page`] | one page of HTML that asks for nothing from outside |
-//! | [`Film`] | what the viewer sees, period by period |
-//! | [`png_bytes`] | a picture with its origin in it |
-//! | [`Animation`] | pictures one after the other, as animated PNG |
+//! | [`timeline`] | the papers' pipeline figures: a row for each resource that works independently |
+//! | [`trace_export`] | all events, for a trace viewer |
+//! | [`results`] | a row for each picture, and the origin of each file, by which the file can be made again |
+//! | [`charts`] | speed against error of the levels of modelling, error against time, distribution of latencies |
+//! | [`page`] | one page of HTML without external resources |
+//! | [`Film`] | the displayed pictures, period by period |
+//! | [`png_bytes`] | a picture with its origin |
+//! | [`Animation`] | a sequence of pictures as animated PNG |
 //!
-//! There is one writer of SVG and HTML with one escaper (`markup`, and `svg` for its shapes), one of PNG (`png_bytes`, and
-//! `Animation`), one of CSV ([`results::csv_table`]).
+//! SVG and HTML have one writer with one escape function (`markup`, and `svg` for shapes). PNG has one writer
+//! (`png_bytes` and `Animation`), and so has CSV ([`results::csv_table`]).
 //!
-//! What is drawn depends on simulated time alone, so it is the same on every host. Names, colours and letters of surfaces
-//! come from the machine's displays ([`pxpl5_display::Surface`]); nothing here knows an eye or a field's lines.
+//! All output depends on simulated time only, so it is the same on every host. Names, colours and letters of surfaces
+//! come from the machine's displays ([`pxpl5_display::Surface`]).
 //!
-//! **Not here:** files, threads and clocks of the host. Everything goes to a [`std::io::Write`], or comes back as text or
-//! bytes.
+//! **Not here:** files, threads and clocks of the host. All output goes to a [`std::io::Write`] or is returned as text
+//! or bytes.
 
 #![warn(missing_docs)]
 

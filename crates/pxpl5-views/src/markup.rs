@@ -1,13 +1,13 @@
-//! Elements, attributes and text of SVG and HTML: the only writer of markup, and the only escaper.
+//! The writer of all SVG and HTML: elements, attributes and escaped text.
 
 use std::fmt::{self, Display, Write};
 
-/// An element: its name, its attributes, and what stands in it.
+/// An element with its name, attributes and content.
 #[derive(Clone, Debug)]
 pub(crate) struct Element {
     name: &'static str,
     attributes: String,
-    /// `None` for one that is closed where it is opened.
+    /// Content, or `None` for a self-closing element.
     content: Option<String>,
 }
 
@@ -16,43 +16,43 @@ impl Element {
         Self { name, attributes: String::new(), content: None }
     }
 
-    /// With one more attribute.
+    /// Adds an attribute.
     pub(crate) fn with(mut self, attribute: &str, value: impl Display) -> Self {
-        // Adding text to a string cannot fail.
+        // Writing to a string cannot fail.
         let _ = write!(self.attributes, " {attribute}=\"{}\"", escape(&value.to_string()));
         self
     }
 
-    /// With text behind what stands in it already; with empty text it is still closed by a tag of its own.
+    /// Appends text to the content. An element with empty text has a closing tag of its own.
     pub(crate) fn text(mut self, text: impl Display) -> Self {
         self.content().push_str(&escape(&text.to_string()));
         self
     }
 
-    /// With one more element in it.
+    /// Appends a child element.
     pub(crate) fn child(mut self, child: &Self) -> Self {
         self.add(child);
         self
     }
 
-    /// With more elements in it.
+    /// Appends child elements.
     pub(crate) fn children(mut self, children: impl IntoIterator<Item = Self>) -> Self {
         children.into_iter().for_each(|child| self.add(&child));
         self
     }
 
-    /// Puts one more element into it.
+    /// Appends a child element in place.
     pub(crate) fn add(&mut self, child: &Self) {
         let _ = write!(self.content(), "{child}");
     }
 
-    /// The same, and a line feed behind it.
+    /// Appends a child element and a line feed.
     pub(crate) fn add_line(&mut self, child: &Self) {
         self.add(child);
         self.end_line();
     }
 
-    /// Puts a line feed into it.
+    /// Appends a line feed.
     pub(crate) fn end_line(&mut self) {
         self.content().push('\n');
     }
@@ -72,7 +72,7 @@ impl Display for Element {
     }
 }
 
-/// Text as content or as the value of an attribute. What no XML document may hold is left out.
+/// Escapes text for content or an attribute value. Characters that XML forbids are removed.
 fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in text.chars().filter(|c| is_allowed(*c)) {
@@ -87,7 +87,7 @@ fn escape(text: &str) -> String {
     escaped
 }
 
-/// Returns true for characters that an XML document may hold.
+/// Returns true for characters that an XML document may contain.
 pub(crate) const fn is_allowed(c: char) -> bool {
     matches!(c, '\n' | '\t') || !(c.is_ascii_control() || matches!(c, '\u{80}'..='\u{9f}' | '\u{fffe}' | '\u{ffff}'))
 }

@@ -1,24 +1,24 @@
-//! Pictures as PNG: the only place where one is encoded.
+//! The encoder of all PNG pictures.
 
 use image::RgbImage;
 use std::io::Write;
 use thiserror::Error;
 
-/// Why a picture could not be encoded: it has no pixels, or a text has a key that PNG does not allow.
+/// Error of the PNG encoder: a picture has no pixels, or a text has a key that PNG does not allow.
 #[derive(Debug, Error)]
 #[error("a picture cannot be encoded: {0}")]
 pub struct PngError(
-    /// What the encoder says.
+    /// Error from the crate `png`.
     #[from]
     png::EncodingError,
 );
 
-/// A picture as PNG, with texts that can be read by any viewer of metadata, such as those of
-/// [`origin`](crate::results::origin): each becomes an iTXt chunk with the keyword `pxpl5 KEY`.
+/// Encodes a picture as PNG with texts, such as those of [`origin`](crate::results::origin). Each text becomes an iTXt
+/// chunk with the keyword `pxpl5 KEY`, which metadata viewers can read.
 ///
 /// # Errors
 ///
-/// [`PngError`] when the encoder refuses it.
+/// [`PngError`] if the encoder refuses the picture or a text.
 pub fn png_bytes(picture: &RgbImage, texts: &[(&str, String)]) -> Result<Vec<u8>, PngError> {
     let mut bytes = Vec::new();
     let mut writer = encoder(&mut bytes, picture.dimensions(), texts)?.write_header()?;
@@ -27,7 +27,7 @@ pub fn png_bytes(picture: &RgbImage, texts: &[(&str, String)]) -> Result<Vec<u8>
     Ok(bytes)
 }
 
-/// An encoder of pictures of eight bits a colour, that will write some texts.
+/// Returns an encoder for pictures with eight bits a colour, which will write the given texts.
 pub(crate) fn encoder<W: Write>(
     out: W,
     (width, height): (u32, u32),

@@ -1,4 +1,5 @@
-//! Ports of displays that have more of them than surfaces, such as display memories: what each of them showed when.
+//! Ports of displays that have more ports than surfaces, such as display memories, with the pictures that each port
+//! showed.
 
 use pxpl5_display::Display;
 use pxpl5_machine::Record;
@@ -6,24 +7,24 @@ use pxpl5_run::SoFar;
 use pxpl5_sim::Time;
 use pxpl5_wire::{NodeId, PictureNumber, SurfaceId};
 
-/// A port by its name.
+/// A display port with its name.
 pub(crate) struct DisplayPort {
     pub(crate) name: String,
     pub(crate) node: NodeId,
 }
 
-/// A picture that a port showed.
+/// A picture that a port has shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PortShown {
-    /// The picture, or update, that was swapped in.
+    /// Picture, or update, that was swapped in.
     pub picture: PictureNumber,
-    /// The retrace at which it was.
+    /// Retrace at which the picture was swapped in.
     pub begin: Time,
-    /// The retrace at which the next one was, or the end of the run.
+    /// Retrace at which the next picture was swapped in, or the end of the run.
     pub end: Time,
 }
 
-/// The ports of all displays that have more of them than surfaces.
+/// Returns the ports of all displays that have more ports than surfaces.
 pub(crate) fn display_ports(record: &Record) -> Vec<DisplayPort> {
     let many = record.displays().iter().filter(|display| has_more_ports(display.as_ref()));
     let ports = many.flat_map(|display| {
@@ -33,7 +34,7 @@ pub(crate) fn display_ports(record: &Record) -> Vec<DisplayPort> {
     ports.collect()
 }
 
-/// Whether a surface shows what several ports received.
+/// Returns true if a surface shows the content of several ports.
 pub(crate) fn is_behind_ports(record: &Record, surface: SurfaceId) -> bool {
     let mut first = 0;
     record.displays().iter().any(|display| {
@@ -47,7 +48,8 @@ fn has_more_ports(display: &dyn Display) -> bool {
     display.nodes().len() > display.surfaces().len()
 }
 
-/// What a port showed: its pictures in the order in which they were begun, each from a swap to the next.
+/// Returns the pictures that a port has shown, in the order in which they were begun. Each is shown from one swap to
+/// the next.
 pub(crate) fn shown(run: &SoFar<'_>, node: NodeId) -> Vec<PortShown> {
     let shown = run.record().shown_by(node);
     let ends = shown.iter().skip(1).map(|next| next.at).chain([run.end()]);

@@ -1,9 +1,10 @@
-//! Shapes of SVG, and the two ways in which numbers stand in them.
+//! Shapes of SVG and formats of their numbers.
 
 use crate::markup::Element;
 use std::fmt::{self, Display};
 
-/// Hundredths of a unit: numbers of two decimals from integers, so that a drawing has the same bytes everywhere.
+/// Length in hundredths of a unit. Numbers with two decimals come from integers, so a drawing has the same bytes on
+/// every host.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Units(pub(crate) i64);
 
@@ -35,7 +36,7 @@ impl Display for Units {
     }
 }
 
-/// A number with one decimal.
+/// A number that is printed with one decimal.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub(crate) struct Tenths(pub(crate) f64);
 
@@ -45,42 +46,42 @@ impl Display for Tenths {
     }
 }
 
-/// The outermost element of a document of its own.
+/// Returns the root element of an SVG document.
 pub(crate) fn document() -> Element {
     Element::new("svg").with("xmlns", "http://www.w3.org/2000/svg")
 }
 
-/// A document as text: it ends with a line feed.
+/// Returns a document as text that ends with a line feed.
 pub(crate) fn finished(document: &Element) -> String {
     format!("{document}\n")
 }
 
-/// A rectangle of a class: left, top, width, height.
+/// Returns a rectangle with a class. The numbers are left, top, width and height.
 pub(crate) fn rectangle(class: &str, [x, y, width, height]: [Units; 4]) -> Element {
     Element::new("rect").with("class", class).with("x", x).with("y", y).with("width", width).with("height", height)
 }
 
-/// A straight line of a class, from one point to another.
+/// Returns a straight line with a class. The numbers are the coordinates of both ends.
 pub(crate) fn segment(class: &str, [x1, y1, x2, y2]: [Units; 4]) -> Element {
     Element::new("path").with("class", class).with("d", format_args!("M{x1} {y1}L{x2} {y2}"))
 }
 
-/// The place of a text of a class, to which the text is added.
+/// Returns an empty text element with a class. The text is added later.
 pub(crate) fn caption(class: &str, [x, y]: [Units; 2]) -> Element {
     Element::new("text").with("class", class).with("x", x).with("y", y)
 }
 
-/// A line of a chart: the course as in the attribute `d`, and its colour.
+/// Returns a line of a chart, from the path for the attribute `d` and a colour.
 pub(crate) fn line(course: impl Display, colour: &str) -> Element {
     Element::new("path").with("d", course).with("stroke", colour)
 }
 
-/// A text of a chart at a point; `anchor` says which part of it stands there: `middle`, `end`.
+/// Returns an empty text element of a chart. `anchor` tells which part of the text is at the point: `middle` or `end`.
 pub(crate) fn anchored(x: impl Display, y: impl Display, anchor: &str) -> Element {
     Element::new("text").with("x", x).with("y", y).with("text-anchor", anchor)
 }
 
-/// What a viewer shows when the pointer rests on an element.
+/// Returns a tooltip, which a viewer shows for the element that contains it.
 pub(crate) fn hint(text: impl Display) -> Element {
     Element::new("title").text(text)
 }

@@ -1,4 +1,4 @@
-//! Which of the host's updates a picture shows.
+//! Assignment of the host's updates to pictures.
 
 use pxpl5_gp::Stage;
 use pxpl5_machine::StageSpan;
@@ -8,17 +8,17 @@ use pxpl5_wire::PictureNumber;
 
 /// The host's updates of a run.
 pub(crate) struct Updates {
-    /// The host samples for each picture, so both have the same number.
+    /// True if the host samples a pose for each picture. Then update and picture have the same number.
     by_picture: bool,
-    /// In order of time.
+    /// Received updates, in order of time.
     received: Vec<Received>,
 }
 
-/// An update that had reached the GP.
+/// An update that has reached the GP.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Received {
     at: Time,
-    /// The number that its SEND bears.
+    /// Number of the update's SEND.
     update: PictureNumber,
 }
 
@@ -32,7 +32,8 @@ impl Updates {
         Self { by_picture: host_samples(run), received }
     }
 
-    /// The picture's own update, or the last that had reached the GP when the picture began.
+    /// Returns the update that a picture shows. Either the picture has an update of its own, or it shows the last
+    /// update that had reached the GP when the picture began.
     pub(crate) fn shown_by(&self, times: &PictureTimes) -> Option<PictureNumber> {
         if self.by_picture {
             return Some(times.picture);
@@ -43,7 +44,7 @@ impl Updates {
     }
 }
 
-/// Whether it is the host that samples the poses of pictures.
+/// Returns true if the host samples the poses of pictures.
 fn host_samples(run: &SoFar<'_>) -> bool {
     let host = run.record().ports().host;
     run.observation().marks.iter().any(|mark| mark.stage == Stage::Sample && mark.node == host)

@@ -1,4 +1,4 @@
-//! Do views show what a machine's displays are, whatever they are?
+//! Tests of views with several kinds of displays.
 
 use pxpl5_hires::HiResConfig;
 use pxpl5_machine::MachineConfig;
@@ -13,7 +13,7 @@ use pxpl5_views::{Film, FilmError, FilmOf};
 use pxpl5_wire::{PeriodNumber, SurfaceId};
 use std::io::Cursor;
 
-/// A picture of 1280 x 1024, 72 times a second.
+/// Returns an experiment with a display of 1280 x 1024 pixels, 72 times a second.
 fn hires(fields: u64) -> Experiment {
     let config = MachineConfig { displays: vec![Box::new(HiResConfig::PAPERS)], ..MachineConfig::small_hmd() };
     let scene = builtin("full-screen:1").expect("built in");
@@ -45,7 +45,7 @@ fn a_timeline_counts_the_periods_of_its_display() {
         assert_eq!(*time, Time(n.0 * 1_000_000_000_000 / 72), "tick {n}");
     }
     let scan = timeline.scans.first().expect("in the drawing");
-    // The scan fills its whole period.
+    // A scan of this display takes its whole period.
     assert_eq!(scan.begin, Time(scan.period.0 * 1_000_000_000_000 / 72));
     assert!(!copies(&timeline, "frame buffer").is_empty());
     assert!(timeline.bars().all(|bar| bar.surface.is_none() && bar.bottom.is_none()));
@@ -66,7 +66,7 @@ fn only_pictures_that_a_surface_receives_in_two_parts_have_halves() {
         let bars = copies(&split, row);
         let bottoms: Vec<&&Bar> = bars.iter().filter(|bar| bar.bottom == Some(true)).collect();
         assert!(!bottoms.is_empty() && bars.iter().all(|bar| bar.bottom.is_some()));
-        // The second row of regions of a field begins at its line 120, which is line 240 of the frame.
+        // The second row of regions of a field begins at line 120 of the field, which is line 240 of the frame.
         assert!(bottoms.iter().all(|bar| bar.first_line == 240));
     }
     let whole = Timeline::of(&slats(Slats::whole()), &TimelineOptions::default());

@@ -1,4 +1,5 @@
-//! A display with more surfaces than ports: the six faces of a cube, which one board shows in turn.
+//! Test of a display with more surfaces than ports. The display has six faces of a cube and shows them in turn from one
+//! board.
 
 use image::RgbImage;
 use parameters::ParameterTable;
@@ -14,7 +15,7 @@ use pxpl5_views::timeline::{Timeline, TimelineOptions, svg};
 use pxpl5_views::trace_export::Trace;
 use pxpl5_wire::{NodeId, PeriodNumber, SurfaceId};
 
-/// Labels and titles.
+/// Labels and titles of the six faces.
 const FACES: [(&str, &str); 6] = [
     ("front", "front face"),
     ("right", "right face"),
@@ -24,7 +25,7 @@ const FACES: [(&str, &str); 6] = [
     ("down", "lower face"),
 ];
 
-/// Every picture is for the next face; a period is a hundredth of a second.
+/// A display in which each picture is for the next face. A period takes a hundredth of a second.
 #[derive(Debug)]
 struct Cube {
     nodes: Vec<NodeId>,
@@ -176,7 +177,7 @@ fn a_trace_has_groups_for_the_port_and_for_each_face() {
     assert_eq!(tracks(&trace, "video"), ["retraces", "displayed"]);
 }
 
-/// The names of a group's tracks.
+/// Returns the names of a group's tracks.
 fn tracks<'a>(trace: &'a Trace, group: &str) -> Vec<&'a str> {
     let tracks = trace.tracks.iter().filter(|track| trace.groups[track.group] == group);
     tracks.map(|track| track.name.as_str()).collect()

@@ -1,8 +1,8 @@
-//! What a visitor can choose.
+//! Lists of everything that a visitor of the page can choose.
 
 use serde_json::{Value, json};
 
-/// Motions of a head that need no recording, with what they are; the empty one is the scene's own.
+/// Motions of the head that need no recording, with descriptions. The empty name is the scene's own motion.
 const MOTIONS: [(&str, &str); 6] = [
     ("", "the scene's own motion, followed without delay"),
     ("still", "a head that stands still"),
@@ -12,7 +12,7 @@ const MOTIONS: [(&str, &str); 6] = [
     ("live.csv", "your own: drag across a picture while the machine runs"),
 ];
 
-/// Pipelines, scenes, displays and motions.
+/// Returns the pipelines, scenes, displays and motions as JSON.
 pub(crate) fn catalog() -> Value {
     let registry = pxpl5_lab::registry();
     let pipelines = registry.pipelines().iter();
@@ -27,12 +27,12 @@ pub(crate) fn catalog() -> Value {
     })
 }
 
-/// The names of a list in words: `optical, fastrak or ideal`.
+/// Splits a list in words into names, such as `optical, fastrak or ideal`.
 fn names(list: &str) -> Vec<&str> {
     list.split([',', ' ']).filter(|word| !word.is_empty() && *word != "or").collect()
 }
 
-/// A scene's name with a number where it takes one.
+/// Returns a scene's name with an example number in place of `N`.
 fn example(name: &str) -> String {
     let (family, count) = name.split_once(':').unwrap_or((name, ""));
     match count {

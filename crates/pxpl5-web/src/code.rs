@@ -1,15 +1,16 @@
-//! The i860 of a board that runs code: registers, and the instructions around where its last call ended.
+//! View of the i860 of a board that runs code: registers, and the instructions around the end of its last call.
 
 use i860::disassemble;
 use pxpl5_gp::Processor;
 use pxpl5_machine::Board;
 use pxpl5_run::Stepper;
 
-/// Instructions that are shown before and behind.
+/// Number of instructions that are shown before the program counter.
 const BEFORE: u32 = 8;
 const AFTER: u32 = 8;
 
-/// Lines of registers and code; none of a board without a processor, which there is at the cycle level alone.
+/// Returns lines with registers and code. They are empty for a board without a processor. Only the cycle level has
+/// processors.
 pub(crate) fn lines(stepper: &Stepper, board: Board) -> Vec<String> {
     stepper.machine().board(board).and_then(|gp| gp.with_processor(of)).unwrap_or_default()
 }
@@ -17,15 +18,17 @@ pub(crate) fn lines(stepper: &Stepper, board: Board) -> Vec<String> {
 fn of(processor: &Processor) -> Vec<String> {
     let state = processor.state();
     let mut lines = vec![format!("i860 after its last call: pc {:#010x}, psr {:#010x}", state.pc, state.psr)];
+    // Four rows show eight registers each.
     let rows = state.r.chunks(8).enumerate();
     lines.extend(rows.map(|(row, eight)| {
         let words: Vec<String> = eight.iter().map(|word| format!("{word:08x}")).collect();
         format!("r{:<2} {}", 8 * row, words.join(" "))
     }));
     let Some(program) = processor.program() else { return lines };
-    // A call ends where it returns to, outside of its code: then its begin is shown.
+    // A call ends at its return address, which lies outside of the code. Then the begin of the code is shown.
     let end = program.base + program.bytes.len() as u32;
     let at = if (program.base..end).contains(&state.pc) { state.pc & !3 } else { program.base };
+    // Show the instructions around this address, with labels and a mark.
     let begin = at.saturating_sub(4 * BEFORE).max(program.base);
     for address in (begin..end.min(at + 4 * AFTER)).step_by(4) {
         let Ok(words) = processor.read(address, 1) else { break };

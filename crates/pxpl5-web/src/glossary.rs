@@ -1,16 +1,16 @@
-//! The terms of the page, from the one place where they are explained: docs/glossary.md.
+//! The terms of the page, taken from docs/glossary.md.
 
 use serde_json::{Map, Value};
 
 const TEXT: &str = include_str!("../../../docs/glossary.md");
 
-/// Every term with its sentence. A term is a line `- **term**: sentence`.
+/// Returns all terms with their sentences as JSON. A term is a line `- **term**: sentence` of the document.
 pub(crate) fn glossary() -> Value {
     let terms = TEXT.lines().filter_map(|line| line.strip_prefix("- **")?.split_once("**: "));
     Value::Object(terms.map(|(term, sentence)| (term.to_owned(), plain(sentence).into())).collect::<Map<_, _>>())
 }
 
-/// A sentence without the marks of Markdown.
+/// Returns a sentence without the marks of Markdown.
 fn plain(sentence: &str) -> String {
     sentence.replace(['`', '*'], "")
 }

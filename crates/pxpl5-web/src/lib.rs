@@ -1,4 +1,5 @@
-//! The machine in a browser: an experiment in pieces ([`pxpl5_run::Stepper`]) behind wasm-bindgen, and the page that shows it.
+//! The machine in a browser. An experiment runs in pieces ([`pxpl5_run::Stepper`]) behind wasm-bindgen, and a page
+//! shows its state.
 //!
 //! ```text
 //!   address  #pipeline=slats&scene=mig&...  --> settings --> ExperimentFile --> Stepper     (this crate, compiled to wasm)
@@ -6,14 +7,14 @@
 //!            eyes, ring, boards  <---- bytes and JSON ---------------+
 //! ```
 //!
-//! Settings are those of experiment files, so that the page and the command run the same experiment and find the same trace hash. A page
-//! holds a [`WebMachine`] for each pipeline that it shows, in a worker of the browser; everything that it shows is asked for between two
-//! pieces of the run. Models and recordings that are dropped onto the page come as [`Files`]. `scripts/site` builds the page; the crate
-//! builds and its tests run without a browser.
+//! Settings have the format of experiment files. Page and command thus run the same experiment and get the same trace
+//! hash. A page has a [`WebMachine`] for each pipeline, in a worker of the browser. The page reads the state of the
+//! machine between two pieces of the run. Models and recordings that a visitor drops onto the page are passed as
+//! [`Files`]. `scripts/site` builds the page. Building and testing this crate needs no browser.
 //!
-//! Bytes of pictures are red, green, blue, 255 for each pixel, row by row from the left top.
+//! Pictures are returned as bytes: red, green, blue and 255 for each pixel, row by row from the top left.
 //!
-//! **Not here:** files and threads; what follows a head keeps the reports of its tracker for the whole run.
+//! **Not here:** files and threads. The tracker's reports for a head stay in memory for the whole run.
 
 mod catalog;
 mod code;
@@ -29,14 +30,14 @@ pub use files::Files;
 use session::Session;
 use wasm_bindgen::prelude::{JsError, wasm_bindgen};
 
-/// What there is to choose, as JSON: pipelines, scenes, displays and motions, each with its name and what it is.
+/// Returns all choices as JSON: pipelines, scenes, displays and motions, each with name and description.
 #[wasm_bindgen]
 #[must_use]
 pub fn catalog() -> String {
     catalog::catalog().to_string()
 }
 
-/// Every term of the glossary with its sentence, as JSON.
+/// Returns all terms of the glossary with their sentences, as JSON.
 #[wasm_bindgen]
 #[must_use]
 pub fn glossary() -> String {
@@ -54,167 +55,174 @@ fn refused(error: String) -> JsError {
 
 #[wasm_bindgen]
 impl WebMachine {
-    /// Builds the experiment of some settings, one `key=value` a line, as in experiment files; they may name some files.
+    /// Builds the experiment from settings, with one `key=value` a line as in experiment files. The settings may name
+    /// files in `files`.
     ///
     /// # Errors
     ///
-    /// What is wrong with a setting, with a file, or with the experiment, in words.
+    /// A message about the invalid setting, file or experiment.
     #[wasm_bindgen(constructor)]
     pub fn new(settings: &str, files: &Files) -> Result<Self, JsError> {
         Session::new(settings, files).map(Self).map_err(refused)
     }
 
-    /// Runs for so many picoseconds of simulated time, or to the end.
+    /// Runs for `ps` picoseconds of simulated time, or to the end.
     pub fn run_for(&mut self, ps: f64) {
         self.0.run_for(ps as u64);
     }
 
-    /// Runs to an instant, picoseconds; one that has passed is reached at once.
+    /// Runs to an instant in picoseconds. For an instant in the past, nothing happens.
     pub fn run_to(&mut self, ps: f64) {
         self.0.run_to(ps as u64);
     }
 
-    /// Says how a head goes on that is moved on the page (`head.motion=live.csv`): rows of a recording with its head line, the last of which is
-    /// not before the instant to which the machine runs next.
+    /// Extends the motion of a head that is moved on the page (`head.motion=live.csv`). `rows` is a recording with its
+    /// header line. The last row must not be earlier than the instant to which the machine runs next.
     ///
     /// # Errors
     ///
-    /// For rows that are none, that are not later than those before, and for another head.
+    /// A message for invalid rows, for rows that are not later than earlier ones, and for a head that is not moved on
+    /// the page.
     pub fn moved(&self, rows: &str) -> Result<(), JsError> {
         self.0.moved(rows).map_err(refused)
     }
 
-    /// Goes on by one `event`, `line` or `field`.
+    /// Runs for one `event`, `line` or `field`.
     ///
     /// # Errors
     ///
-    /// For another word.
+    /// A message for any other word.
     pub fn step(&mut self, of: &str) -> Result<(), JsError> {
         self.0.step(of).map_err(refused)
     }
 
-    /// The simulated instant, picoseconds.
+    /// Returns the simulated instant in picoseconds.
     #[must_use]
     pub fn now(&self) -> f64 {
         self.0.stepper().now().0 as f64
     }
 
-    /// Where the run stands, as JSON: time, surfaces, what failed. Times are in picoseconds.
+    /// Returns the state of the run as JSON: times in picoseconds, surfaces and failures.
     #[must_use]
     pub fn state(&self) -> String {
         self.0.state().to_string()
     }
 
-    /// The message on each channel of the ring, or null, as JSON.
+    /// Returns the message on each channel of the ring as JSON. A free channel is null.
     #[must_use]
     pub fn channels(&self) -> String {
         look::channels(self.0.stepper()).to_string()
     }
 
-    /// A line for each board, as JSON.
+    /// Returns a description of each board as JSON.
     #[must_use]
     pub fn boards(&self) -> String {
         look::boards(self.0.stepper()).to_string()
     }
 
-    /// What one board does (`gp 3`, `renderer 0`, `host`), line by line.
+    /// Returns a description of one board (`gp 3`, `renderer 0`, `host`), one fact a line.
     ///
     /// # Errors
     ///
-    /// For a board that the machine does not have.
+    /// A message for a board that the machine does not have.
     pub fn board(&self, name: &str) -> Result<String, JsError> {
         self.0.board(name).map(|lines| lines.join("\n")).map_err(refused)
     }
 
-    /// The fields of a pixel's memory in a renderer, line by line; empty before its first command, and beside the array.
+    /// Returns the fields of a pixel's memory in a renderer, one a line. The text is empty before the renderer's first
+    /// command, and outside the array.
     #[must_use]
     pub fn pixel(&self, renderer: usize, x: u32, y: u32) -> String {
         look::pixel(self.0.stepper(), renderer, x, y).unwrap_or_default().join("\n")
     }
 
-    /// What stands before a viewer of a surface, as far as the beam has drawn; empty where nothing can be said.
+    /// Returns the picture on a surface as the viewer sees it now, up to the beam. Empty if no picture is available.
     #[must_use]
     pub fn seen(&self, surface: u16) -> Vec<u8> {
         self.0.seen(surface)
     }
 
-    /// What should stand there now, in the same form; empty where there is none.
+    /// Returns the ideal picture of a surface for the present instant, as bytes. Empty if the surface has none.
     #[must_use]
     pub fn ideal(&self, surface: u16) -> Vec<u8> {
         self.0.ideal(surface)
     }
 
-    /// A heat map of how far both differ: black not at all, red, yellow, white; empty where there is no ideal picture.
+    /// Returns a heat map of the differences between the seen picture and the ideal one. Black means equal, then red,
+    /// yellow and white follow. Empty without an ideal picture.
     #[must_use]
     pub fn heat(&self, surface: u16) -> Vec<u8> {
         self.0.difference(surface).map(|difference| difference.heat).unwrap_or_default()
     }
 
-    /// The same as numbers, as JSON: percent of the pixels that differ, and mean of their largest differences in percent; `null` where
-    /// there is no ideal picture.
+    /// Returns the difference between the seen picture and the ideal one as JSON. The object has the percentage of pixels
+    /// that differ, and the mean of their largest differences in per cent. `null` without an ideal picture.
     #[must_use]
     pub fn difference(&self, surface: u16) -> String {
         self.0.difference(surface).map_or_else(|| "null".to_owned(), |difference| difference.numbers().to_string())
     }
 
-    /// The 128 x 128 pixels of a renderer: colours in its memory, enabled pixels green; empty before its first command.
+    /// Returns the 128 x 128 pixels of a renderer: the colours in its memory, with enabled pixels in green. Empty
+    /// before its first command.
     #[must_use]
     pub fn renderer(&self, renderer: usize) -> Vec<u8> {
         pictures::renderer(self.0.stepper(), renderer)
     }
 
-    /// The six faces that a display memory shows to an eye, 0 or 1, as a cross of 512 x 384; empty where there is none.
+    /// Returns the six faces of a display memory for an eye, 0 or 1, as a cross of 512 x 384 pixels. Empty without such
+    /// a memory.
     #[must_use]
     pub fn faces(&self, eye: usize, memory: usize) -> Vec<u8> {
         self.0.faces(eye, memory)
     }
 
-    /// The last periods as the papers draw them, as SVG.
+    /// Returns the last `fields` periods as a timeline in SVG.
     #[must_use]
     pub fn timeline(&self, fields: u32) -> String {
         look::timeline(self.0.stepper(), u64::from(fields))
     }
 
-    /// Where the latency of the last complete pictures went, as JSON.
+    /// Returns the latency parts of the last complete pictures, at most `most`, as JSON.
     #[must_use]
     pub fn latencies(&self, most: usize) -> String {
         look::latencies(self.0.stepper(), most).to_string()
     }
 
-    /// The scene of this experiment on the spinning display.
+    /// Draws the scene of this experiment for the spinning display.
     ///
     /// # Errors
     ///
-    /// What is wrong with the scene, in words.
+    /// A message if the scene cannot be drawn.
     pub fn volume(&self) -> Result<WebVolume, JsError> {
         self.0.volume().map(WebVolume).map_err(refused)
     }
 }
 
-/// A scene on the display of the SpatialGL paper: 396 slices of a turn.
+/// A scene on the display of the SpatialGL paper, with 396 slices a turn.
 #[wasm_bindgen]
 #[derive(Debug)]
 pub struct WebVolume(volume::Volume);
 
 #[wasm_bindgen]
 impl WebVolume {
-    /// Slices, and width and height of one in pixels.
+    /// Returns the number of slices, and the width and height of a slice in pixels.
     #[must_use]
     pub fn size(&self) -> Vec<u32> {
         self.0.size().to_vec()
     }
 
-    /// A slice as its three bits a pixel light it.
+    /// Returns a slice as bytes. Each pixel is lit by its three bits.
     #[must_use]
     pub fn slice(&self, number: u32) -> Vec<u8> {
         self.0.slice(number)
     }
 
-    /// What an eye sees of a turn, from an azimuth and an elevation in degrees, `side` pixels wide and high.
+    /// Returns the view of an eye over one turn, for an azimuth and an elevation in degrees. The picture is `side`
+    /// pixels wide and high.
     ///
     /// # Errors
     ///
-    /// For an eye that sees nothing.
+    /// A message for an eye that sees nothing.
     pub fn seen(&self, azimuth_deg: f64, elevation_deg: f64, side: u32) -> Result<Vec<u8>, JsError> {
         self.0.seen(azimuth_deg, elevation_deg, side).map_err(refused)
     }

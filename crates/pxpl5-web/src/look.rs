@@ -1,4 +1,4 @@
-//! What the page shows of the machine, as JSON and SVG.
+//! State of the machine as JSON and SVG for the page.
 
 use crate::code;
 use crate::pictures;
@@ -7,7 +7,7 @@ use pxpl5_run::{LATENCY_PARTS, Stepper};
 use pxpl5_views::timeline::{self, TimelineOptions};
 use serde_json::{Value, json};
 
-/// Where the run stands and what is on the ring.
+/// Returns the state of the run: time, failure, hashes and surfaces.
 pub(crate) fn state(stepper: &Stepper, is_over: bool) -> Value {
     let record = stepper.record();
     let surfaces = record
@@ -29,7 +29,7 @@ pub(crate) fn state(stepper: &Stepper, is_over: bool) -> Value {
     })
 }
 
-/// A message or nothing for each channel of the ring.
+/// Returns the message on each channel of the ring, or null for a free channel.
 pub(crate) fn channels(stepper: &Stepper) -> Value {
     let ports = stepper.record().ports();
     let on = stepper.channels();
@@ -42,7 +42,7 @@ pub(crate) fn channels(stepper: &Stepper) -> Value {
     all.map(|number| channel(number).unwrap_or(Value::Null)).collect()
 }
 
-/// A line for each board.
+/// Returns an object for each board.
 pub(crate) fn boards(stepper: &Stepper) -> Value {
     stepper.boards().filter_map(|board| Some(line(stepper, board, &stepper.says(board)?))).collect()
 }
@@ -50,6 +50,7 @@ pub(crate) fn boards(stepper: &Stepper) -> Value {
 fn line(stepper: &Stepper, board: Board, says: &str) -> Value {
     let name = board.to_string();
     match board {
+        // A renderer works while commands wait in its FIFO or a region is being copied.
         Board::Renderer(number) => {
             let look = stepper.renderer(number);
             let fifo = look.and_then(|look| look.fifo_words).unwrap_or_default();
@@ -66,7 +67,7 @@ fn line(stepper: &Stepper, board: Board, says: &str) -> Value {
     }
 }
 
-/// Everything of one board, line by line; `None` where the machine has no such board.
+/// Returns all facts about one board, one a line. Returns `None` if the machine does not have the board.
 pub(crate) fn board(stepper: &Stepper, board: Board) -> Option<Vec<String>> {
     if board == Board::Ring {
         return Some(vec![format!("occupied channels: {}", stepper.channels().len())]);
@@ -81,7 +82,8 @@ pub(crate) fn board(stepper: &Stepper, board: Board) -> Option<Vec<String>> {
     Some(lines)
 }
 
-/// The fields of a pixel's memory, line by line; `None` where there is no such pixel, or nothing has been drawn yet.
+/// Returns the fields of a pixel's memory, one a line. Returns `None` for an invalid pixel, or before the first
+/// command.
 pub(crate) fn pixel(stepper: &Stepper, renderer: usize, x: u32, y: u32) -> Option<Vec<String>> {
     let fields = stepper.pixel_fields(renderer, x, y)?.into_iter();
     let lines = fields.map(|field| {
@@ -92,7 +94,7 @@ pub(crate) fn pixel(stepper: &Stepper, renderer: usize, x: u32, y: u32) -> Optio
     Some(lines.collect())
 }
 
-/// The last periods as the papers draw them.
+/// Returns the last periods as a timeline in SVG.
 pub(crate) fn timeline(stepper: &Stepper, fields: u64) -> String {
     let run = stepper.so_far();
     let newest = run.pictures().iter().rev().find(|times| times.is_shown() && times.shown_at <= stepper.now());
@@ -105,7 +107,7 @@ pub(crate) fn timeline(stepper: &Stepper, fields: u64) -> String {
     timeline::drawing(&run, &options)
 }
 
-/// Where the latency of the last complete pictures went, in milliseconds, the newest last.
+/// Returns the latency parts of the last complete pictures in milliseconds, the newest last.
 pub(crate) fn latencies(stepper: &Stepper, most: usize) -> Value {
     let parts = LATENCY_PARTS.iter();
     let pictures = stepper.so_far().last_latencies(most);

@@ -1,4 +1,4 @@
-//! Pictures as bytes of a canvas: red, green, blue, 255 for each pixel, row by row.
+//! Pictures as bytes of a canvas: red, green, blue and 255 for each pixel, row by row.
 
 use address_recalculation::{AddressRecalculationPipeline, CubeFace, TexelAddress};
 use image::RgbImage;
@@ -7,7 +7,7 @@ use pxpl5_run::{Stepper, bit_of};
 use pxpl5_wire::{Eye, REGION_SIZE, SurfaceId};
 use serde_json::{Value, json};
 
-/// Bytes of a picture.
+/// Returns the bytes of a picture.
 pub(crate) fn rgba(picture: &RgbImage) -> Vec<u8> {
     let mut bytes = vec![u8::MAX; picture.len() / 3 * 4];
     for (four, three) in bytes.chunks_exact_mut(4).zip(picture.chunks_exact(3)) {
@@ -20,17 +20,17 @@ const fn opaque([red, green, blue]: [u8; 3]) -> [u8; 4] {
     [red, green, blue, u8::MAX]
 }
 
-/// What a viewer sees beside what he should see: a heat map of the largest difference of a colour, and numbers.
+/// Difference between the seen picture and the ideal one: a heat map of the largest difference of any colour, and sums.
 pub(crate) struct Difference {
     pub(crate) heat: Vec<u8>,
     pixels: usize,
     differing: usize,
-    /// Sum of the differences, in steps of 255.
+    /// Sum of the largest differences of all pixels, in steps of 1/255.
     sum: u64,
 }
 
 impl Difference {
-    /// `None` where one of both cannot be said.
+    /// Computes the difference for a surface. Returns `None` if either picture is not available.
     pub(crate) fn of(stepper: &Stepper, surface: SurfaceId) -> Option<Self> {
         let seen = stepper.seen(surface)?;
         let ideal = stepper.ideal_picture(surface)?;
@@ -45,7 +45,7 @@ impl Difference {
         Some(difference)
     }
 
-    /// Share of the pixels that differ, and the mean of all pixels' largest differences, both in percent.
+    /// Returns the share of pixels that differ and the mean of all pixels' largest differences, both in per cent.
     pub(crate) fn numbers(&self) -> Value {
         let pixels = self.pixels.max(1) as f64;
         json!({
@@ -55,14 +55,14 @@ impl Difference {
     }
 }
 
-/// Black where nothing differs, then red, yellow, white.
+/// Returns the heat colour of a difference: black for 0, then red, yellow and white.
 fn heat(difference: u8) -> [u8; 3] {
     let rising = |from: u16| (u16::from(difference).saturating_sub(from) * 3).min(255) as u8;
     [rising(0), rising(85), rising(170)]
 }
 
-/// The 128 x 128 pixels of a renderer as far as its commands have started: their colours, and in green the pixels that the command
-/// before the one that has not started has left enabled. Empty before its first command.
+/// Returns the 128 x 128 pixels of a renderer, after all commands that have started. Pixels that the last started
+/// command has left enabled are green, and the others have their colours. Empty before the first command.
 pub(crate) fn renderer(stepper: &Stepper, number: usize) -> Vec<u8> {
     let Some(array) = stepper.array(number) else { return Vec::new() };
     let colours = array.read_colour(REGION_SIZE, REGION_SIZE);
@@ -80,10 +80,11 @@ pub(crate) fn renderer(stepper: &Stepper, number: usize) -> Vec<u8> {
 /// Colour of an enabled pixel.
 const ENABLED: [u8; 3] = [79, 209, 165];
 
-/// Side of a face in the picture of six, pixels.
+/// Side of a face in the picture of six faces, in pixels.
 pub(crate) const FACE_SIDE: u32 = 128;
 
-/// Where the faces stand in a cross of 4 x 3: left, ahead, right, behind in the middle row, above and below ahead.
+/// Column and row of each face in a cross of 4 x 3 faces. The middle row shows left, ahead, right and behind. Above and
+/// below lie over and under ahead.
 const CROSS: [(CubeFace, u32, u32); 6] = [
     (CubeFace::PosY, 1, 0),
     (CubeFace::NegX, 0, 1),
@@ -93,20 +94,21 @@ const CROSS: [(CubeFace, u32, u32); 6] = [
     (CubeFace::NegY, 1, 2),
 ];
 
-/// How many display memories an eye has; 0 of a display that looks no pixels up.
+/// Returns the number of display memories of an eye. The number is 0 for a display without address recalculation.
 pub(crate) fn memories(stepper: &Stepper) -> usize {
     let display = stepper.record().display_of_kind::<AddressRecalculationPipeline>();
     display.map_or(0, |display| display.memories(Eye::Left).len())
 }
 
-/// The six faces that a display memory shows to an eye now, each of [`FACE_SIDE`] pixels, as a cross; `None` where there is no such
-/// memory.
+/// Returns the six faces that a display memory shows to an eye now, as a cross. Each face has [`FACE_SIDE`] pixels a
+/// side. Returns `None` for a memory that does not exist.
 pub(crate) fn faces(stepper: &Stepper, eye: Eye, memory: usize) -> Option<Vec<u8>> {
     let display = stepper.record().display_of_kind::<AddressRecalculationPipeline>()?;
     let faces = display.memories(eye).get(memory)?.shown_faces();
     let step = faces.texels() / FACE_SIDE;
     let mut cross = RgbImage::from_pixel(4 * FACE_SIDE, 3 * FACE_SIDE, image::Rgb([40, 44, 48]));
     for (face, column, row) in CROSS {
+        // Sample the face at the resolution of the cross.
         for (x, y) in (0..FACE_SIDE * FACE_SIDE).map(|at| (at % FACE_SIDE, at / FACE_SIDE)) {
             let texel = TexelAddress { face, column: x * step, row: y * step };
             let colour = faces.texel(texel).map_or(0, |(colour, _)| colour);

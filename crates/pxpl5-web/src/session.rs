@@ -1,4 +1,4 @@
-//! A run in pieces, with what the page asks of it.
+//! A run in pieces with the functions that the page needs.
 
 use crate::files::Files;
 use crate::look;
@@ -13,21 +13,22 @@ use serde_json::Value;
 use std::sync::Arc;
 use tracking::motion::{Growing, Recording};
 
-/// The name of a recording that goes on while the run does: a head that is moved on the page.
+/// Name of the recording for a head that is moved on the page. The recording grows during the run.
 const LIVE: &str = "live.csv";
 
 /// A running experiment.
 #[derive(Debug)]
 pub(crate) struct Session {
     stepper: Stepper,
-    /// Whether all fields have been simulated.
+    /// True if all fields have been simulated.
     is_over: bool,
-    /// The head's motion, where it is moved on the page.
+    /// Motion of a head that is moved on the page, otherwise `None`.
     moves: Option<Growing>,
 }
 
 impl Session {
-    /// Of settings as experiment files have them, one a line, with the contents of files that they may name.
+    /// Creates a session from settings, one a line as in experiment files. `files` has the contents of files that the
+    /// settings name.
     pub(crate) fn new(settings: &str, files: &Files) -> Result<Self, String> {
         let mut file = ExperimentFile::new();
         for (name, contents) in &files.0 {
@@ -36,9 +37,11 @@ impl Session {
         for setting in settings.lines().map(str::trim).filter(|setting| !setting.is_empty()) {
             file.set_text(setting, "settings").map_err(|error| error.to_string())?;
         }
+        // Resolve all settings together, then keep only recent records, because a page may run for hours.
         let plan = file.resolve().map_err(|error| error.to_string())?;
         let scene = plan.load_scene().map_err(|error| error.to_string())?;
         let experiment = plan.experiment(scene).host(BareHost).record_traffic(true).keep(Keep::Recent);
+        // A motion named `live.csv` grows during the run.
         let live =
             files.0.get(LIVE).filter(|_| settings.lines().any(|line| line.trim() == format!("head.motion={LIVE}")));
         let (experiment, moves) = match live {
@@ -49,8 +52,8 @@ impl Session {
         Ok(Self { stepper, is_over: false, moves })
     }
 
-    /// Says how the head that is moved on the page goes on: rows of its recording, the last of which is not before the instant to which
-    /// the machine will run next.
+    /// Extends the motion of the head that is moved on the page. The last row of `rows` must not be earlier than the
+    /// instant to which the machine runs next.
     pub(crate) fn moved(&self, rows: &str) -> Result<(), String> {
         let moves = self.moves.as_ref().ok_or("this head is not moved on the page")?;
         let more = Recording::read(rows.as_bytes()).map_err(|error| error.to_string())?;
@@ -62,7 +65,7 @@ impl Session {
     }
 
     pub(crate) fn run_to(&mut self, ps: u64) {
-        // An instant behind the end is what says that the end has come.
+        // Only a run to an instant after the end reports that the end was reached.
         let pause = self.stepper.run_to(Time(ps).min(self.stepper.end() + Span(1)));
         self.note(&pause);
     }
@@ -112,13 +115,14 @@ impl Session {
         faces.unwrap_or_default()
     }
 
-    /// The scene of the run on the spinning display.
+    /// Draws the scene of the run for the spinning display.
     pub(crate) fn volume(&self) -> Result<Volume, String> {
         Volume::draw(self.stepper.experiment().scene())
     }
 }
 
-/// The experiment with a head that begins as a recording does. Nothing can be known of it ahead, so that nothing is predicted.
+/// Gives the experiment a head whose motion begins with a recording and grows later. The future of the motion is
+/// unknown, so prediction is refused.
 fn moved_on_the_page(experiment: Experiment, begin: &[u8]) -> Result<(Experiment, Option<Growing>), String> {
     let Some(head) = experiment.tracked_head().cloned() else { return Ok((experiment, None)) };
     if head.predicts() {
@@ -141,7 +145,7 @@ mod tests {
 
     const SETTINGS: &str = "pipeline=slats\nscene=full-screen:2\nfields=7\n";
 
-    /// The page's hash is that of a run in one go, as the command prints it.
+    /// The hash of the page is that of an uninterrupted run, as the command prints it.
     #[test]
     fn a_run_of_the_page_has_the_trace_hash_of_the_run() {
         let mut session = new(SETTINGS).expect("known settings");
@@ -163,7 +167,7 @@ mod tests {
         assert_eq!(session.state()["config_hash"], outcome.experiment().config_hash().to_string());
     }
 
-    /// A sample sixty times a second, as the page makes them.
+    /// Returns a row of a recording with sixty samples a second, as the page makes them.
     fn row(n: u64) -> String {
         let half = f64::sin(n as f64 / 9.0) / 8.0;
         format!("{:.6},0,0,0,{:.9},0,{:.9},0\n", n as f64 / 60.0, half.cos(), half.sin())
@@ -177,7 +181,7 @@ mod tests {
         Files([(name.to_owned(), rows.into_bytes().into())].into_iter().collect())
     }
 
-    /// The promise of the link: what was moved while the machine ran is, as a recording, the same run.
+    /// A link can replay a session: the recorded motion gives the same run as the motion that was made during the run.
     #[test]
     fn a_head_that_is_moved_while_the_machine_runs_is_its_recording() {
         for pipeline in

@@ -1,4 +1,4 @@
-//! Policy `cells`: structures in cells of the world, dealt to memories around the user's.
+//! Policy `cells`: the cells around the user are distributed over the display memories.
 
 use super::face_plan::{Due, DuePolicy, Updates, place};
 use cube_control::FaceWarp;
@@ -10,18 +10,20 @@ use pxpl5_wire::PictureNumber;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// Region priority rendering: a structure is in the fastest memory of any of its cells; what moves by itself in memory 0.
+/// Region priority rendering. A structure is in the fastest memory of any of its cells. A structure that moves by
+/// itself is in memory 0.
 ///
-/// All memories of a cycle are drawn from one place of the eye, so that the places that warping knows are those that are drawn from. With
-/// warping, memories of a cycle swap together: one that were shown before its neighbour would be warped for a place that nobody sees.
+/// All memories of a cycle are drawn from one position of the eye, because warping must know the exact positions. With
+/// warping, all memories of a cycle swap together. A memory that swapped before its neighbour would be warped for a
+/// position that is not displayed.
 pub(super) struct ByCells {
     policy: Cells,
     cells: Arc<[Vec<Cell>]>,
     falloff: Falloff,
     length_m: f64,
-    /// Where each memory was last drawn from.
+    /// Eye position from which each memory was last drawn.
     drawn_from: Vec<DVec3>,
-    /// Whether each memory held anything in its last update.
+    /// For each memory, true if its last update contained any structure.
     held: Vec<bool>,
     has_moving: bool,
 }
@@ -41,13 +43,13 @@ impl ByCells {
         }
     }
 
-    /// The memory of a structure.
+    /// Returns the memory of a structure.
     fn memory(&self, structure: usize) -> usize {
         let cells = self.cells.get(structure).into_iter().flatten();
         cells.map(|cell| self.policy.dealing().memory(*cell)).min().unwrap_or(0)
     }
 
-    /// How an update meets the slower memory.
+    /// Returns the warp that makes an update of a memory meet the next slower memory.
     fn warp(&self, memory: usize) -> Option<FaceWarp> {
         let slower_from = *self.drawn_from.get(memory + 1).filter(|_| self.falloff != Falloff::None)?;
         Some(FaceWarp {
@@ -59,7 +61,7 @@ impl ByCells {
         })
     }
 
-    /// Memories that are drawn now; what was empty and is empty still need not be.
+    /// Returns the memories to draw now. A memory that was empty and is still empty is left out.
     fn drawn(&mut self, due: &[bool], of_memories: &[Arc<[bool]>]) -> Vec<usize> {
         let mut drawn = Vec::new();
         for (memory, structures) in of_memories.iter().enumerate().filter(|(memory, _)| due[*memory]) {
@@ -80,14 +82,16 @@ impl DuePolicy for ByCells {
         if !update.due.contains(&true) {
             return VecDeque::new();
         }
+        // All memories of the cycle use one view.
         let view = updates.view(number, now);
         let from = view.eyes.first().map_or(eye, |eye| place(&eye.world_to_eye));
         for (memory, drawn_from) in self.drawn_from.iter_mut().enumerate() {
-            // A memory without cells is right from everywhere: no vertex is moved to meet it.
+            // A memory without cells needs no warp, because it is correct from everywhere.
             if update.due[memory] || self.policy.way(eye, memory).is_infinite() {
                 *drawn_from = from;
             }
         }
+        // Assign the structures to memories, and decide which memories swap together.
         let memories: Vec<usize> = (0..self.cells.len()).map(|structure| self.memory(structure)).collect();
         let of_memory = |memory: usize| memories.iter().map(|held_by| *held_by == memory).collect();
         let of_memories: Vec<Arc<[bool]>> = (0..update.due.len()).map(of_memory).collect();

@@ -1,4 +1,4 @@
-//! Address recalculation pipelines in the registry: names, keys, variants.
+//! Registry entries of the address recalculation pipelines: names, keys and variants.
 
 use super::face_keys::{IDEAL_NAMES, LENS, NAMES, POLICIES, POLICY, SEGMENT, WARP};
 use super::faces::{FaceLens, FacePipeline, FacePolicy, FaceSource};
@@ -11,11 +11,11 @@ use priority_rendering::{Falloff, PriorityTiming};
 use pxpl5_machine::NamedTable;
 use std::sync::Arc;
 
-/// Keys by policy.
+/// Keys of each policy.
 const KEYS: [&[Key]; 4] =
     [&[SHADING, LENS], &[SHADING, LENS], &[SHADING, LENS, SEGMENT], &[SHADING, LENS, SEGMENT, WARP]];
 
-/// Keys of an ideal source, which has any policy; those of cells mean something where there are cells.
+/// Keys of an ideal source, which supports every policy. The keys for cells have an effect only with cells.
 const IDEAL_KEYS: &[Key] = &[SHADING, LENS, POLICY, SEGMENT, WARP];
 
 const TABLES: &[NamedTable] = &[("priority", || Box::new(PriorityTiming::PAPERS))];
@@ -23,7 +23,7 @@ const TABLES: &[NamedTable] = &[("priority", || Box::new(PriorityTiming::PAPERS)
 const ALL_POLICIES: [FacePolicy; 4] =
     [FacePolicy::Full, FacePolicy::Objects, FacePolicy::Cells, FacePolicy::CellsWarped];
 
-/// What entries have in common.
+/// Returns a registry entry of the family `arp`.
 const fn named(
     name: &'static str,
     about: &'static str,
@@ -78,11 +78,11 @@ fn build_ideal(latch: Latch, settings: &PipelineSettings) -> Arc<dyn Pipeline> {
     Arc::new(with_settings(FacePipeline { source: FaceSource::Ideal, ..FacePipeline::new(policy) }, latch, settings))
 }
 
-/// What variants are that latch orientations more often than the one above them.
+/// Descriptions of variants that latch orientations more often than the variant above them.
 const BY_LINE: &str = "the same, with an orientation for each line";
 const BY_PIXEL: &str = "the same, with orientations as often as the host's line carries them, latched by pixel";
 
-/// An entry for a policy and a latch.
+/// Creates an entry from a policy and a latch mode.
 macro_rules! entry {
     ($policy:ident, $latch:ident, $about:expr) => {
         entry((FacePolicy::$policy, Latch::$latch), $about, |settings| {
@@ -91,7 +91,7 @@ macro_rules! entry {
     };
 }
 
-/// Address recalculation pipelines in the registry.
+/// Registry entries of the address recalculation pipelines.
 pub(super) const ENTRIES: [PipelineEntry; 15] = [
     entry!(Full, Field, "six faces in one memory, looked up by the orientation of each field (VRAIS 93)"),
     entry!(Full, Line, BY_LINE),

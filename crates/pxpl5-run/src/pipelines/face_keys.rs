@@ -1,9 +1,9 @@
-//! Names of address recalculation pipelines, and of what can be set in them.
+//! Names and keys of the address recalculation pipelines.
 
 use crate::keys::{Key, KeyValues};
 use priority_rendering::Falloff;
 
-/// Names by policy and latch.
+/// Pipeline names by policy and latch mode.
 pub(super) const NAMES: [[&str; 3]; 4] = [
     ["arp-full", "arp-full-line", "arp-full-pixel"],
     ["arp-priority", "arp-priority-line", "arp-priority-pixel"],
@@ -11,7 +11,7 @@ pub(super) const NAMES: [[&str; 3]; 4] = [
     ["arp-cells-warp", "arp-cells-warp-line", "arp-cells-warp-pixel"],
 ];
 
-/// Names of what an ideal renderer draws, by latch.
+/// Names of pipelines with an ideal renderer, by latch mode.
 pub(super) const IDEAL_NAMES: [&str; 3] = ["arp-ideal", "arp-ideal-line", "arp-ideal-pixel"];
 
 pub(super) const LENS: Key = Key {
@@ -21,7 +21,7 @@ pub(super) const LENS: Key = Key {
     sets: &[],
 };
 
-/// Policies by their names, in their order.
+/// Names of the policies, in the order of `FacePolicy`.
 pub(super) const POLICIES: [&str; 4] = ["full", "objects", "cells", "cells-warp"];
 
 pub(super) const POLICY: Key = Key {
@@ -31,7 +31,7 @@ pub(super) const POLICY: Key = Key {
     sets: &[],
 };
 
-/// Ways in which warping can fall off, as [`Falloff`] has them behind none.
+/// Names of the falloffs of warping, in the order of [`Falloff`], without the first one, `None`.
 const FALLOFFS: [&str; 3] = [Falloff::ALL[1].0, Falloff::ALL[2].0, Falloff::ALL[3].0];
 
 pub(super) const SEGMENT: Key = Key {

@@ -1,4 +1,4 @@
-//! Policy `objects`: a structure is in the slowest memory in which its image stays right.
+//! Policy `objects`: each structure is in the slowest memory in which its image stays correct.
 
 use super::face_plan::{Due, DuePolicy, Updates};
 use address_recalculation::Scan;
@@ -9,14 +9,14 @@ use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, PictureNumber};
 use std::collections::VecDeque;
 
-/// Priority rendering by objects: a structure is in the slowest memory in which its image stays right.
+/// Priority rendering by objects. Each structure is in the slowest memory in which its image stays correct.
 pub(super) struct ByObjects {
     scan: Scan,
     policy: Objects,
     threshold: Threshold,
     spheres: Vec<ObjectSphere>,
     cycle: u64,
-    /// The field at whose begin the last cycle began, and where the eye was.
+    /// First field of the last cycle, and the eye position at its beginning.
     began: Option<(PeriodNumber, DVec3)>,
 }
 
@@ -27,19 +27,21 @@ struct ObjectSphere {
     radius_m: f64,
 }
 
-/// The sphere around the middle of a structure's box that holds all of it.
+/// Returns a sphere that contains a structure. Its centre is the centre of the structure's bounding box.
 fn sphere_around(list: &DisplayList, structure: &DisplayStructure) -> ObjectSphere {
     let corners = list.triangles[structure.triangles.clone()].iter().flatten();
     let points = corners.map(|corner| (list.positions[*corner as usize].as_dvec3(), 0.0));
     let spheres = list.spheres[structure.spheres.clone()].iter();
     let all: Vec<(DVec3, f64)> =
         points.chain(spheres.map(|sphere| (sphere.centre.as_dvec3(), f64::from(sphere.radius)))).collect();
+    // The bounding box covers vertices and spheres.
     let low = all.iter().fold(DVec3::INFINITY, |low, (at, radius)| low.min(*at - DVec3::splat(*radius)));
     let high = all.iter().fold(DVec3::NEG_INFINITY, |high, (at, radius)| high.max(*at + DVec3::splat(*radius)));
     if all.is_empty() {
         return ObjectSphere { centre: DVec3::ZERO, radius_m: 0.0 };
     }
     let centre = (low + high) / 2.0;
+    // The radius reaches the farthest vertex or sphere surface.
     let radius_m = all.iter().map(|(at, radius)| centre.distance(*at) + radius).fold(0.0, f64::max);
     ObjectSphere { centre, radius_m }
 }
@@ -58,7 +60,8 @@ impl ByObjects {
         }
     }
 
-    /// For how long the image of a structure is right; one that moves by itself is never.
+    /// Returns the time, in seconds, for which the image of a structure stays correct. The time is 0 for a structure
+    /// that moves by itself.
     fn period_s(&self, moves: bool, structure: usize, eye: DVec3, speed: f64) -> f64 {
         let ObjectSphere { centre, radius_m } = self.spheres[structure];
         let animation_s = if moves { 0.0 } else { f64::INFINITY };
@@ -71,12 +74,13 @@ impl DuePolicy for ByObjects {
     fn begin(&mut self, updates: &Updates, _: PictureNumber, now: Time) -> VecDeque<Due> {
         let field = self.scan.field_at(now);
         let eye = (updates.setup.poses)(now, now).position;
-        // Without a cycle before there is no speed yet.
+        // The first cycle has no earlier position, so the speed is 0.
         let speed = self.began.map_or(0.0, |(before, from)| {
             let seconds = self.scan.retrace(field).since(self.scan.retrace(before)).as_ms() * 1e-3;
             eye.distance(from) / seconds
         });
         let moves = |structure: usize| updates.setup.moving.get(structure) == Some(&true);
+        // The policy decides from the period of each structure.
         let periods: Vec<f64> = (0..self.spheres.len()).map(|i| self.period_s(moves(i), i, eye, speed)).collect();
         let update = self.policy.frame(self.cycle, &periods);
         self.cycle += 1;

@@ -1,4 +1,5 @@
-//! What a host asks for next: all of the scene in one memory, or what a policy finds due.
+//! Plans of a host that requests updates: either the whole scene in one memory, or the memories that a policy finds
+//! due.
 
 use crate::face_notes::{FaceNote, FaceNotes};
 use crate::pipeline::Setup;
@@ -11,17 +12,17 @@ use pxpl5_wire::{PeriodNumber, PictureNumber, ViewNumber};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// What a host does when it is ready for an update.
+/// Function that returns the next action of a host that is ready for an update.
 pub(super) type Plan = Box<dyn FnMut(PictureNumber, Time) -> Planned>;
 
-/// What all plans have in common: views, starts, and where updates are noted.
+/// State that all plans need: views, frame starts, and the record of updates.
 pub(super) struct Updates {
     pub(super) setup: Setup,
     pub(super) projection: Mat4,
     pub(super) notes: FaceNotes,
-    /// Updates of each memory so far.
+    /// Number of updates of each memory so far.
     sent: Vec<u64>,
-    /// Whether something is fixed to the head, so that it must be known where that looks.
+    /// True if a structure is attached to the head. Its position then depends on the head's direction.
     has_head_frame: bool,
 }
 
@@ -31,16 +32,18 @@ impl Updates {
         Self { setup: setup.clone(), projection, notes: setup.notes.clone(), sent: vec![0; memories], has_head_frame }
     }
 
-    /// The view of an update that is sent now.
+    /// Returns the view of an update that is sent now.
     pub(super) fn view(&self, number: PictureNumber, now: Time) -> FrameView {
         (self.setup.views)(ViewNumber::taken_for(number), now)
     }
 
-    /// The next update of a memory, from where the eye is known to be now.
+    /// Returns the next update of a memory, drawn from the eye position that is known now.
     fn of_memory(&mut self, number: PictureNumber, now: Time, due: &Due) -> FaceUpdate {
         let view = due.view.clone().unwrap_or_else(|| self.view(number, now));
+        // The two buffers of a memory take turns.
         let buffer = (self.sent[due.memory] + 1) % 2;
         self.sent[due.memory] += 1;
+        // The record tells later which update each swap has shown.
         self.notes.write(FaceNote {
             picture: number,
             view: view.number,
@@ -59,8 +62,8 @@ impl Updates {
         }
     }
 
-    /// The view of an eye in the same place that is not turned: world axes are its own. What is fixed to the head is drawn where the head
-    /// is known to look, and turns with all else until it is drawn again.
+    /// Returns the view of an unrotated eye at the same position, with world axes. Structures attached to the head are
+    /// drawn in the known direction of the head. Until the next update, they turn with the faces.
     fn ahead(&self, view: &FrameView) -> FrameView {
         let eye = view.eyes.first();
         let place = eye.map_or(DVec3::ZERO, |eye| place(&eye.world_to_eye));
@@ -71,25 +74,25 @@ impl Updates {
     }
 }
 
-/// A memory that is to be drawn.
+/// A memory that is due, with the content of its update.
 #[derive(Clone, Debug)]
 pub(super) struct Due {
     pub(super) memory: usize,
     pub(super) together: u8,
     pub(super) structures: Arc<[bool]>,
     pub(super) at: Time,
-    /// The view that it is drawn from; `None` for the newest as it is sent.
+    /// View for the update. `None` selects the newest view at the time of sending.
     pub(super) view: Option<FrameView>,
     pub(super) warp: Option<FaceWarp>,
 }
 
-/// Where an eye is whose matrix turns and moves the world.
+/// Returns the position of an eye from its world-to-eye matrix.
 pub(super) fn place(world_to_eye: &Mat4) -> DVec3 {
     let matrix = world_to_eye.as_dmat4();
     -(DMat3::from_mat4(matrix).transpose() * matrix.w_axis.truncate())
 }
 
-/// One memory, all of it drawn in every update, one after the other.
+/// Plan with a single memory. Each update redraws all structures, one update after the other.
 pub(super) struct Full {
     updates: Updates,
     structures: Arc<[bool]>,
@@ -105,6 +108,7 @@ impl Full {
         match (self.updates.setup.starts)(now) {
             None => Planned::Nothing,
             Some(start) if start > now => Planned::Wait(start),
+            // The host is ready: request a redraw of everything.
             Some(_) => {
                 let due = Due {
                     memory: 0,
@@ -120,22 +124,23 @@ impl Full {
     }
 }
 
-/// A policy that says at the begin of a cycle what is due.
+/// A policy that finds the due memories at the beginning of a cycle.
 pub(super) trait DuePolicy {
-    /// Memories to be drawn, in the order in which they are sent: the first one as this update.
+    /// Returns the memories to draw, in the order of sending. The first one gets the update number `number`.
     fn begin(&mut self, updates: &Updates, number: PictureNumber, now: Time) -> VecDeque<Due>;
 }
 
-/// Priority rendering: what a policy finds due, in cycles.
+/// Plan for priority rendering: a policy finds the due memories of each cycle.
 ///
-/// A cycle begins when every memory that the cycle before found due has been sent, but not in the field in which that one began; the
-/// memories that are due then are sent in rising order. With a machine that is fast enough a cycle is a field, and begins with it.
+/// A cycle begins when all memories of the cycle before have been sent, but not in the field in which that cycle began.
+/// The due memories are sent in rising order. On a machine that is fast enough, each cycle takes one field and begins
+/// with the field.
 pub(super) struct Cycles<P> {
     updates: Updates,
     scan: Scan,
     policy: P,
     pending: VecDeque<Due>,
-    /// The field in which the last cycle began.
+    /// Field in which the last cycle began.
     began: Option<PeriodNumber>,
 }
 

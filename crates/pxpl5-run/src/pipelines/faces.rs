@@ -1,4 +1,5 @@
-//! Six faces of the cube around the eye, drawn by Pixel-Planes 5 for a display that turns with the head.
+//! Pipelines that draw the six faces of a cube around the eye. The display selects pixels by the orientation of the
+//! head.
 
 use super::face_cells::ByCells;
 use super::face_keys::{IDEAL_NAMES, LENS, NAMES, POLICIES, POLICY, SEGMENT, WARP};
@@ -28,62 +29,64 @@ use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
 
-/// What is drawn when.
+/// Policy that decides which structures are drawn into which display memory, and when.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FacePolicy {
-    /// One memory, all of it redrawn as often as the machine can.
+    /// One memory holds all structures and is redrawn as often as possible.
     Full,
-    /// A structure is in the slowest memory in which its image stays right (CPR05).
+    /// Each structure is in the slowest memory in which its image stays correct (CPR05).
     Objects,
-    /// A structure is in the memory of its cell, which lies around the user's (CPR05).
+    /// Each structure is in the memory of its cell, which depends on the distance to the user's cell (CPR05).
     Cells,
-    /// The same, with vertices moved so that memories meet at their borders.
+    /// Like [`FacePolicy::Cells`], with vertices moved so that the images of adjacent memories meet at their borders.
     CellsWarped,
 }
 
-/// Who draws faces.
+/// Renderer of the faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaceSource {
-    /// Rendering Control's firmware on the machine.
+    /// The firmware of Rendering Control on the machine.
     PixelPlanes,
-    /// An ideal renderer, in no time, from what is known of the eye at each retrace: what remains wrong is wrong for other reasons.
+    /// An ideal renderer without delay, which draws from the eye position that is known at each retrace. Errors that
+    /// remain have other causes than drawing time.
     Ideal,
 }
 
-/// Faces drawn for an address recalculation pipeline.
+/// A pipeline that draws six faces for an address recalculation pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FacePipeline {
-    /// Who draws.
+    /// Renderer of the faces.
     pub source: FaceSource,
-    /// What is drawn when.
+    /// Policy for the display memories.
     pub policy: FacePolicy,
-    /// Before what the display latches the orientation.
+    /// Interval at which the display latches the orientation: by field, by line or by pixel.
     pub latch: Latch,
-    /// Where colours are computed.
+    /// Method of shading.
     pub shading: Shading,
-    /// Whether structures are cut at the borders of cells, where there are cells; else all of a structure is in the fastest memory of any
-    /// of its cells.
+    /// With cells, true if structures are cut at the borders of cells. Otherwise a whole structure is in the fastest
+    /// memory of any of its cells.
     pub segmented: bool,
-    /// How warping falls off from the border to a slower memory, where cells are warped.
+    /// Decrease of the vertex displacement with the distance from the border to a slower memory, for warped cells.
     pub falloff: Falloff,
-    /// What lies between picture and eye.
+    /// Lens between display and eye.
     pub lens: FaceLens,
 }
 
-/// A lens that a few numbers describe.
+/// A lens that is defined by at most two numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FaceLens {
-    /// As the display has it: without a lens, unless its configuration says otherwise.
+    /// Lens of the display's configuration. By default, the display has no lens.
     #[default]
     OfDisplay,
-    /// The angle grows with the distance from the middle.
+    /// Lens whose viewing angle is proportional to the distance from the middle.
     Equidistant,
-    /// A radial polynomial, its two coefficients as bits, so that pipelines can be compared.
+    /// Radial polynomial lens with two coefficients. The coefficients are stored as bits, so that pipelines can be
+    /// compared.
     Radial([u64; 2]),
 }
 
 impl FaceLens {
-    /// `None` for a table, which has too many numbers.
+    /// Converts a lens. Returns `None` for a table, which has too many numbers.
     #[must_use]
     pub fn of(lens: Lens) -> Option<Self> {
         match lens {
@@ -94,7 +97,7 @@ impl FaceLens {
         }
     }
 
-    /// The lens; `None` for that of the display.
+    /// Returns the lens, or `None` for the lens of the display.
     #[must_use]
     pub fn lens(self) -> Option<Lens> {
         match self {
@@ -107,7 +110,7 @@ impl FaceLens {
         }
     }
 
-    /// As a key takes it; `None` for that of the display.
+    /// Returns the lens as text for an experiment file, or `None` for the lens of the display.
     fn text(self) -> Option<String> {
         match self.lens()? {
             Lens::Radial { k1, k2: 0.0 } => Some(format!("radial:{k1}")),
@@ -118,7 +121,7 @@ impl FaceLens {
 }
 
 impl FacePipeline {
-    /// Drawn by the machine, with a policy and the latch of the papers: before each field.
+    /// Creates a pipeline that runs on the machine. The latch mode is that of the papers: once a field.
     #[must_use]
     pub const fn new(policy: FacePolicy) -> Self {
         let source = FaceSource::PixelPlanes;
@@ -135,6 +138,7 @@ impl FacePipeline {
 
     fn config(self, machine: &Machine, pixels: bool) -> Result<CubeControlConfig, ConfigError> {
         let ports = machine.ports();
+        // The first GP is the master, and all others are slaves.
         let [master, slaves @ ..] = &ports.gps[..] else { return Err(too_few_gps(0)) };
         if slaves.is_empty() {
             return Err(too_few_gps(1));
@@ -152,11 +156,13 @@ impl FacePipeline {
     fn faces(self, machine: &Machine, pixels: bool) -> Result<Faces, ConfigError> {
         let display = display_of(machine.record())?.config();
         let texels = display.timing.face_texels as u32;
+        // A face is a square picture, divided into the usual regions.
         let grid = RegionGrid { width: texels, height: texels, region_width: REGION_SIZE, region_height: REGION_SIZE };
         let viewport = Viewport::new(grid, Lines::Frame)
             .map_err(|error| ConfigError::Board(format!("arp.face_texels: {error}")))?;
         let picture =
             Picture { viewport, shading: self.shading, binning: RegionBinning::Touched, layout: self.layout(), pixels };
+        // A display with packed texels takes one word a pixel, otherwise colour and depth are sent.
         let content = if display.format().words() == 1 { CopyContent::Packed } else { CopyContent::ColourAndDepth };
         if self.source == FaceSource::PixelPlanes {
             region_has_room(machine.record(), content.words().into())?;
@@ -165,11 +171,12 @@ impl FacePipeline {
         Ok(Faces { memories, picture, content })
     }
 
-    /// What the host does when it is ready for an update.
+    /// Returns the plan by which the host selects updates.
     fn plan(self, machine: &Machine, setup: &Setup) -> Result<Plan, ConfigError> {
         let display = display_of(machine.record())?.config();
         let projection = projection(display);
         let scan = display.scan().map_err(|error| ConfigError::Board(error.to_string()))?;
+        // An ideal renderer has no delay, so its views are predicted for the next field.
         let setup = &if self.source == FaceSource::Ideal { seen_next(setup, scan) } else { setup.clone() };
         let updates = Updates::new(setup, projection, display.timing.display_memories as usize);
         if self.policy == FacePolicy::Full && self.source == FaceSource::Ideal {
@@ -181,6 +188,7 @@ impl FacePipeline {
             let mut full = Full::new(updates);
             return Ok(Box::new(move |number, now| full.next(number, now)));
         }
+        // Other policies distribute structures over several memories and work in cycles.
         let timing =
             PriorityTiming { memories: display.timing.display_memories, ..priority_timing(machine.record().config())? };
         if self.policy == FacePolicy::Objects {
@@ -188,6 +196,7 @@ impl FacePipeline {
             let mut cycles = Cycles::new(updates, scan, policy);
             return Ok(Box::new(move |number, now| cycles.next(number, now)));
         }
+        // Without warping, cells use a falloff of `None`.
         let falloff = if self.policy == FacePolicy::CellsWarped { self.falloff } else { Falloff::None };
         let policy = ByCells::new(&updates, &timing, falloff);
         let mut cycles = Cycles::new(updates, scan, policy);
@@ -199,7 +208,7 @@ impl FacePipeline {
     }
 }
 
-/// The numbers of the policies, checked.
+/// Returns the numbers of the policies after a check of their ranges.
 fn priority_timing(config: &MachineConfig) -> Result<PriorityTiming, ConfigError> {
     let timing = config.firmware_table().copied().unwrap_or(PriorityTiming::PAPERS);
     timing.check().map_err(refused)?;
@@ -220,7 +229,7 @@ fn display_of(record: &Record) -> Result<&AddressRecalculationPipeline, ConfigEr
         .ok_or_else(|| ConfigError::Board(format!("faces need the display arp, found {}", record.display().name())))
 }
 
-/// The projection of a face with its guard texels, between the near and the far plane of the head-mounted display.
+/// Returns the projection of a face with its guard texels. Near and far plane are those of the head-mounted display.
 fn projection(display: &ArpConfig) -> Mat4 {
     let geometry = display.geometry();
     let HmdConfig { near_m: near, far_m: far, .. } = HmdConfig::unc();
@@ -232,10 +241,11 @@ fn projection(display: &ArpConfig) -> Mat4 {
     Mat4::from_cols(x, y, z, w)
 }
 
-/// The port of a display that orientations come to.
+/// Index of the display port that receives orientations.
 const ORIENTATION_PORT: usize = 0;
 
-/// The host's own line to the display: the orientation that the head begins with, then one for each report, or predicted ones.
+/// Connection from the host to the display that carries orientations. The first orientation is that of the start; later
+/// ones follow reports or are predicted.
 struct OrientationLine {
     reports: ReportTimes,
     poses: Poses,
@@ -276,7 +286,7 @@ impl Pipeline for FacePipeline {
         if self.source == FaceSource::Ideal {
             settings.push((POLICY.name, KeyValue::Name(POLICIES[self.policy as usize])));
         }
-        // Without a lens names of experiments are those from before there was one.
+        // The key for the lens is absent without a lens, so that names of older experiments stay valid.
         settings.extend(self.lens.text().map(|lens| (LENS.name, KeyValue::Text(lens.into()))));
         if self.has_cells() {
             settings.push((SEGMENT.name, KeyValue::Flag(self.segmented)));
@@ -304,9 +314,11 @@ impl Pipeline for FacePipeline {
         Some(self.latch)
     }
 
-    /// With a display that takes faces, which latches as this variant says; with one memory where all is drawn at once.
+    /// Ensures that the display takes faces and uses the latch mode and the lens of this variant. The policy `Full`
+    /// uses one display memory.
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         let mut config = config;
+        // Replace a display that takes no faces.
         if config.displays.first().is_none_or(|display| !display.takes_faces()) {
             let display = match self.source {
                 FaceSource::PixelPlanes => ArpConfig::MACHINE,
@@ -314,6 +326,7 @@ impl Pipeline for FacePipeline {
             };
             config.displays = vec![Box::new(display)];
         }
+        // Set the latch mode and the lens, which belong to the variant.
         if let Some(display) =
             config.displays.first_mut().and_then(|d| (d.as_mut() as &mut dyn Any).downcast_mut::<ArpConfig>())
         {
@@ -337,7 +350,8 @@ impl Pipeline for FacePipeline {
         cut.map(Some).map_err(refused)
     }
 
-    /// That vertices of warped cells move takes no time at any level; an ideal source has no graphics processors.
+    /// Returns a description for warped cells on the machine: the displacement of vertices takes no time at any level.
+    /// An ideal renderer uses no graphics processors.
     fn without_code(&self, _: &MachineConfig) -> Option<&'static str> {
         let is_warped = self.source == FaceSource::PixelPlanes && self.policy == FacePolicy::CellsWarped;
         is_warped.then_some("moving the vertices of warped cells (0 in the table)")
@@ -349,6 +363,7 @@ impl Pipeline for FacePipeline {
             return self.plug_ideal_source(machine, setup);
         }
         let config = self.config(machine, setup.pixels)?;
+        // All slaves share recent views, because each of them transforms for the same faces.
         let mut list = matte(&setup.list);
         list.recent = RecentViews::keeping(VIEWS_AT_A_TIME);
         let list = Arc::new(list);
@@ -358,6 +373,7 @@ impl Pipeline for FacePipeline {
         machine.load(config.host, foreground, Box::pin(host(gp, config.clone(), setup.host, plan)));
         let gp = machine.processor(config.master, foreground);
         machine.load(config.master, foreground, Box::pin(master(gp, config.clone())));
+        // Each slave gets its share of the triangles.
         for (index, node) in config.slaves.iter().enumerate() {
             let gp = machine.processor(*node, foreground);
             for (level, program) in slave(&gp, &config, config.share(&list, index), index) {
@@ -367,7 +383,7 @@ impl Pipeline for FacePipeline {
         Ok(())
     }
 
-    /// The updates of all memories.
+    /// Returns the updates of all display memories, in the order in which they are shown.
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         let Ok(display) = display_of(record) else { return Vec::new() };
         let ports = record.ports().display().iter().take(display.config().timing.display_memories as usize);
@@ -385,7 +401,7 @@ impl Pipeline for FacePipeline {
         true
     }
 
-    /// From the first swap of any memory on, one in each field, with the orientation that was latched.
+    /// Counts the fields from the first swap of any memory on. Each field is shown with its own latched orientation.
     fn turned_periods(&self, record: &Record, end: Time) -> u64 {
         let first = record.observation().first_swap();
         let after = record.display().period_at(end);
@@ -424,7 +440,8 @@ impl FacePipeline {
         }
     }
 
-    /// Orientations come by a line of their own, whoever draws.
+    /// Connects the line that carries orientations from the host to the display. Every renderer of faces needs this
+    /// line.
     fn plug_orientations(self, machine: &mut Machine, setup: &Setup) {
         let link = setup.host.link_span(ORIENTATION_WORDS);
         if let Some(latched) = LatchedHead::before(machine.record().display(), link, setup.aim) {
@@ -450,13 +467,13 @@ impl FacePipeline {
     }
 }
 
-/// The list without highlights. The renderers' light takes one direction of the eye for a region. On faces that is each face's own axis,
-/// so that a highlight on a flat wall would change at the border of two faces.
+/// Returns the display list without highlights. The renderers light a region with a single direction to the eye. On a
+/// face this direction is the face's axis, so a highlight would jump at the border between two faces.
 fn matte(list: &DisplayList) -> DisplayList {
     DisplayList { is_matte: true, recent: RecentViews::default(), ..list.clone() }
 }
 
-/// Times of an update that was drawn in no time.
+/// Returns the times of an update that was drawn without delay.
 const fn drawn_at_once(shown: Shown) -> PictureTimes {
     let drawn = shown.first_region_at;
     PictureTimes {
@@ -470,5 +487,5 @@ const fn drawn_at_once(shown: Shown) -> PictureTimes {
     }
 }
 
-/// Views that slaves ask for at a time: six faces of two updates.
+/// Number of views that slaves use at the same time: six faces of two updates.
 const VIEWS_AT_A_TIME: usize = 12;

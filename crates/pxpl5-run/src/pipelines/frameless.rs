@@ -18,28 +18,31 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use tracking::view::RandomOrder;
 
-/// Blocks of the frame in a random order without repetition, each order with the newest view, shown at once.
+/// The pipeline of frameless rendering, which draws blocks of the frame in a random order without repetition. Each
+/// batch of blocks uses the newest view and is shown at once.
 ///
-/// A *pass* is every block once. The papers update single pixels; one alone would cost 17 words on the ring.
+/// A *pass* draws every block once. The papers update single pixels, but a message with a single pixel would take 17
+/// words on the ring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frameless {
     /// Width and height of a block, 4 to 128 pixels.
     pub block: u32,
-    /// Blocks drawn with one view; 0 for as many as keep ring and GPs equally busy.
+    /// Number of blocks that are drawn with one view. 0 selects the number at which ring and GPs are equally busy.
     pub batch: u32,
-    /// Seed of the order.
+    /// Seed of the random order.
     pub seed: u64,
 }
 
 impl Frameless {
-    /// Blocks of 16 x 16 pixels: 16 words of overhead on the ring for 256.
+    /// Creates a pipeline with blocks of 16 x 16 pixels. A message of such a block has 16 words of overhead for 256
+    /// words of pixels.
     #[must_use]
     pub const fn new() -> Self {
         Self { block: 16, batch: 0, seed: 1 }
     }
 
-    /// While a slave transforms for one batch the others' blocks pass the frame buffer's port. How long code will take is not known
-    /// beforehand.
+    /// Returns the number of blocks in a batch. While one slave transforms, the blocks of the other slaves pass the
+    /// frame buffer's port. The time of code is unknown in advance, so a fixed number is used for code.
     fn batch(&self, record: &Record, pass: TransformCost, runs_code: bool) -> u32 {
         if self.batch > 0 {
             return self.batch;
@@ -50,13 +53,15 @@ impl Frameless {
         let ports = record.ports();
         let ring = record.ring().timing();
         let timing = record.config().gp;
+        // A slave spends the software time of three messages in addition to its pass.
         let slave_ns = pass.ns(&timing) + 3 * timing.message_ns;
         let block_ns = ring.occupancy(self.block * self.block).0 / 1_000;
         let slaves = ports.gps.len().saturating_sub(1).max(1) as u64;
+        // The ring sends the blocks of all slaves while one slave transforms.
         (slave_ns / (slaves * block_ns)).clamp(LEAST_BATCH, MOST_BATCH) as u32
     }
 
-    /// Blocks of a pass.
+    /// Returns the number of blocks in a pass.
     #[must_use]
     pub fn blocks(&self) -> u32 {
         self.grid().regions()
@@ -78,15 +83,16 @@ impl Default for Frameless {
     }
 }
 
-/// Blocks of a batch: fewer would let the master's 24 us for an order be the limit (assumed); more would hold a view
-/// for longer than it is new (assumed).
+/// Smallest number of blocks in a batch. With fewer, the master's 24 us for an order would be the limit (assumed). With
+/// more than [`MOST_BATCH`], a view would be in use for too long (assumed).
 const LEAST_BATCH: u64 = 4;
 const MOST_BATCH: u64 = 64;
 
-/// Blocks of a batch where code runs, whose time nobody knows beforehand (assumed; pphigs's kernels/order_rules.md).
+/// Number of blocks in a batch if i860 code runs, because its time is unknown in advance (assumed; see pphigs,
+/// kernels/order_rules.md).
 const BATCH_OF_CODE: u32 = 16;
 
-/// When the beam next reaches a region after an instant.
+/// Returns the time at which the beam next reaches a region after an instant.
 fn next_light(video: &Video, target: &CopyTarget, after: Time) -> Time {
     let now = video.field_at(after);
     let reached = now.until(now.after(3)).filter_map(|field| video.reaches(target, field)).find(|at| *at >= after);
@@ -137,12 +143,13 @@ impl Pipeline for Frameless {
         Ok(())
     }
 
-    /// Updates; the last block of each stands for it.
+    /// Returns the updates. The last block of an update represents the whole update.
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         let Ok(display) = ntsc(record, self.name()) else { return Vec::new() };
         let observation = record.observation();
         let video = display.video();
         let last = last_blocks(&observation.arrivals);
+        // An update is complete when as many blocks have arrived as the largest update has.
         let batch = observation.most_regions_of_a_picture().max(1);
         let times = samples(record).filter_map(|mark| {
             let (blocks, copied_at, target) = last.get(&mark.picture)?;
@@ -157,6 +164,7 @@ impl Pipeline for Frameless {
             })
         });
         let mut times: Vec<_> = times.filter(|times| times.is_shown() && times.shown_at <= end).collect();
+        // Updates may be shown in another order than that of their numbers.
         times.sort_by_key(|times| (times.shown_at, times.picture));
         times
     }
@@ -181,14 +189,15 @@ impl Pipeline for Frameless {
         "no picture is ever due: blocks are shown as they come, and there are no frames to miss"
     }
 
-    /// A pass is a whole picture.
+    /// Returns the number of updates in a pass, because a pass is a whole picture.
     fn updates_per_picture(&self, record: &Record) -> f64 {
         f64::from(self.blocks()) / f64::from(record.observation().most_regions_of_a_picture().max(1))
     }
 }
 
-/// How many blocks of each update have arrived, when the last of them had, and where it belongs. Two frame buffers may be done at one
-/// instant: then the higher port and region stand for the update, in whatever order they were noted.
+/// Returns, for each update, the number of arrived blocks, and the time and place of the last one. Blocks at two frame
+/// buffers may arrive at the same instant. Then the higher port and region count as the last, independent of the order
+/// of the records.
 fn last_blocks(arrivals: &[Arrival]) -> BTreeMap<PictureNumber, (u32, Time, CopyTarget)> {
     let mut last: BTreeMap<PictureNumber, (u32, Time, CopyTarget)> = BTreeMap::new();
     for Arrival { last_part_at, target, .. } in arrivals {
@@ -201,7 +210,7 @@ fn last_blocks(arrivals: &[Arrival]) -> BTreeMap<PictureNumber, (u32, Time, Copy
     last
 }
 
-/// Frameless rendering in the registry.
+/// Registry entry of frameless rendering.
 pub(super) const ENTRY: PipelineEntry = PipelineEntry {
     name: "frameless",
     family: "frameless",
@@ -250,7 +259,7 @@ mod tests {
     use pxpl5_sim::Time;
     use pxpl5_wire::{CopyTarget, Lines, NodeId, PictureNumber, RegionGrid, RegionId, SurfaceId};
 
-    /// A block of update 3 that is there at `ns` at one of two ports.
+    /// Returns a block of update 3 that arrives at `ns` nanoseconds at one of two ports.
     fn block(port: u16, region: u16, ns: u64) -> Arrival {
         let target = CopyTarget {
             frame_buffer: NodeId(port),

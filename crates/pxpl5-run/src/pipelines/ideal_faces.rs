@@ -1,4 +1,4 @@
-//! Faces that an ideal renderer draws in no time, and the host's line that brings them to the display.
+//! Faces that an ideal renderer draws without delay, and the host's connection that brings them to the display.
 
 use super::face_plan::{Due, DuePolicy, Plan, Updates};
 use crate::latched_head::lights_of;
@@ -16,13 +16,14 @@ use std::collections::VecDeque;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
-/// How long before a retrace an ideal renderer asks for views: the shortest time that there is.
+/// Time before a retrace at which the ideal renderer requests views. It is the shortest time of the simulation, one
+/// picosecond.
 const BEFORE_RETRACE: Span = Span(1);
 
-/// What a policy asks for at each retrace, in the display's memories before it.
+/// Source of ideal faces: at each retrace, it writes the updates that a policy requests into the display's memories.
 ///
-/// Everything is as on the machine (views, policies, the widths of pixels, the display's protocol) but for the time and the way that
-/// drawing takes: there is none.
+/// Views, policies, number widths and the display's protocol are those of the machine. Drawing takes no time and sends
+/// no ring messages.
 pub(super) struct IdealFaces {
     pub(super) plan: Plan,
     pub(super) faces: Arc<Faces>,
@@ -54,13 +55,13 @@ impl HostLine for IdealFaces {
     }
 }
 
-/// The instant before a field begins.
+/// Returns the last instant before a field begins.
 fn before(scan: &Scan, field: PeriodNumber) -> Time {
     Time(scan.retrace(field).0.saturating_sub(BEFORE_RETRACE.0))
 }
 
 impl IdealFaces {
-    /// All regions of an update, announced and sent.
+    /// Draws an update and returns its messages: announcement, regions, swap.
     fn draw(&self, update: FaceUpdate) -> Vec<(usize, Body)> {
         let port = usize::from(update.memory);
         let regions: Vec<RegionId> = (0..self.faces.regions()).map(RegionId).collect();
@@ -68,18 +69,21 @@ impl IdealFaces {
         let list = self.warped.placed(&self.list, &update);
         let drawn = Arc::new(DrawnCube { list, update, surfaces: Arc::clone(&self.faces), faces: Default::default() });
         let parts = self.faces.content.words() * REGION_SIZE * REGION_SIZE / MAX_MESSAGE_WORDS;
+        // Each region is a lazy pixel source, split into messages of the maximum size.
         let of_region = |region: RegionId| {
             let target = self.faces.target(&drawn.update, region);
             let image: Arc<dyn PixelSource> = Arc::new(DrawnRegion { cube: Arc::clone(&drawn), region });
             (0..parts).map(move |part| Body::Pixels(RegionPixels { target, image: Arc::clone(&image), part, parts }))
         };
+        // The display expects the announcement first and the request for a swap last.
         let [begin, swap] = announcement;
         let pixels = regions.iter().copied().flat_map(of_region);
         [begin].into_iter().chain(pixels).chain([swap]).map(|body| (port, body)).collect()
     }
 }
 
-/// The setup of a host whose updates are shown at the next retrace: it predicts for what that field lights.
+/// Returns the setup of a host whose updates are shown at the next retrace. The views are predicted for the time at
+/// which that field lights.
 pub(super) fn seen_next(setup: &Setup, scan: Scan) -> Setup {
     let wanted = Arc::clone(&setup.wanted);
     let aim = setup.aim;
@@ -90,7 +94,7 @@ pub(super) fn seen_next(setup: &Setup, scan: Scan) -> Setup {
     Setup { views: Arc::new(views), ..setup.clone() }
 }
 
-/// All of the scene in memory 0, in every cycle.
+/// Policy that draws the whole scene into memory 0 in every cycle.
 pub(super) struct All {
     pub(super) structures: Arc<[bool]>,
 }
@@ -102,7 +106,7 @@ impl DuePolicy for All {
     }
 }
 
-/// The faces of an update, each computed when somebody looks at one of its regions.
+/// The faces of an update. A face is computed when one of its regions is read.
 #[derive(Debug)]
 struct DrawnCube {
     list: Arc<DisplayList>,
@@ -135,7 +139,7 @@ impl DrawnCube {
     }
 }
 
-/// A region of an update's faces.
+/// A region of the faces of an update.
 #[derive(Debug)]
 struct DrawnRegion {
     cube: Arc<DrawnCube>,

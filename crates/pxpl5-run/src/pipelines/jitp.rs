@@ -19,26 +19,27 @@ use std::sync::Arc;
 
 pub use jitp::{Interpolation, Viewpoint};
 
-/// A picture whose strips are drawn for their own moments, or in their own time (JITP).
+/// The pipeline of just-in-time pixels, which draws each strip of a picture for its own instant (JITP).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Jitp {
-    /// The moments that the picture is computed for.
+    /// Instants that the picture is computed for.
     pub viewpoint: Viewpoint,
-    /// Whether strips reach the frame buffer just before the beam, or one field earlier.
+    /// True if strips reach the frame buffer just before the beam. False if they arrive one field earlier.
     pub racing: bool,
-    /// Lines of a strip, 1 to 128.
+    /// Number of lines in a strip, 1 to 128.
     pub strip_rows: u32,
 }
 
 impl Jitp {
-    /// Strips of one line; of eight for a conventional picture, which gains nothing by finer ones.
+    /// Creates a pipeline with strips of one line. A conventional picture, [`Viewpoint::Field`], uses strips of eight
+    /// lines, because finer strips gain nothing.
     #[must_use]
     pub const fn new(viewpoint: Viewpoint, racing: bool) -> Self {
         let strip_rows = if matches!(viewpoint, Viewpoint::Field) { 8 } else { 1 };
         Self { viewpoint, racing, strip_rows }
     }
 
-    /// All viewpoints, each without and with beam racing.
+    /// Returns all viewpoints, each without and with beam racing.
     #[must_use]
     pub fn all() -> Vec<Self> {
         let viewpoints = [
@@ -62,13 +63,14 @@ impl Jitp {
     }
 }
 
-/// The boards of a machine as the firmware wants them.
+/// Returns the firmware's configuration for the boards of a machine.
 pub(super) fn config(
     record: &Record,
     schedule: DrawingSchedule,
     layout: Layout,
     pixels: bool,
 ) -> Result<JitpConfig, ConfigError> {
+    // The firmware needs the beam times of an interlaced display.
     let ports = record.ports();
     let display = ntsc(record, "this pipeline")?;
     let config = JitpConfig {
@@ -96,24 +98,27 @@ fn beam(video: Video) -> Beam {
     Beam::new(at, move |field| video.retrace(field))
 }
 
-/// A slave's pass: each holds the whole display list.
+/// Returns the cost of a pass over the display list. Each slave holds the whole list.
 pub(super) fn whole_pass(setup: &Setup) -> TransformCost {
     TransformCost::pass_over(&setup.list, Share::new(Arc::clone(&setup.list), 0, 1).counts())
 }
 
-/// Loads host, master and slaves.
+/// Loads the programs of host, master and slaves.
 pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
     let gp = machine.processor(config.host, Priority::Foreground);
     let reports = Arc::clone(&setup.reports);
+    // The host passes on the tracker's reports.
     let program = host(gp, config.clone(), setup.host, move |after| reports(after));
     machine.load(config.host, Priority::Foreground, Box::pin(program));
     let gp = machine.processor(config.master, Priority::Foreground);
     let views = Arc::clone(&setup.wanted);
     let pass = whole_pass(setup);
+    // The master requests views for the instants that its strips are seen.
     let view_of = move |wanted: Wanted| views(wanted.number, wanted.known, wanted.shown_at);
     for (level, program) in master(&gp, config, pass, view_of) {
         machine.load(config.master, level, program);
     }
+    // Slaves have the same list and views, so the simulator transforms each field once for all of them.
     let transforms = Transforms::default();
     for (index, node) in config.slaves.iter().enumerate() {
         let gp = machine.processor(*node, Priority::Foreground);
@@ -123,13 +128,13 @@ pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
     }
 }
 
-/// When a region's first pixel is scanned in its field.
+/// Returns the time at which the first pixel of a region is scanned in its field.
 fn due(video: &Video, target: &CopyTarget) -> Time {
     let field = target.picture.period_drawn_for();
     video.reaches(target, field).unwrap_or_else(|| video.retrace(field))
 }
 
-/// What has arrived of a field: regions before its end and before their beam, and when the middle strip had.
+/// Arrivals of a field: regions before the field's end, regions before the beam, and the time of the middle strip.
 #[derive(Clone, Copy, Debug, Default)]
 struct Arrived {
     in_period: u32,
@@ -181,6 +186,7 @@ impl Pipeline for Jitp {
         let Ok(display) = ntsc(record, self.name()) else { return Vec::new() };
         let observation = record.observation();
         let video = display.video();
+        // Count the regions of each picture that arrived in the period and in time.
         let mut arrived: BTreeMap<PictureNumber, Arrived> = BTreeMap::new();
         for arrival in &observation.arrivals {
             let Arrived { in_period, in_time, middle_at } = arrived.entry(arrival.target.picture).or_default();
@@ -191,6 +197,7 @@ impl Pipeline for Jitp {
                 *middle_at = (*middle_at).max(Some(arrival.last_part_at));
             }
         }
+        // The middle line represents the picture: its scan is the time at which the picture is shown.
         let grid = RegionGrid { region_height: self.strip_rows, ..RegionGrid::FIELD };
         let middle_line = |field| 2 * (grid.rows() / 2 * self.strip_rows) + FieldParity::of_field(field).first_line();
         let times = samples(record).map(|mark| {
@@ -218,7 +225,7 @@ impl Pipeline for Jitp {
         late_regions(display, record, end, |video, arrival| due(video, &arrival.target))
     }
 
-    /// A new picture every field.
+    /// Returns 1: a picture is due every field.
     fn periods_a_picture(&self, _: &Record) -> Option<u64> {
         Some(1)
     }
@@ -244,6 +251,7 @@ impl Pipeline for Jitp {
         Some(match self.viewpoint {
             Viewpoint::Field => Source::View(view(0)),
             Viewpoint::Strip => Source::View(view(strip)),
+            // Two views of a field are interpolated by the place of the strip.
             Viewpoint::Dual(reading) => Source::Between {
                 from: view(0),
                 to: view(1),
@@ -258,19 +266,19 @@ impl Pipeline for Jitp {
     }
 }
 
-/// The region of a grid that holds a pixel.
+/// Returns the region of a grid that contains a pixel.
 #[must_use]
 pub fn region_at(grid: &RegionGrid, x: u32, row: u32) -> RegionId {
     RegionId((row / grid.region_height * grid.columns() + x / grid.region_width) as u16)
 }
 
-/// The numbers of its firmware.
+/// Tables of the firmware's numbers.
 pub(super) const TABLES: &[NamedTable] = &[("jitp", || Box::new(JitpTiming::PAPERS))];
 
 const KEYS: &[Key] =
     &[Key { name: "strip_rows", about: "lines of a strip: 1 to 128", values: KeyValues::Whole(1, 128), sets: &[] }];
 
-/// An entry of the registry, the variant of which says how it is built.
+/// Returns a registry entry of the family `jitp`.
 const fn entry(
     name: &'static str,
     about: &'static str,
@@ -299,7 +307,7 @@ fn build(viewpoint: Viewpoint, racing: bool, settings: &PipelineSettings) -> Arc
 const SCREEN: Viewpoint = Viewpoint::Dual(Interpolation::Screen);
 const VIEW: Viewpoint = Viewpoint::Dual(Interpolation::View);
 
-/// Just-in-time pixels in the registry.
+/// Registry entries of just-in-time pixels.
 pub(super) const ENTRIES: [PipelineEntry; 8] = [
     entry("jitp-field", "a field drawn for its middle, a field ahead of the beam (JITP)", |settings| {
         build(Viewpoint::Field, false, settings)

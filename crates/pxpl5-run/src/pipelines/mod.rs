@@ -1,4 +1,5 @@
-//! The pipelines of the papers. A new one is one more file here, or in a user's crate, and one more line below.
+//! The pipelines of the papers. To add a pipeline, add a file here, or write it in a crate of your own, and add a line
+//! to `entries`.
 
 mod face_cells;
 mod face_entries;
@@ -37,7 +38,8 @@ pub(crate) fn entries() -> Vec<PipelineEntry> {
     all
 }
 
-/// A finished region is copied through so many blocks of its renderer's backing store, or it could never leave.
+/// Checks that a renderer's backing store has room for a finished region, which takes `blocks` blocks. Without room, no
+/// region could be copied.
 fn region_has_room(record: &Record, blocks: u64) -> Result<(), ConfigError> {
     let renderer = &record.config().renderer;
     if renderer.backing_regions() >= blocks {
@@ -50,12 +52,14 @@ fn region_has_room(record: &Record, blocks: u64) -> Result<(), ConfigError> {
     )))
 }
 
-/// The display of a pipeline that is written for interlaced fields of the papers' size.
+/// Returns the display of a pipeline that draws interlaced fields of the papers' size. Fails for other displays and for
+/// smaller ones.
 fn ntsc<'a>(record: &'a Record, pipeline: &str) -> Result<&'a NtscDisplay, ConfigError> {
     let display: &NtscDisplay = (record.display() as &dyn Any).downcast_ref().ok_or_else(|| {
         let found = record.display().name();
         ConfigError::Board(format!("{pipeline} draws single fields: expected the display ntsc, found {found}"))
     })?;
+    // A larger display is accepted.
     let RegionGrid { width, height, .. } = RegionGrid::FRAME;
     let [found_width, found_height] = [display.video().width(), display.video().height()];
     if found_width < width || found_height < height {
@@ -69,10 +73,10 @@ fn ntsc<'a>(record: &'a Record, pipeline: &str) -> Result<&'a NtscDisplay, Confi
     Ok(display)
 }
 
-/// Where colours are computed, by its names, the default first.
+/// Methods of shading with their names. The first one is the default.
 const SHADINGS: [(&str, Shading); 2] = [("phong", Shading::Phong), ("gouraud", Shading::Gouraud)];
 
-/// The key of pipelines that can shade in both ways.
+/// Key of pipelines that support both methods of shading.
 const SHADING: Key = Key {
     name: "shading",
     about: "phong or gouraud",
@@ -80,18 +84,19 @@ const SHADING: Key = Key {
     sets: &[],
 };
 
-/// The value of [`SHADING`] that stands for a shading.
+/// Returns the value of the key [`SHADING`] for a method of shading.
 fn shading_value(shading: Shading) -> KeyValue {
     KeyValue::Name(SHADINGS[usize::from(shading == SHADINGS[1].1)].0)
 }
 
-/// The shading that was given, or else this one.
+/// Returns the shading in the settings, or the default.
 fn shading_or(settings: &PipelineSettings, default: Shading) -> Shading {
     let given = SHADINGS.iter().find(|(name, _)| settings.name(SHADING.name) == Some(name));
     given.map_or(default, |(_, shading)| *shading)
 }
 
-/// Times of a picture that a swap shows, drawn from a view of its own; `stages` are in order of picture. `None` before its TRANSFORM.
+/// Returns the times of a picture that a swap shows and that has a view of its own. `stages` must be in order of
+/// pictures. Returns `None` before the picture's TRANSFORM.
 fn swapped_in(stages: &[StageSpan], picture: PictureNumber, shown_at: Time) -> Option<PictureTimes> {
     let first = stages.partition_point(|span| span.picture < picture);
     let own = stages[first..].iter().take_while(|span| span.picture == picture);
@@ -107,19 +112,21 @@ fn swapped_in(stages: &[StageSpan], picture: PictureNumber, shown_at: Time) -> O
     })
 }
 
-/// When boards took a view to draw for.
+/// Returns the marks of the stage SAMPLE, at which a board took the newest view for drawing.
 fn samples(record: &Record) -> impl Iterator<Item = &Mark> {
     record.observation().marks.iter().filter(|mark| mark.stage == Stage::Sample)
 }
 
-/// Regions that were there after they were due, in the order of arrival.
+/// Returns the regions that arrived after their deadline, in order of arrival. `due` gives the deadline of a region.
 fn late_regions(
     display: &NtscDisplay,
     record: &Record,
     end: Time,
     due: impl Fn(&Video, &Arrival) -> Time,
 ) -> Vec<LateRegion> {
+    // Only regions that arrived before `end` are evaluated.
     let arrived = record.observation().arrivals.iter().filter(|arrival| arrival.last_part_at < end);
+    // Keep the arrivals after their deadline, with the delay.
     let late = arrived.filter_map(|arrival| {
         let due = due(display.video(), arrival);
         (arrival.last_part_at > due).then(|| LateRegion {

@@ -16,34 +16,34 @@ use pxpl5_wire::{Lines, MAX_MESSAGE_WORDS, PictureNumber, RegionId, SurfaceId};
 use rendering_control::{RenderingControlConfig, host, master, slave};
 use std::sync::Arc;
 
-/// The pipeline under PPHIGS (TR94).
+/// The pipeline Rendering Control of the library PPHIGS (TR94).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RenderingControl {
-    /// One picture instead of a stereo pair.
+    /// True for one picture instead of a stereo pair.
     pub mono: bool,
-    /// Where colours are computed.
+    /// Method of shading.
     pub shading: Shading,
-    /// What a renderer does with a finished region whose frame buffer is not available.
+    /// Treatment of a finished region whose frame buffer is not available.
     pub finished: FinishedRegions,
 }
 
-/// What the master does with a renderer whose region is finished while the frame buffer is not available. TR94 says that the last
-/// slave returns the token, that the master assigns the renderer to the next region, and that the copy command comes later if the
-/// frame buffer was not available; it does not say whether the renderer has the next region before that.
+/// Treatment of a renderer whose region is finished while the frame buffer is not available. TR94 says that the last
+/// slave returns the token, and that the master assigns the renderer to the next region. The copy command comes later
+/// if the frame buffer was not available. TR94 does not say whether the renderer gets the next region before that.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum FinishedRegions {
     /// The region stays in pixel memory, and the renderer waits for the copy.
     #[default]
     Wait,
-    /// The region goes into the backing store as long as there is room, and the renderer gets the next one.
+    /// The region moves to the backing store if there is room, and the renderer gets the next region.
     Store,
 }
 
 impl FinishedRegions {
-    /// Both, the default first.
+    /// All treatments, the default first.
     pub const ALL: [Self; 2] = [Self::Wait, Self::Store];
 
-    /// Its name in experiment files.
+    /// Returns the name of the treatment in experiment files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -52,7 +52,8 @@ impl FinishedRegions {
         }
     }
 
-    /// Regions that a renderer with room for so many keeps while their frame buffer is not available.
+    /// Returns the number of finished regions that a renderer stores while the frame buffer is not available. `room` is
+    /// the capacity of its backing store in regions.
     #[must_use]
     pub const fn stored(self, room: u64) -> u64 {
         match self {
@@ -63,19 +64,19 @@ impl FinishedRegions {
 }
 
 impl RenderingControl {
-    /// Stereo with Phong shading, as measured in TR94.
+    /// Creates a stereo pipeline with Phong shading, as measured in TR94.
     #[must_use]
     pub const fn stereo() -> Self {
         Self { mono: false, shading: Shading::Phong, finished: FinishedRegions::Wait }
     }
 
-    /// One picture with Phong shading.
+    /// Creates a pipeline with one picture and Phong shading.
     #[must_use]
     pub const fn mono() -> Self {
         Self { mono: true, ..Self::stereo() }
     }
 
-    /// What is drawn for an eye on a display of some surfaces.
+    /// Returns the properties of an eye's picture on a display with the given surfaces.
     fn drawn(self, surfaces: &[Surface], pixels: bool) -> Result<Picture, ConfigError> {
         let grid = surfaces.first().map_or(Viewport::FRAME.grid(), |surface| surface.grid());
         let viewport = Viewport::new(grid, Lines::Frame).map_err(|error| ConfigError::Board(error.to_string()))?;
@@ -84,10 +85,12 @@ impl RenderingControl {
 
     fn config(self, machine: &Machine, pixels: bool) -> Result<RenderingControlConfig, ConfigError> {
         let ports = machine.ports();
+        // The first GP is the master, and all others are slaves.
         let [master, slaves @ ..] = &ports.gps[..] else { return Err(too_few_gps(0)) };
         if slaves.is_empty() {
             return Err(too_few_gps(1));
         }
+        // A finished region takes one block of the backing store.
         region_has_room(machine.record(), 1)?;
         let picture = self.drawn(machine.record().display().surfaces(), pixels)?;
         Ok(RenderingControlConfig {
@@ -133,7 +136,8 @@ impl Pipeline for RenderingControl {
         self.shading
     }
 
-    /// All of it is code, on every display: there are kernels for all frames in regions of 128 x 128.
+    /// Returns `None`: all work is i860 code on every display. Kernels exist for all frames in regions of 128 x 128
+    /// pixels.
     fn without_code(&self, _: &MachineConfig) -> Option<&'static str> {
         None
     }
@@ -144,11 +148,13 @@ impl Pipeline for RenderingControl {
         let views = Arc::clone(&setup.views);
         let starts = Arc::clone(&setup.starts);
         let gp = machine.processor(config.host, foreground);
+        // The host decides when a frame begins, and samples the view for it.
         let view_of = move |view, time| views(view, time);
         let program = host(gp, config.clone(), setup.host, move |ready| starts(ready), view_of);
         machine.load(config.host, foreground, Box::pin(program));
         let gp = machine.processor(config.master, foreground);
         machine.load(config.master, foreground, Box::pin(master(gp, config.clone())));
+        // A slave runs two programs at different priorities, over its share of the triangles.
         for (index, node) in config.slaves.iter().enumerate() {
             let gp = machine.processor(*node, foreground);
             for (level, program) in slave(&gp, &config, config.share(&setup.list, index), index) {
@@ -170,7 +176,8 @@ impl Pipeline for RenderingControl {
         true
     }
 
-    /// What COPY of all eyes takes, since one of them is copied at a time: of a stereo pair 31.2 ms, two fields (TR94).
+    /// Returns the time for the COPY of all eyes in periods. The eyes are copied one after the other: a stereo pair
+    /// takes 31.2 ms, which is two fields (TR94).
     fn periods_a_picture(&self, record: &Record) -> Option<u64> {
         let surfaces = record.display().surfaces();
         let ports = (record.ports().display().len() / surfaces.len().max(1)).max(1);
@@ -186,24 +193,25 @@ impl Pipeline for RenderingControl {
         "a frame is due as often as COPY lets it: in so many periods as the pixels of all eyes need at a frame buffer's port, one eye at a time (two NTSC fields for a stereo pair); it is shown when it is swapped in"
     }
 
-    /// An eye's copy is timed by itself.
+    /// Returns the index of the eye, because the copies of the eyes are timed separately.
     fn copy_part(&self, arrival: &Arrival) -> u8 {
         arrival.surface.0 as u8
     }
 
-    /// The frame in the buffer that is shown: it is complete, though the beam may not have been everywhere yet.
+    /// Returns the frame in the displayed buffer. The frame is complete, although the beam may not have scanned all of
+    /// it yet.
     fn picture(&self, record: &Record, surface: SurfaceId) -> Option<RgbImage> {
         record.display().shown(surface.index())
     }
 }
 
-/// Time of a surface's pixels at its busiest port: every region in messages of at most [`MAX_MESSAGE_WORDS`], region after region at the
-/// next port.
+/// Returns the transfer time of a surface's pixels at its busiest port. Regions are distributed over the ports in turn,
+/// in messages of at most [`MAX_MESSAGE_WORDS`].
 fn copy_span(record: &Record, surface: &Surface, ports: u16) -> Span {
     (0..ports).map(|port| port_span(record, surface, port, ports)).max().unwrap_or(Span::ZERO)
 }
 
-/// Time of every `ports`-th region of a surface, from region `first` on.
+/// Returns the transfer time of every `ports`-th region of a surface, from the region `first` on.
 fn port_span(record: &Record, surface: &Surface, first: u16, ports: u16) -> Span {
     let timing = record.ring().timing();
     let grid = surface.grid();
@@ -219,7 +227,7 @@ fn port_span(record: &Record, surface: &Surface, first: u16, ports: u16) -> Span
         .sum()
 }
 
-/// Rendering Control in the registry.
+/// Registry entry of Rendering Control.
 pub(super) const ENTRY: PipelineEntry = PipelineEntry {
     name: "rendering-control",
     family: "rendering-control",

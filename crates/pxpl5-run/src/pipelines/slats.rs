@@ -17,14 +17,14 @@ use slats::{CopySchedule, SlatsConfig, host, processor};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// Which code runs on the GP: only its time differs.
+/// Version of the GP's code. Versions differ in time only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Code {
-    /// The prototype of 1994 (TR94).
+    /// Code of the 1994 prototype (TR94).
     Of1994,
-    /// The code of 1995 (I3D95).
+    /// Code of 1995 (I3D95).
     Of1995,
-    /// A third of the time of 1994: code that fits the instruction cache (I3D95).
+    /// Code that fits the instruction cache and takes a third of the time of the 1994 code (I3D95).
     Optimised,
 }
 
@@ -37,7 +37,7 @@ impl Code {
         }
     }
 
-    /// The i860 code that stands for it where clocks are counted.
+    /// Returns the i860 code that represents this version at the cycle level.
     const fn version(self) -> CodeVersion {
         match self {
             Self::Of1994 | Self::Of1995 => CodeVersion::Compiled,
@@ -46,12 +46,12 @@ impl Code {
     }
 }
 
-/// Where the colours of vertices come from.
+/// Source of vertex colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SlatsLighting {
-    /// They were computed before the run (TR94: by radiosity); the GP evaluates no light.
+    /// Colours were computed before the run (TR94: by radiosity). The GP computes no lighting.
     Precomputed,
-    /// The GP lights each vertex for each eye.
+    /// The GP computes the lighting of each vertex for each eye.
     OnGp,
 }
 
@@ -64,21 +64,21 @@ impl SlatsLighting {
     }
 }
 
-/// One new image every field (TR94, I3D95).
+/// The pipeline Slats, which draws one new image every field (TR94, I3D95).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slats {
-    /// When regions are copied.
+    /// Schedule by which regions are copied.
     pub copy: CopySchedule,
-    /// Who gets the commands of a clump.
+    /// Choice of the regions that receive the commands of a clump.
     pub binning: RegionBinning,
-    /// Where the colours of vertices come from.
+    /// Source of vertex colours.
     pub lighting: SlatsLighting,
-    /// The code, where it is not that of the machine's preset.
+    /// Version of the code. `None` selects the code of the machine's preset.
     pub code: Option<Code>,
 }
 
 impl Slats {
-    /// The prototype with the COPY optimisation (TR94).
+    /// Creates the prototype with the optimization of COPY (TR94).
     #[must_use]
     pub const fn split() -> Self {
         Self {
@@ -89,13 +89,14 @@ impl Slats {
         }
     }
 
-    /// The prototype without the COPY optimisation (TR94).
+    /// Creates the prototype without the optimization of COPY (TR94).
     #[must_use]
     pub const fn whole() -> Self {
         Self { copy: CopySchedule::Whole, ..Self::split() }
     }
 
-    /// Split copies into the other buffer, so that the last complete field stands in for one that is late.
+    /// Creates a variant with split copies into the buffer that is not displayed. If a field is late, the last complete
+    /// field is shown again.
     #[must_use]
     pub const fn backup() -> Self {
         Self { copy: CopySchedule::Backup, ..Self::split() }
@@ -156,7 +157,7 @@ impl Pipeline for Slats {
         }
     }
 
-    /// The code decides the times per primitive, nothing else.
+    /// Sets the times of the selected code. The code changes only the times per primitive.
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         let Some(code) = self.code else { return config };
         let GpTiming { triangle_ns, sphere_ns, bin_entry_ns, .. } = code.timing();
@@ -171,6 +172,7 @@ impl Pipeline for Slats {
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
         ntsc(machine.record(), self.name())?;
         let config = self.config(machine, setup.pixels);
+        // The configuration also fixes which renderer serves which regions.
         let binding = config.check().map_err(|error| ConfigError::Board(error.to_string()))?;
         let foreground = Priority::Foreground;
         let views = Arc::clone(&setup.views);
@@ -179,6 +181,7 @@ impl Pipeline for Slats {
         let view_of = move |view, time| views(view, time);
         let program = host(gp, config.clone(), setup.host, move |after| reports(after), view_of);
         machine.load(config.host, foreground, Box::pin(program));
+        // Every GP transforms its own share of the triangles.
         for (index, node) in config.processors.iter().enumerate() {
             let gp = machine.processor(*node, foreground);
             let share = Share::new(Arc::clone(&setup.list), index, config.processors.len());
@@ -190,6 +193,7 @@ impl Pipeline for Slats {
     }
 
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
+        // Collect the arrivals of each picture and the fields with late regions.
         let observation = record.observation();
         let late: BTreeSet<PeriodNumber> = self.late_regions(record, end).iter().map(|region| region.field).collect();
         let mut arrivals: BTreeMap<PictureNumber, Copied> = BTreeMap::new();
@@ -197,6 +201,7 @@ impl Pipeline for Slats {
             arrivals.entry(arrival.target.picture).or_default().note(arrival);
         }
         let backup = (self.copy == CopySchedule::Backup).then(|| Backup::new(record));
+        // The first GP's samples mark the begin of each picture.
         let leader = record.ports().gps[0];
         let begun = samples(record).filter(|mark| mark.node == leader);
         let times = begun.map(|mark| {
@@ -204,6 +209,7 @@ impl Pipeline for Slats {
             let whole = copied.regions == 2 * RegionGrid::FIELD.regions() as usize;
             let field = mark.picture.period_drawn_for();
             let in_its_period = whole && copied.at <= record.tick(field.next());
+            // Under a backup, the swaps tell in which period the picture was shown.
             let shown = backup.as_ref().filter(|_| whole).and_then(|backup| backup.shown(record, field, &copied));
             let picture_end = match (&backup, shown) {
                 (None, _) => PictureEnd::of(in_its_period, !late.contains(&field)),
@@ -220,7 +226,8 @@ impl Pipeline for Slats {
                 end: picture_end,
             }
         });
-        // A field whose bottom half is still being scanned is judged by the next run; so is one that a later retrace of its lines may show.
+        // A picture is evaluated only after its last possible period. The bottom half of a split copy is scanned in
+        // that period. Under a backup, a later retrace of the same lines may show the picture.
         let judged = |times: &PictureTimes| {
             let field = times.picture.period_drawn_for();
             let shown = record.display().period_at(times.shown_at);
@@ -242,12 +249,12 @@ impl Pipeline for Slats {
         late_regions(display, record, end, due)
     }
 
-    /// A new picture every field.
+    /// Returns 1: a picture is due every field.
     fn periods_a_picture(&self, _: &Record) -> Option<u64> {
         Some(1)
     }
 
-    /// A field is scanned once: the next one is of the other lines.
+    /// Returns the time span of one field. A field is scanned once, and the next field has the other lines.
     fn shown(&self, record: &Record, times: &PictureTimes, _: Option<&PictureTimes>) -> LightSpan {
         light_span(record, record.display().period_at(times.shown_at), 1)
     }
@@ -260,21 +267,22 @@ impl Pipeline for Slats {
         "a picture is due every field, and in time if every region is there at its deadline: the retrace, or for the bottom regions of a split copy the scan of their first line; with a backup a late picture counts for the later retrace of its lines at which it is shown"
     }
 
-    /// The halves of a split copy are timed apart.
+    /// Returns the half of a split copy to which an arrival belongs. The halves are timed separately.
     fn copy_part(&self, arrival: &Arrival) -> u8 {
         let bottom = u32::from(arrival.target.region.0) >= RegionGrid::FIELD.columns();
         u8::from(bottom && self.copy.is_split())
     }
 }
 
-/// Retraces after its own within which a late field is shown under a backup, or never: two of its lines.
+/// Number of retraces after its own within which a late field can be shown under a backup. The number covers two later
+/// retraces of the field's lines.
 const LATER_RETRACES: u64 = 4;
 
-/// How far a field has been copied.
+/// State of a field's copy.
 #[derive(Clone, Copy, Debug, Default)]
 struct Copied {
     regions: usize,
-    /// When the last region had arrived, and the last top region.
+    /// Arrival time of the last region.
     at: Time,
     top_at: Time,
     buffer: u8,
@@ -291,9 +299,9 @@ impl Copied {
     }
 }
 
-/// Which buffer each frame buffer displayed when, under a backup.
+/// Buffers that each frame buffer displayed, for runs with a backup.
 struct Backup {
-    /// By surface, first periods and buffers, in order.
+    /// For each surface, the first period and the buffer of each swap, in order.
     swaps: [Vec<(PeriodNumber, u8)>; 2],
 }
 
@@ -304,7 +312,8 @@ impl Backup {
         Self { swaps: [of(0), of(1)] }
     }
 
-    /// The first period in which both eyes' frame buffers show a field that was copied so: one of its lines, from its own on.
+    /// Returns the first period, from its own on, in which both eyes' frame buffers show a copied field. Only every
+    /// second period has the field's lines.
     fn shown(&self, record: &Record, field: PeriodNumber, copied: &Copied) -> Option<PeriodNumber> {
         let periods = (field.0..=field.0 + LATER_RETRACES).step_by(2).map(PeriodNumber);
         let displays = |swaps: &Vec<(PeriodNumber, u8)>, period: PeriodNumber| {
@@ -317,7 +326,7 @@ impl Backup {
     }
 }
 
-/// When a region of a field must be complete.
+/// Returns the deadline of a region of a field.
 fn deadline(video: &Video, target: &CopyTarget, before_retrace: bool) -> Time {
     let field = target.picture.period_drawn_for();
     let retrace = video.retrace(field);
@@ -331,17 +340,17 @@ const LIGHTINGS: [(&str, SlatsLighting); 2] =
     [("precomputed", SlatsLighting::Precomputed), ("gp", SlatsLighting::OnGp)];
 const CODES: [(&str, Code); 3] = [("1994", Code::Of1994), ("1995", Code::Of1995), ("optimised", Code::Optimised)];
 
-/// The name of a choice.
+/// Returns the name of a choice.
 fn name<T: PartialEq>(choices: &[(&'static str, T)], value: &T) -> KeyValue {
     KeyValue::Name(choices.iter().find(|(_, choice)| choice == value).map_or("", |(name, _)| name))
 }
 
-/// The choice of a name.
+/// Returns the choice with a name.
 fn chosen<T: Copy>(choices: &[(&'static str, T)], name: Option<&str>) -> Option<T> {
     choices.iter().find(|(choice, _)| Some(*choice) == name).map(|(_, value)| *value)
 }
 
-/// Slats in the registry.
+/// Registry entry of Slats.
 pub(super) const ENTRY: PipelineEntry = PipelineEntry {
     name: "slats",
     family: "slats",
@@ -391,7 +400,8 @@ fn build(settings: &PipelineSettings) -> Arc<dyn Pipeline> {
     })
 }
 
-/// A clump goes to all regions unless it is said to go where it is seen: then small triangles are the fair load.
+/// Returns the criterion for the largest scene. If clumps go to all regions, full-screen triangles are the test. If
+/// clumps go to touched regions only, small triangles are the fair test.
 fn limit(settings: &PipelineSettings) -> LimitCriterion {
     let touched = settings.name("binning") == Some(BINNINGS[1].0);
     let scene = if touched { TestScene::Typical } else { TestScene::FullScreen };

@@ -1,4 +1,4 @@
-//! Policy `cells` on the machine: what is cut, what is drawn when, and whether memories meet.
+//! Tests of the policy `cells` on the machine: the cuts, the due memories, and the borders between memories.
 
 use super::{FULL, after, assert_no_faults, balls, display, head, machine, memory, missed, texels, walk};
 use address_recalculation::{CubeFace, FaceSet, Lens, TexelAddress};
@@ -16,7 +16,7 @@ use tracking::motion::Slide;
 pub(crate) const CELLS: FacePipeline = FacePipeline::new(FacePolicy::Cells);
 pub(crate) const WARPED: FacePipeline = FacePipeline::new(FacePolicy::CellsWarped);
 
-/// A wall of 40 m, 3 m before the eye, in one quadrangle, from a floor to above the eye.
+/// Returns a wall of 40 m, 3 m in front of the eye, as one quadrangle from the floor to above the eye.
 fn wall() -> Scene {
     let vertex = |x: f32, y: f32| Vertex { position: Vec3::new(x, y, -3.0), normal: Vec3::Z, colour: [200, 120, 40] };
     let structure = Structure {
@@ -75,7 +75,7 @@ fn pieces_are_all_of_the_scene_lie_in_their_cells_and_meet_bit_for_bit() {
     }
 }
 
-/// The nearest of what all memories show, as the display joins them.
+/// Returns the nearest texel over all memories, as the display combines them.
 fn joined(record: &Record, size: u32) -> FaceSet {
     let faces: Vec<FaceSet> = (0..4).map(|k| memory(record, k).shown_faces()).collect();
     let mut all = faces[0].clone();
@@ -89,7 +89,7 @@ fn joined(record: &Record, size: u32) -> FaceSet {
     all
 }
 
-/// E2: memories drawn from one place and joined are the drawing of one memory.
+/// E2: memories that are drawn from one position look like a single memory when the display combines them.
 #[test]
 fn cells_drawn_from_one_place_are_the_uncut_drawing() {
     for pipeline in [CELLS, WARPED] {
@@ -108,7 +108,7 @@ fn cells_drawn_from_one_place_are_the_uncut_drawing() {
         let differ = |texel: &TexelAddress| joined.texel(*texel).map(|t| t.0) != whole.texel(*texel).map(|t| t.0);
         let shown = texels(128).filter(|texel| whole.texel(*texel).is_some()).count();
         let wrong = texels(128).filter(differ).count();
-        // Edges of pieces are rounded to subpixels one by one: a texel in five hundred may fall to another colour.
+        // The edges of pieces are rounded to subpixels independently. One texel in five hundred may get another colour.
         assert!(shown > 5_000 && wrong * 500 <= shown, "{wrong} of {shown}");
     }
 }
@@ -124,7 +124,7 @@ fn with_cells_too_slow_memories_miss_first_and_turning_does_not_suffer() {
     assert!(slow.iter().any(|missed| *missed > 0.1), "{slow:?}");
 }
 
-/// A walk along the wall at 1 m/s, with images that may be wrong by an angle.
+/// Runs a walk along the wall at 1 m/s. The policy may show images that are wrong by up to `theta_deg` degrees.
 fn along_the_wall(pipeline: FacePipeline, theta_deg: f64) -> Outcome {
     let mut config = machine("design-maximum", pipeline, &[]);
     config.set("priority.theta_deg", theta_deg).expect("a number of the policy");
@@ -132,7 +132,8 @@ fn along_the_wall(pipeline: FacePipeline, theta_deg: f64) -> Outcome {
     experiment.head(head(Slide::right_at(1.0))).run().expect("it runs")
 }
 
-/// Texels of the row through the middle of the wall in which no memory shows anything between two in which one does: tears.
+/// Returns the number of tears in the row through the middle of the wall: texels without an image between two texels
+/// with an image.
 fn torn(outcome: &Outcome) -> usize {
     let size = 256;
     let joined = joined(outcome.record(), size);
@@ -146,8 +147,9 @@ fn torn(outcome: &Outcome) -> usize {
     [CubeFace::NegX, CubeFace::NegZ, CubeFace::PosX].into_iter().filter_map(of_face).sum()
 }
 
-/// E7 on the machine: pieces that were drawn from different places leave gaps, and warped ones do not. A memory that begins 6 m away may
-/// be wrong by 3 degrees, 8.5 texels: half a texel, as with the papers' angle, would be seen in few fields.
+/// E7 on the machine: pieces that were drawn from different positions leave gaps, and warped pieces do not. A memory
+/// that begins 6 m away may be wrong by 3 degrees, which is 8.5 texels. The papers' angle, half a texel, would be
+/// visible in few fields.
 #[test]
 fn pieces_tear_and_warped_ones_meet() {
     let plain = along_the_wall(CELLS, 3.0);
@@ -158,9 +160,10 @@ fn pieces_tear_and_warped_ones_meet() {
     assert_eq!(torn(&warped), 0);
 }
 
-/// Updates of each memory by the rule alone, with an ideal source: at every retrace the eye is where the ideal tracker's last report
-/// says, a millisecond apart; memory k is due when it has gone farther than 2 d sin(theta / 2). The border of the cells behind the eye is
-/// the nearest all the way: 5.5 m away behind one ring, 10.5 m behind two. Memory 3 begins five rings away, where the wall has ended.
+/// Returns the updates of each memory by the rule alone, for an ideal source. At every retrace, the eye is at the last
+/// report of the ideal tracker, which reports every millisecond. Memory k is due after a movement of more than 2 d
+/// sin(theta / 2). The nearest border is always that of the cells behind the eye: 5.5 m away with one ring, 10.5 m with
+/// two. Memory 3 begins five rings away, beyond the end of the wall.
 fn updates_by_the_rule(fields: u64) -> [u64; 4] {
     let half_theta = (90.0_f64 / 512.0).to_radians() / 2.0;
     let mut updates = [0; 4];
@@ -177,24 +180,25 @@ fn updates_by_the_rule(fields: u64) -> [u64; 4] {
     updates
 }
 
-/// Where the machine is fast enough it does what an ideal source does.
+/// A machine that is fast enough gives the same updates as an ideal source.
 #[test]
 fn far_cells_are_drawn_less_often_than_near_ones() {
     let [plain, warped] = [CELLS, WARPED].map(|pipeline| along_the_wall(pipeline, 90.0 / 512.0));
     let updates = |outcome: &Outcome| (0..4).map(|k| memory(outcome.record(), k).stats().swaps).collect::<Vec<_>>();
     let [plain, warped] = [&plain, &warped].map(updates);
     println!("updates {plain:?} {warped:?}");
-    // With warping memories of a cycle are shown together, so that the fastest waits for the others.
+    // With warping, the memories of a cycle are shown together, so the fastest memory waits for the others.
     assert!(warped[0] <= plain[0]);
     let ideal = updates_by_the_rule(200);
     println!("by the rule {ideal:?}");
-    // The last ones are not shown yet when the run ends.
+    // The last updates are not shown before the run ends.
     assert!(plain.iter().zip(ideal).all(|(found, ideal)| ideal.abs_diff(*found) <= 2), "{plain:?} {ideal:?}");
     assert!(plain[0] > 190 && plain.windows(2).all(|pair| pair[0] >= pair[1]), "{plain:?}");
     assert!(plain[0] > plain[1] && plain[1] > plain[2], "{plain:?}");
 }
 
-/// Diffuse light alone: a wall has one normal, and so one colour, wherever it is seen. A highlight for each face's own axis made a seam.
+/// Faces use diffuse light only. A wall has one normal, and so the same colour from everywhere. A highlight by each
+/// face's own axis produced a seam.
 #[test]
 fn a_flat_wall_has_one_colour_on_all_faces() {
     let ideal = FacePipeline { source: FaceSource::Ideal, ..FULL };
@@ -212,12 +216,12 @@ fn a_flat_wall_has_one_colour_on_all_faces() {
         assert!(of_face.len() >= 3, "the wall reaches around the eye: {of_face:?}");
         let reds: Vec<u8> = of_face.values().flatten().copied().collect();
         let [least, most] = [reds.iter().min(), reds.iter().max()].map(|red| red.copied().unwrap_or_default());
-        // A normal that is turned to a face's axes is rounded there.
+        // A normal is rounded when it is transformed to the axes of a face.
         assert!(most - least <= 3, "{of_face:?}");
     }
 }
 
-/// The falloff is as long as a cell unless it is given: any side of a cell can be set alone.
+/// The default length of the falloff is the side of a cell, so the side can be changed alone.
 #[test]
 fn the_falloff_follows_the_side_of_a_cell() {
     for cell_m in [1.0, 2.0, 9.0] {
@@ -228,7 +232,7 @@ fn the_falloff_follows_the_side_of_a_cell() {
     }
 }
 
-/// What the eye sees through a lens is another picture; a lens that folds is refused by name.
+/// A lens changes the picture that the eye sees. A lens that folds the image is refused by name.
 #[test]
 fn faces_are_seen_through_a_lens_that_is_given() {
     let built = |text: &str| {
@@ -274,6 +278,7 @@ fn balls_that_lie_in_far_cells_are_drawn_once_before_a_head_that_stays() {
     let outcome = Experiment::new(config, CELLS, balls()).fields(40).pixels(Pixels::Off);
     let outcome = outcome.head(head(tracking::motion::Pan::at(200.0))).run().expect("it runs");
     let swaps: Vec<u64> = (0..4).map(|k| memory(outcome.record(), k).stats().swaps).collect();
-    // Centres 3, 14, 28 and 47 m ahead lie in rings 1, 3, 6 and 10 of cells of 5 m, that is behind the inner ring in 0, 2, 5 and 9.
+    // Centres 3, 14, 28 and 47 m ahead lie in rings 1, 3, 6 and 10 of cells of 5 m, which are 0, 2, 5 and 9 rings
+    // beyond the inner ring.
     assert_eq!(swaps, [1, 0, 1, 1]);
 }

@@ -1,14 +1,14 @@
-//! Faces at the cycle level: other times, and the same texels to the bit.
+//! Tests of faces at the cycle level: the times differ from the transaction level, and the texels are equal to the bit.
 
 use super::cells::{CELLS, WARPED};
 use super::{FULL, OBJECTS, assert_no_faults, machine, memory, texels};
 use pxpl5_run::{Experiment, ExperimentError, FacePipeline, Level, Outcome};
 use pxpl5_scene::{HeadMotion, HeadPath, Scene, Sway, builtin};
 
-/// Fields after which every memory has been drawn at both levels.
+/// Number of fields after which every memory has been drawn at both levels.
 const FIELDS: u64 = 40;
 
-/// A scene in which nothing moves, seen by a head that stands still.
+/// Returns a still scene with a still head.
 fn still(name: &str) -> Scene {
     let scene = builtin(name).expect("built in");
     let mut parts = scene.posed(&scene.edits_at(0)).into_parts();
@@ -19,7 +19,7 @@ fn still(name: &str) -> Scene {
     Scene::new(parts).expect("what is kept is whole")
 }
 
-/// One slave draws, so that ties fall as in the display list.
+/// One slave draws, so that ties are resolved in the order of the display list.
 fn run(pipeline: FacePipeline, scene: &Scene, level: Level) -> Outcome {
     let mut config = machine("small-hmd", pipeline, &[("arp.face_texels", 256)]);
     config.n_gps = 2;

@@ -1,4 +1,4 @@
-//! Faces of an ideal renderer: the machine's, to the last bit, but for the time.
+//! Tests of an ideal renderer of faces: its faces equal the machine's to the last bit, and only the times differ.
 
 use super::{FULL, after, assert_no_faults, cells, display, head, machine, memory, texels};
 use address_recalculation::Latch;
@@ -14,7 +14,8 @@ fn ideal(policy: FacePolicy) -> FacePipeline {
     FacePipeline { source: FaceSource::Ideal, ..FacePipeline::new(policy) }
 }
 
-/// Of what does not move. With one slave primitives come in the order of the display list, so that ties fall as they do in an ideal renderer.
+/// Nothing moves in these scenes. With one slave, primitives come in the order of the display list. Ties are then
+/// resolved as in the ideal renderer.
 #[test]
 fn the_machine_and_the_ideal_renderer_fill_memories_with_the_same_bits() {
     let one_slave = [("n_gps", 2), ("n_renderers", 1)];
@@ -39,7 +40,7 @@ fn the_machine_and_the_ideal_renderer_fill_memories_with_the_same_bits() {
     }
 }
 
-/// Every retrace shows what was drawn the instant before, in the memories that the policy found due.
+/// Every retrace shows the updates of one instant before, in the memories that the policy found due.
 #[test]
 fn an_update_is_shown_at_the_retrace_for_which_it_is_drawn() {
     for policy in [FacePolicy::Full, FacePolicy::Objects, FacePolicy::Cells, FacePolicy::CellsWarped] {
@@ -51,7 +52,7 @@ fn an_update_is_shown_at_the_retrace_for_which_it_is_drawn() {
         assert_no_faults(record);
         let notes = outcome.face_notes().all();
         let swaps = &record.observation().swaps;
-        // What was drawn for the retrace at the end of the run is not shown any more.
+        // Updates for the retrace at the end of the run are not shown any more.
         let shown: Vec<_> = notes.iter().filter(|note| note.due_at < outcome.end()).collect();
         assert!(shown.len() > 10 && swaps.len() >= shown.len() - 4, "{policy:?}: {} {}", shown.len(), swaps.len());
         for (note, swap) in shown.iter().zip(swaps) {
@@ -69,7 +70,7 @@ fn an_update_is_shown_at_the_retrace_for_which_it_is_drawn() {
     }
 }
 
-/// Who draws means nothing to a turn.
+/// The renderer of the faces does not affect rotation.
 #[test]
 fn the_latency_of_a_turn_is_that_of_faces_drawn_by_the_machine() {
     for latch in [Latch::Field, Latch::Line, Latch::Pixel] {

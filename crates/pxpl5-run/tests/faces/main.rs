@@ -1,4 +1,5 @@
-//! Six faces drawn by Pixel-Planes 5 for a display that turns with the head: when, how fast, and whether they are right.
+//! Tests of six faces that Pixel-Planes 5 draws for a display that follows the head's rotation: times, rates and
+//! correctness.
 
 mod cells;
 mod code;
@@ -29,8 +30,8 @@ use tracking::tracker::TrackerConfig;
 const FULL: FacePipeline = FacePipeline::new(FacePolicy::Full);
 const OBJECTS: FacePipeline = FacePipeline::new(FacePolicy::Objects);
 
-/// 13 GPs and 5 renderers with the display, and some of its numbers.
-/// A machine whose policies have a threshold of 90/512 degrees and cells of 5 m, which the numbers of these tests are of.
+/// Returns a machine with some of its numbers changed. The policies have a threshold of 90/512 degrees and cells of 5
+/// m, on which the expected values of these tests depend.
 fn machine(preset: &str, pipeline: FacePipeline, numbers: &[(&str, u64)]) -> MachineConfig {
     let preset = MachineConfig::preset(preset).expect("listed");
     let mut config = pipeline.adapt(Registry::of_papers().machine_of(preset));
@@ -59,7 +60,7 @@ fn assert_no_faults(record: &Record) {
     assert_eq!(record.display().faults(), (0, None));
 }
 
-/// E1: a ball of more and more triangles.
+/// E1: the latency of rotation does not depend on the number of triangles in a ball.
 #[test]
 fn the_latency_of_a_turn_is_the_same_to_the_picosecond_whatever_is_drawn() {
     let run = |pipeline: FacePipeline, n: usize| {
@@ -70,7 +71,7 @@ fn the_latency_of_a_turn_is_the_same_to_the_picosecond_whatever_is_drawn() {
         experiment.head(head(Pan::at(200.0))).run().expect("it runs")
     };
     let outcomes = [10, 100, 1_000, 100_000].map(|n| run(FULL, n));
-    // Four memories have a comparator of two stages; else cells change nothing of a turn.
+    // Four memories have a comparator of two stages. Cells do not affect rotation otherwise.
     let of_cells = [10, 100_000].map(|n| run(cells::CELLS, n));
     for (latency, of_cells) in outcomes[0].rotation_latencies()[..55].iter().zip(of_cells[0].rotation_latencies()) {
         assert_eq!(of_cells.pipeline, latency.pipeline + Span(50_000));
@@ -89,12 +90,12 @@ fn the_latency_of_a_turn_is_the_same_to_the_picosecond_whatever_is_drawn() {
         assert!((latency.scan.0 as f64 - to_the_middle).abs() <= 1.0, "{latency:?}");
     }
     let translation = outcomes.each_ref().map(|outcome| outcome.latency_ms().mean);
-    // The small ones all wait for retraces; the large one for its TRANSFORM.
+    // Small balls wait for retraces only. The large ball waits for its TRANSFORM.
     assert!(translation[..3].iter().all(|small| translation[3] > 4.0 * small), "{translation:?}");
     outcomes.iter().for_each(|outcome| assert_no_faults(outcome.record()));
 }
 
-/// The other half of E1: there turning costs what drawing costs.
+/// The other half of E1: under Rendering Control, the latency of rotation grows with the drawing time.
 #[test]
 fn under_rendering_control_the_latency_of_a_turn_grows_with_what_is_drawn() {
     let latency = |n: usize| {
@@ -107,7 +108,7 @@ fn under_rendering_control_the_latency_of_a_turn_grows_with_what_is_drawn() {
     assert!(latencies[2] > latencies[0] + 100.0 && latencies[2] > latencies[1] + 100.0, "{latencies:?}");
 }
 
-/// COPY of every update whose 6 (N/128)^2 regions all have primitives.
+/// Returns the times of COPY of every update whose 6 (N/128)^2 regions all have primitives.
 fn copies(texels: u64, packed: bool) -> (Vec<Span>, u64) {
     let bits = if packed { 16 } else { 24 };
     let numbers = [("arp.face_texels", texels), ("arp.depth_bits", bits), ("arp.colour_bits", bits)];
@@ -134,7 +135,7 @@ fn all_regions_take_the_ports_time_and_no_more() {
         let (copies, of_each) = copies(texels, packed);
         assert!(of_each.abs_diff(regions) <= 1, "{of_each} regions of {regions}");
         let fastest = copies.iter().map(|span| span.as_ms()).fold(f64::INFINITY, f64::min);
-        // The port is never idle between the first and the last region of an update, but for the last's begin.
+        // The port is busy from the first to the last region of an update, except before the last region.
         assert!(copies.iter().skip(1).all(|span| span.as_ms() >= 0.999 * port_ms || texels == 512), "{copies:?}");
         assert!(fastest >= 0.5 * port_ms && fastest <= 1.05 * port_ms, "{texels}: {fastest} {port_ms}");
     }
@@ -168,14 +169,14 @@ fn balls() -> Scene {
     Scene::new(parts).expect("in range")
 }
 
-/// A walk at 1 m/s before the balls, with renderers whose clock runs at a part of 40 MHz.
+/// Runs a walk at 1 m/s past the balls, with renderers whose clock runs at a fraction of 40 MHz.
 fn walk(pipeline: FacePipeline, clock_hz: u64) -> Outcome {
     let numbers = [("arp.face_texels", 128), ("renderer.clock_hz", clock_hz)];
     let experiment = Experiment::new(machine("small-hmd", pipeline, &numbers), pipeline, balls());
     experiment.fields(240).pixels(Pixels::Off).head(head(Slide::right_at(1.0))).run().expect("it runs")
 }
 
-/// Retraces that updates of each memory missed, of all that were shown or missed.
+/// Returns, for each memory, the share of retraces that its updates missed, among all shown and missed ones.
 fn missed(outcome: &Outcome) -> [f64; 4] {
     std::array::from_fn(|k| {
         let stats = memory(outcome.record(), k).stats();
@@ -183,7 +184,7 @@ fn missed(outcome: &Outcome) -> [f64; 4] {
     })
 }
 
-/// E8.
+/// E8: with slow renderers, the slow memories miss their retraces first, and rotation keeps its latency.
 #[test]
 fn when_renderers_are_too_slow_slow_memories_miss_first_and_turning_does_not_suffer() {
     let outcomes = [40_000_000, 2_000_000, 1_000_000, 500_000].map(|clock_hz| walk(OBJECTS, clock_hz));
@@ -193,7 +194,8 @@ fn when_renderers_are_too_slow_slow_memories_miss_first_and_turning_does_not_suf
         assert_eq!(outcome.rotation_latencies(), outcomes[0].rotation_latencies());
     }
     assert_eq!(misses[0], [0.0; 4], "a machine that is fast enough misses nothing");
-    // Where the slowest miss up to half of their retraces the order is strict; beyond, memory 0 is still the least late.
+    // While the slowest memories miss up to half of their retraces, the order is strict. Beyond that, memory 0 is still
+    // the least late.
     assert!(misses[..3].iter().all(|missed| missed.is_sorted()) && misses[2][2] > 5.0 * misses[2][1], "{misses:?}");
     assert!(misses[3][1..].iter().all(|missed| *missed > 2.0 * misses[3][0]), "{misses:?}");
     assert!(misses.iter().any(|missed| missed[3] > 0.2 && missed[0] < missed[3] / 2.0), "{misses:?}");
@@ -263,7 +265,8 @@ fn texels(size: u32) -> impl Iterator<Item = TexelAddress> {
     })
 }
 
-/// A face of the machine against the ideal renderer's picture of the same view; the number of texels that are not empty.
+/// Compares a face of the machine with the ideal picture of the same view. Returns the number of texels that are not
+/// empty.
 fn compare_face(scene: &Scene, eye: DVec3, time: Time, faces: &FaceSet, face: CubeFace) -> usize {
     let size = faces.texels();
     let grid = RegionGrid { width: size, height: size, region_width: 128, region_height: 128 };
@@ -300,7 +303,7 @@ fn compare_face(scene: &Scene, eye: DVec3, time: Time, faces: &FaceSet, face: Cu
     shown
 }
 
-/// The oracle: every face of what is shown, against a redraw for the place from which it was drawn.
+/// Every displayed face must equal a redraw from the position for which the face was drawn.
 #[test]
 fn the_machines_faces_are_those_of_an_ideal_renderer() {
     for (name, faces_with_something) in [("mig", 1), ("room", 6)] {

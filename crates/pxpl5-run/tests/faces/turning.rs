@@ -1,4 +1,4 @@
-//! A head that turns before faces that need no drawing.
+//! Tests of a head that turns in front of faces that need no drawing.
 
 use super::{FULL, OBJECTS, after, assert_no_faults, head, machine, memory, texels};
 use address_recalculation::CubeFace;
@@ -6,7 +6,7 @@ use pxpl5_run::{Experiment, FacePipeline, FacePolicy, Pixels};
 use pxpl5_scene::builtin;
 use tracking::motion::{Pan, Still};
 
-/// With the eye at rest a ball that is far enough is drawn once, into the slowest memory, and nothing is ever in memory 0.
+/// With the eye at rest, a ball that is far enough away is drawn once, into the slowest memory. Memory 0 stays empty.
 #[test]
 fn an_empty_memory_0_is_content_and_every_retrace_a_picture() {
     let scene = builtin("sphere:1000").expect("even");
@@ -21,7 +21,7 @@ fn an_empty_memory_0_is_content_and_every_retrace_a_picture() {
     assert_eq!(outcome.rotation_latencies().len(), 60);
 }
 
-/// A rectangle before the head's eyes, wherever they look.
+/// Returns a scene with a rectangle that is attached to the head.
 #[test]
 fn what_is_fixed_to_the_head_is_drawn_where_it_looks() {
     for policy in [FacePolicy::Full, FacePolicy::Objects, FacePolicy::Cells] {
@@ -45,7 +45,7 @@ fn what_is_fixed_to_the_head_is_drawn_where_it_looks() {
     }
 }
 
-/// Loads of a display that latches lines, or pixels, with a tracker that reports once a field.
+/// Returns the loads of a display that latches lines, or pixels. The tracker reports once a field.
 #[test]
 fn a_host_predicts_for_every_line_and_for_as_many_pixels_as_its_line_carries() {
     use address_recalculation::Latch;
@@ -65,7 +65,7 @@ fn a_host_predicts_for_every_line_and_for_as_many_pixels_as_its_line_carries() {
         let tuned = outcome.head().expect("tracked").head();
         let ahead_ms =
             |training: Option<&tracking::predict::Training>| training.expect("tuned").interval_ps / 1_000_000_000;
-        // 33 ms of the tracker and up to a field more, against TRANSFORM, RENDER, COPY and retraces besides.
+        // 33 ms of the tracker and up to one field, compared with TRANSFORM, RENDER, COPY and retraces in addition.
         assert!((33..=60).contains(&ahead_ms(tuned.training_of_turns())), "{:?}", tuned.training_of_turns());
         assert!(ahead_ms(tuned.training()) > ahead_ms(tuned.training_of_turns()));
     }

@@ -1,4 +1,4 @@
-//! Curves, points and bands over two axes, with their names: drawn by the crate `plotters`.
+//! Charts of curves, points and bands over two axes, drawn by the crate `plotters`.
 
 use super::look::Look;
 use super::scale::{Axis, AxisScale};
@@ -17,95 +17,95 @@ type Fault<'a> = DrawingAreaErrorKind<<SVGBackend<'a> as plotters::backend::Draw
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Plane<'a, 'b> = ChartContext<'b, SVGBackend<'a>, Cartesian2d<Axis, Axis>>;
 
-/// What a chart is about.
+/// Title and axis labels of a chart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChartAxes {
-    /// What stands above the chart.
+    /// Title above the chart.
     pub title: String,
-    /// Name and unit of what goes to the right.
+    /// Label of the horizontal axis, with the unit.
     pub across: String,
-    /// Name and unit of what goes up.
+    /// Label of the vertical axis, with the unit.
     pub up: String,
 }
 
-/// A point with the interval in which its height lies.
+/// A point with the confidence interval of its vertical value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChartPoint {
-    /// Numbers across and up; where one is none (NaN) nothing is drawn and a line is broken.
+    /// Horizontal and vertical value. If either is NaN, the point is not drawn and a line is interrupted.
     pub at: (f64, f64),
-    /// Lower and upper end of its interval; no numbers where there is none.
+    /// Lower and upper end of the interval. NaN stands for no interval.
     pub interval: (f64, f64),
 }
 
-/// How points are drawn.
+/// Style in which the points of a series are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SeriesLook {
-    /// Joined, in their order.
+    /// A line through the points, in their order.
     Line,
-    /// Joined, each with a mark, their intervals as a band.
+    /// A line with a mark at each point. The intervals form a band.
     Band,
-    /// Each with a mark, its interval as an upright line.
+    /// A mark at each point, without a line. Each interval is a vertical line.
     Points,
 }
 
-/// Points that belong together.
+/// A series of points with a name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChartSeries {
-    /// What stands beside its colour.
+    /// Name in the legend.
     pub name: String,
-    /// In the order in which they are joined.
+    /// Points, in the order in which a line joins them.
     pub points: Vec<ChartPoint>,
-    /// How they are drawn.
+    /// Style of the points.
     pub look: SeriesLook,
 }
 
-/// How large a chart is.
+/// Size of a chart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ChartSize {
-    /// For a screen: 960 x 480 pixels, text of 12, names to the right.
+    /// Size for a screen: 960 x 480 pixels, text of 12 pixels, legend on the right.
     Screen,
-    /// For a column of a paper: so many millimetres wide, text of 7.5 points, names below.
+    /// Size for a column of a paper: text of 7.5 points, legend below the chart.
     Column {
-        /// Width in millimetres.
+        /// Width of the chart in millimetres.
         width_mm: f64,
     },
 }
 
-/// A chart.
+/// A chart that can be drawn as SVG.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
-    /// What it is about.
+    /// Title and axis labels.
     pub axes: ChartAxes,
-    /// How the axis across goes.
+    /// Scale of the horizontal axis.
     pub across: AxisScale,
-    /// How the axis upwards goes.
+    /// Scale of the vertical axis.
     pub up: AxisScale,
-    /// What it shows; the first of them lies at the bottom.
+    /// Series to draw. Later series cover earlier ones.
     pub series: Vec<ChartSeries>,
-    /// How large it is.
+    /// Size of the chart.
     pub size: ChartSize,
 }
 
-/// Lengths of a drawing in its own units, which are whole: fine enough that no line shows a step.
+/// Lengths of a drawing in whole units, which are fine enough to hide the rounding.
 #[derive(Clone, Copy, Debug)]
 struct Measures {
     width: u32,
     height: u32,
     /// Height of text.
     em: u32,
-    /// Width and height as the file says them.
+    /// Width, height and unit that the SVG file states.
     outer: (f64, f64, &'static str),
     names_below: bool,
 }
 
-/// Units of a pixel, and of a millimetre.
+/// Number of drawing units in a pixel.
 const UNITS_A_PIXEL: u32 = 10;
 const UNITS_A_MM: f64 = 40.0;
-/// A line of a column's text: 7.5 points of 25.4/72 mm.
+/// Height of text in a paper's column: 7.5 points of 25.4/72 mm.
 const COLUMN_EM_MM: f64 = 7.5 * 25.4 / 72.0;
-/// Height of a column's chart over its width, without names.
+/// Ratio of height to width of a chart in a column, without the legend.
 const COLUMN_HEIGHT: f64 = 0.66;
-/// Height of a line of names, and their columns.
+/// Height of a line of the legend.
 const NAME_HEIGHT_EM: f64 = 1.4;
 const NAMES_A_LINE: usize = 2;
 
@@ -118,6 +118,7 @@ impl ChartSize {
             }
             Self::Column { width_mm } => {
                 let names_mm = COLUMN_EM_MM * NAME_HEIGHT_EM * names.div_ceil(NAMES_A_LINE) as f64;
+                // The legend adds its lines to the height.
                 let height_mm = (width_mm * COLUMN_HEIGHT + names_mm).round();
                 let [width, height, em] = [width_mm, height_mm, COLUMN_EM_MM].map(|mm| (mm * UNITS_A_MM) as u32);
                 Measures { width, height, em, outer: (width_mm, height_mm, "mm"), names_below: true }
@@ -127,11 +128,11 @@ impl ChartSize {
 }
 
 impl Chart {
-    /// The drawing as SVG, the same bytes everywhere.
+    /// Returns the chart as SVG. The bytes are the same on every host.
     ///
     /// # Panics
     ///
-    /// Never: text takes whatever is drawn.
+    /// Never, because a string accepts all output.
     #[must_use]
     pub fn svg(&self) -> String {
         let measures = self.size.measures(self.series.len());
@@ -143,7 +144,7 @@ impl Chart {
         }
         let inner = format!("width=\"{}\" height=\"{}\"", measures.width, measures.height);
         let (width, height, unit) = measures.outer;
-        // plotters takes every character of a label.
+        // `plotters` copies all characters of a label, so characters that XML forbids are removed here.
         let text: String = text.chars().filter(|c| is_allowed(*c)).collect();
         text.replacen(&inner, &format!("width=\"{width}{unit}\" height=\"{height}{unit}\""), 1)
     }
@@ -151,6 +152,7 @@ impl Chart {
     fn draw<'a>(&self, root: &Area<'a>, measures: Measures) -> Result<(), Fault<'a>> {
         root.fill(&WHITE)?;
         let em = f64::from(measures.em);
+        // The legend is below the chart or on its right.
         let (plane, names) = if measures.names_below {
             let lines = self.series.len().div_ceil(NAMES_A_LINE) as f64;
             root.split_vertically(f64::from(measures.height) - lines * NAME_HEIGHT_EM * em)
@@ -158,6 +160,7 @@ impl Chart {
             root.split_horizontally(f64::from(measures.width) - 18.0 * em)
         };
         self.draw_plane(&plane, measures)?;
+        // Each entry of the legend has a line sample and a name.
         let columns = if measures.names_below { NAMES_A_LINE } else { 1 };
         let column = f64::from(names.dim_in_pixel().0) / columns as f64;
         for (i, series) in self.series.iter().enumerate() {
@@ -171,10 +174,12 @@ impl Chart {
 
     fn draw_plane<'a>(&self, area: &Area<'a>, measures: Measures) -> Result<(), Fault<'a>> {
         let em = f64::from(measures.em);
+        // Find the ranges of both axes from all points and intervals.
         let all = || self.series.iter().flat_map(|series| &series.points);
         let across = Axis::reaching(&self.across, all().map(|point| point.at.0));
         let up = all().flat_map(|point| [point.at.1, point.interval.0, point.interval.1]);
         let up = Axis::reaching(&self.up, up);
+        // The widest label decides the space left of the vertical axis.
         let widest = up.marks().iter().map(|mark| up.label(*mark).chars().count()).max().unwrap_or(1);
         let mut builder = ChartBuilder::on(area);
         if !self.axes.title.is_empty() {
@@ -182,6 +187,7 @@ impl Chart {
         }
         builder.margin(em * 0.6).x_label_area_size(em * 3.2).y_label_area_size(em * (2.4 + 0.6 * widest as f64));
         let mut plane = builder.build_cartesian_2d(across.clone(), up.clone())?;
+        // Draw the axes first, because the series lie above the mesh.
         plane
             .configure_mesh()
             .light_line_style(WHITE.mix(0.0))
@@ -202,14 +208,14 @@ impl Chart {
     }
 }
 
-/// A point of the plane: places on both axes, and the ends of the interval's.
+/// A point in axis coordinates, with the ends of its interval.
 #[derive(Clone, Copy)]
 struct Placed {
     at: (f64, f64),
     interval: Option<(f64, f64)>,
 }
 
-/// Runs of points that all have a place.
+/// Splits points into runs without gaps. Points without a position end a run.
 fn runs(points: &[ChartPoint], axes: (&Axis, &Axis)) -> Vec<Vec<Placed>> {
     let placed = |point: &ChartPoint| {
         let at = (axes.0.place(point.at.0), axes.1.place(point.at.1));
@@ -230,8 +236,10 @@ fn draw_series<'a>(
     series: &ChartSeries,
     axes: (&Axis, &Axis),
 ) -> Result<(), Fault<'a>> {
+    // A gap in the points interrupts lines and bands.
     for run in runs(&series.points, axes) {
         let bounded: Vec<_> = run.iter().filter_map(|point| Some((point.at.0, point.interval?))).collect();
+        // Intervals lie below the line and the marks.
         match series.look {
             SeriesLook::Band if bounded.len() > 1 => {
                 let lower = bounded.iter().map(|(x, (low, _))| (*x, *low));
@@ -261,8 +269,9 @@ fn draw_series<'a>(
     Ok(())
 }
 
-/// A sample of a series and its name.
+/// Draws the legend entry of a series: a sample and the name.
 fn draw_name<'a>(area: &Area<'a>, look: Look, series: &ChartSeries, (x, y): (i32, i32)) -> Result<(), Fault<'a>> {
+    // The sample consists of a mark, of a line, or of both, as in the chart.
     let em = look.em as i32;
     if series.look == SeriesLook::Points {
         look.mark(area, (x + em, y))?;
@@ -278,6 +287,7 @@ fn draw_name<'a>(area: &Area<'a>, look: Look, series: &ChartSeries, (x, y): (i32
             look.mark(area, (x + em, y))?;
         }
     }
+    // The name stands to the right of the sample.
     let style = TextStyle::from((FontFamily::SansSerif, f64::from(look.em)).into_font());
     area.draw(&Text::new(series.name.clone(), (x + em * 5 / 2, y), style.pos(Pos::new(HPos::Left, VPos::Center))))
 }

@@ -1,25 +1,25 @@
-//! How latencies are spread.
+//! Histograms of latencies.
 
 use crate::markup::Element;
 use crate::svg::{Tenths, anchored, hint, line};
 
-/// Width and height of the chart in its own units.
+/// Width of the chart in its own units.
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 200.0;
-/// What stands left of, right of, above and below the bars.
+/// Space on the left of the bars.
 const LEFT: f64 = 44.0;
 const RIGHT: f64 = 30.0;
 const TOP: f64 = 14.0;
 const BOTTOM: f64 = 42.0;
-/// Where the bars stand, from the top.
+/// Vertical position of the foot of the bars, from the top.
 const FLOOR: f64 = HEIGHT - BOTTOM;
 
-/// Most bars of a histogram.
+/// Number of bars of a histogram.
 const BINS: usize = 24;
 /// Width of a bar with the gap behind it.
 const STEP: f64 = (WIDTH - LEFT - RIGHT) / BINS as f64;
 
-/// A histogram of latencies in milliseconds, as SVG to stand in a page.
+/// Returns a histogram of latencies in milliseconds, as SVG for a page.
 #[must_use]
 pub fn histogram(values_ms: &[f64]) -> String {
     histogram_element(values_ms).to_string()
@@ -30,6 +30,7 @@ pub(crate) fn histogram_element(values_ms: &[f64]) -> Element {
     let most = bins.counts.iter().copied().max().unwrap_or(1).max(1);
     let mut svg = Element::new("svg").with("class", "chart").with("viewBox", format_args!("0 0 {WIDTH} {HEIGHT}"));
     svg = svg.with("role", "img").child(&hint("Histogram of latency"));
+    // Draw a bar for each bin with values, then labels at every quarter of the range.
     for (bin, count) in bins.counts.iter().enumerate().filter(|(_, count)| **count > 0) {
         svg.add(&bins.bar(bin, *count, most));
     }
@@ -37,18 +38,19 @@ pub(crate) fn histogram_element(values_ms: &[f64]) -> Element {
         let value = format!("{:.2}", bins.begin_of(bin));
         svg.add(&anchored(Tenths(place_of(bin)), FLOOR + 17.0, "middle").text(value));
     }
+    // The axis and its labels come last.
     svg.add(&line(format_args!("M{LEFT} {FLOOR}H{WIDTH}"), "#222"));
     svg.add(&Element::new("text").with("x", LEFT).with("y", HEIGHT - 6.0).text("latency, ms"));
     svg.add(&anchored(LEFT - 6.0, TOP + 8.0, "end").text(most));
     svg.child(&anchored(LEFT - 6.0, FLOOR, "end").text(0))
 }
 
-/// Left edge of a bar.
+/// Returns the left edge of a bar.
 fn place_of(bin: usize) -> f64 {
     LEFT + STEP * bin as f64
 }
 
-/// Equal parts of the range of some values, and how many lie in each.
+/// Counts of values in equal parts of their range.
 struct Bins {
     begin: f64,
     width: f64,
@@ -56,13 +58,13 @@ struct Bins {
 }
 
 impl Bins {
-    /// Values that are all equal stand in the middle.
+    /// Counts values. If all values are equal, they lie in the middle bin.
     fn of(values: &[f64]) -> Self {
         let low = values.iter().copied().fold(f64::MAX, f64::min);
         let high = values.iter().copied().fold(f64::MIN, f64::max);
         let width = ((high - low) / BINS as f64).max(0.01);
         let begin = (f64::midpoint(low, high) - width * BINS as f64 / 2.0).max(0.0);
-        // A trifle wider, so that the greatest value lies within.
+        // The range is slightly enlarged, so that the greatest value lies in the last bin.
         let mut bins = Self { begin, width: width * 1.000_001, counts: [0; BINS] };
         for value in values {
             bins.counts[(((value - begin) / bins.width) as usize).min(BINS - 1)] += 1;

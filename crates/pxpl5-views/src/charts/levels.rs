@@ -1,21 +1,21 @@
-//! Speed against error as a picture.
+//! Chart of simulation speed against error.
 
 use super::chart::{Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesLook};
 use super::scale::AxisScale;
 
-/// A way to simulate: how fast it is, and how wrong.
+/// Speed and error of a way to simulate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpeedAndError {
-    /// What stands beside its mark, such as the name of a level of modelling.
+    /// Name beside the mark, such as the name of a level of modelling.
     pub name: String,
     /// Simulated fields per second of the host's time.
     pub fields_per_host_second: f64,
-    /// Mean absolute error of the figures that are free checks, percent.
+    /// Mean absolute error, in per cent, of the figures that are free checks.
     pub mean_error_percent: f64,
 }
 
-/// An SVG: simulated fields per host second (in powers of ten) against the mean error of the free checks. A line joins the best: those than
-/// which none is both faster and less wrong.
+/// Returns an SVG chart of simulated fields per host second, in powers of ten, against the mean error of the free
+/// checks. A line joins the best entries: no other entry is both faster and more accurate.
 #[must_use]
 pub fn level_chart(levels: &[SpeedAndError]) -> String {
     let axes = ChartAxes {
@@ -32,19 +32,20 @@ fn series_of(level: &SpeedAndError) -> ChartSeries {
     ChartSeries { name, points: vec![point_of(level)], look: SeriesLook::Points }
 }
 
-/// Speeds below one field a second stand at one.
+/// Returns the position of an entry. Speeds below one field a second are drawn at one.
 const fn point_of(level: &SpeedAndError) -> ChartPoint {
     let at = (level.fields_per_host_second.max(1.0), level.mean_error_percent);
     ChartPoint { at, interval: (f64::NAN, f64::NAN) }
 }
 
-/// The best, from the fastest on; none of fewer than two.
+/// Returns the line through the best entries, from the fastest on. Returns `None` for fewer than two.
 fn front(levels: &[SpeedAndError]) -> Option<ChartSeries> {
     let mut sorted: Vec<&SpeedAndError> = levels.iter().collect();
     sorted.sort_by(|a, b| {
         let slower = b.fields_per_host_second.total_cmp(&a.fields_per_host_second);
         slower.then(a.mean_error_percent.total_cmp(&b.mean_error_percent))
     });
+    // From the fastest entry on, an entry is kept if it is more accurate than all faster ones.
     let mut best: Vec<&SpeedAndError> = Vec::new();
     for level in sorted {
         if best.last().is_none_or(|last| level.mean_error_percent < last.mean_error_percent) {
@@ -76,7 +77,7 @@ mod tests {
         assert_eq!(super::front(&[at(10.0, 1.0)]), None);
     }
 
-    /// Marks of the first series are discs, of which the second is its sample; a fifth series has discs again.
+    /// Marks of the first series are discs, and its legend has a second disc. A fifth series has discs again.
     #[test]
     fn a_tenth_of_the_speed_stands_a_power_further_left() {
         let place = |speed: f64| {

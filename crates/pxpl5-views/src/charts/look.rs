@@ -1,4 +1,4 @@
-//! What tells one series of a chart from the next, whatever colours its reader sees.
+//! Colours, dashes and marks that distinguish the series of a chart.
 
 use plotters::backend::DrawingBackend;
 use plotters::coord::CoordTranslate;
@@ -6,10 +6,11 @@ use plotters::drawing::{DrawingArea, DrawingAreaErrorKind};
 use plotters::element::{Circle, Cross, TriangleMarker};
 use plotters::style::{Color, RGBColor, ShapeStyle};
 
-/// Colours that people with any colour vision tell apart (Okabe and Ito 2008, its yellow darker); beyond them lines are dashed.
+/// Colours that are distinguishable with any colour vision (Okabe and Ito 2008, with a darker yellow). Further series
+/// have dashed lines.
 const COLOURS: [u32; 8] = [0x00_0000, 0xe6_9f00, 0x56_b4e9, 0x00_9e73, 0x00_72b2, 0xd5_5e00, 0xcc_79a7, 0xb8_a900];
 
-/// Dashes and gaps in tenths of the height of text.
+/// Lengths of dashes and gaps, in tenths of the height of text.
 const DASHES: [Option<(u32, u32)>; 3] = [None, Some((5, 3)), Some((2, 3))];
 
 /// Colour, dashes and mark of a series.
@@ -22,7 +23,7 @@ pub(super) struct Look {
 }
 
 impl Look {
-    /// That of the series at this place, from 0.
+    /// Returns the look of the series with an index, from 0.
     pub(super) fn of(place: usize, em: u32) -> Self {
         let [_, red, green, blue] = COLOURS[place % COLOURS.len()].to_be_bytes();
         Self { place, colour: RGBColor(red, green, blue), em }
@@ -32,13 +33,13 @@ impl Look {
         self.colour.stroke_width(self.em / 8)
     }
 
-    /// Lengths of dashes and gaps; `None` for a line without.
+    /// Returns the lengths of dashes and gaps, or `None` for a solid line.
     pub(super) fn dashes(&self) -> Option<(u32, u32)> {
         let dashes = DASHES[self.place / COLOURS.len() % DASHES.len()];
         dashes.map(|(on, off)| (on * self.em / 10, off * self.em / 10))
     }
 
-    /// Draws a disc, a triangle, a cross or a ring, in turn.
+    /// Draws the mark of the series: a disc, a triangle, a cross or a ring, in turn.
     pub(super) fn mark<B, C>(
         &self,
         area: &DrawingArea<B, C>,

@@ -1,14 +1,14 @@
-//! Charts: numbers as SVG.
+//! Charts as SVG.
 //!
 //! | chart | shows |
 //! |---|---|
-//! | [`Chart`] | series of points over two axes, evenly or in powers of ten, for a screen or a column of a paper |
+//! | [`Chart`] | series of points over two axes, linear or in powers of ten, for a screen or a column of a paper |
 //! | [`level_chart`] | speed against error of the levels of modelling |
-//! | [`curve_chart`], [`decade_chart`], [`point_chart`] | anything over anything: a comparison's errors over time, latency or share of pixels |
-//! | [`histogram`] | how the latencies of a run are spread |
-//! | [`part_bar`] | where the latency of a run goes |
+//! | [`curve_chart`], [`decade_chart`], [`point_chart`] | any value over another, such as the errors of a comparison over time |
+//! | [`histogram`] | distribution of the latencies of a run |
+//! | [`part_bar`] | parts of the latency of a run |
 //!
-//! All but the last two, whose bars tell what they are under a pointer, are drawn by the crate `plotters`.
+//! The crate `plotters` draws all charts except the last two, whose bars have tooltips.
 
 mod chart;
 mod histogram;
@@ -27,7 +27,8 @@ pub(crate) use parts::{colour_of_part, part_bar_element};
 pub use plane::{Curve, MarkedPoint, curve_chart, decade_chart, point_chart};
 pub use scale::AxisScale;
 
-/// Round numbers from 0 to a greatest: steps of 1, 2 or 5 times a power of ten, of which there are at most ten.
+/// Returns round numbers from 0 to at most `greatest`. The step is 1, 2 or 5 times a power of ten, and at most ten
+/// steps result.
 fn ticks(greatest: f64) -> Vec<f64> {
     let power = 10f64.powf((greatest / 10.0).log10().floor());
     let steps = [1.0, 2.0, 5.0, 10.0].map(|times| times * power);
@@ -36,7 +37,7 @@ fn ticks(greatest: f64) -> Vec<f64> {
     values.take_while(|value| *value <= greatest).collect()
 }
 
-/// Products of whole numbers and a step such as 0.2 have digits that nobody wants to read.
+/// Rounds away the last digits of a product such as 3 x 0.2, which are noise.
 fn readable(value: f64) -> f64 {
     (value * 1e9).round() / 1e9
 }

@@ -1,25 +1,25 @@
-//! Where latency goes.
+//! Bar chart of the parts of latency.
 
 use crate::markup::Element;
 use crate::svg::{Tenths, anchored, hint};
 
-/// Width and height of the chart in its own units, and what stands left and right of the bar.
+/// Width of the chart in its own units.
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 76.0;
 const MARGIN: f64 = 4.0;
 
-/// A part of the latency of a run.
+/// Mean of one part of the latency of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeanPart {
     /// Name, as in [`LATENCY_PARTS`](pxpl5_measure::LATENCY_PARTS).
     pub name: String,
-    /// Mean over all pictures, milliseconds.
+    /// Mean duration of the part over all pictures, in milliseconds.
     pub mean_ms: f64,
-    /// Whether it belongs to the latency that the papers state.
+    /// True if the part belongs to the latency that the papers state.
     pub published: bool,
 }
 
-/// Colours of the parts of latency, waiting in grey.
+/// Returns the colour of a part of the latency. Waiting times are grey.
 pub(crate) fn colour_of_part(name: &str) -> &'static str {
     match name {
         "send" => "#7f7f7f",
@@ -32,8 +32,8 @@ pub(crate) fn colour_of_part(name: &str) -> &'static str {
     }
 }
 
-/// The mean parts of latency as one bar, as SVG to stand in a page; what the papers count is framed. Nothing when they do
-/// not add up to a time.
+/// Returns the mean parts of the latency as a single bar, as SVG for a page. A frame marks the parts that the papers
+/// count. The text is empty if the sum of the parts is not positive.
 #[must_use]
 pub fn part_bar(parts: &[MeanPart]) -> String {
     part_bar_element(parts).map_or_else(String::new, |svg| svg.to_string())
@@ -47,6 +47,7 @@ pub(crate) fn part_bar_element(parts: &[MeanPart]) -> Option<Element> {
     let scale = (WIDTH - 2.0 * MARGIN) / all_ms;
     let mut svg = Element::new("svg").with("class", "chart").with("viewBox", format_args!("0 0 {WIDTH} {HEIGHT}"));
     svg = svg.with("role", "img").child(&hint("Parts of latency"));
+    // The frame grows with each published part.
     let mut frame = Frame { from: f64::MAX, to: 0.0 };
     let mut x = MARGIN;
     for part in parts {
@@ -57,6 +58,7 @@ pub(crate) fn part_bar_element(parts: &[MeanPart]) -> Option<Element> {
         }
         x += width;
     }
+    // The frame and the labels lie above the parts.
     svg.add(&frame.drawn());
     svg.add(&Element::new("text").with("x", MARGIN).with("y", 68).text(0));
     Some(svg.child(&anchored(Tenths(x), 68, "end").text(format_args!("{all_ms:.1} ms"))))
@@ -68,7 +70,7 @@ fn piece(part: &MeanPart, x: f64, width: f64) -> Element {
     piece.child(&hint(format_args!("{}: {:.3} ms", part.name, part.mean_ms)))
 }
 
-/// What lies between the left edge of the first published part and the right edge of the last.
+/// Horizontal range in chart units, from the left edge of the first published part to the right edge of the last.
 struct Frame {
     from: f64,
     to: f64,
@@ -80,7 +82,7 @@ impl Frame {
         self.to = self.to.max(to);
     }
 
-    /// Of no width where nothing is published.
+    /// Returns the frame as an element. Without published parts, its width is 0.
     fn drawn(&self) -> Element {
         let width = (self.to - self.from).max(0.0);
         let frame = Element::new("rect").with("x", Tenths(self.from.min(WIDTH))).with("y", 11);
@@ -106,7 +108,7 @@ mod tests {
     #[test]
     fn the_frame_lies_around_what_is_published() {
         let svg = part_bar(&[part("send", 1.0, false), part("copy", 2.0, true), part("scan", 1.0, false)]);
-        // 632 units for 4 ms, from 4 on.
+        // 4 ms take 632 units, and the frame begins at unit 4.
         assert!(svg.contains(r#"<rect x="162.0" y="11" width="316.0""#), "{svg}");
     }
 }

@@ -1,41 +1,42 @@
-//! The charts of comparisons: curves, and points with intervals, on a screen.
+//! Charts of comparisons for a screen: curves, and points with intervals.
 
 use super::chart::{Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesLook};
 use super::scale::AxisScale;
 
-/// A named course of numbers, in the order in which they are joined. Where a number is none (NaN) the line is broken.
+/// A named curve. The points are joined in their order. A point with NaN interrupts the line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// What stands beside its colour.
+    /// Name in the legend.
     pub name: String,
-    /// Numbers across and up.
+    /// Horizontal and vertical value of each point.
     pub points: Vec<(f64, f64)>,
 }
 
-/// A named point with the interval in which its height lies.
+/// A named point with the confidence interval of its vertical value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MarkedPoint {
-    /// What stands beside it.
+    /// Name in the legend.
     pub name: String,
-    /// Numbers across and up; a point one of which is none (NaN) is left out.
+    /// Horizontal and vertical value. If either is NaN, the point is not drawn.
     pub at: (f64, f64),
-    /// Lower and upper end of its interval; no numbers where there is none.
+    /// Lower and upper end of the interval. NaN stands for no interval.
     pub interval: (f64, f64),
 }
 
-/// An SVG: curves with a legend. Both axes begin at 0.
+/// Returns an SVG chart of curves with a legend. Both axes begin at 0.
 #[must_use]
 pub fn curve_chart(axes: &ChartAxes, curves: &[Curve]) -> String {
     on_screen(axes, AxisScale::FromZero, curves.iter().map(of_curve).collect())
 }
 
-/// An SVG: curves with a legend, the upward axis in powers of ten; what is not above 0 breaks its line.
+/// Returns an SVG chart of curves with a legend. The vertical axis is in powers of ten. Values that are not positive
+/// interrupt the line.
 #[must_use]
 pub fn decade_chart(axes: &ChartAxes, curves: &[Curve]) -> String {
     on_screen(axes, AxisScale::Decades, curves.iter().map(of_curve).collect())
 }
 
-/// An SVG: points with their intervals and a legend. Both axes begin at 0.
+/// Returns an SVG chart of points with intervals and a legend. Both axes begin at 0.
 #[must_use]
 pub fn point_chart(axes: &ChartAxes, points: &[MarkedPoint]) -> String {
     on_screen(axes, AxisScale::FromZero, points.iter().map(of_point).collect())
@@ -70,7 +71,8 @@ mod tests {
         found.filter_map(|node| node.attribute(name)).map(str::to_owned).collect()
     }
 
-    /// Corners of the coloured lines: of the first curve, which is black, those that are no axis; whole units of the drawing.
+    /// Returns the corners of the curves in whole drawing units. The first curve is black like the axes, so the stroke
+    /// width selects the curves.
     fn courses(svg: &str) -> Vec<Vec<(f64, f64)>> {
         let document = roxmltree::Document::parse(svg).expect("XML");
         let lines = document.descendants().filter(|node| node.has_tag_name("polyline"));
@@ -88,7 +90,7 @@ mod tests {
         let points = vec![(0.0, 0.0), (1.0, 2.0), (2.0, f64::NAN), (3.0, 4.0), (4.0, 4.0)];
         let svg = curve_chart(&axes(), &[Curve { name: "slats".to_owned(), points }]);
         let courses = courses(&svg);
-        // The last is the sample beside the name.
+        // The last line is the sample in the legend.
         assert_eq!(courses.len(), 3, "{courses:?}");
         let (first, second) = (&courses[0], &courses[1]);
         assert_eq!((first.len(), second.len()), (2, 2));
@@ -99,7 +101,7 @@ mod tests {
         assert!(svg.contains("a &lt; b") && svg.contains("error, px"));
     }
 
-    /// 0.1 to 100 are three decades: 1 stands a third of the way up, and 0 has no place.
+    /// 0.1 to 100 are three decades: 1 lies at a third of the height, and 0 has no position.
     #[test]
     fn decades_are_equally_high() {
         let points = vec![(0.0, 0.1), (1.0, 1.0), (2.0, 0.0), (3.0, 100.0), (4.0, 10.0)];

@@ -1,32 +1,32 @@
-//! Axes: which numbers they reach, where they have marks, and what stands at those.
+//! Axes of charts: range, tick marks and labels.
 
 use super::{readable, ticks};
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 use std::ops::Range;
 
-/// How an axis goes.
+/// Scale of an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AxisScale {
-    /// Evenly, from 0 to the greatest number.
+    /// Linear scale from 0 to the greatest number.
     FromZero,
-    /// Evenly, from the least number to the greatest.
+    /// Linear scale from the least number to the greatest.
     Fitted,
-    /// In powers of ten; what is not above 0 has no place.
+    /// Scale in powers of ten. Numbers that are not positive have no position.
     Decades,
-    /// Evenly, a step for each of these names: number 0 is the first.
+    /// Scale with one step for each name. The first name has number 0.
     Names(Vec<String>),
 }
 
-/// An axis on which everything that is shown has a place.
+/// An axis with a range that contains all numbers.
 #[derive(Clone, Debug)]
 pub(super) struct Axis {
     scale: AxisScale,
-    /// The ends, where places are measured: powers of ten on an axis of decades, else the numbers.
+    /// Ends of the range: exponents of ten on an axis of decades, numbers on other axes.
     pub(super) ends: (f64, f64),
 }
 
 impl Axis {
-    /// Wide enough for these numbers; those that are none (NaN) and those without a place are left out.
+    /// Creates an axis whose range contains the given numbers. NaN and numbers without a position are ignored.
     pub(super) fn reaching(scale: &AxisScale, numbers: impl Iterator<Item = f64>) -> Self {
         let blank = Self { scale: scale.clone(), ends: (0.0, 1.0) };
         let places = numbers.map(|number| blank.place(number)).filter(|place| place.is_finite());
@@ -41,7 +41,7 @@ impl Axis {
         Self { ends, ..blank }
     }
 
-    /// Where a number stands; none (NaN) where it has no place.
+    /// Returns the position of a number, or NaN if the number has no position.
     pub(super) fn place(&self, number: f64) -> f64 {
         match &self.scale {
             AxisScale::Decades if number > 0.0 => number.log10(),
@@ -50,7 +50,7 @@ impl Axis {
         }
     }
 
-    /// Where marks stand.
+    /// Returns the positions of the tick marks.
     pub(super) fn marks(&self) -> Vec<f64> {
         let (low, high) = self.ends;
         match &self.scale {
@@ -66,7 +66,7 @@ impl Axis {
         }
     }
 
-    /// What stands at a mark.
+    /// Returns the label of a tick mark.
     pub(super) fn label(&self, place: f64) -> String {
         match &self.scale {
             AxisScale::Decades => 10f64.powi(place as i32).to_string(),
@@ -76,7 +76,7 @@ impl Axis {
     }
 }
 
-/// An axis of plotters: its numbers are places.
+/// Makes the axis available to plotters. Its values are positions.
 impl Ranged for Axis {
     type FormatOption = DefaultFormatting;
     type ValueType = f64;
@@ -95,7 +95,7 @@ impl Ranged for Axis {
     }
 }
 
-/// A twentieth of room on both sides, and some where all numbers are one.
+/// Extends a range by a twentieth of its length on both sides. A range without length is extended too.
 fn widened(low: f64, high: f64) -> (f64, f64) {
     let room = if high > low { (high - low) / 20.0 } else { (high.abs() / 10.0).max(1e-9) };
     (low - room, high + room)
@@ -112,7 +112,7 @@ mod tests {
         assert_eq!(axis.marks(), [14.0, 16.0, 18.0, 20.0, 22.0, 24.0, 26.0]);
     }
 
-    /// 0.1 to 60 lies within four decades, and what is not above 0 has no place.
+    /// 0.1 to 60 lies within the decades from 0.1 to 100. Numbers that are not positive have no position.
     #[test]
     fn decades_end_at_powers_of_ten() {
         let axis = Axis::reaching(&AxisScale::Decades, [0.1, 60.0, 0.0, -3.0, f64::NAN].into_iter());

@@ -1,4 +1,4 @@
-//! How fast it was emulated, and everything else that the report says.
+//! Page section with the speed of emulation and all other values of a report.
 
 use super::values::{heading, number, paragraph, plain, row, table};
 use crate::markup::Element;
@@ -20,7 +20,7 @@ pub(super) fn speed(report: &Value) -> [Element; 2] {
     [heading("Speed of the emulation"), paragraph(text)]
 }
 
-/// Fields a second of the emulated display, from the latency in both units.
+/// Returns the fields a second of the emulated display, computed from the latency in fields and in milliseconds.
 fn real_time(report: &Value) -> String {
     let fields = number(&report["latency_fields"]["mean"]);
     let ms = number(&report["latency_ms"]["mean"]);
@@ -28,7 +28,7 @@ fn real_time(report: &Value) -> String {
     if rate.is_finite() { format!(" (real time is {rate:.2} fields a second)") } else { String::new() }
 }
 
-/// Everything of the report that is one value; the head has a table of its own.
+/// Returns a table of all single values of the report. The values of the head have a table of their own.
 pub(super) fn configuration(report: &Value) -> [Element; 2] {
     let values = report.as_object().into_iter().flatten().filter(|(key, _)| *key != "head");
     let rows = values.filter_map(|(key, value)| Some(value_row(key, &shown(value)?)));
@@ -40,7 +40,7 @@ fn value_row(key: &str, value: &str) -> Element {
     row([Element::new("th").text(key), Element::new("td").child(&code)])
 }
 
-/// A value as text; `None` of lists and statistics.
+/// Returns a value as text, or `None` for lists and statistics.
 fn shown(value: &Value) -> Option<String> {
     match value {
         Value::Array(all) if all.is_empty() || !all.iter().all(Value::is_string) => None,

@@ -1,4 +1,4 @@
-//! The page as a whole.
+//! The HTML page as a whole.
 
 use super::run::PageRun;
 use super::section::sections;
@@ -17,13 +17,13 @@ td,th{padding:.25rem .6rem;border-bottom:1px solid #ccc;text-align:left;vertical
 
 const TITLE: &str = "Pixel-Planes 5: results";
 
-/// All experiments on one page without anything from outside.
+/// Returns a page with all experiments. The page needs no external resources.
 #[must_use]
 pub fn html(runs: &[PageRun]) -> String {
     page(std::iter::once(summary(runs)).chain(runs.iter().flat_map(sections)))
 }
 
-/// A page of some sections.
+/// Returns a page with the given sections.
 pub(super) fn page(sections: impl IntoIterator<Item = Element>) -> String {
     let mut body = Element::new("body");
     body.end_line();
@@ -73,8 +73,8 @@ mod tests {
         assert!(page.contains("data:image/svg+xml;base64,PHN2Zy8+"));
     }
 
-    /// What is wider than a screen of 390 px must scroll within itself: tables stand in `.wide`, which scrolls; the timeline too;
-    /// text breaks anywhere; a flexible box asks for less than 390 - 2 x 16 px.
+    /// Content wider than a screen of 390 px must scroll within itself. Tables and the timeline are in scrolling
+    /// elements, and text breaks anywhere. A flexible box needs less than 390 - 2 x 16 px.
     #[test]
     fn nothing_makes_a_page_wider_than_a_telephone() {
         let report = json!({"scene": "x".repeat(200), "config_hash": "f".repeat(32), "latency_parts_ms": [{"name": "copy"}],

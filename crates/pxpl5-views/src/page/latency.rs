@@ -1,4 +1,4 @@
-//! Latency: how it is spread, where it goes, and from the head on.
+//! Page section about latency: distribution, parts, and latency from head to light.
 
 use super::values::{cell, decimal, heading, known, list, number, number_cell, paragraph, plain, row, table};
 use crate::charts::{MeanPart, colour_of_part, histogram_element, part_bar_element};
@@ -13,6 +13,7 @@ pub(super) fn latency(report: &Value, latencies_ms: &[f64]) -> Vec<Element> {
         all.push(histogram_element(latencies_ms));
     }
     let parts = list(&report["latency_parts_ms"]);
+    // A report without parts gets the histogram only.
     if parts.is_empty() {
         return all;
     }
@@ -24,7 +25,7 @@ pub(super) fn latency(report: &Value, latencies_ms: &[f64]) -> Vec<Element> {
     all
 }
 
-/// How many pictures the latency is of.
+/// Returns a note about the number of pictures in the statistics.
 fn of_how_many(n: &Value) -> Option<Element> {
     match n.as_u64()? {
         0 => Some(paragraph("No complete picture was shown after the warm-up, so there is no latency.")),
@@ -32,7 +33,7 @@ fn of_how_many(n: &Value) -> Option<Element> {
     }
 }
 
-/// The pictures that were due, and what became of them; a loud line where the scene was too heavy.
+/// Returns the counts of due pictures by result, with a prominent line if the scene was too heavy.
 pub(super) fn due(report: &Value) -> Vec<Element> {
     let heavy = report["too_heavy"]["advice"].as_str().map(|advice| {
         let [missed, due] = ["not_shown", "due"].map(|key| known(&report["too_heavy"][key]));
@@ -44,6 +45,7 @@ pub(super) fn due(report: &Value) -> Vec<Element> {
         all.push(heading("Pictures due"));
         all.push(paragraph(format_args!("{definition}.")));
     }
+    // Pipelines without due pictures have no table.
     if report["due"].is_object() {
         let cells = DUE.map(|key| number_cell(known(&report["due"][key])));
         all.push(table(&DUE.map(|key| key.replace('_', " ")).each_ref().map(String::as_str), [row(cells)]));
@@ -70,7 +72,7 @@ fn part_row(part: &Value) -> Element {
     ])
 }
 
-/// A square in the colour of a part.
+/// Returns a square in the colour of a part of the latency.
 fn swatch(name: &str) -> Element {
     let colour = format!("background:{}", colour_of_part(name));
     Element::new("span").with("class", "swatch").with("style", colour).text("")
@@ -82,14 +84,15 @@ const STAGES: [&str; 7] = ["tracking", "waiting", "sending", "drawing", "showing
 const ERRORS: [&str; 2] = ["pixels", "degrees"];
 const PERCENTILES: [&str; 5] = ["mean", "p50", "p90", "p99", "max"];
 
-/// From the head to light, of a run with a tracker.
+/// Returns the section about the latency from head to light, for a run with a tracker.
 pub(super) fn head_to_light(head: &Value) -> Vec<Element> {
     if head.is_null() {
         return Vec::new();
     }
     let [tracker, predictor, display] = ["tracker", "predictor", "display"].map(|key| plain(&head[key]));
-    // Reports of older versions do not say it.
+    // Reports of older versions have no aim.
     let aim = head["aim"].as_str().map_or_else(String::new, |aim| format!(", aim {aim}"));
+    // One table has the stages from head to light, and one has the errors.
     let stages = STAGES.iter().map(|stage| stage_row(stage, &head["end_to_end"]));
     let errors = ERRORS.iter().map(|unit| error_row(unit, &head["error"][*unit]));
     vec![

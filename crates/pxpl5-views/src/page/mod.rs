@@ -1,7 +1,7 @@
-//! Results as one page of HTML that needs no network, fits a phone and can be printed.
+//! Results as a single HTML page. The page needs no network, fits a phone and can be printed.
 //!
-//! A page is made of what a results folder holds ([`PageRun`]), so a run of any version whose report has the same schema
-//! can stand on it; where something is missing, it is left out.
+//! A page is made from the content of results folders ([`PageRun`]). Runs of any version with the same schema of
+//! reports can be shown. Missing parts are left out.
 
 mod configuration;
 mod html;

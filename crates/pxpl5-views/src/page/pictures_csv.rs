@@ -1,9 +1,9 @@
-//! What a page needs of `pictures.csv`.
+//! Reader of the values of `pictures.csv` that a page needs.
 
 use csv::{ReaderBuilder, StringRecord};
 
-/// The column `latency_ps` of the rows of `pictures.csv` that are `steady`, in milliseconds; nothing of a file that has
-/// no such columns.
+/// Returns the values of the column `latency_ps` in rows that are `steady`, in milliseconds. Returns nothing for a file
+/// without these columns.
 #[must_use]
 pub fn latencies_ms(pictures_csv: &str) -> Vec<f64> {
     let mut reader = ReaderBuilder::new().flexible(true).from_reader(pictures_csv.as_bytes());
@@ -19,7 +19,7 @@ fn place_of(names: &StringRecord, wanted: &str) -> Option<usize> {
     names.iter().position(|name| name == wanted)
 }
 
-/// A time in whole picoseconds as milliseconds.
+/// Converts a time in whole picoseconds to milliseconds.
 fn milliseconds(text: &str) -> Option<f64> {
     let ps: u64 = text.parse().ok()?;
     Some(ps as f64 * 1e-9)

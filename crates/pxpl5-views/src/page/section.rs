@@ -1,4 +1,4 @@
-//! Everything of one experiment.
+//! Page sections of one experiment.
 
 use super::configuration::{configuration, speed};
 use super::latency::{due, head_to_light, latency};
@@ -8,7 +8,7 @@ use crate::markup::Element;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
-/// What should stay together when it is printed: pictures, latencies, the rest.
+/// Returns the sections of an experiment. Each section stays together in print: pictures, latencies, and the rest.
 pub(super) fn sections(run: &PageRun) -> [Element; 3] {
     [seen(run), timed(run), told(run)]
 }
@@ -43,7 +43,7 @@ fn figure(picture: &PagePicture) -> Element {
     Element::new("figure").child(&image("image/png", &picture.png, &about)).child(&caption)
 }
 
-/// A picture that is part of the page.
+/// Returns a picture that is embedded in the page.
 pub(super) fn image(kind: &str, bytes: &[u8], about: &str) -> Element {
     let source = format!("data:{kind};base64,{}", STANDARD.encode(bytes));
     Element::new("img").with("src", source).with("alt", about)

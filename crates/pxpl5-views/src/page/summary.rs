@@ -1,4 +1,4 @@
-//! The table at the head of the page: a row for each experiment.
+//! The table at the top of the page, with a row for each experiment.
 
 use super::run::PageRun;
 use super::values::{cell, decimal, known, number, number_cell, plain, row, table};
@@ -34,7 +34,7 @@ fn summary_row(run: &PageRun) -> Element {
     ])
 }
 
-/// Of how many that were due.
+/// Returns the number of due pictures that were not shown, of all due pictures.
 fn not_shown(report: &Value) -> String {
     match report["missed_retraces"].as_u64() {
         Some(missed) => format!("{missed} of {}", known(&report["due"]["due"])),
@@ -42,7 +42,7 @@ fn not_shown(report: &Value) -> String {
     }
 }
 
-/// Mean and standard deviation, of one picture the mean.
+/// Returns mean and standard deviation as text. For a single picture, returns the mean only.
 fn spread(statistics: &Value) -> String {
     match statistics["sd"].as_f64() {
         Some(sd) => format!("{} ± {sd:.3}", decimal(&statistics["mean"], 3)),

@@ -1,4 +1,4 @@
-//! Results that are tables: sweeps and comparisons.
+//! Pages of tables, such as the results of sweeps and comparisons.
 
 use super::html::page;
 use super::run::PagePicture;
@@ -6,24 +6,25 @@ use super::section::image;
 use super::values::{cell, heading, number_cell, paragraph, row, table};
 use crate::markup::Element;
 
-/// A table of results with what stands around it; without columns only that.
+/// A table of results with texts, charts and pictures. If the table has no columns, the page shows only the texts,
+/// charts and pictures.
 #[derive(Clone, Debug, Default)]
 pub struct PageTable {
-    /// What stands over it.
+    /// Heading of the table.
     pub name: String,
-    /// What it is of, a paragraph each.
+    /// Description of the table, one string a paragraph.
     pub about: Vec<String>,
-    /// The names of its columns.
+    /// Names of the columns.
     pub columns: Vec<String>,
-    /// Its rows, a cell for each column.
+    /// Rows, with one cell for each column.
     pub rows: Vec<Vec<String>>,
-    /// Charts, as SVG, with what they show.
+    /// Charts as SVG, with captions.
     pub charts: Vec<PagePicture>,
-    /// Pictures, as PNG, with what they show.
+    /// Pictures as PNG, with captions.
     pub pictures: Vec<PagePicture>,
 }
 
-/// Tables on one page without anything from outside.
+/// Returns a page with tables. The page needs no external resources.
 #[must_use]
 pub fn html_of_tables(tables: &[PageTable]) -> String {
     page(tables.iter().map(section))
@@ -37,6 +38,7 @@ fn section(of: &PageTable) -> Element {
     if !names.is_empty() {
         section.add_line(&table(&names, of.rows.iter().map(|cells| row(cells.iter().map(|text| shown(text))))));
     }
+    // Charts and pictures follow the table.
     let charts = of.charts.iter().map(|chart| figure("image/svg+xml", chart));
     let pictures = of.pictures.iter().map(|picture| figure("image/png", picture));
     let figures: Vec<Element> = charts.chain(pictures).collect();
@@ -46,7 +48,7 @@ fn section(of: &PageTable) -> Element {
     section.child(&heading("Pictures")).child(&Element::new("div").with("class", "pair").children(figures))
 }
 
-/// Numbers stand right.
+/// Returns a cell. Numbers are aligned to the right.
 fn shown(text: &str) -> Element {
     if text == "-" || text.parse::<f64>().is_ok() { number_cell(text) } else { cell(text) }
 }

@@ -1,60 +1,57 @@
-//! Values of a report as they stand on a page.
+//! Formatting of report values for a page.
 
 use crate::markup::Element;
 use serde_json::Value;
 use std::fmt::Display;
 
-/// A number; not a number where there is none.
+/// Returns a value as a number, or NaN if the value is not a number.
 pub(super) fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or(f64::NAN)
 }
 
-/// A number with so many digits behind the point; `-` where there is none.
+/// Returns a number with `digits` digits after the decimal point, or `-` if the value is not a number.
 pub(super) fn decimal(value: &Value, digits: usize) -> String {
     value.as_f64().map_or_else(|| "-".to_owned(), |number| format!("{number:.digits$}"))
 }
 
-/// A value as text; `-` where there is none.
+/// Returns a value as text, or `-` for null.
 pub(super) fn known(value: &Value) -> String {
     if value.is_null() { "-".to_owned() } else { plain(value) }
 }
 
-/// A value as text, without the quotes of a string.
+/// Returns a value as text. A string has no quotes.
 pub(super) fn plain(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 
-/// The values of a list; none of anything else.
+/// Returns the values of a list, or an empty slice for any other value.
 pub(super) fn list(value: &Value) -> &[Value] {
     value.as_array().map(Vec::as_slice).unwrap_or_default()
 }
 
-/// A heading within a section.
+/// Returns a heading within a section.
 pub(super) fn heading(text: &str) -> Element {
     Element::new("h3").text(text)
 }
 
-/// A paragraph.
 pub(super) fn paragraph(text: impl Display) -> Element {
     Element::new("p").text(text)
 }
 
-/// A cell of a table with text.
 pub(super) fn cell(text: impl Display) -> Element {
     Element::new("td").text(text)
 }
 
-/// A cell of a table with a number, which stands right.
+/// Returns a table cell with a number, aligned to the right.
 pub(super) fn number_cell(text: impl Display) -> Element {
     Element::new("td").with("class", "n").text(text)
 }
 
-/// A row of a table.
 pub(super) fn row(cells: impl IntoIterator<Item = Element>) -> Element {
     Element::new("tr").children(cells)
 }
 
-/// A table with a row of names, to be scrolled sideways where the page is narrow.
+/// Returns a table with a header row. On a narrow page, the table scrolls sideways.
 pub(super) fn table(names: &[&str], rows: impl IntoIterator<Item = Element>) -> Element {
     let mut table = Element::new("table");
     if !names.is_empty() {
@@ -66,7 +63,7 @@ pub(super) fn table(names: &[&str], rows: impl IntoIterator<Item = Element>) -> 
     wide(&table)
 }
 
-/// Something that may be wider than the page.
+/// Returns an element that scrolls if its content is wider than the page.
 pub(super) fn wide(content: &Element) -> Element {
     Element::new("div").with("class", "wide").child(content)
 }

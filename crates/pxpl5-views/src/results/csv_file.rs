@@ -1,10 +1,10 @@
-//! CSV: the only writer.
+//! The writer of all CSV files.
 
 use csv::WriterBuilder;
 
-/// A table as CSV: a line of names, a line for each row, and nothing else, so that pandas, R and spreadsheets open it as it is; where
-/// it comes from stands in the file beside it. Lines end with a line feed, and a value with a comma, a quote or a line break in it
-/// stands in quotes.
+/// Returns a table as CSV: a line of names and a line for each row. Lines end with a line feed. A value with a comma, a
+/// quote or a line break is quoted. The text has no comments, so pandas, R and spreadsheets can read it. The origin of
+/// the data is in a separate file.
 ///
 /// ```
 /// let rows = [["updates_hz", "59.94"], ["a, b", ""]];
@@ -17,7 +17,7 @@ where
     Row: IntoIterator<Item: AsRef<[u8]>>,
 {
     let mut writer = WriterBuilder::new().flexible(true).from_writer(Vec::new());
-    // Memory can be written, and rows of any length are taken.
+    // Writing to memory cannot fail, and the writer accepts rows of any length.
     let _ = writer.write_record(columns);
     for row in rows {
         let _ = writer.write_record(row);

@@ -1,10 +1,12 @@
-//! Results as tables: a row for each picture that was shown, as CSV and, with the feature `parquet`, as Parquet.
+//! Results as tables, with a row for each picture that was shown. The formats are CSV and, with the feature `parquet`,
+//! Parquet.
 //!
-//! What the file can be made again from ([`origin`]) stands in `report.json` and `experiment.toml` beside CSV, and in Parquet's own
-//! key-value metadata (keys `pxpl5.machine` and so on). All times are whole picoseconds of
-//! simulated time, so nothing is rounded. [`columns`] is the schema; its name and version stand in [`SCHEMA`].
+//! The origin of a file ([`origin`]) tells how to make the file again. For CSV, the origin is in `report.json` and
+//! `experiment.toml` beside the file. For Parquet, it is in the key-value metadata (keys `pxpl5.machine` and so on).
+//! All times are whole picoseconds of simulated time, so nothing is rounded. [`columns`] is the schema. Its name and
+//! version are in [`SCHEMA`].
 //!
-//! [`csv_table`] is the writer of every CSV file; [`quantities_csv`] is the table of what an experiment measured.
+//! [`csv_table`] writes every CSV file. [`quantities_csv`] is the table of the measured quantities of an experiment.
 
 mod csv_file;
 mod origin;

@@ -1,9 +1,10 @@
-//! What a result file opens with, so that it can be made again.
+//! Origin of a result file, by which the file can be made again.
 
 use pxpl5_measure::Report;
 use std::fmt::Write;
 
-/// Preset, configuration hash, version, level, seed, and the experiment, as pairs of key and value.
+/// Returns the origin of a report as pairs of key and value: preset, configuration hash, version, level, seed and
+/// experiment.
 #[must_use]
 pub fn origin(report: &Report) -> Vec<(&'static str, String)> {
     let overrides: Vec<String> = report.overrides.iter().map(|(path, value)| format!("{path}={value}")).collect();
@@ -22,7 +23,7 @@ pub fn origin(report: &Report) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// The same as text, a line each, with a comment mark such as `# ` before each.
+/// Returns the origin of a report as text. Each line begins with a comment mark such as `# `.
 #[must_use]
 pub fn origin_lines(report: &Report, mark: &str) -> String {
     let mut text = String::new();
@@ -34,7 +35,7 @@ pub fn origin_lines(report: &Report, mark: &str) -> String {
     text
 }
 
-/// A number of things with their name in the right form: `1 triangle`, `2 triangles`.
+/// Returns a count with the singular or plural of a noun: `1 triangle`, `2 triangles`.
 pub(crate) fn count_of(count: usize, name: &str) -> String {
     format!("{count} {name}{}", if count == 1 { "" } else { "s" })
 }

@@ -1,4 +1,4 @@
-//! The table as Parquet.
+//! The table of pictures as Parquet.
 
 use super::origin::origin;
 use super::pictures::{Column, SCHEMA, columns, rows};
@@ -14,11 +14,11 @@ use pxpl5_run::Outcome;
 use std::io::Write;
 use std::sync::Arc;
 
-/// Writes the pictures as Parquet: INT64 columns in one row group, uncompressed.
+/// Writes the pictures as Parquet, with uncompressed INT64 columns in one row group.
 ///
 /// # Errors
 ///
-/// [`parquet::errors::ParquetError`] when the writer fails.
+/// [`parquet::errors::ParquetError`] if the writer fails.
 pub fn parquet(outcome: &Outcome, out: impl Write + Send) -> Result<()> {
     let columns = columns();
     let fields = columns.iter().map(field).collect::<Result<_>>()?;
@@ -28,8 +28,9 @@ pub fn parquet(outcome: &Outcome, out: impl Write + Send) -> Result<()> {
     let rows = rows(outcome);
     for (i, column) in columns.iter().enumerate() {
         let Some(mut writer) = group.next_column()? else { break };
-        // Times are below 2^63 ps, some 106 days.
+        // Times are below 2^63 ps, which is about 106 days.
         let values: Vec<i64> = rows.iter().filter_map(|row| row[i]).map(u64::cast_signed).collect();
+        // The definition level is 0 for a missing value and 1 for a present one.
         let levels: Vec<i16> = rows.iter().map(|row| row[i].is_some().into()).collect();
         let levels = column.optional.then_some(&levels[..]);
         writer.typed::<Int64Type>().write_batch(&values, levels, None)?;

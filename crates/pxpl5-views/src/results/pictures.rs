@@ -5,17 +5,17 @@ use pxpl5_run::{Outcome, PictureTimes};
 use pxpl5_wire::PictureNumber;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Name and version of the table's schema; a column that is added at the end does not change it.
+/// Name and version of the table's schema. A new column at the end does not change the version.
 pub const SCHEMA: &str = "pxpl5-pictures/2";
 
-/// A column of the table: whole numbers, some of which can be missing.
+/// A column of the table. The values are whole numbers, some of which may be missing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Column {
-    /// Its name, with the unit.
+    /// Name with the unit.
     pub name: String,
-    /// What its numbers are, in a sentence.
+    /// Definition of the values, in a sentence.
     pub definition: String,
-    /// Whether a value can be missing (an empty field in CSV).
+    /// True if a value may be missing, which CSV shows as an empty field.
     pub optional: bool,
 }
 
@@ -29,9 +29,10 @@ impl Column {
     }
 }
 
-/// The columns, in order: those of [`PictureTimes`], then the parts of [`LATENCY_PARTS`].
+/// Returns the columns in order: those of [`PictureTimes`], then the parts of [`LATENCY_PARTS`].
 #[must_use]
 pub fn columns() -> Vec<Column> {
+    // Identity, state and times of a picture come first.
     let mut columns = vec![
         Column::always(
             "picture",
@@ -51,6 +52,7 @@ pub fn columns() -> Vec<Column> {
             "shown_at_ps - transform_at_ps; missing of a picture that was not complete in time",
         ),
     ];
+    // The parts of the latency follow.
     columns.extend(LATENCY_PARTS.iter().map(|part| {
         Column::optional(
             &format!("{}_ps", part.name),
@@ -63,7 +65,8 @@ pub fn columns() -> Vec<Column> {
     columns
 }
 
-/// The rows, one for each picture that was begun: a value for each of [`columns`], `None` where it is missing.
+/// Returns the rows, one for each begun picture. Each row has a value for each of [`columns`], or `None` for a missing
+/// one.
 #[must_use]
 pub fn rows(outcome: &Outcome) -> Vec<Vec<Option<u64>>> {
     let parts: BTreeMap<PictureNumber, LatencyParts> =

@@ -5,7 +5,7 @@ use super::pictures::{columns, rows};
 use pxpl5_measure::{Measure, Results};
 use pxpl5_run::Outcome;
 
-/// The pictures as CSV: a line of names, a line for each picture; lines end with a line feed.
+/// Returns the table of pictures as CSV: a line of names and a line for each picture. Lines end with a line feed.
 #[must_use]
 pub fn csv(outcome: &Outcome) -> String {
     let names = columns().into_iter().map(|column| column.name);
@@ -16,8 +16,8 @@ fn as_text(row: Vec<Option<u64>>) -> Vec<String> {
     row.into_iter().map(|value| value.map_or_else(String::new, |value| value.to_string())).collect()
 }
 
-/// Quantities of a run in long form as CSV: a line for each with its value, empty where the run shows none, and its
-/// definition.
+/// Returns the quantities of a run as CSV, with one line for each. A line has the value and the definition. The value
+/// is empty if the run has none.
 #[must_use]
 pub fn quantities_csv(measures: &[Measure], results: &Results) -> String {
     let rows = measures.iter().map(|measure| {

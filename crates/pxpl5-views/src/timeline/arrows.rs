@@ -1,4 +1,4 @@
-//! From the tracker's sample to light: what one picture had to wait for.
+//! Dependencies of one picture, from the tracker's sample to light.
 
 use super::model::{Arrow, Bar, DrawingPlace, Timeline};
 use pxpl5_display::Display;
@@ -7,31 +7,34 @@ use pxpl5_run::PictureTimes;
 use pxpl5_sim::Time;
 use pxpl5_wire::SurfaceId;
 
-/// The arrows of the chosen picture.
+/// Returns the arrows of the chosen picture.
 pub(super) fn arrows(timeline: &Timeline, display: &dyn Display, chosen: Option<&PictureTimes>) -> Vec<Arrow> {
     let Some(chosen) = chosen else { return Vec::new() };
     let bars = located(timeline);
     let mut arrows = Vec::new();
     arrows.extend(from_tracker(timeline, &bars));
+    // Each bar of the picture depends on an earlier bar.
     for to in &bars {
         arrows.extend(cause(&bars, to.bar).map(|from| follow(from, *to)));
     }
+    // The end of each COPY leads to the beam.
     for copy in bars.iter().filter(|located| located.bar.stage == Stage::Copy) {
         let end = light(display, chosen, copy.bar);
         arrows.push(Arrow { from: copy.place, begin: copy.bar.end.min(end), to: DrawingPlace::Beam, end });
     }
+    // Arrows that leave the drawn time are left out.
     arrows.retain(|arrow| arrow.begin >= timeline.from && arrow.end <= timeline.to);
     arrows
 }
 
-/// A bar and where it stands.
+/// A bar with its position.
 #[derive(Clone, Copy)]
 struct Located<'a> {
     place: DrawingPlace,
     bar: &'a Bar,
 }
 
-/// The bars of the chosen picture.
+/// Returns the bars of the chosen picture with their positions.
 fn located(timeline: &Timeline) -> Vec<Located<'_>> {
     let mut located = Vec::new();
     for (row, bars) in timeline.rows.iter().map(|row| &row.bars).enumerate() {
@@ -47,8 +50,8 @@ fn from_tracker(timeline: &Timeline, bars: &[Located<'_>]) -> Option<Arrow> {
     Some(Arrow { from: DrawingPlace::Tracker, begin: send.bar.begin, to: send.place, end: send.bar.begin })
 }
 
-/// The bar of the stage before, of the same surface where that stage has surfaces; but a second surface's TRANSFORM
-/// follows the first one's, and a bottom half the top half.
+/// Returns the bar on which another bar depends. Usually this is the stage before, of the same surface if that stage
+/// has surfaces. The second surface's TRANSFORM depends on the first one's. A bottom half depends on the top half.
 fn cause<'a>(bars: &[Located<'a>], bar: &Bar) -> Option<Located<'a>> {
     let sibling = bars.iter().find(|other| other.bar.stage == bar.stage && is_sequel(other.bar, bar)).copied();
     if sibling.is_some() {
@@ -64,13 +67,13 @@ fn cause<'a>(bars: &[Located<'a>], bar: &Bar) -> Option<Located<'a>> {
     before.iter().find_map(|stage| of_stage(bars, *stage, bar.surface))
 }
 
-/// The first bar of a stage that concerns a surface.
+/// Returns the first bar of a stage that concerns a surface.
 fn of_stage<'a>(bars: &[Located<'a>], stage: Stage, surface: Option<SurfaceId>) -> Option<Located<'a>> {
     let mut of_stage = bars.iter().filter(|located| located.bar.stage == stage);
     of_stage.find(|located| concerns(located.bar.surface, surface)).copied()
 }
 
-/// Whether what is done for one surface, or for all, has to do with what is done for another, or for all.
+/// Returns true if work for one surface concerns another surface. `None` stands for all surfaces.
 fn concerns(one: Option<SurfaceId>, other: Option<SurfaceId>) -> bool {
     one.is_none() || other.is_none() || one == other
 }
@@ -83,8 +86,8 @@ fn is_sequel(first: &Bar, second: &Bar) -> bool {
     }
 }
 
-/// A stage that begins before the other has ended depends on a part of it, and one that began before it depends on it
-/// for a part: the arrow is upright.
+/// Returns the arrow between two bars. If the later stage begins before the end of the earlier one, only part of the
+/// earlier stage is needed, and the arrow is vertical.
 fn follow(earlier: Located<'_>, later: Located<'_>) -> Arrow {
     let from = earlier.place;
     let to = later.place;
@@ -94,7 +97,8 @@ fn follow(earlier: Located<'_>, later: Located<'_>) -> Arrow {
     Arrow { from, begin: earlier.bar.end.min(later.bar.begin), to, end: later.bar.begin }
 }
 
-/// When the first pixel of what was copied lights up; that of the part that stands for it, where it has a beam to meet.
+/// Returns the time at which the first copied pixel lights. If no swap shows the picture, returns the time at which the
+/// part that represents the picture lights.
 fn light(display: &dyn Display, chosen: &PictureTimes, bar: &Bar) -> Time {
     let period = display.period_at(chosen.shown_at);
     let surface = bar.surface.map_or(0, SurfaceId::index);

@@ -1,4 +1,4 @@
-//! A timeline from what was observed.
+//! Builds a timeline from the observations of a run.
 
 use super::arrows::arrows;
 use super::model::{Scan, Timeline, TimelineRow};
@@ -12,24 +12,25 @@ use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, PictureNumber};
 use std::ops::Range;
 
-/// Bars that overlap by less than this part of the drawing are drawn in one lane.
+/// Divisor of the drawn time. Bars that overlap by less than this fraction share a lane.
 const TOUCHING: u64 = 300;
 
-/// Periods that are drawn at least, where nobody says how many.
+/// Smallest number of periods in a drawing without an explicit number.
 const LEAST_FIELDS: u64 = 4;
 
 impl Timeline {
-    /// The part of a run that the options ask for.
+    /// Returns the part of a run that the options select.
     #[must_use]
     pub fn of(outcome: &Outcome, options: &TimelineOptions) -> Self {
         Self::so_far(&outcome.so_far(), options)
     }
 
-    /// The part of a run that the options ask for, as far as it has come.
+    /// Returns the selected part of a run that may still be going on.
     #[must_use]
     pub fn so_far(run: &SoFar<'_>, options: &TimelineOptions) -> Self {
         let record = run.record();
         let display = record.display();
+        // The chosen picture decides which periods are drawn, unless the options do.
         let chosen = chosen(run.pictures(), options.picture);
         let stages = run.stages();
         let mut rows = rows(run, &stages, options);
@@ -37,6 +38,7 @@ impl Timeline {
         let periods = periods(run, options, chosen, sent_at(&rows, update));
         let from = display.tick(periods.start);
         let to = display.tick(periods.end);
+        // Only bars and pictures within the drawn time remain.
         for row in &mut rows {
             row.bars.retain(|bar| bar.begin < to && bar.end >= from);
             row.shown.retain(|shown| shown.begin < to && shown.end > from);
@@ -58,6 +60,7 @@ impl Timeline {
             update,
             arrows: Vec::new(),
         };
+        // Arrows need the lanes of the bars, so they come last.
         timeline.arrows = arrows(&timeline, display, chosen);
         timeline
     }
@@ -70,13 +73,13 @@ fn chosen(pictures: &[PictureTimes], wanted: Option<PictureNumber>) -> Option<&P
     }
 }
 
-/// When the host began to send an update; `None` when its row is left out.
+/// Returns the time at which the host began to send an update. Returns `None` if the host has no row.
 fn sent_at(rows: &[TimelineRow], update: Option<PictureNumber>) -> Option<Time> {
     let bar = rows.first()?.bars.iter().find(|bar| Some(bar.picture) == update)?;
     (bar.stage == Stage::Send).then_some(bar.begin)
 }
 
-/// The periods of the first display that are drawn.
+/// Returns the periods of the first display that are drawn.
 fn periods(
     run: &SoFar<'_>,
     options: &TimelineOptions,

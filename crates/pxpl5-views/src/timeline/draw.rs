@@ -1,4 +1,4 @@
-//! The drawing.
+//! Draws a timeline as SVG.
 
 use super::legend::legend;
 use super::model::{Arrow, Bar, DrawingPlace, Scan, Timeline, TimelineRow};
@@ -7,45 +7,46 @@ use crate::markup::Element;
 use crate::svg::{self, Units, caption, hint, rectangle, segment};
 use pxpl5_sim::{Span, Time};
 
-/// Width of the document, and of what stands left and right of the time axis.
+/// Width of the document.
 const WIDTH: i64 = 960;
 const LEFT: i64 = 172;
 const RIGHT: i64 = 14;
-/// Height of what stands above the rows, of a lane, and of the space between rows.
+/// Height of the space above the rows.
 const HEAD: i64 = 84;
 const LANE: i64 = 34;
 const GAP: i64 = 18;
-/// Height of the row of samples and of what stands below the rows.
+/// Height of the row of samples.
 const TRACKER: i64 = 14;
 const FOOT: i64 = 84;
-/// Height of the strip that shows when a port receives, and of the one that says what it shows.
+/// Height of the strip that shows when a port receives data.
 const STRIP: i64 = 6;
 const SHOWN: i64 = 18;
 
-/// Periods that are numbered without the word `field`, for want of room.
+/// Number of periods from which on the word `field` is left out of the axis, because space is short.
 const CROWDED: usize = 10;
 
-/// A timeline and where its parts stand.
+/// A timeline with the vertical positions of its parts.
 struct Drawing<'a> {
     timeline: &'a Timeline,
     out: Element,
-    /// Top of the tracker, of each row, and of the beam.
+    /// Top of the tracker's row.
     tracker: i64,
     rows: Vec<i64>,
     beam: i64,
 }
 
-/// What stands around a timeline.
+/// Texts around a timeline.
 pub(super) struct Words {
     pub(super) title: String,
     pub(super) subtitle: String,
-    /// Facts that the drawing can be made again from, one a line.
+    /// Facts by which the drawing can be made again, one a line.
     pub(super) origin: String,
 }
 
 pub(super) fn document(timeline: &Timeline, words: &Words) -> String {
     let mut drawing = Drawing::new(timeline);
     drawing.begin(words);
+    // Later elements cover earlier ones: background, axis, bars, then arrows.
     drawing.for_each_row(Drawing::row);
     drawing.axis();
     drawing.for_each_row(Drawing::bars);
@@ -53,7 +54,7 @@ pub(super) fn document(timeline: &Timeline, words: &Words) -> String {
     drawing.samples();
     drawing.scans();
     timeline.arrows.iter().for_each(|arrow| drawing.arrow(arrow));
-    // Labels come last: their outline keeps them legible on arrows.
+    // Labels come last, because their outline keeps them legible on arrows.
     drawing.for_each_row(Drawing::labels);
     legend(&mut drawing.out, timeline, [LEFT, drawing.beam + LANE + 44]);
     svg::finished(&drawing.out)
@@ -81,7 +82,7 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Where a time stands, clipped to the time axis.
+    /// Returns the horizontal position of a time, limited to the time axis.
     fn x(&self, time: Time) -> Units {
         let Timeline { from, to, .. } = self.timeline;
         let all = (*to - *from).0;
@@ -103,7 +104,7 @@ impl<'a> Drawing<'a> {
         self.out.add_line(&caption("key", [LEFT, 41].map(Units::whole)).text(subtitle));
     }
 
-    /// Fields above, milliseconds below, retraces across.
+    /// Draws the axis: field numbers above, milliseconds below, and a vertical line at each retrace.
     fn axis(&mut self) {
         let top = Units::whole(HEAD - 14);
         let bottom = Units::whole(self.beam + LANE + 6);
@@ -112,6 +113,7 @@ impl<'a> Drawing<'a> {
             self.out.add_line(&segment("retrace", [x, top, x, bottom]));
         }
         let word = if self.timeline.retraces.len() < CROWDED { "field " } else { "" };
+        // The number of a field stands in the middle between two retraces.
         for pair in self.timeline.retraces.windows(2) {
             let middle = Units(self.x(pair[0].1).0.midpoint(self.x(pair[1].1).0));
             let number = caption("mid", [middle, Units::whole(HEAD - 20)]);
@@ -145,7 +147,7 @@ impl<'a> Drawing<'a> {
         self.out.add_line(&rectangle("row", [LEFT, top, WIDTH - LEFT - RIGHT, height].map(Units::whole)));
     }
 
-    /// What a port shows, from swap to swap, below what it receives.
+    /// Draws the pictures that a port shows, from swap to swap, below the data that it receives.
     fn shown(&mut self, row: &TimelineRow, top: i64) {
         let y = Units::whole(top + LANE * row.lanes as i64);
         for shown in &row.shown {
@@ -161,7 +163,7 @@ impl<'a> Drawing<'a> {
     }
 
     fn bars(&mut self, row: &TimelineRow, top: i64) {
-        // The chosen picture's outlines lie on top.
+        // The bars of the chosen picture are drawn last, so that their outlines are on top.
         for chosen in [false, true] {
             for bar in row.bars.iter().filter(|bar| self.timeline.is_chosen(bar) == chosen) {
                 self.bar(bar, Units::whole(top + LANE * bar.lane as i64));
@@ -171,13 +173,14 @@ impl<'a> Drawing<'a> {
 
     fn bar(&mut self, bar: &Bar, y: Units) {
         let x = self.x(bar.begin);
-        // An instant is drawn as a line.
+        // A bar without duration is drawn as a line.
         let width = (self.x(bar.end) - x).max(Units(120));
         let stage = class_of(bar.stage);
         let emphasis = emphasis(self.timeline.is_chosen(bar));
         let class = format!("{stage} {stage}-{} {emphasis}", pattern(bar.surface));
         let about = hint(about(bar, self.timeline));
         self.out.add_line(&rectangle(&class, [x, y, width, Units::whole(LANE)]).child(&about));
+        // A dark strip at the foot of a COPY shows when data arrives.
         for (begin, end) in &bar.receiving {
             let x = self.x(*begin);
             let strip = [x, y + Units::whole(LANE - STRIP), self.x(*end) - x, Units::whole(STRIP)];
@@ -191,18 +194,20 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Letters and number where there is room, letters alone in less, nothing in still less.
+    /// Draws the label of a bar: letters and number, letters only, or nothing, as the width of the bar permits.
     fn label(&mut self, bar: &Bar, y: Units) {
         let begin = self.x(bar.begin).0;
         let end = self.x(bar.end).0;
         let letters = letters(bar, &self.timeline.surfaces);
         let number = bar.picture.to_string();
         let short = 10 * letters.len() as i64 + 4;
+        // The width of a text is estimated from its length.
         let long = short + 8 * number.len() as i64;
         let room = (end - begin) / 100;
         if room < short {
             return;
         }
+        // The label moves up to make room for the strip.
         let strip = if bar.receiving.is_empty() { 0 } else { STRIP / 2 };
         let place = [Units(begin.midpoint(end)), y + Units::whole(LANE / 2 + 5 - strip)];
         let mut label = caption(&format!("label {}-text", class_of(bar.stage)), place).text(letters);
@@ -231,7 +236,7 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// The beam's way down, and what it shows.
+    /// Draws the path of the beam in a period, and the number of the displayed picture.
     fn scan(&mut self, scan: &Scan) {
         let x = self.x(scan.begin);
         let end = self.x(scan.end);
@@ -253,7 +258,7 @@ impl<'a> Drawing<'a> {
         let mut from = self.low(arrow.from);
         let mut to = self.high(arrow.to);
         if to <= from {
-            // Within a row, or upwards between its lanes: at half height.
+            // Within a row, or upwards between its lanes, an arrow begins and ends at half height.
             from = self.high(arrow.from) + Units::whole(LANE / 2);
             to = self.high(arrow.to) + Units::whole(LANE / 2);
         }
@@ -287,7 +292,7 @@ const fn emphasis(chosen: bool) -> &'static str {
     if chosen { "chosen" } else { "other" }
 }
 
-/// What a viewer shows when the pointer rests on a bar.
+/// Returns the tooltip of a bar.
 fn about(bar: &Bar, timeline: &Timeline) -> String {
     let letters = letters(bar, &timeline.surfaces);
     let begin = milliseconds(bar.begin);
@@ -296,7 +301,7 @@ fn about(bar: &Bar, timeline: &Timeline) -> String {
     format!("{letters} of {}: {begin} to {end} ms ({span} ms)", bar.picture)
 }
 
-/// A time in milliseconds, with three decimals.
+/// Returns a time in milliseconds with three decimals.
 fn milliseconds(time: Time) -> String {
     format!("{}.{:03}", time.0 / 1_000_000_000, time.0 / 1_000_000 % 1_000)
 }

@@ -1,4 +1,4 @@
-//! What stands below a timeline.
+//! Legend of a timeline.
 
 use super::model::Timeline;
 use super::style::{HATCHED_SURFACE, PLAIN_SURFACE, STAGES, class_of};
@@ -6,7 +6,7 @@ use crate::markup::Element;
 use crate::svg::{Units, caption, rectangle, segment};
 use pxpl5_display::Surface;
 
-/// Two lines of explanations; `x` and `y` are the left end of the first one's foot.
+/// Draws a legend of two lines. `x` and `y` are the left end of the first line's foot.
 pub(super) fn legend(out: &mut Element, timeline: &Timeline, [x, y]: [i64; 2]) {
     let mut first = Line { out, x, y };
     for (stage, title) in STAGES.iter().filter(|(stage, _)| timeline.bars().any(|bar| bar.stage == *stage)) {
@@ -32,7 +32,7 @@ fn second_line(mut line: Line<'_>, timeline: &Timeline) {
     line.stroke("beam", "beam");
 }
 
-/// The first surface is plain, all others are hatched.
+/// Adds the samples of surfaces. The first surface is plain, and all others are hatched.
 fn surfaces(line: &mut Line<'_>, surfaces: &[Surface]) {
     match surfaces {
         [first, second] => {
@@ -47,7 +47,7 @@ fn surfaces(line: &mut Line<'_>, surfaces: &[Surface]) {
     }
 }
 
-/// A line that grows to the right.
+/// A line of the legend that grows to the right.
 struct Line<'a> {
     out: &'a mut Element,
     x: i64,
@@ -76,7 +76,7 @@ impl Line<'_> {
     }
 }
 
-/// About the width of a text: capitals are wider.
+/// Estimates the width of a text. Capitals are wider than other letters.
 fn width(text: &str) -> i64 {
     text.chars().map(|c| if c.is_uppercase() { 11 } else { 8 }).sum()
 }

@@ -1,8 +1,8 @@
-//! Timelines in the manner of the papers' pipeline figures (TR94 figures 1 to 6, I3D95 figures 5 to 8): a row for
-//! each resource that works independently, time to the right, retraces marked, and the dependencies of one picture.
+//! Timelines in the style of the papers' pipeline figures (TR94 figures 1 to 6, I3D95 figures 5 to 8). Each independent
+//! resource has a row, and time runs to the right. Retraces and the dependencies of one picture are marked.
 //!
-//! [`Timeline::of`] collects what was simulated; [`svg`] draws it. A drawing depends on simulated time alone, so it is
-//! the same on every host.
+//! [`Timeline::of`] collects the observations, and [`svg`] draws them. A drawing depends on simulated time only, so it
+//! is the same on every host.
 //!
 //! | row | bars |
 //! |---|---|
@@ -10,11 +10,11 @@
 //! | host | SEND |
 //! | graphics processors | EDIT and TRANSFORM, from the first board that begins to the last one that ends |
 //! | renderers | RENDER: commands to the renderers, until the last is accepted |
-//! | each surface of the displays (frame buffer, left and right) | COPY, from the first word of the first region to the last pixel of the last; the strip below is dark where the port receives |
-//! | each port of a display that has more of them than surfaces (a display memory) | COPY as above; below it what the port shows, from a swap to the next |
-//! | beam | what the first display shows, from its first light of a period to its last, and how far down the beam is |
+//! | each surface of the displays (frame buffer, left and right) | COPY, from the first word of the first region to the last pixel of the last; the strip below is dark while the port receives data |
+//! | each port of a display that has more ports than surfaces (a display memory) | COPY as above; below it the picture that the port shows, from a swap to the next |
+//! | beam | the displayed picture, from the first light of a period to the last, with the position of the beam |
 //!
-//! Where bars of one row overlap in time, the row has lanes.
+//! If bars of one row overlap in time, the row has several lanes.
 
 mod arrows;
 mod collect;
@@ -34,7 +34,7 @@ use draw::Words;
 use pxpl5_measure::Report;
 use pxpl5_run::{Outcome, SoFar};
 
-/// Draws a run as an SVG document, 960 units wide; of a run without a picture it shows the first periods.
+/// Draws a run as an SVG document, 960 units wide. For a run without pictures, the document shows the first periods.
 #[must_use]
 pub fn svg(outcome: &Outcome, options: &TimelineOptions) -> String {
     let report = Report::of(outcome);
@@ -47,7 +47,7 @@ pub fn svg(outcome: &Outcome, options: &TimelineOptions) -> String {
     draw::document(&Timeline::of(outcome, options), &words)
 }
 
-/// Draws a run as far as it has come, without words around it.
+/// Draws a run that may still be going on, without title and texts.
 #[must_use]
 pub fn drawing(run: &SoFar<'_>, options: &TimelineOptions) -> String {
     let title = options.title.clone().unwrap_or_default();

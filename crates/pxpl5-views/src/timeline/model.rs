@@ -1,4 +1,4 @@
-//! What a timeline shows, before it is drawn.
+//! Content of a timeline, before it is drawn.
 
 use crate::ports::PortShown;
 use pxpl5_display::Surface;
@@ -6,119 +6,121 @@ use pxpl5_gp::Stage;
 use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, PictureNumber, SurfaceId};
 
-/// A stage of a picture in a row.
+/// Work on one stage of a picture, drawn as a bar in a row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bar {
-    /// The stage whose work the bar stands for.
+    /// Stage of the work.
     pub stage: Stage,
-    /// The picture; of SEND under a pipeline whose host sends views apart from pictures, the view's number.
+    /// Number of the picture. If the host sends views independently of pictures, the bar of a SEND has the number of
+    /// the view.
     pub picture: PictureNumber,
-    /// The surface, for stages that take one at a time; `None` where there is only one to be told apart.
+    /// Surface of a stage that works on one surface at a time. `None` if the display has only one surface.
     pub surface: Option<SurfaceId>,
-    /// Whether it is the bottom half of a picture whose halves are copied apart; `None` for a whole one.
+    /// True for the bottom half of a picture whose halves are copied separately, false for the top half. `None` for a
+    /// whole picture.
     pub bottom: Option<bool>,
-    /// The first line of the surface that a bottom half fills; else 0.
+    /// First line of the surface that a bottom half fills, otherwise 0.
     pub first_line: u32,
-    /// When the first board began it.
+    /// Time at which the first board began the work.
     pub begin: Time,
-    /// When the last board ended it; the end of the run for a stage that did not end.
+    /// Time at which the last board ended the work. For a stage that did not end, the end of the run.
     pub end: Time,
-    /// Where in the row it stands, from the top.
+    /// Lane of the bar in its row, from the top.
     pub lane: usize,
-    /// When a port really received, for COPY.
+    /// Time spans in which a port received data, for COPY.
     pub receiving: Vec<(Time, Time)>,
 }
 
-/// A resource that works independently.
+/// A row of a timeline, for a resource that works independently.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TimelineRow {
-    /// What stands left of it.
+    /// Name on the left of the row.
     pub name: String,
-    /// Its stages in order of begin.
+    /// Bars, in the order of their begin.
     pub bars: Vec<Bar>,
-    /// How many bars stand above each other at most.
+    /// Number of lanes, which is the largest number of overlapping bars.
     pub lanes: usize,
-    /// What it showed, of a port that is swapped by itself; else nothing.
+    /// Pictures that the port of this row showed. Empty for rows other than ports with their own swaps.
     pub shown: Vec<PortShown>,
 }
 
-/// A period of the first display, in which its first surface is lit.
+/// A scan of the first display's first surface, which lights in one period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scan {
-    /// The period: an NTSC display's field.
+    /// Period of the scan. For NTSC, the period is a field.
     pub period: PeriodNumber,
-    /// The picture that is shown in it.
+    /// Picture that is displayed in the period.
     pub picture: Option<PictureNumber>,
-    /// When the first visible pixel lights.
+    /// Time at which the first visible pixel lights.
     pub begin: Time,
-    /// When the last one does.
+    /// Time at which the last visible pixel lights.
     pub end: Time,
 }
 
-/// A part of a run.
+/// Part of a run as a timeline.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Timeline {
-    /// Its begin, a retrace.
+    /// Begin of the timeline, which is a retrace.
     pub from: Time,
-    /// Its end, a retrace.
+    /// End of the timeline, which is a retrace.
     pub to: Time,
-    /// Retraces of the first display, each behind the number of the period that it begins.
+    /// Retraces of the first display, each with the number of the period that it begins.
     pub retraces: Vec<(PeriodNumber, Time)>,
-    /// Poses that were sampled, the picture or update first; `None` when they are not shown.
+    /// Sampled poses, each with the number of its picture or view. `None` if samples are not drawn.
     pub samples: Option<Vec<(PictureNumber, Time)>>,
-    /// A row for each board, from top to bottom.
+    /// Rows, from top to bottom.
     pub rows: Vec<TimelineRow>,
-    /// What the first display shows.
+    /// Scans of the first display.
     pub scans: Vec<Scan>,
-    /// All surfaces, in the order of their numbers.
+    /// Surfaces of all displays, in order of their numbers.
     pub surfaces: Vec<Surface>,
-    /// The picture whose dependencies are shown.
+    /// Picture whose dependencies are drawn.
     pub picture: Option<PictureNumber>,
-    /// The view that this picture shows, by the number that its SEND bears.
+    /// Number of the SEND that supplied the view of this picture.
     pub update: Option<PictureNumber>,
-    /// What it had to wait for.
+    /// Dependencies of this picture.
     pub arrows: Vec<Arrow>,
 }
 
 impl Timeline {
-    /// Whether a bar belongs to the picture whose dependencies are shown.
+    /// Returns true if a bar belongs to the picture whose dependencies are drawn.
     #[must_use]
     pub fn is_chosen(&self, bar: &Bar) -> bool {
         let number = if bar.stage == Stage::Send { self.update } else { self.picture };
         number == Some(bar.picture)
     }
 
-    /// All bars of all rows.
+    /// Returns the bars of all rows.
     pub fn bars(&self) -> impl Iterator<Item = &Bar> {
         self.rows.iter().flat_map(|row| &row.bars)
     }
 }
 
-/// A dependency: something could begin because something else had happened.
+/// A dependency, drawn as an arrow: one event was necessary for another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Arrow {
-    /// Row and lane where it begins.
+    /// Row and lane of the necessary event.
     pub from: DrawingPlace,
-    /// The instant at which the arrow begins.
+    /// Time of the necessary event.
     pub begin: Time,
-    /// Row and lane where it ends.
+    /// Row and lane of the dependent event.
     pub to: DrawingPlace,
-    /// When that could begin.
+    /// Time of the dependent event.
     pub end: Time,
 }
 
-/// Where in a drawing something happens.
+/// Place in a drawing, by its row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DrawingPlace {
-    /// In the tracker's row.
+    /// The row of the tracker.
     Tracker,
-    /// In a lane of a row of boards.
+    /// A lane in a row of boards.
     Lane {
-        /// The row.
+        /// Index of the row.
         row: usize,
-        /// Its lane.
+        /// Index of the lane in the row.
         lane: usize,
     },
-    /// In the row of the display's beam.
+    /// The row of the display's beam.
     Beam,
 }

@@ -1,22 +1,23 @@
-//! What of a run is drawn.
+//! Options of a timeline.
 
 use pxpl5_wire::{PeriodNumber, PictureNumber};
 
-/// What of a run is drawn, and how.
+/// Options that select the part of a run to draw, and the content of the drawing.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TimelineOptions {
-    /// The picture whose dependencies are drawn; else the first after the warm-up.
+    /// Picture whose dependencies are drawn. The default is the first picture after the warm-up.
     pub picture: Option<PictureNumber>,
-    /// The first period of the display that is drawn, an NTSC field; else the one in which that picture's pose is
-    /// sampled.
+    /// First period of the display to draw. For NTSC, a period is a field. The default is the period in which the pose
+    /// of the picture is sampled.
     pub first_field: Option<PeriodNumber>,
-    /// The number of periods drawn, at most [`MAX_FIELDS`]; else until a period after the picture is shown.
+    /// Number of periods to draw, at most [`MAX_FIELDS`]. By default, the drawing ends one period after the picture is
+    /// shown.
     pub fields: Option<u64>,
-    /// What stands above the drawing.
+    /// Title above the drawing.
     pub title: Option<String>,
-    /// The host's row is left out, and so is the tracker's.
+    /// True to leave out the rows of the host and the tracker.
     pub without_host: bool,
 }
 
-/// More periods than this cannot be told apart at page width.
+/// Largest number of periods in a drawing. More cannot be distinguished at the width of a page.
 pub const MAX_FIELDS: u64 = 16;

@@ -1,4 +1,4 @@
-//! Rows of a timeline: what each board, or kind of boards, worked at.
+//! Rows of a timeline: the work of each board or kind of board.
 
 use super::model::{Bar, TimelineRow};
 use super::options::TimelineOptions;
@@ -10,7 +10,7 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::PictureNumber;
 use std::collections::BTreeMap;
 
-/// All rows of a run, from the host to the last surface.
+/// Returns all rows of a run, from the host to the last surface.
 pub(super) fn rows(run: &SoFar<'_>, stages: &[StageSpan], options: &TimelineOptions) -> Vec<TimelineRow> {
     let mut rows = Vec::new();
     if !options.without_host {
@@ -30,7 +30,7 @@ fn row(name: &str, mut bars: Vec<Bar>) -> TimelineRow {
     TimelineRow { name: name.to_owned(), bars, lanes: 1, shown: Vec::new() }
 }
 
-/// What a port that is swapped by itself received, and what it showed.
+/// Returns the row of a port with its own swaps: the data that it received and the pictures that it showed.
 fn port_row(run: &SoFar<'_>, port: &DisplayPort) -> TimelineRow {
     let bars = copies(run, |arrival| arrival.target.frame_buffer == port.node);
     TimelineRow { shown: shown(run, port.node), ..row(&port.name, bars) }
@@ -55,20 +55,22 @@ fn stage_bar(run: &SoFar<'_>, span: &StageSpan) -> Bar {
     }
 }
 
-/// Whether there are surfaces to be told apart.
+/// Returns true if the machine has more than one surface.
 fn has_many_surfaces(record: &Record) -> bool {
     record.surfaces().nth(1).is_some()
 }
 
-/// Copies of one surface by picture and part of it.
+/// Copies by picture and part of the picture.
 type Parts = BTreeMap<(PictureNumber, u8), Bar>;
 
-/// COPY of each picture to a surface or a port; two bars where it received two parts of it one after the other.
+/// Returns the COPY of each picture to a surface or a port. A picture has two bars if it arrived in two parts, one
+/// after the other.
 fn copies(run: &SoFar<'_>, is_there: impl Fn(&Arrival) -> bool) -> Vec<Bar> {
     let message = run.record().message_span();
     let mut parts = Parts::new();
     for arrival in run.observation().arrivals.iter().filter(|arrival| is_there(arrival)) {
         let begin = arrival.begins_at(message);
+        // Arrivals of the same picture and part extend one bar.
         let key = (arrival.target.picture, run.pipeline().copy_part(arrival));
         let bar = parts.entry(key).or_insert_with(|| copy_bar(run.record(), arrival, begin));
         bar.begin = bar.begin.min(begin);
@@ -95,7 +97,7 @@ fn copy_bar(record: &Record, arrival: &Arrival, begin: Time) -> Bar {
     }
 }
 
-/// The first line of its surface that a region fills; its picture may have fewer lines than the surface.
+/// Returns the first line of the surface that a region fills. The picture may have fewer lines than the surface.
 fn first_line(record: &Record, arrival: &Arrival) -> u32 {
     let grid = &arrival.target.grid;
     let [_, top, _, _] = grid.rectangle(arrival.target.region);
@@ -103,7 +105,7 @@ fn first_line(record: &Record, arrival: &Arrival) -> u32 {
     top * height / grid.height.max(1)
 }
 
-/// Says which bars are halves: those of pictures of which the surface received both.
+/// Marks the bars that are halves of a picture. A picture has halves if the surface received both.
 fn name_halves(parts: &mut Parts) {
     let bottoms: Vec<PictureNumber> =
         parts.keys().filter(|(_, part)| *part == 1).map(|(picture, _)| *picture).collect();
@@ -116,7 +118,7 @@ fn name_halves(parts: &mut Parts) {
     }
 }
 
-/// Transfers that follow each other within this time are drawn as one: it is less than a tenth of a unit.
+/// Largest gap between transfers that are drawn as one. The gap is less than a tenth of a unit.
 const JOINED: Span = Span(20_000_000);
 
 fn join(times: &mut Vec<(Time, Time)>) {
@@ -131,7 +133,7 @@ fn join(times: &mut Vec<(Time, Time)>) {
     *times = joined;
 }
 
-/// Gives each bar of a row the first lane that is free.
+/// Assigns each bar of a row to the first free lane.
 pub(super) fn set_lanes(row: &mut TimelineRow, touching: Span) {
     let mut free_at: Vec<Time> = Vec::new();
     for bar in &mut row.bars {

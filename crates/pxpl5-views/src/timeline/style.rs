@@ -1,4 +1,4 @@
-//! Colours, patterns and labels.
+//! Colours, patterns and labels of a timeline.
 
 use super::model::Bar;
 use crate::markup::Element;
@@ -7,7 +7,7 @@ use pxpl5_gp::Stage;
 use pxpl5_wire::SurfaceId;
 use std::fmt::Write;
 
-/// A stage's colours: light, and dark enough for text and hatching on white.
+/// Colours of a stage. The dark one is legible as text and hatching on white.
 struct Colours {
     light: &'static str,
     dark: &'static str,
@@ -22,7 +22,8 @@ pub(super) const STAGES: [(Stage, &str); 5] = [
     (Stage::Copy, "COPY"),
 ];
 
-/// Hues that stay apart for the common kinds of colour blindness and, by lightness, in grey.
+/// Returns the colours of a stage. The hues are distinct for common kinds of colour blindness, and in grey by their
+/// lightness.
 const fn colours(stage: Stage) -> Colours {
     match stage {
         Stage::Send => Colours { light: "#d9d9d9", dark: "#4d4d4d" },
@@ -33,7 +34,7 @@ const fn colours(stage: Stage) -> Colours {
     }
 }
 
-/// The name of a stage in classes of the style sheet.
+/// Returns the name of a stage in classes of the style sheet.
 pub(super) const fn class_of(stage: Stage) -> &'static str {
     match stage {
         Stage::Send => "send",
@@ -46,11 +47,11 @@ pub(super) const fn class_of(stage: Stage) -> &'static str {
     }
 }
 
-/// Suffixes of classes: what is for the first surface, or for all, is plain; the rest is hatched.
+/// Suffix of the class for work on the first surface or on all surfaces.
 const PLAIN: &str = "plain";
 const HATCHED: &str = "right";
 
-/// The pattern of what is done for a surface, as a suffix of a class.
+/// Returns the class suffix of the pattern for work on a surface.
 pub(super) const fn pattern(surface: Option<SurfaceId>) -> &'static str {
     match surface {
         Some(SurfaceId(0)) | None => PLAIN,
@@ -58,7 +59,8 @@ pub(super) const fn pattern(surface: Option<SurfaceId>) -> &'static str {
     }
 }
 
-/// Letters as in the papers: E, TL, TR, RL, RR, CL, CR; a `t` or `b` for a half that is copied apart.
+/// Returns the letters of a bar as in the papers: E, TL, TR, RL, RR, CL or CR. A half that is copied separately has an
+/// additional `t` or `b`.
 pub(super) fn letters(bar: &Bar, surfaces: &[Surface]) -> String {
     let stage = match bar.stage {
         Stage::Send => "S",
@@ -73,7 +75,7 @@ pub(super) fn letters(bar: &Bar, surfaces: &[Surface]) -> String {
     stage.chars().chain(surface).chain(half).collect()
 }
 
-/// The style sheet.
+/// Returns the style sheet.
 pub(super) fn style() -> Element {
     let mut text = String::from(
         ".page{fill:#fff}.row{fill:#f5f5f5}.blank{fill:#fff}.heading{font-size:17px;font-weight:bold}\
@@ -86,6 +88,7 @@ pub(super) fn style() -> Element {
          .left-eye{fill:#ddd}.right-eye{fill:url(#eye-right)}",
     );
     for (stage, _) in STAGES {
+        // Each stage has a plain fill, a hatched fill and a text colour.
         let name = class_of(stage);
         let Colours { light, dark } = colours(stage);
         let _ = write!(
@@ -96,11 +99,11 @@ pub(super) fn style() -> Element {
     Element::new("style").text(text)
 }
 
-/// The classes of the swatches that explain plain and hatched.
+/// Class of the plain sample in the legend.
 pub(super) const PLAIN_SURFACE: &str = "left-eye";
 pub(super) const HATCHED_SURFACE: &str = "right-eye";
 
-/// What the style sheet refers to: the arrows' heads and the hatchings.
+/// Returns the definitions that the style sheet refers to: arrow heads and hatching patterns.
 pub(super) fn definitions() -> Element {
     let hatches = STAGES.map(|(stage, _)| hatch(&format!("{}-hatch", class_of(stage)), &colours(stage)));
     let grey = hatch("eye-right", &Colours { light: "#ddd", dark: "#777" });

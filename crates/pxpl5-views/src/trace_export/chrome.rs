@@ -1,15 +1,15 @@
-//! Chrome's trace event format (JSON).
+//! Writer of Chrome's trace event format (JSON).
 
 use super::model::{Events, Slice, Step, Trace, Track};
 use pxpl5_sim::Time;
 use serde_json::{Map, Value, json};
 use std::io::{self, Write};
 
-/// Writes a trace as Chrome's JSON: an object with `traceEvents`, one a line, and the origin in `otherData`.
+/// Writes a trace as Chrome's JSON: an object with `traceEvents`, one event a line, and the origin in `otherData`.
 ///
 /// # Errors
 ///
-/// When the writer fails.
+/// Any error of the writer.
 pub fn chrome(trace: &Trace, mut out: impl Write) -> io::Result<()> {
     let origin: Map<String, Value> = trace.origin.iter().map(|(key, value)| ((*key).into(), json!(value))).collect();
     write!(out, "{{\"displayTimeUnit\":\"ns\",\"otherData\":{},\n\"traceEvents\":[", Value::Object(origin))?;
@@ -22,7 +22,8 @@ pub fn chrome(trace: &Trace, mut out: impl Write) -> io::Result<()> {
     out.flush()
 }
 
-/// Microseconds with six decimals, exact; JSON numbers made by a library would be rounded.
+/// Returns a time in microseconds as text with six decimals. The text is exact, whereas a number of a JSON library
+/// would be rounded.
 fn us(ps: u64) -> String {
     format!("{}.{:06}", ps / 1_000_000, ps % 1_000_000)
 }
@@ -38,7 +39,7 @@ fn names(trace: &Trace) -> Vec<String> {
     groups.chain(tracks).map(|event| event.to_string()).collect()
 }
 
-/// An event: kind, time, what else belongs to it.
+/// Returns an event as JSON. `rest` contains additional members.
 fn event(place: &str, kind: &str, time: Time, name: &str, rest: &str) -> String {
     format!(r#"{{"name":{},"ph":"{kind}","ts":{},{place}{rest}}}"#, json!(name), us(time.0))
 }
@@ -64,6 +65,7 @@ fn slice_events(place: &str, slice: &Slice) -> Vec<String> {
     let args = slice.picture.map_or_else(String::new, |picture| format!(r#","args":{{"picture":{picture}}}"#));
     let rest = format!(r#","dur":{}{args}"#, us((slice.end - slice.begin).0));
     let mut events = vec![event(place, "X", slice.begin, &slice.name, &rest)];
+    // A flow event binds the slice to the flow of its picture.
     if let Some(flow) = slice.flow {
         let (kind, bound) = match flow.step {
             Step::First => ("s", ""),

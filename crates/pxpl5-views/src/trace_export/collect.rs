@@ -1,4 +1,4 @@
-//! Tracks from what was observed.
+//! Builds tracks from the observations of a run.
 
 use super::flows::connect;
 use super::groups::{Group, groups, named};
@@ -21,6 +21,7 @@ impl Trace {
     pub fn of(outcome: &Outcome) -> Self {
         let mut trace = Self { origin: origin(&Report::of(outcome)), groups: Vec::new(), tracks: Vec::new() };
         let traffic = outcome.observation().traffic.as_deref();
+        // Each board or surface is a group with its own tracks.
         let groups = groups(outcome.record());
         for group in &groups {
             let index = trace.group(group.name.clone());
@@ -36,6 +37,7 @@ impl Trace {
         }
         trace.videos(outcome);
         connect(&mut trace, outcome);
+        // Tracks without events are left out of the trace.
         trace.tracks.retain(|track| !track.is_empty());
         trace
     }
@@ -49,7 +51,7 @@ impl Trace {
         self.tracks.push(Track { group, name: name.to_owned(), events });
     }
 
-    /// What a board does, and what comes and goes at its port.
+    /// Adds the stages of a board and the messages at its port.
     fn port(&mut self, outcome: &Outcome, groups: &[Group], group: usize, node: NodeId) {
         self.stages(outcome, group, node);
         if display_ports(outcome.record()).iter().any(|port| port.node == node) {
@@ -60,11 +62,12 @@ impl Trace {
         self.fifo(outcome.record(), traffic, group, node);
     }
 
-    /// What a port that is swapped by itself received and showed.
+    /// Adds the data that a port with its own swaps received, and the pictures that it showed.
     fn memory(&mut self, outcome: &Outcome, group: usize, node: NodeId) {
         let message = outcome.record().message_span();
         let arrivals = outcome.observation().arrivals.iter().filter(|arrival| arrival.target.frame_buffer == node);
         self.track(group, "COPY", Events::Slices(apart(arrivals.map(|arrival| region_slice(arrival, message)))));
+        // A swap is an instant, and the displayed picture is a slice.
         let shown = shown_by(&outcome.so_far(), node);
         let swaps = shown.iter().map(|shown| (shown.begin, "swap".to_owned()));
         self.track(group, "swaps", Events::Instants(swaps.collect()));
@@ -78,12 +81,13 @@ impl Trace {
         self.track(group, "shown", Events::Slices(slices.collect()));
     }
 
-    /// The stages that a board marked; one without an end is left out.
+    /// Adds the stages that a board has marked. A stage without an end is left out.
     fn stages(&mut self, outcome: &Outcome, group: usize, node: NodeId) {
         let mut begun: BTreeMap<(Stage, PictureNumber, Option<SurfaceId>), Time> = BTreeMap::new();
         let mut slices: BTreeMap<Stage, Vec<Slice>> = BTreeMap::new();
         for mark in outcome.observation().marks.iter().filter(|mark| mark.node == node) {
             let key = (mark.stage, mark.picture, mark.surface);
+            // Match each end with the begin of the same stage, picture and surface.
             match mark.edge {
                 StageEdge::Begin => drop(begun.insert(key, mark.time)),
                 StageEdge::End => {
@@ -113,7 +117,7 @@ impl Trace {
         }
     }
 
-    /// What arrives for a surface, and its swaps.
+    /// Adds the regions that arrive for a surface, and its swaps.
     fn regions(&mut self, outcome: &Outcome, group: usize, surface: SurfaceId) {
         let record = outcome.record();
         let message = record.message_span();
@@ -132,7 +136,7 @@ impl Trace {
         self.track(group, "busy channels", Events::Counter(values.collect()));
     }
 
-    /// What the displays show; pictures are drawn for the first.
+    /// Adds the tracks of the displays. Only the first display has picture numbers.
     fn videos(&mut self, outcome: &Outcome) {
         let record = outcome.record();
         for (i, display) in record.displays().iter().enumerate() {
@@ -150,18 +154,18 @@ impl Trace {
     }
 }
 
-/// A stage that has come to its end.
+/// Returns the slice of a stage that has ended.
 fn ended(record: &Record, mark: &Mark, begin: Time) -> Slice {
     let surface = mark.surface.and_then(|id| record.surface(id));
     stage_slice(mark.stage, mark.picture, surface.map(|surface| surface.label), [begin, mark.time])
 }
 
-/// The name of the board at a port.
+/// Returns the name of the board at a port.
 fn name_of(groups: &[Group], node: NodeId) -> &str {
     groups.iter().find(|group| group.node == Some(node)).map_or("", |group| &group.name)
 }
 
-/// The display that has a surface.
+/// Returns the display that has a surface.
 fn display_of(record: &Record, surface: SurfaceId) -> Option<&dyn Display> {
     let mut first = 0;
     for display in record.displays() {
@@ -180,7 +184,7 @@ fn period_slice(display: &dyn Display, pictures: &[PictureTimes], period: Period
     Slice { name: format!("field {period}{shown}"), begin, end: display.tick(period.next()), picture, flow: None }
 }
 
-/// The picture that is shown in the period that begins at a retrace.
+/// Returns the picture that is shown in the period that begins at a retrace.
 fn shown(pictures: &[PictureTimes], retrace: Time) -> Option<PictureNumber> {
     let after = pictures.partition_point(|times| times.shown_at <= retrace);
     after.checked_sub(1).map(|last| pictures[last].picture)

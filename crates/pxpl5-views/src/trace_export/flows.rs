@@ -1,4 +1,4 @@
-//! The way of each picture from SEND to the first period that shows it.
+//! Flow of each picture from SEND to the first period that shows the picture.
 
 use super::model::{Events, Flow, Slice, Step, Trace};
 use super::slices::stage_name;
@@ -9,7 +9,7 @@ use pxpl5_sim::Time;
 use pxpl5_wire::PictureNumber;
 use std::collections::BTreeMap;
 
-/// A slice: when it begins, the track and its place in it.
+/// Position of a slice: its begin, its track and its index in the track.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Stop {
     begin: Time,
@@ -17,12 +17,13 @@ struct Stop {
     place: usize,
 }
 
-/// Gives slices their places in the flows of the pictures that were shown.
+/// Connects the slices of each shown picture by a flow.
 pub(super) fn connect(trace: &mut Trace, outcome: &Outcome) {
     let updates = Updates::of(&outcome.so_far(), &outcome.stages());
     let sends = firsts(trace, &[Stage::Send]);
     let stages = firsts(trace, &[Stage::Transform, Stage::Render, Stage::Copy]);
     let shown = first_shown(trace);
+    // A flow leads from SEND through the stages to the first period that shows the picture.
     for times in outcome.pictures() {
         let sent = updates.shown_by(times).and_then(|update| sends.get(&update));
         let worked = stages.get(&times.picture);
@@ -34,13 +35,14 @@ pub(super) fn connect(trace: &mut Trace, outcome: &Outcome) {
     }
 }
 
-/// By picture: the first slices of the stages, one for each name, so that each surface has its own.
+/// Returns the first slices of some stages, by picture. Each name of a slice counts separately, so each surface has its
+/// own.
 fn firsts(trace: &Trace, stages: &[Stage]) -> BTreeMap<PictureNumber, Vec<Stop>> {
     let mut all: BTreeMap<(PictureNumber, String), Stop> = BTreeMap::new();
     let names: Vec<&str> = stages.iter().map(|stage| stage_name(*stage)).collect();
     for (stop, track, slice) in stops(trace).filter(|(_, track, _)| names.contains(track)) {
         let Some(picture) = slice.picture else { continue };
-        // Regions have names of their own: the first of each surface counts.
+        // Slices of COPY are named by region, so the track replaces the name: the first region of each surface counts.
         let name = if track == "COPY" { format!("COPY {}", stop.track) } else { slice.name.clone() };
         let first = all.entry((picture, name)).or_insert(stop);
         *first = stop.min(*first);
@@ -52,7 +54,7 @@ fn firsts(trace: &Trace, stages: &[Stage]) -> BTreeMap<PictureNumber, Vec<Stop>>
     pictures
 }
 
-/// All slices, each with its place and the name of its track.
+/// Returns all slices with their positions and the names of their tracks.
 fn stops(trace: &Trace) -> impl Iterator<Item = (Stop, &str, &Slice)> {
     trace.tracks.iter().enumerate().flat_map(|(track, it)| {
         let slices = if let Events::Slices(slices) = &it.events { &slices[..] } else { &[] };
@@ -61,7 +63,7 @@ fn stops(trace: &Trace) -> impl Iterator<Item = (Stop, &str, &Slice)> {
     })
 }
 
-/// The first period that shows each picture.
+/// Returns the first period that shows each picture.
 fn first_shown(trace: &Trace) -> BTreeMap<PictureNumber, Stop> {
     let mut periods = BTreeMap::new();
     for (stop, _, slice) in stops(trace).filter(|(_, track, _)| *track == "displayed") {
@@ -80,7 +82,7 @@ fn mark(trace: &mut Trace, id: u64, way: &[Stop]) {
             _ => Step::Middle,
         };
         if let Events::Slices(slices) = &mut trace.tracks[stop.track].events {
-            // An update that two pictures show begins the flow of the first.
+            // If two pictures show the same update, the slice belongs to the flow of the first.
             slices[stop.place].flow.get_or_insert(Flow { id, step });
         }
     }

@@ -1,11 +1,11 @@
-//! Groups of tracks: what a trace has a heading for.
+//! Groups of tracks, which have headings in a trace viewer.
 
 use pxpl5_display::{Display, Surface};
 use pxpl5_machine::Record;
 use pxpl5_wire::{NodeId, SurfaceId};
 
-/// Something with a heading of its own: a board at a port of the ring, a surface of a display, or both in one, such as a
-/// frame buffer.
+/// A group of tracks with a heading. The group stands for a board at a port of the ring, for a surface of a display, or
+/// for both in one, such as a frame buffer.
 pub(super) struct Group {
     pub(super) name: String,
     pub(super) node: Option<NodeId>,
@@ -18,7 +18,7 @@ impl Group {
     }
 }
 
-/// All boards and surfaces of a machine, in the order of the schematic.
+/// Returns all boards and surfaces of a machine, in the order of the schematic.
 pub(super) fn groups(record: &Record) -> Vec<Group> {
     let ports = record.ports();
     let mut groups = vec![Group::of_port("host".to_owned(), ports.host)];
@@ -36,7 +36,7 @@ fn numbered(name: &str, nodes: &[NodeId]) -> impl Iterator<Item = Group> {
     nodes.iter().enumerate().map(move |(i, node)| Group::of_port(format!("{name} {i}"), *node))
 }
 
-/// A surface with a port of its own is one board with it.
+/// Returns the groups of a display. A surface with a port of its own forms one group with the port.
 fn of_display(record: &Record, display: &dyn Display, surfaces: &[(SurfaceId, &Surface)]) -> Vec<Group> {
     let nodes = display.nodes();
     let paired = nodes.len() == surfaces.len();
@@ -51,7 +51,7 @@ fn of_display(record: &Record, display: &dyn Display, surfaces: &[(SurfaceId, &S
     groups
 }
 
-/// A name that belongs to a display; it says to which, where there are several.
+/// Returns a name that belongs to a display. If the machine has several displays, the name contains the display's name.
 pub(super) fn named(record: &Record, name: &str, display: &dyn Display) -> String {
     if record.displays().len() == 1 { name.to_owned() } else { format!("{name}, {}", display.name()) }
 }

@@ -1,8 +1,8 @@
-//! A run as a trace for viewers: the Perfetto trace format and Chrome's JSON, both opened by ui.perfetto.dev.
+//! A run as a trace for viewers, in the Perfetto trace format or as Chrome's JSON. The viewer ui.perfetto.dev opens
+//! both.
 //!
-//! [`Trace::of`] collects tracks from what was observed; [`perfetto`] and [`chrome`] write them. Record messages with
-//! [`Experiment::record_traffic`](pxpl5_run::Experiment::record_traffic), else tracks and counters of the ring and the
-//! FIFOs are left out.
+//! [`Trace::of`] collects tracks from the observations. [`perfetto`] and [`chrome`] write them. Tracks of messages and
+//! counters of the ring and the FIFOs need [`Experiment::record_traffic`](pxpl5_run::Experiment::record_traffic).
 //!
 //! | group | tracks |
 //! |---|---|
@@ -12,12 +12,12 @@
 //! | ring | counter: occupied channels |
 //! | video, of each display | its periods with the picture they show; retraces as instants |
 //!
-//! Flow arrows lead from a picture's SEND through its stages to the first period that shows it. A display that has not as
-//! many ports as surfaces has groups for both.
+//! Flow arrows lead from a picture's SEND through its stages to the first period that shows the picture. If the numbers
+//! of ports and surfaces of a display differ, ports and surfaces have separate groups.
 //!
-//! Time is simulated time. Chrome's JSON has microseconds with six decimals, which is exact; Perfetto's timestamps are
-//! nanoseconds, rounded down. The slices of a track never overlap: a message that reaches its port up to a few hops
-//! before the one before it has left is drawn from that one's end.
+//! Time is simulated time. Chrome's JSON has microseconds with six decimals, which is exact. Perfetto's timestamps are
+//! nanoseconds, rounded down. Slices of a track never overlap. A message may reach a port shortly before the previous
+//! message has left it, and is then drawn from that message's end.
 //!
 //! Sources: the published `.proto` files of the Perfetto project (`TracePacket`, `TrackDescriptor`, `TrackEvent`) and
 //! the description of Chrome's trace event format. **Not written:** interned strings, clock snapshots.

@@ -1,73 +1,73 @@
-//! A run as tracks, before it is written.
+//! Content of a trace, before it is written.
 
 use pxpl5_sim::Time;
 use pxpl5_wire::PictureNumber;
 
-/// A run as tracks.
+/// A run as a set of tracks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Trace {
-    /// What it can be made again from.
+    /// Origin, by which the trace can be made again, as pairs of key and value.
     pub origin: Vec<(&'static str, String)>,
-    /// Names of boards and other groups of tracks.
+    /// Names of the groups: boards, surfaces and others.
     pub groups: Vec<String>,
-    /// The tracks, those of a group one after the other.
+    /// Tracks, sorted by group.
     pub tracks: Vec<Track>,
 }
 
-/// A line of a trace.
+/// A line of a trace with its events.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Track {
-    /// Index of its group.
+    /// Index of the track's group.
     pub group: usize,
-    /// What stands left of it.
+    /// Name on the left of the track.
     pub name: String,
-    /// What happens on it, in order of time.
+    /// Events, in order of time.
     pub events: Events,
 }
 
-/// What happens on a track.
+/// Events of a track.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Events {
     /// Slices that do not overlap.
     Slices(Vec<Slice>),
-    /// Instants, each with the name that stands at it.
+    /// Instants with their names.
     Instants(Vec<(Time, String)>),
-    /// Values from a time on.
+    /// Values of a counter. Each value holds from its time on.
     Counter(Vec<(Time, i64)>),
 }
 
-/// Something that takes time.
+/// An event with a duration.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Slice {
-    /// What stands in it.
+    /// Name inside the slice.
     pub name: String,
-    /// The instant at which it begins.
+    /// Time at which the slice begins.
     pub begin: Time,
-    /// When it is over.
+    /// Time at which the slice ends.
     pub end: Time,
-    /// The frame, field or update that it belongs to.
+    /// Frame, field or update to which the slice belongs.
     pub picture: Option<PictureNumber>,
-    /// Its place in a flow.
+    /// Position in a flow, or `None`.
     pub flow: Option<Flow>,
 }
 
-/// A place on the way of a picture.
+/// Position of a slice in the flow of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Flow {
-    /// Number of the flow: one more than the picture's.
+    /// Number of the flow, which is the picture's number plus 1.
     pub id: u64,
-    /// Where on the way.
+    /// Step of the flow.
     pub step: Step,
 }
 
-/// Where on its way a flow is.
+/// Step of a flow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// Where the message sets out.
+    /// First slice of the flow.
     First,
-    /// Between begin and end.
+    /// Slice between the first and the last.
     Middle,
-    /// Where the message has arrived.
+    /// Last slice of the flow.
     Last,
 }
 

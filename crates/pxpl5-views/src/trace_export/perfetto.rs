@@ -1,4 +1,4 @@
-//! The Perfetto trace format.
+//! Writer of the Perfetto trace format.
 
 use super::model::{Events, Slice, Step, Trace, Track};
 use super::protobuf::Message;
@@ -40,15 +40,16 @@ mod proto {
 }
 use proto::*;
 
-/// The only writer of packets.
+/// Identifier of the sequence of packets. A trace has a single writer.
 const SEQUENCE: u64 = 1;
 
 /// Writes a trace in the Perfetto format.
 ///
 /// # Errors
 ///
-/// When the writer fails.
+/// Any error of the writer.
 pub fn perfetto(trace: &Trace, mut out: impl Write) -> io::Result<()> {
+    // Descriptors of tracks come before their events.
     for packet in descriptors(trace) {
         write(&mut out, packet)?;
     }
@@ -56,7 +57,7 @@ pub fn perfetto(trace: &Trace, mut out: impl Write) -> io::Result<()> {
     let mut events: Vec<(u64, Message)> =
         tracks.flat_map(|(i, track)| events(track_uuid(trace, i), &track.events)).collect();
     events.push((0, origin(trace)));
-    // The sort is stable: on a track, an end stays before a begin of the same time.
+    // The sort is stable, so an end stays before a begin of the same time on the same track.
     events.sort_by_key(|event| event.0);
     for (ns, event) in events {
         let packet = Message::default().number(PACKET_TIMESTAMP, ns).message(PACKET_TRACK_EVENT, &event);
@@ -74,7 +75,7 @@ const fn ns(time: Time) -> u64 {
     time.0 / 1_000
 }
 
-/// Tracks of groups come first; zero means none.
+/// Returns the identifier of a group's track. Groups come first. Zero is not a valid identifier.
 const fn group_uuid(group: usize) -> u64 {
     group as u64 + 1
 }
@@ -118,12 +119,12 @@ fn track_descriptor(trace: &Trace, number: usize, track: &Track) -> Message {
     }
 }
 
-/// An event of a kind on the track with a number.
+/// Returns an event of a kind on a track.
 fn event(kind: u64, track: u64) -> Message {
     Message::default().number(EVENT_TYPE, kind).number(EVENT_TRACK, track)
 }
 
-/// The events of a track, each with its time.
+/// Returns the events of a track with their times.
 fn events(track: u64, events: &Events) -> Vec<(u64, Message)> {
     match events {
         Events::Slices(slices) => slices.iter().flat_map(|slice| ends(track, slice)).collect(),
@@ -138,7 +139,7 @@ fn counted(track: u64, value: i64) -> Message {
     event(COUNTER, track).number(EVENT_COUNTER_VALUE, value.cast_unsigned())
 }
 
-/// Begin and end of a slice.
+/// Returns the begin event and the end event of a slice.
 fn ends(track: u64, slice: &Slice) -> [(u64, Message); 2] {
     [(ns(slice.begin), begin(track, slice)), (ns(slice.end), event(SLICE_END, track))]
 }
@@ -154,7 +155,7 @@ fn begin(track: u64, slice: &Slice) -> Message {
     event.message(EVENT_ANNOTATION, &picture)
 }
 
-/// An instant at time zero that carries what the trace can be made again from; on the last group's own track.
+/// Returns an event at time zero that contains the origin of the trace. The event is on the track of the last group.
 fn origin(trace: &Trace) -> Message {
     let event = event(INSTANT, group_uuid(trace.groups.len() - 1));
     trace.origin.iter().fold(event.text(EVENT_NAME, "origin"), |event, (key, value)| {

@@ -1,6 +1,6 @@
-//! The few wire types of Protocol Buffers that a trace needs.
+//! Encoder for the wire types of Protocol Buffers that a trace needs.
 
-/// A message being written.
+/// An encoded message during writing.
 #[derive(Debug, Default)]
 pub(super) struct Message(pub(super) Vec<u8>);
 
@@ -17,14 +17,14 @@ impl Message {
         self.raw(u64::from(field) << 3 | wire_type);
     }
 
-    /// An unsigned number or an enumerator.
+    /// Appends an unsigned number or an enumerator.
     pub(super) fn number(mut self, field: u32, value: u64) -> Self {
         self.tag(field, 0);
         self.raw(value);
         self
     }
 
-    /// Eight bytes, least first.
+    /// Appends eight bytes, the least significant first.
     pub(super) fn fixed64(mut self, field: u32, value: u64) -> Self {
         self.tag(field, 1);
         self.0.extend(value.to_le_bytes());
@@ -53,11 +53,11 @@ mod tests {
 
     #[test]
     fn the_examples_of_the_published_encoding_come_out() {
-        // From the description of the wire format: field 1 = 150, and field 2 = "testing".
+        // The expected bytes are examples of the wire format's description: field 1 = 150, and field 2 = "testing".
         assert_eq!(Message::default().number(1, 150).0, [0x08, 0x96, 0x01]);
         let testing = [0x12, 0x07, 0x74, 0x65, 0x73, 0x74, 0x69, 0x6e, 0x67];
         assert_eq!(Message::default().text(2, "testing").0, testing);
-        // Field 3 holding the first message.
+        // Field 3 contains the first message.
         let inner = Message::default().number(1, 150);
         assert_eq!(Message::default().message(3, &inner).0, [0x1a, 0x03, 0x08, 0x96, 0x01]);
         assert_eq!(Message::default().fixed64(1, 1).0, [0x09, 1, 0, 0, 0, 0, 0, 0, 0]);

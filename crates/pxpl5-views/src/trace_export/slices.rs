@@ -6,7 +6,7 @@ use pxpl5_machine::{Arrival, Transfer};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::PictureNumber;
 
-/// The name of a stage, in the papers' words.
+/// Returns the name of a stage, in the papers' words.
 pub(super) const fn stage_name(stage: Stage) -> &'static str {
     match stage {
         Stage::Sample => "SAMPLE",
@@ -19,20 +19,20 @@ pub(super) const fn stage_name(stage: Stage) -> &'static str {
     }
 }
 
-/// A stage of a picture, of one surface with this label or of all.
+/// Returns the slice of a picture's stage, for one surface with a label or for all surfaces.
 pub(super) fn stage_slice(stage: Stage, picture: PictureNumber, label: Option<&str>, [begin, end]: [Time; 2]) -> Slice {
     let surface = label.map_or_else(String::new, |label| format!(" {label}"));
     let name = format!("{} {picture}{surface}", stage_name(stage));
     Slice { name, begin, end, picture: Some(picture), flow: None }
 }
 
-/// A message; `toward` says from or to whom.
+/// Returns the slice of a message. `toward` names the sender or the receiver.
 pub(super) fn message_slice(transfer: &Transfer, toward: &str) -> Slice {
     let name = format!("{} words {toward}", transfer.words);
     Slice { name, begin: transfer.begin, end: transfer.end, picture: None, flow: None }
 }
 
-/// A region on its way to a surface; its messages are `message` long.
+/// Returns the slice of a region during its transfer to a surface. `message` is the duration of one of its messages.
 pub(super) fn region_slice(arrival: &Arrival, message: Span) -> Slice {
     Slice {
         name: format!("COPY region {}", arrival.target.region.0),
@@ -43,7 +43,7 @@ pub(super) fn region_slice(arrival: &Arrival, message: Span) -> Slice {
     }
 }
 
-/// Slices in order of time, each from the end of the one before at the earliest.
+/// Sorts slices by time. A slice that overlaps the previous one begins at its end.
 pub(super) fn apart(slices: impl Iterator<Item = Slice>) -> Vec<Slice> {
     let mut slices: Vec<Slice> = slices.collect();
     slices.sort_by_key(|slice| (slice.end, slice.begin));
