@@ -1,4 +1,4 @@
-//! `pxpl5 machines`.
+//! The command `pxpl5 machines`, which lists the built-in machines and their parameters.
 
 use crate::error::CliError;
 use crate::numbers::count_of;
@@ -9,14 +9,14 @@ use pxpl5::{ConfigError, MachineConfig, PRESETS, Parameter, Preset, Suitability,
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
-/// List the machines that are built in.
+/// List the built-in machines.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 machines
   pxpl5 machines small-hmd      every parameter with unit, standing, allowed range and source,
                                 those of the i860 and of trackers too; --set PATH=VALUE changes it")]
 pub(crate) struct MachinesArgs {
-    /// Show all parameters of this one.
+    /// Show all parameters of this machine.
     #[arg(value_name = "PRESET")]
     preset: Option<String>,
     /// Print one JSON object.
@@ -39,7 +39,7 @@ pub(crate) fn run(args: MachinesArgs) -> Result<(), CliError> {
     print(&if args.json { all_json(&machines) } else { all_text(&machines) })
 }
 
-/// A preset, and which pipelines it can run.
+/// A preset and the pipelines that it can run.
 struct Listed {
     preset: &'static Preset,
     machine: MachineConfig,

@@ -1,4 +1,4 @@
-//! `pxpl5 arp run`.
+//! The command `pxpl5 arp run`, which simulates one walk.
 
 use super::settings::{WalkArgs, put};
 use crate::error::CliError;
@@ -11,7 +11,7 @@ use pxpl5::arp::{MemoryReport, Percentiles, Report, WalkOutcome};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Walk once and print what was drawn, how often, and how far cuts gape.
+/// Walk once and print draws, update rates and the width of the gaps at cuts.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 arp run --scene gallery --out out/walk --json
@@ -23,9 +23,9 @@ use std::path::{Path, PathBuf};
 pub(super) struct RunArgs {
     #[command(flatten)]
     walk: WalkArgs,
-    /// Write into this folder: report.json, frames.csv, faces of all memories, what the eye sees through its lens and (up to 170
-    /// degrees) without one, which memory
-    /// won, errors, cells from above, cuts as wires, updates, and the walk torn, warped and without cuts.
+    /// Write into this folder: report.json, frames.csv, and pictures. The pictures show the faces of all memories and
+    /// the eye's view through its lens and (up to 170 degrees) without a lens. Other pictures show the memory chosen
+    /// at each pixel, errors, cells from above, cuts as wires, updates, and the walk torn, warped and without cuts.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print the report as one JSON object.
@@ -69,7 +69,8 @@ fn origin(outcome: &WalkOutcome) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// A line for each frame: where the eye was, and of each memory whether it was due, shown and missed.
+/// Returns frames.csv: for each frame the position of the eye, and for each memory whether an update was due, shown
+/// or missed.
 fn frames_csv(outcome: &WalkOutcome) -> String {
     let memories = outcome.tally.memories.len();
     let columns = (0..memories).map(|k| format!(",due_{k},shown_{k},missed_{k}")).collect::<String>();
@@ -129,7 +130,7 @@ fn text(outcome: &WalkOutcome, out: Option<&Path>) -> String {
     text
 }
 
-/// The mean latency of a step in what each memory shows.
+/// Returns the mean latency from a step of the head to the light of each memory's picture, in ms.
 fn steps(report: &Report) -> String {
     let totals = report.memories.iter().map(|memory| memory.translation_latency_ms.total);
     let totals: Vec<String> = totals.map(|total| or_none(total.map(|ms| format!("{ms:.1}")))).collect();
@@ -149,7 +150,8 @@ fn or_none(text: Option<String>) -> String {
     text.unwrap_or_else(|| "-".to_owned())
 }
 
-/// Half of all, nineteen of twenty, the widest; what is below a millionth is rounding.
+/// Formats the median, the 95th percentile and the maximum of widths. Widths below 1e-6 are rounding errors and
+/// appear as 0.
 pub(super) fn widths(widths: Option<Percentiles>) -> String {
     let number = |width: f64| if width < 1e-6 { "0".to_owned() } else { format!("{width:.2}") };
     or_none(widths.map(|Percentiles { p50, p95, max }| [p50, p95, max].map(number).join(", ")))

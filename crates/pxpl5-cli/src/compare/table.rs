@@ -1,11 +1,11 @@
-//! The table on the terminal.
+//! The table that `pxpl5 compare` prints on the terminal.
 
 use crate::numbers::count_of;
 use pxpl5::Cause;
 use pxpl5::compare::{Comparison, ComparisonRow, MeanInterval};
 use std::fmt::Write as _;
 
-/// Columns: name, unit, width.
+/// Name, unit and width in characters of each column.
 const COLUMNS: [(&str, &str, usize); 14] = [
     ("to light", "ms", 9),
     ("sd", "ms", 6),
@@ -23,10 +23,10 @@ const COLUMNS: [(&str, &str, usize); 14] = [
     ("triangles", "possible", 10),
 ];
 
-/// Width of the names.
+/// Width of the column of pipeline names, in characters.
 const NAME: usize = 24;
 
-/// The comparison for people.
+/// Returns the comparison as text for the terminal.
 pub(super) fn text(comparison: &Comparison) -> String {
     let mut text = heading(comparison);
     let _ = writeln!(text, "\n{}", header());
@@ -88,7 +88,7 @@ fn line(row: &ComparisonRow) -> String {
     format!("{:<NAME$}{cells}\n", row.pipeline)
 }
 
-/// The error by cause.
+/// Returns the table of the error by cause.
 fn causes(comparison: &Comparison) -> String {
     let mut text = format!("\n{:<NAME$}", "error by cause, px");
     for cause in Cause::ALL {

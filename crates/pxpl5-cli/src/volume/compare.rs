@@ -1,4 +1,4 @@
-//! `pxpl5 volume compare`: all clips and projections beside each other.
+//! The command `pxpl5 volume compare`, which compares all clips and projections of a volume.
 
 use super::settings::VolumeSettingArgs;
 use crate::error::CliError;
@@ -13,7 +13,8 @@ use pxpl5::volume::compare::{VariantRow, Viewpoint, VolumeComparison, compare, v
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// Compare all clips and projections: brightness over radius, dead zone, connected share, fragments, passes, volumes a second.
+/// Compare all clips and projections: brightness over radius, dead zone, connected share, fragments, passes, volumes
+/// a second.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 volume compare --scene mig
@@ -23,13 +24,13 @@ The options of clip, projection, samples and coverage say nothing here but their
 pub(super) struct CompareArgs {
     #[command(flatten)]
     volume: VolumeSettingArgs,
-    /// Write into this folder: comparison.json, rows.csv, brightness.svg, and what an eye sees of every variant.
+    /// Write into this folder: comparison.json, rows.csv, brightness.svg, and an eye's view of every variant.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Width and height of each picture, pixels.
     #[arg(long, value_name = "PX", default_value_t = 256, value_parser = whole::<u32>(1, 4096))]
     size: u32,
-    /// Print JSON: an object whose `variants` lists a row each.
+    /// Print JSON: an object whose `variants` lists one row for each variant.
     #[arg(long)]
     json: bool,
 }
@@ -72,7 +73,7 @@ fn pictures(folder: &mut OutputFolder, comparison: &VolumeComparison) -> Result<
     Ok(())
 }
 
-/// Columns of tables, and what stands in them.
+/// Name of a table column and the function that formats its cell of a row.
 type Column = (&'static str, fn(&VariantRow) -> String);
 
 const COLUMNS: [Column; 16] = [
@@ -94,7 +95,8 @@ const COLUMNS: [Column; 16] = [
     ("volumes_hz_overlapped", |row| format!("{:.2}", row.volumes_hz_overlapped)),
 ];
 
-/// The mean of the rings that the exact clip shows something in.
+/// Returns the mean ratio to the exact clip over some rings. Rings in which the exact clip shows nothing are left
+/// out.
 fn over_exact(row: &VariantRow, rings: std::ops::Range<usize>) -> String {
     let rings = row.brightness_over_exact.get(rings).unwrap_or_default();
     let known: Vec<f64> = rings.iter().flatten().copied().collect();
@@ -128,7 +130,7 @@ fn text(comparison: &VolumeComparison) -> String {
     text
 }
 
-/// Two lines over the columns.
+/// Two header lines of the table.
 const HEADS: [[&str; COLUMNS.len()]; 2] = [
     [
         "clip",
@@ -176,7 +178,7 @@ fn laid_out<'a>(cells: impl Iterator<Item = &'a str>, widths: &[usize]) -> Strin
     padded.collect::<String>().trim_end().to_owned()
 }
 
-/// Lit pixels a pixel of radius, for the clips along the normal.
+/// Returns a chart of lit pixels per pixel of radius, for the clips projected along the normal.
 fn brightness(comparison: &VolumeComparison) -> String {
     let axes = ChartAxes {
         title: format!("Lit pixels over radius: {}, along the normal", comparison.scene),

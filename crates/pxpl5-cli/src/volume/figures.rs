@@ -1,4 +1,4 @@
-//! `pxpl5 volume figures`.
+//! The command `pxpl5 volume figures`, which compares the figures of the SpatialGL paper with the model.
 
 use super::settings::load;
 use crate::error::CliError;
@@ -14,7 +14,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Measure the figures of the SpatialGL paper beside the model's, and draw its drawings anew.
+/// Compare the figures of the SpatialGL paper with the model, and redraw its drawings.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 volume figures
@@ -26,7 +26,7 @@ pub(super) struct FiguresArgs {
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
-    /// Write the document of all figures to this file.
+    /// Fail if this file differs from the document of all figures.
     #[arg(long, value_name = "FILE", conflicts_with = "check")]
     write: Option<PathBuf>,
     /// Compare the document with this file.
@@ -40,7 +40,7 @@ pub(super) struct FiguresArgs {
     quiet: bool,
 }
 
-/// Scenes on which rows are measured.
+/// Scenes on which the rows are measured.
 const SCENES: [&str; 3] = ["mig", "head", "molecules"];
 
 pub(super) fn run(args: FiguresArgs) -> Result<(), CliError> {
@@ -114,7 +114,7 @@ fn line(text: &mut String, row: &FigureRow) {
     );
 }
 
-/// Whole numbers whole, others with ten significant digits at most.
+/// Formats a whole number without decimals, and other numbers with seven decimals.
 fn compact(value: f64) -> String {
     if value.fract() == 0.0 { format!("{value:.0}") } else { format!("{value:.7}") }
 }

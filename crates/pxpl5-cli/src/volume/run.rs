@@ -1,4 +1,4 @@
-//! `pxpl5 volume run`.
+//! The command `pxpl5 volume run`, which draws one volume and reports its counts.
 
 use super::settings::{VolumeSettingArgs, png};
 use crate::error::CliError;
@@ -12,7 +12,7 @@ use pxpl5::volume::{PixelPlanesReport, Volume, VolumeReport};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// Draw a volume and print what was counted.
+/// Draw a volume and print its counts.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 volume run --scene mig --clip hyperbolic:0.25 --projection jittered --seed 1 --out out/volume --json
@@ -23,8 +23,8 @@ use std::path::PathBuf;
 pub(super) struct RunArgs {
     #[command(flatten)]
     volume: VolumeSettingArgs,
-    /// Write into this folder: report.json, slices.csv, the sheet of all slices, slice 0 before and after halftoning, the tiles of all
-    /// batches, and what an eye sees.
+    /// Write into this folder: report.json, slices.csv, the sheet of all slices, slice 0 before and after halftoning,
+    /// the tiles of all batches, and an eye's view.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print the report as one JSON object.
@@ -57,7 +57,7 @@ pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
     }
 }
 
-/// What renderers did and which part of the machine limits.
+/// Returns the work of the renderers and the part of the machine that limits the rate of volumes.
 fn bounds(planes: &PixelPlanesReport) -> String {
     let work = &planes.counts.work;
     let mut text = format!(
@@ -87,6 +87,7 @@ fn bounds(planes: &PixelPlanesReport) -> String {
     if planes.simulated.is_empty() {
         return text;
     }
+    // The bounds ignore waiting; the simulation event by event shows how close the machine comes.
     let _ = writeln!(
         text,
         "\nOne volume event by event\n{:>10} {:>11} {:>13} {:>12} {:>11} {:>16} {:>17} {:>16}",
@@ -118,7 +119,7 @@ fn bounds(planes: &PixelPlanesReport) -> String {
 
 fn slices_csv(volume: &Volume) -> String {
     let columns = ["slice", "draws", "fragments_generated", "fragments_accepted", "fragments_added"];
-    // Renderers of Pixel-Planes 5 count no fragments.
+    // Renderers of Pixel-Planes 5 do not count fragments.
     let counts = volume.bounds.is_none();
     let rows = volume.frame.stats.slices.iter().enumerate().map(|(slice, stats)| {
         let fragments =
@@ -129,7 +130,7 @@ fn slices_csv(volume: &Volume) -> String {
     csv_table(columns, rows)
 }
 
-/// What is not known of a volume that no GPU drew.
+/// Text for quantities that exist only if a GPU drew the volume.
 const NOT_COUNTED: &str = "- (no GPU drew it)";
 
 fn fragments(report: &VolumeReport) -> String {
