@@ -1,4 +1,4 @@
-//! What just-in-time pixels and frameless rendering take besides TRANSFORM, as the code gives it.
+//! Measures the times of just-in-time pixels and frameless rendering, apart from TRANSFORM, by executing their code.
 
 use super::{ExperimentError, Rig, fault, mean};
 use pphigs::{
@@ -10,46 +10,51 @@ use pxpl5_renderer::Layout;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{FieldParity, RegionGrid, RegionId, ViewNumber};
 
-/// The scene whose triangles are searched, and of how many boards the share is that is searched for comparison.
+/// Scene whose triangles are searched. The next constant is the number of boards that share the scene in a second
+/// measurement, whose comparison with the first gives the time of one triangle.
 const SCENE: &str = "mig";
 const SMALLER: usize = 12;
 
-/// From a view to the next one: a field.
+/// Time between two views in picoseconds: one NTSC field.
 const FIELD_PS: u64 = 16_683_333_333;
 
-/// Where display lists begin in memory: pieces of messages above are commands.
+/// Address at which display lists begin in memory. Commands of messages lie above this address.
 const COMMANDS: u32 = 1 << 20;
 
-/// Words of orders: of a strip, of a strip with its view, of blocks, of a field between two views; and how many come before the views.
+/// Words of four kinds of orders, and the number of words before their views: a strip, a strip with its view, blocks,
+/// a field between two views.
 const ORDERS: [(usize, usize); 4] = [(6, 6), (59, 6), (58, 5), (110, 4)];
 
-/// Times in nanoseconds.
+/// Times of strips and interpolation in nanoseconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StripTimes {
-    /// A box that is compared with a strip, which it does not meet.
+    /// Time to compare one bounding box with a strip that the box does not meet.
     pub box_ns: f64,
-    /// What meets a window of a strip besides, found and handed over, with what is near it and does not meet it.
+    /// Additional time of an entry that meets a window of a strip. The time includes finding and sending the entry,
+    /// and nearby triangles that miss the strip.
     pub entry_ns: f64,
-    /// The five windows of a strip, made and handed over empty.
+    /// Time to create and send the five windows of a strip when all are empty.
     pub windows_ns: f64,
-    /// A triangle's places in two views.
+    /// Time to compute the positions of a triangle in two views.
     pub ends_ns: f64,
-    /// A triangle between two views that is nowhere near a strip.
+    /// Time of a triangle between two views that is not near a strip.
     pub passed_ns: f64,
-    /// One that is near it besides, interpolated on the screen and in the view.
+    /// Additional time of a triangle that is near a strip, interpolated on the screen (first) and in the view
+    /// (second).
     pub interpolated_ns: [f64; 2],
-    /// An order of a strip, of a strip with a view, of blocks, of a field between two views.
+    /// Time of an order for a strip, a strip with a view, blocks, and a field between two views.
     pub order_ns: [f64; 4],
 }
 
-/// Measures them.
+/// Measures the times of a code version.
 ///
 /// # Errors
 ///
-/// [`ExperimentError::Scene`] when the code does not come to its end.
+/// Returns [`ExperimentError::Scene`] when the code does not terminate.
 pub fn strip_times(version: CodeVersion) -> Result<StripTimes, ExperimentError> {
     let [whole, smaller] = [measured(version, 1)?, measured(version, SMALLER)?];
     let more = whole.triangles - smaller.triangles;
+    // The difference between the whole scene and a smaller share gives the time of one triangle.
     let each = |of: fn(&Measured) -> f64| (of(&whole) - of(&smaller)) / more;
     let box_ns = each(|measured| measured.search_ns);
     let passed_ns = each(|measured| measured.passed_ns);
@@ -65,13 +70,15 @@ pub fn strip_times(version: CodeVersion) -> Result<StripTimes, ExperimentError> 
     })
 }
 
-/// Of a share of a scene.
+/// Times of one share of a scene.
 struct Measured {
     triangles: f64,
-    /// A strip that nothing meets, in the mean, and what more strips take for each of their entries.
+    /// Mean time of a strip that no triangle meets. The next field is the additional time of each entry in other
+    /// strips.
     search_ns: f64,
     entry_ns: f64,
-    /// Places of all in two views; commands of none of them between these, of all on the screen, of all in the view.
+    /// Time to compute the positions of all triangles in two views. The next fields are the times of commands for
+    /// none of them, for all on the screen, and for all in the view.
     ends_ns: f64,
     passed_ns: f64,
     interpolated_ns: [f64; 2],
@@ -105,11 +112,11 @@ fn ns(span: Span) -> f64 {
     span.0 as f64 / 1e3
 }
 
-/// Entries and time of every strip of a line.
+/// Returns the number of entries and the time of every strip of one line.
 fn searches(rig: &mut Rig) -> Result<Vec<[f64; 2]>, ProcessorFault> {
     let pass = rig.share.transform(&rig.view(0), 0, PICTURE);
     pass.keep(&GpTiming::PAPERS, &mut rig.processor, MemoryPart::WHOLE)?;
-    // Room for all in each window.
+    // Each window has room for all triangles.
     let counts = [PrimitiveCounts { triangles: rig.share.counts().triangles, spheres: 0 }; 5];
     let columns = GRID.columns() as u16;
     let mut rows = Vec::new();
@@ -133,7 +140,7 @@ fn ends_ns(rig: &mut Rig) -> Result<f64, ProcessorFault> {
     Ok(keeping.run_code(&GpTiming::PAPERS, &mut rig.processor)?.map_or(0.0, ns))
 }
 
-/// The commands of what is near some lines, half way.
+/// Returns the time to compute the commands of triangles near some lines, half way between two views.
 fn between_ns(rig: &mut Rig, in_view: bool, near: [i32; 2]) -> Result<f64, ProcessorFault> {
     let [from, to] = views(rig);
     let interpolating = Interpolating {
@@ -154,7 +161,7 @@ fn views(rig: &Rig) -> [pphigs::FrameView; 2] {
     [0, 1].map(|number| (rig.views)(ViewNumber(number), Time(number * FIELD_PS)))
 }
 
-/// Each order, put together after another one has brought the code into the caches.
+/// Returns the time to assemble each kind of order, after a first execution has loaded the code into the caches.
 fn order_ns(version: CodeVersion) -> Result<[f64; 4], ExperimentError> {
     let mut rig = Rig::of_triangles(version, SCENE, SMALLER)?;
     let mut times = [0.0; 4];

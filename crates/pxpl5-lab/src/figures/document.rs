@@ -1,4 +1,4 @@
-//! The figures as a document.
+//! The document ACCURACY.md, generated from the figures.
 
 use super::{FigureRow, Figures, MISS_PERCENT, Reading, mean_error_percent};
 use crate::application_time::{ApplicationTime, Spread, published};
@@ -7,7 +7,7 @@ use crate::levels::deviation_percent;
 use crate::readings::{self, Fit, FitOfFigure, Readings};
 use std::fmt::Write as _;
 
-/// ACCURACY.md: every figure, then the misses one by one.
+/// Returns ACCURACY.md: a table of all figures, then each miss with its cause.
 #[must_use]
 pub fn markdown(figures: &Figures) -> String {
     let mut text = String::new();
@@ -25,10 +25,11 @@ pub fn markdown(figures: &Figures) -> String {
     text
 }
 
-/// Figures that the timing table moves by more than so many percent are listed.
+/// Minimum difference, in percent, between the timing table and executed code for a figure to be listed.
 const MOVED_PERCENT: f64 = 0.05;
 
-/// The figures with the times of primitives that follow from code, where they are not the same, and why they are not the default.
+/// Writes the figures that change with the times of executed code, and the reason why these times are not the
+/// default.
 fn of_code(text: &mut String, rows: &[FigureRow], of_code: &[FigureRow]) {
     let _ = write!(
         text,
@@ -68,10 +69,10 @@ fn of_code(text: &mut String, rows: &[FigureRow], of_code: &[FigureRow]) {
     );
 }
 
-/// Readings listed.
+/// Number of interpretations listed.
 const BEST: usize = 12;
 
-/// Which readings were tried, what each explains, and how sure the choice is.
+/// Writes the table of interpretations: the figures that each explains, and the confidence of the choice.
 fn of_readings(text: &mut String, readings: &Readings) {
     let fits = &readings.analytic;
     let likeliest = fits.iter().map(|fit| fit.log_likelihood).fold(f64::NEG_INFINITY, f64::max);
@@ -117,7 +118,7 @@ fn of_readings(text: &mut String, readings: &Readings) {
     }
 }
 
-/// A row of the readings' table; figures that it does not explain stand in bold.
+/// Returns a row of the table of interpretations. Figures that the interpretation does not explain are bold.
 fn fitted(fit: &Fit) -> String {
     let value = |figure: &FitOfFigure| {
         let sd = figure.simulated_sd.map_or(String::new(), |sd| format!(" ({sd:.2})"));
@@ -135,7 +136,7 @@ fn fitted(fit: &Fit) -> String {
     )
 }
 
-/// What the time of the host's application does to mean and deviation of the fly-throughs.
+/// Writes the effect of the application's time on the mean and deviation of the fly-throughs.
 fn of_application(text: &mut String, times: &[ApplicationTime]) {
     text.push_str(
         "\n## The application's time a frame\n\n\
@@ -155,7 +156,7 @@ fn of_application(text: &mut String, times: &[ApplicationTime]) {
     }
 }
 
-/// Parameters listed for each figure.
+/// Number of parameters listed for each figure.
 const STRONGEST: usize = 4;
 
 fn sensitivity(text: &mut String, intervals: &[Interval]) {
@@ -263,7 +264,7 @@ fn experiments(text: &mut String, rows: &[FigureRow]) {
     }
 }
 
-/// Four significant digits, without trailing zeros.
+/// Formats a number with four significant digits and without trailing zeros.
 fn number(value: f64) -> String {
     let digits = if value == 0.0 { 0 } else { (3 - value.abs().log10().floor() as i32).max(0) as usize };
     let text = format!("{value:.digits$}");

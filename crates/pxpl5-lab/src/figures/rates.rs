@@ -1,4 +1,5 @@
-//! Peak rates that were published: triangles of the machine, a renderer and a processor, operations of the i860, the rig's total.
+//! Published peak rates: triangles of the machine, a renderer and a processor, operations of the i860, and the total
+//! latency of the rig.
 
 use super::group::{Measurement, free};
 use super::measured::{FigureValue, Result, detail, scene_named};
@@ -20,7 +21,7 @@ to come; he states neither the size of the machine nor that of the triangles. In
 the channels of a sender, the channels for messages to FIFOs, and the times of a triangle on a processor and on a renderer, one at a time \
 at both ends of their ranges. All runs are by events.";
 
-/// Parameters that decide how fast triangles go through the machine, and that no source gives.
+/// Parameters that limit the rate of triangles of the machine and that no source gives.
 const OF_TRIANGLES: &[&str] = &[
     "renderer.fifo_words",
     "ring.source_channels",
@@ -30,7 +31,7 @@ const OF_TRIANGLES: &[&str] = &[
     "renderer.phong_triangle_clocks",
 ];
 
-/// Parameters of a renderer alone.
+/// Parameters that limit the rate of a single renderer.
 const OF_RENDERER: &[&str] =
     &["renderer.fifo_words", "renderer.triangle_clocks", "renderer.phong_triangle_clocks", "renderer.shade_clocks"];
 
@@ -146,10 +147,10 @@ fn of_boards() -> Vec<Measurement> {
     ]
 }
 
-/// Triangles of a frame.
+/// Number of triangles of a frame.
 const TRIANGLES: u64 = 40_000;
 
-/// Fields of a run: 15 to 20 frames.
+/// Number of fields of a run, enough for 15 to 20 frames.
 const FIELDS: u64 = 44;
 
 fn drawn(machine: MachineConfig, shading: Shading, triangles: u64, fields: u64) -> Result<Outcome> {
@@ -163,7 +164,8 @@ fn triangle_rate(bench: &Bench, preset: &str, shading: Shading) -> Result<Figure
     Ok(FigureValue::with(TRIANGLES as f64 * hz, vec![detail("frames a second", hz, "Hz")]))
 }
 
-/// Commands of a renderer over the time in which its array works. Of the 26,000 of a frame 80 are no triangles.
+/// Measures the commands of a renderer per second of work of its array. Of the 26,000 commands of a frame, 80 are not
+/// triangles.
 fn renderer_rate(bench: &Bench, shading: Shading) -> Result<FigureValue> {
     let machine = MachineConfig { n_renderers: 1, ..bench.machine("small-hmd")? };
     let outcome = drawn(machine, shading, TRIANGLES / 2, 2 * FIELDS)?;
@@ -174,7 +176,7 @@ fn renderer_rate(bench: &Bench, shading: Shading) -> Result<FigureValue> {
     Ok(rates.sum::<f64>().into())
 }
 
-/// Triangles of a share over the time of TRANSFORM, the frames after the first.
+/// Measures the triangles of a share per second of TRANSFORM. The first frame is left out.
 fn processor_rate(bench: &Bench) -> Result<FigureValue> {
     let triangles = 2_000;
     let machine = MachineConfig { n_gps: 2, ..bench.machine("small-hmd")? };
@@ -199,11 +201,11 @@ fn rig_total(bench: &Bench) -> Result<FigureValue> {
     Ok(FigureValue::with(measured.outside.total.mean_s * 1e3, details))
 }
 
-/// Turns of the loop of the i860, and multiply-adds in each.
+/// Number of iterations of the i860 loop. The next constant is the number of multiply-adds in an iteration.
 const TURNS: u32 = 100;
 const MULTIPLY_ADDS: usize = 256;
 
-/// Floating-point operations a second, in millions, at 40 MHz.
+/// Measures the floating-point operations of the i860 in millions per second, at 40 MHz.
 fn i860_peak() -> Result<FigureValue> {
     let failed = |reason: String| ExperimentError::Scene(format!("the peak of the i860: {reason}"));
     let body = "m12apm.ss f8, f9, f0\n".repeat(MULTIPLY_ADDS);
@@ -227,5 +229,5 @@ fn i860_peak() -> Result<FigureValue> {
     Ok((operations / clocks as f64 * 40.0).into())
 }
 
-/// Where the program lies.
+/// Address of the program.
 const CODE: u32 = 0x1000;
