@@ -19,9 +19,9 @@ use tracking::tracker::TrackerConfig;
 pub struct FigureFamily {
     /// Title of the group's section.
     pub title: &'static str,
-    /// The document that has more of them.
+    /// Path of the document with more details.
     pub document: &'static str,
-    /// Experiment by experiment.
+    /// Rows in the order of the experiments.
     pub rows: Vec<Row>,
 }
 
@@ -37,12 +37,13 @@ const FIELDS: u64 = 60;
 const COMPARED: usize = 55;
 
 impl FigureFamily {
-    /// Address recalculation, priority rendering, region warping: E1 on Pixel-Planes 5, E2 to E9 with an ideal renderer. What follows
-    /// from the papers' tables by arithmetic alone is left to the document.
+    /// Runs the experiments on address recalculation, priority rendering and region warping: E1 on Pixel-Planes 5, E2
+    /// to E9 with an ideal renderer. Results that follow from the papers' tables by arithmetic are left to the
+    /// document.
     ///
     /// # Errors
     ///
-    /// [`FigureError`] names the experiment.
+    /// Returns a [`FigureError`] that names the experiment.
     pub fn address_recalculation(bench: &Bench) -> std::result::Result<Self, FigureError> {
         let failed = |reason: String| FigureError { id: "E1".to_owned(), reason };
         let mut all = turning(bench).map_err(|error| failed(error.to_string()))?;

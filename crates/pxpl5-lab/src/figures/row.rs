@@ -132,7 +132,7 @@ mod tests {
         {
             let row = row_of_figure_17(49.0, Some(interval));
             assert_eq!(row.misses(), misses, "{interval:?}");
-            // The error is that of the assumed condition all the same.
+            // The error always refers to the assumed condition.
             assert!((row.error_percent - 100.0 * (49.0 / 55.5 - 1.0)).abs() < 1e-9);
         }
     }

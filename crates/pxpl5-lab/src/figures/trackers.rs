@@ -1,4 +1,4 @@
-//! Published statements about trackers and the host's serial line.
+//! Figures of trackers and the host's serial line.
 
 use super::Bench;
 use super::group::{Measurement, free};
@@ -47,7 +47,7 @@ fn model(config: TrackerConfig) -> Result<TrackerModel> {
     TrackerModel::new(config).map_err(|error| ExperimentError::Scene(error.to_string()))
 }
 
-/// Seeds of the kernel's phase and reports of each.
+/// Number of seeds of the kernel's phase. The next constant is the number of reports for each seed.
 const SEEDS: u64 = 200;
 const REPORTS: usize = 240;
 
@@ -72,10 +72,10 @@ fn polling(bench: &Bench) -> Result<FigureValue> {
     Ok(FigureValue::with(greatest, details))
 }
 
-/// Fields of a run: ten seconds.
+/// Number of fields of a run: ten seconds.
 const FIELDS: u64 = 600;
 
-/// Mean time from the head's pose to the start of TRANSFORM of the picture that is drawn for it, ms.
+/// Returns the mean time in ms from the head's pose to the start of TRANSFORM of its picture.
 fn pose_to_transform_ms(bench: &Bench, tracker: TrackerConfig) -> Result<f64> {
     let head = Head::new(Arc::new(Still(Pose::IDENTITY)), tracker, PredictorKind::None, 1);
     let head = head.map_err(|error| ExperimentError::Scene(error.to_string()))?;
@@ -86,10 +86,10 @@ fn pose_to_transform_ms(bench: &Bench, tracker: TrackerConfig) -> Result<f64> {
     Ok(tracking_ms + waiting_ms + sending_ms)
 }
 
-/// Rate of the turn, degrees a second: so slow that a quarter of a second of delay is half a degree.
+/// Rate of the turn in degrees a second. The rate is low, so that a quarter of a second of delay is half a degree.
 const SLOW: f64 = 2.0;
 
-/// How far behind a steady turn the Fastrak with this filter is when it sends, ms.
+/// Measures the delay in ms of the Fastrak's reported orientation behind a steady turn, for a filter gain.
 fn apparent_latency(gain: f64) -> Result<FigureValue> {
     let mut tables = Tables::PAPERS;
     tables.fastrak.filter_gain = gain;
