@@ -26,8 +26,9 @@ impl Default for BudgetArgs {
     }
 }
 
-/// Default memory limit in MB. Assumed: the memory of a workstation. The default time limit below is one day.
+/// Default memory limit in MB. Assumed: the memory of a workstation.
 const MOST_MEGABYTES: u64 = 16_000;
+/// Default time limit in seconds. Assumed: one day.
 const MOST_SECONDS: u64 = 86_400;
 
 /// Numbers of simulated fields after which an early run is checked. Later the run is checked whenever it reports

@@ -53,28 +53,31 @@ const PRIMITIVE: f64 = 200.0;
 const TARGET: f64 = 3.125;
 /// Bytes of a pixel that a surface covers, including spare capacity of its list.
 const SAMPLE: f64 = 12.0;
-/// Number of pixels in each column of a slice that surfaces touch. The next constant is the number of whole pictures
-/// that surfaces touch.
+/// Number of pixels in each column of a slice that surfaces touch.
 const ROWS: f64 = 2.0;
+/// Number of whole pictures, summed over all slices, that surfaces touch.
 const AREAS: f64 = 2.0;
-/// Seconds for one primitive in one slice. The next constants are the seconds for one covered pixel and for packing
-/// and reading eight pixels.
+/// Seconds for one primitive in one slice.
 const SLICE_S: f64 = 30e-9;
+/// Seconds for one covered pixel.
 const DRAWN_S: f64 = 100e-9;
+/// Seconds to pack and read eight pixels.
 const WORD_S: f64 = 1e-9;
 
-/// Slowdown factor when renderers of Pixel-Planes 5 draw. The next constant is the size of their pixel arrays in
-/// bytes.
+/// Slowdown factor when renderers of Pixel-Planes 5 draw.
 const PLANES: f64 = 15.0;
+/// Bytes of the pixel arrays of Pixel-Planes 5.
 const PLANES_BYTES: f64 = 60e6;
 
-/// Bytes of a texel of a cube face. The next constants are the bytes of a frame of a walk and of a primitive in the
-/// world.
+/// Bytes of a texel of a cube face.
 const TEXEL: f64 = 10.0;
+/// Bytes of a frame of a walk.
 const FRAME: f64 = 3e3;
+/// Bytes of a primitive in the world of a walk.
 const WALKED: f64 = 2e3;
-/// Seconds for one texel of a cube face. The next constant is the seconds for one primitive in one frame.
+/// Seconds for one texel of a cube face.
 const FACE_S: f64 = 15e-9;
+/// Seconds for one primitive in one frame of a walk.
 const FRAME_S: f64 = 65e-9;
 
 /// Slowdown factor on a computer that is busy with other work. Assumed, as for runs.

@@ -49,11 +49,13 @@ const START_S: f64 = 60.0;
 const TIME_MARGIN: f64 = 5.0;
 /// Maximum ratio of used to estimated memory (docs/hardening.md).
 const MEMORY_MARGIN: f64 = 2.0;
-/// Seconds to merge one row. The next constants are the bytes held for a row, for a task's files, and by the process,
-/// rounded up (docs/sweeps.md, "A million points").
+/// Seconds to merge one row, rounded up (docs/sweeps.md, "A million points").
 const MERGE_ROW_S: f64 = 40e-6;
+/// Bytes held for one row while merging, rounded up (docs/sweeps.md, "A million points").
 const MERGE_ROW_BYTES: f64 = 16.0;
+/// Bytes held for the files of one task while merging, rounded up.
 const MERGE_TASK_BYTES: f64 = 32e3;
+/// Bytes of the merging process without rows, rounded up.
 const MERGE_BYTES: f64 = 50e6;
 
 /// Estimated cost of a sample of points of a sweep.
@@ -61,8 +63,9 @@ const MERGE_BYTES: f64 = 50e6;
 struct Sample {
     /// Number of points of the whole sweep.
     points: u64,
-    /// Mean seconds of a point on one core. The next field is the maximum.
+    /// Mean seconds of a point on one core.
     mean_s: f64,
+    /// Maximum seconds of a point on one core.
     most_s: f64,
     /// Memory of the largest point, in bytes.
     most_bytes: f64,

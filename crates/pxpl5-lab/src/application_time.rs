@@ -13,8 +13,9 @@ use crate::parallel;
 use pxpl5_run::{ExperimentError, Level};
 use serde::Serialize;
 
-/// Parameter paths of the mean and the jitter of the application's time.
+/// Parameter path of the application's mean time.
 const MEAN: &str = "host.application_ns";
+/// Parameter path of the jitter of the application's time.
 const JITTER: &str = "host.application_jitter_ns";
 
 /// Means that are simulated, in milliseconds. Assumed: from no application to a loop of 25 frames a second.

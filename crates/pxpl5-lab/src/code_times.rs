@@ -59,17 +59,18 @@ const SCENES: [&str; 3] = ["mig", "molecules", "head"];
 /// Number of boards that share a scene: the slaves of the small machine. The first share is measured.
 const BOARDS: usize = 12;
 
-/// Number of views of each scene. The next constant is the time between two views.
+/// Number of views of each scene.
 const VIEWS: u64 = 4;
+/// Time between two views in picoseconds.
 const VIEW_PERIOD_PS: u64 = 500_000_000_000;
 
 /// Half the side of the square that a triangle covers at a distance of 1 m in the measurement of the clipper, in
 /// metres. Its corners lie up to 4,477 pixels from the picture's corners. Assumed: any size beyond the guard band.
 const CLIPPED_M: f32 = 2.0;
 
-/// Number of triangles that Slats transforms at a time (published in TR94). The next constant is the number of clumps
-/// measured in each scene.
+/// Number of triangles that Slats transforms at a time (published in TR94).
 const CLUMP: usize = 30;
+/// Number of clumps measured in each scene.
 const CLUMPS: usize = 20;
 
 /// Number of additional edits in a message, from which the time of one edit follows. Their matrices are adjacent in

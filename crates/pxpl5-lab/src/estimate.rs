@@ -68,29 +68,36 @@ pub struct Estimate {
     pub seconds: f64,
 }
 
-/// Bytes of the process and a small machine. The next constant is the bytes of pictures computed in advance.
+/// Bytes of the process and a small machine.
 const BASE: f64 = 15e6;
+/// Bytes of pictures computed in advance.
 const PICTURES: f64 = 10e6;
-/// Bytes of a graphics processor. The next constants are the bytes of a primitive with its entries in all lists, and
-/// of a waiting block.
+/// Bytes of a graphics processor.
 const GP: f64 = 60e3;
+/// Bytes of a primitive with its entries in all lists.
 const PRIMITIVE: f64 = 200.0;
+/// Bytes of a block that waits to be drawn.
 const WAITING: f64 = 5.5e3;
-/// Bytes kept for a field, and for each of its blocks, in a run that keeps everything. The last three constants apply
-/// to a run that keeps statistics: bytes of a field, bytes of a block, and number of fields with blocks.
+/// Bytes kept for a field in a run that keeps everything.
 const FIELD: f64 = 4e3;
+/// Bytes kept for each block of a field in a run that keeps everything.
 const COPY: f64 = 350.0;
+/// Bytes kept for a field in a run that keeps statistics.
 const STATISTICS: f64 = 10.0;
+/// Bytes kept for each block of a field in a run that keeps statistics.
 const BLOCK: f64 = 100.0;
+/// Number of fields whose blocks are kept in a run that keeps statistics.
 const WINDOW: f64 = 240.0;
-/// Bytes of the pixel errors of a field. The next constant is the number of fields whose errors are kept one by one.
+/// Bytes of the pixel errors of a field.
 const ERRORS: f64 = 1e3;
+/// Number of fields whose pixel errors are kept one by one.
 const JUDGED: f64 = 20_971.0;
 
 /// Seconds for a field, including its retrace and the samples of the head.
 const FIELD_S: f64 = 3.5e-4;
-/// Seconds for the regions of one eye's picture. The next constant is the seconds for the messages of one processor.
+/// Seconds for the regions of one eye's picture.
 const PICTURE_S: f64 = 1.8e-4;
+/// Seconds for the messages of one processor for one eye's picture.
 const GP_S: f64 = 1.3e-5;
 /// Seconds for a block of frameless rendering.
 const BLOCK_S: f64 = 5.6e-6;
@@ -98,21 +105,23 @@ const BLOCK_S: f64 = 5.6e-6;
 const LOAD_S: f64 = 2.8e-5;
 /// Seconds for a primitive of a picture as i860 code. Assumed, from the speeds in the README.
 const PRIMITIVE_AS_CODE_S: f64 = 2.7e-5;
-/// Number of runs with a tracked head: a dry run measures the times at which views are seen. The next constant is the
-/// seconds to evaluate the errors of a field.
+/// Number of runs with a tracked head: a dry run first measures the times at which views are seen.
 const RUNS_OF_HEAD: f64 = 2.0;
+/// Seconds to evaluate the errors of a field.
 const JUDGED_FIELD_S: f64 = 6e-4;
 /// Slowdown factor on a computer that is busy with other work. Assumed. The four runs of the test below, on two busy
 /// cores, took 1.3 to 12 times as long as the estimate on an idle core.
 const BUSY: f64 = 2.5;
 
-/// Seconds of an NTSC field. The next constants are the seconds of a word on the ring and of the transformation of a
-/// primitive, the words sent with a block, and the number of processors that saturate the ring with blocks. The same
-/// values serve for other displays and machines, because an estimate needs no more precision.
+/// Seconds of an NTSC field. Estimates use this value for every display.
 const NTSC_FIELD_S: f64 = 16.683_333e-3;
+/// Seconds of a word on the ring. Estimates use this value for every machine.
 const WORD_S: f64 = 50e-9;
+/// Seconds to transform a primitive on a graphics processor. Estimates use this value for every machine.
 const TRANSFORM_S: f64 = 21.7e-6;
+/// Number of words sent with each block besides its pixels.
 const BLOCK_WORDS: f64 = 16.0;
+/// Number of processors that saturate the ring with blocks.
 const BLOCK_GPS: f64 = 20.0;
 /// Minimum time between two blocks in seconds, limited by the messages of the processors. Derived: half of 12 us,
 /// because two blocks are sent at a time.

@@ -128,9 +128,9 @@ pub struct Application {
     pub frames: usize,
 }
 
-/// Number of seeds of head motion for the application scenes. The next constant is the number of fields of a run: 300
-/// frames at 30 Hz, and the warm-up.
+/// Number of seeds of head motion for the application scenes.
 const SEEDS: u64 = 30;
+/// Number of fields of a run of an application scene: 300 frames at 30 Hz, and the warm-up.
 const FIELDS: u64 = 616;
 
 /// Runs `mig`, `molecules` and `head` on `small-hmd`, `medium` and `large`.

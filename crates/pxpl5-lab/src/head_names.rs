@@ -69,8 +69,9 @@ pub enum MotionError {
 pub const MOTIONS: &str = "still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED, walk:M_PER_S (or \
                            walk:M_PER_S:SEED) along the scene's path, or a recording (FILE.csv, FILE.txt or FILE.tum)";
 
-/// Fastest slide in metres per second. The next constant is the highest frequency of a sine in Hz.
+/// Fastest slide in metres per second.
 const FASTEST_SLIDE: f64 = 100.0;
+/// Highest frequency of a sine in Hz.
 const HIGHEST_HZ: f64 = 100.0;
 
 /// Options of a recording: the format of its file, and the behaviour at its end.

@@ -182,8 +182,9 @@ fn step(words: &[&str]) -> Result<Command, String> {
     Ok(Command::Step(count, kind))
 }
 
-/// Default number of instructions or words shown. The constant below is the maximum.
+/// Default number of instructions or words shown.
 const SHOWN: u64 = 16;
+/// Maximum number of instructions or words shown.
 const MOST: u64 = 4_096;
 
 fn count(words: &[&str]) -> Result<u64, String> {

@@ -15,8 +15,9 @@ struct Talk {
     /// Lines of output, oldest first.
     log: Vec<String>,
     line: String,
-    /// Executed command lines, oldest first. The next field counts how far back the user has moved in the history.
+    /// Executed command lines, oldest first.
     history: Vec<String>,
+    /// Number of lines by which the user has moved back in the history.
     back: usize,
     /// Lines by which the pane of boards is scrolled.
     scroll: u16,

@@ -11,8 +11,9 @@ use pxpl5_sim::Span;
 use pxpl5_wire::{Body, CommandList, Message, NodeId, RegionId};
 use std::sync::Arc;
 
-/// Words of an order or a report. The next constant is the words of a token (rendering-control's protocol).
+/// Words of an order or a report (rendering-control's protocol).
 const ORDER: u32 = 3;
+/// Words of a token (rendering-control's protocol).
 const TOKEN: u32 = 6;
 
 /// Node of a board other than the measured one.

@@ -10,9 +10,10 @@ use pxpl5_renderer::Layout;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{FieldParity, RegionGrid, RegionId, ViewNumber};
 
-/// Scene whose triangles are searched. The next constant is the number of boards that share the scene in a second
-/// measurement, whose comparison with the first gives the time of one triangle.
+/// Scene whose triangles are searched.
 const SCENE: &str = "mig";
+/// Number of boards that share the scene in the second measurement. The difference from the whole scene gives the
+/// time of one triangle.
 const SMALLER: usize = 12;
 
 /// Time between two views in picoseconds: one NTSC field.
@@ -21,8 +22,8 @@ const FIELD_PS: u64 = 16_683_333_333;
 /// Address at which display lists begin in memory. Commands of messages lie above this address.
 const COMMANDS: u32 = 1 << 20;
 
-/// Words of four kinds of orders, and the number of words before their views: a strip, a strip with its view, blocks,
-/// a field between two views.
+/// Sizes in words of four kinds of orders: a strip, a strip with its view, blocks, a field between two views. The
+/// second number of each pair counts the words before the views.
 const ORDERS: [(usize, usize); 4] = [(6, 6), (59, 6), (58, 5), (110, 4)];
 
 /// Times of strips and interpolation in nanoseconds.
@@ -73,14 +74,16 @@ pub fn strip_times(version: CodeVersion) -> Result<StripTimes, ExperimentError> 
 /// Times of one share of a scene.
 struct Measured {
     triangles: f64,
-    /// Mean time of a strip that no triangle meets. The next field is the additional time of each entry in other
-    /// strips.
+    /// Mean time of a strip that no triangle meets.
     search_ns: f64,
+    /// Additional time of each entry in strips that triangles meet.
     entry_ns: f64,
-    /// Time to compute the positions of all triangles in two views. The next fields are the times of commands for
-    /// none of them, for all on the screen, and for all in the view.
+    /// Time to compute the positions of all triangles in two views.
     ends_ns: f64,
+    /// Time of the commands between two views if no triangle is near a strip.
     passed_ns: f64,
+    /// Times of the commands between two views if all triangles are near a strip: interpolated on the screen, and in
+    /// the view.
     interpolated_ns: [f64; 2],
 }
 

@@ -30,8 +30,9 @@ impl PartialEq for HeadChoice {
     }
 }
 
-/// Default tracker of a head. The next constant is the default predictor.
+/// Default tracker of a head.
 const TRACKER: &str = "optical";
+/// Default predictor of a head.
 const PREDICT: &str = "kalman";
 
 impl HeadChoice {

@@ -32,8 +32,9 @@ const TRIANGLES: [u32; 4] = [10, 100, 1_000, 10_000];
 /// may be invisible.
 const FIELD_MS: f64 = 1001.0 / 60.0;
 
-/// Number of fields of a run of E1. The next constant is the number of first fields that all runs share.
+/// Number of fields of a run of experiment E1.
 const FIELDS: u64 = 60;
+/// Number of first fields that all runs of experiment E1 share.
 const COMPARED: usize = 55;
 
 impl FigureFamily {

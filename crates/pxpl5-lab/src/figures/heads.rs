@@ -54,8 +54,9 @@ fn under_line(machine: &MachineConfig, pipeline: RenderingControl, line: u32) ->
     Ok(FigureValue::with(mean_s * 1e3, details))
 }
 
-/// Number of seeds of figure 18's motion. The next constant is its length in seconds.
+/// Number of seeds of figure 18's motion.
 const SEEDS: u64 = 4;
+/// Length of figure 18's motion in seconds.
 const SECONDS: u64 = 120;
 
 /// Measures figure 18. The error is almost only the error of a rotation; the position adds little for a point 1 m

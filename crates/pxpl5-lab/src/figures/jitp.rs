@@ -32,9 +32,11 @@ const PX_PER_DEG: f64 = 10.0;
 /// Field that is evaluated: well after the start, and even.
 const FIELD: PeriodNumber = PeriodNumber(40);
 
-/// Column of the 640 x 480 picture that is evaluated. The next constants are the lines.
+/// Column of the 640 x 480 picture that is evaluated.
 const COLUMN: u32 = 320;
+/// Line in the middle of the 640 x 480 picture.
 const MIDDLE_LINE: u32 = 240;
+/// Last line of an even field in the 640 x 480 picture.
 const LAST_LINE: u32 = 478;
 
 pub(super) fn measurements() -> Vec<Measurement> {

@@ -49,8 +49,9 @@ const FIELDS_OF_FULL_BINS: u64 = 600;
 /// Parameters of the code of Rendering Control.
 const PPHIGS_CODE: [&str; 3] = ["gp.triangle_ns", "gp.sphere_ns", "gp.bin_entry_ns"];
 
-/// Number of views of figure 8. The next constant is the time between two views.
+/// Number of views of figure 8.
 const VIEWS: u64 = 40;
+/// Time between two views of figure 8 in picoseconds.
 const VIEW_PERIOD_PS: u64 = 500_000_000_000;
 
 impl Bench {

@@ -75,9 +75,9 @@ pub struct Figures {
     pub application_times: Vec<ApplicationTime>,
 }
 
-/// Number of seeds of the application scenes in the ranking of interpretations. The next constant is the number of
-/// frames of each seed.
+/// Number of seeds of the application scenes in the ranking of interpretations.
 const SEEDS: u64 = 6;
+/// Number of frames of each seed in the ranking of interpretations.
 const FRAMES: u64 = 150;
 
 /// Measures all figures in parallel, with their intervals.

@@ -201,8 +201,9 @@ fn rig_total(bench: &Bench) -> Result<FigureValue> {
     Ok(FigureValue::with(measured.outside.total.mean_s * 1e3, details))
 }
 
-/// Number of iterations of the i860 loop. The next constant is the number of multiply-adds in an iteration.
+/// Number of iterations of the i860 loop.
 const TURNS: u32 = 100;
+/// Number of multiply-adds in an iteration of the i860 loop.
 const MULTIPLY_ADDS: usize = 256;
 
 /// Measures the floating-point operations of the i860 in millions per second, at 40 MHz.

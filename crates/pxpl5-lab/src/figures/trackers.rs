@@ -47,8 +47,9 @@ fn model(config: TrackerConfig) -> Result<TrackerModel> {
     TrackerModel::new(config).map_err(|error| ExperimentError::Scene(error.to_string()))
 }
 
-/// Number of seeds of the kernel's phase. The next constant is the number of reports for each seed.
+/// Number of seeds of the kernel's phase.
 const SEEDS: u64 = 200;
+/// Number of reports for each seed.
 const REPORTS: usize = 240;
 
 fn polling(bench: &Bench) -> Result<FigureValue> {

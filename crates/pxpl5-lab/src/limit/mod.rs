@@ -76,9 +76,9 @@ const NTSC: f64 = 0.999;
 /// Maximum number of triangles that is tried.
 pub const CEILING: u32 = 1_000_000;
 
-/// Maximum number of sizes whose margin the analytic level computes. The next constant is the number of doubtful
-/// sizes that are tried.
+/// Maximum number of sizes whose margin the analytic level computes.
 const MARGINS: u32 = 1_000;
+/// Maximum number of doubtful sizes that are tried.
 const DOUBTFUL: usize = 8;
 
 /// Minimum number of pictures after the warm-up. With fewer pictures no rate is known, and the goal counts as missed.
