@@ -144,6 +144,7 @@ impl BudgetArgs {
     /// Returns the reason to stop a run that used `before` at its start and then `taken` for the fraction `part` of
     /// its fields. The rest of the fields is assumed to cost the same.
     fn refusal(&self, before: Taken, taken: Taken, part: f64) -> Option<String> {
+        // Short runs and small ones say too little about the rest.
         let megabytes = if taken.bytes > TELLING_BYTES { taken.bytes / part / 1e6 } else { 0.0 };
         let seconds = if taken.seconds > TELLING_SECONDS { taken.seconds / part } else { 0.0 };
         self.excess(before.bytes / 1e6 + megabytes, before.seconds + seconds, "simulate fewer fields")

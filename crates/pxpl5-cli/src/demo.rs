@@ -79,6 +79,7 @@ pub(crate) fn run(args: DemoArgs) -> Result<(), CliError> {
     let folder = OutputFolder::of_run(&args.out, "demo")?;
     let runs: Vec<Run> =
         EXPERIMENTS.iter().map(|(name, text)| one(name, text, args.quiet)).collect::<Result<_, _>>()?;
+    // Files are written even with --quiet.
     write(folder, &runs)?;
     if args.quiet {
         return Ok(());
@@ -116,6 +117,7 @@ fn closing(runs: &[Run], args: &DemoArgs) -> String {
 }
 
 fn write(mut folder: OutputFolder, runs: &[Run]) -> Result<(), CliError> {
+    // Names of files start with the experiment, so that three runs share a folder.
     for run in runs {
         pictures(&mut folder, &format!("{}-", run.name), &run.outcome, &run.report)?;
         folder.put(&format!("{}-pictures.csv", run.name), pxpl5::results::csv(&run.outcome).as_bytes())?;

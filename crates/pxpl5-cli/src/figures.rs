@@ -39,6 +39,7 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     bar.finish_and_clear();
     let figures = figures.map_err(CliError::failure)?;
     file.map(|file| file.write(markdown(&figures).as_bytes())).transpose()?;
+    // `--check` fails if the repository's document is stale.
     if let Some(path) = &args.check {
         fresh(path, &markdown(&figures), "figures")?;
     }
@@ -93,6 +94,7 @@ pub(crate) fn family_rows(rows: &[Row]) -> String {
         "{:<3} {:<7} {:>10} {:>10}  {:<7} {:>8}  {:<34} {}\n",
         "", "#", "published", "simulated", "unit", "error", "standing", "what"
     );
+    // Shapes without a published number show "-".
     for row in rows {
         let error = row.error_percent().map_or_else(String::new, |error| format!("{error:+.1}%"));
         let published = if row.published.is_nan() { "-".to_owned() } else { format!("{:.2}", row.published) };

@@ -66,6 +66,7 @@ pub(crate) fn run(args: FilmArgs) -> Result<(), CliError> {
     args.budget.admit(&Work { fields, ..Work::of(&plan, &scene, true) })?;
     warn(too_heavy(&plan, &scene, fields).as_slice(), args.quiet);
     let experiment = plan.experiment(scene).pixels(Pixels::Lazy).fields(fields);
+    // The settings are stored in the PNG, so that the film can be reproduced.
     let texts = [("config_hash", experiment.config_hash().to_string()), ("settings", plan.settings().to_string())];
     let mut bytes = Vec::new();
     Film::new(experiment, PeriodNumber(args.from), args.length, eyes)

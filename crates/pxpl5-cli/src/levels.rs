@@ -64,6 +64,7 @@ pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
     let open = |path: Option<&Path>, option| path.map(|path| OutputFile::open(path, option)).transpose();
     let chart = open(args.chart.as_deref(), "--chart")?;
     let written = open(args.write.as_deref(), "--write")?;
+    // Without --measure the recorded numbers are used, because measuring takes long.
     let record = if args.measure { measured(&args)? } else { LevelRecord::read(RECORD).map_err(CliError::failure)? };
     if let Some(file) = written {
         file.write(json_text(&record)?.as_bytes())?;
@@ -81,6 +82,7 @@ fn measured(args: &LevelsArgs) -> Result<LevelRecord, CliError> {
     let query = LevelQuery { experiments: args.experiments, speeds: !args.errors_only };
     let record = compare_with(query, |done, of| advance(&bar, done, of));
     bar.finish_and_clear();
+    // Speeds depend on the host, so the record describes the host.
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let host = format!("{}, {threads} threads", std::env::consts::ARCH);
     let seconds = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).ok();
@@ -153,6 +155,7 @@ fn text(record: &LevelRecord) -> String {
     for report in &record.levels {
         let _ = writeln!(text, "{}: {}.", report.name(), report.advice());
     }
+    // The last paragraph defines the columns.
     let when = record.date.as_deref().unwrap_or("on an unknown day");
     let host = record.host.as_deref().unwrap_or("an unknown machine");
     let _ = write!(

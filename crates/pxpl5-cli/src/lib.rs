@@ -126,6 +126,7 @@ enum Command {
 /// Runs the command line of this process with the pipelines and displays of a registry, and returns the exit code.
 #[must_use]
 pub fn main(registry: Arc<Registry>) -> ExitCode {
+    // The options of pipelines must be known before clap builds the command line.
     options::know(registry);
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
@@ -141,6 +142,7 @@ pub fn main(registry: Arc<Registry>) -> ExitCode {
 }
 
 fn run(command: Option<Command>) -> Result<(), CliError> {
+    // Each subcommand is a module with its own arguments.
     match command {
         None => demo::run(demo::DemoArgs::default()),
         Some(Command::Demo(args)) => demo::run(args),

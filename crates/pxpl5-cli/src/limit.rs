@@ -91,6 +91,7 @@ impl LimitArgs {
         }
         let scene = self.test_scene().unwrap_or(query.criterion.scene);
         let goal = self.goal()?.unwrap_or(query.criterion.goal);
+        // Any other scene name is a model that is thinned out to every size.
         let model = if self.scene.is_some() && self.test_scene().is_none() {
             Some(Model::load(plan.scene.clone())?)
         } else {
@@ -114,8 +115,10 @@ impl LimitArgs {
     fn file(&self) -> Result<ExperimentFile, CliError> {
         let mut file = ExperimentFile::with(registry());
         file.set("pipeline", "slats", "--pipeline")?;
+        // A test scene depends on the size, so a placeholder with one triangle stands for it.
         let model = self.scene.as_deref().filter(|_| self.test_scene().is_none());
         file.set("scene", model.unwrap_or("full-screen:1"), "--scene")?;
+        // Options override the pipeline's defaults, and `--set` overrides options.
         for (key, value) in &self.pipeline.given {
             file.set_text(&format!("{key}={value}"), &format!("--{}", option_of(key)))?;
         }
@@ -178,6 +181,7 @@ fn text(query: &LimitQuery, limit: Limit) -> String {
     let island = limit.island.map_or(String::new(), |n| {
         format!("An island above the first miss: {n} triangles reach the goal all the same.\n")
     });
+    // Explain the search only if its result is not trivial.
     let row = if limit.unbroken_from < limit.triangles {
         format!("All sizes from {} to {} were tried, smaller ones in part.\n", limit.unbroken_from, limit.triangles)
     } else {

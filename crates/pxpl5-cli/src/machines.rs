@@ -29,6 +29,7 @@ pub(crate) fn run(args: MachinesArgs) -> Result<(), CliError> {
         let machine = registry().machine_of(MachineConfig::preset(name).map_err(CliError::usage)?);
         return print(&if args.json { one_json(&machine) } else { one_text(&machine) });
     }
+    // Testing every pipeline on every preset takes some seconds.
     let bar = progress(PRESETS.len() as u64, "machines", false);
     let mut machines = Vec::new();
     for preset in &PRESETS {
@@ -122,6 +123,7 @@ fn one_text(machine: &MachineConfig) -> String {
         let _ = writeln!(text, "{pipeline:<42} {said}");
     }
     text.push('\n');
+    // Parameters of the machine come first, those of tracking second.
     machine.parameters().iter().for_each(|parameter| line(&mut text, parameter));
     text.push_str("\nWith a tracked head (head.motion, --head), whatever the machine:\n\n");
     tracking_parameters().iter().for_each(|parameter| line(&mut text, parameter));

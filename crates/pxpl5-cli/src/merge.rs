@@ -31,6 +31,7 @@ pub(crate) struct MergeArgs {
 
 pub(crate) fn run(args: MergeArgs) -> Result<(), CliError> {
     let Merged { points, failed, duplicates, missing } = merge(&args.folders, &args.out, args.partial)?;
+    // Duplicates and missing points are warnings; other problems have ended the command by now.
     if let Some(first) = duplicates.first() {
         let points = were(duplicates.len() as u64, "point");
         complain(&format!("pxpl5: {points} there more than once, the first of them point {first}\n"));

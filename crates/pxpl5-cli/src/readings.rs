@@ -67,6 +67,7 @@ fn text(readings: &Readings, rows: usize) -> String {
             fits.iter().take(rows).for_each(|fit| text.push_str(&line(fit)));
         }
     }
+    // The summary tells how far the choice is from unique.
     let _ = writeln!(
         text,
         "\n{} of them are as good as the best but for the printed digits ({:.2} % of a mean error).",

@@ -59,11 +59,13 @@ pub(crate) fn run(args: RigArgs) -> Result<(), CliError> {
     let plan = plan(args.settings.gather()?)?;
     let tracker = plan.head.as_ref().map(|head| head.head().tracker().config().clone());
     let tracker = tracker.ok_or_else(|| CliError::failure("no tracker"))?;
+    // Options replace single values of the assumed rig.
     let mut rig = Rig { seed: plan.seed, passes: args.passes as usize, ..Rig::assumed(tracker) };
     rig.rig.photodiode_line = args.line.unwrap_or(rig.rig.photodiode_line);
     let fields = args.passes * FIELDS_OF_PASS;
     args.budget.admit(&Work { fields, ..Work::of(&plan, &*plan.load_scene()?, true) })?;
     let measured = rig.measure(&plan.machine, plan.pipeline.clone()).map_err(CliError::failure)?;
+    // The result is printed even if both sides disagree.
     print(&if args.json { json_text(&plan, &rig, &measured) } else { text(&plan, &rig, &measured) })?;
     if measured.agrees() { Ok(()) } else { Err(CliError::failure(verdict(&measured))) }
 }
@@ -96,6 +98,7 @@ fn text(plan: &Plan, rig: &Rig, measured: &Measurement) -> String {
         "outside",
         "inside"
     );
+    // The same latencies as seen from outside and from inside.
     let rows: [Column; 3] = [
         ("tracking latency", |side| &side.tracking),
         ("rendering latency", |side| &side.rendering),

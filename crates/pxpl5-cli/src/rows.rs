@@ -41,6 +41,7 @@ pub(crate) fn of(folder: &Path) -> Result<Option<ResultRows>, CliError> {
     type Reader = fn(&str) -> Result<ResultRows, String>;
     let readers: [(&str, Reader); 2] = [(ROWS_FILE, sweep), (COMPARISON_FILE, comparison)];
     let manifest = Manifest::read(folder)?;
+    // The first kind of results that the folder holds is used.
     for (name, read) in readers {
         let path = folder.join(name);
         // An unlisted file belongs to another run.
@@ -160,6 +161,7 @@ pub(crate) fn renamed(old: &str) -> Option<String> {
                 return Some(format!("causes.{cause}.px.mean"));
             }
             let statistics = ["latency_ms", "head_to_light_ms", "prediction_interval_ms"];
+            // Statistics had an underscore where JSON has a dot.
             let (name, end) = old.rsplit_once('_').filter(|(_, end)| ["mean", "sd"].contains(end))?;
             return statistics.contains(&name).then(|| format!("{name}.{end}"));
         }

@@ -59,6 +59,7 @@ pub(crate) struct RunArgs {
 pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     let plan = plan(args.snapshot.experiment(args.settings.gather()?)?)?;
     warn(&plan.warnings(), args.quiet);
+    // Open the output first, so that a bad path fails before the run.
     let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "run")).transpose()?;
     // Files list every picture. The report alone needs only statistics, whose size does not grow with the run.
     let keep = if folder.is_some() { Keep::Everything } else { Keep::Statistics };
@@ -73,6 +74,7 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     } else if !args.quiet {
         print(&text(&plan, &results, report, written))?;
     }
+    // The exit code tells scripts that the report lacks a latency.
     match too_short {
         Some(error) => Err(error),
         None if report.shown == 0 => Err(nothing_shown(report)),
@@ -166,11 +168,13 @@ pub(crate) fn comparison(plan: &Plan, results: &Results) -> Option<Comparison> {
 
 fn write(mut folder: OutputFolder, plan: &Plan, results: &Results) -> Result<PathBuf, CliError> {
     let Some((outcome, report)) = &results.run else { return Err(no_events()) };
+    // The experiment file reproduces the run from any folder.
     folder.put("report.json", format!("{}\n", json(report)?).as_bytes())?;
     folder.put(
         "experiment.toml",
         format!("{}{}", origin_lines(report, "# "), plan.settings_for_any_folder()).as_bytes(),
     )?;
+    // Files that the experiment's `output` keys turn off are left out.
     if plan.output.csv {
         folder.put("results.csv", quantities_csv(&plan.measure, results).as_bytes())?;
         folder.put("pictures.csv", pxpl5::results::csv(outcome).as_bytes())?;

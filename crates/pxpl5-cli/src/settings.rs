@@ -100,9 +100,11 @@ impl SettingArgs {
             Some(path) => file.and_load(path)?,
             None => file,
         };
+        // Options of the pipeline override the file.
         for (key, value) in &self.pipeline.given {
             file.set_text(&format!("{key}={value}"), &format!("--{}", option_of(key)))?;
         }
+        // Options with text, each with its key.
         let texts = [
             ("scene", "--scene", self.scene),
             ("machine.preset", "--machine", self.machine),
@@ -118,6 +120,7 @@ impl SettingArgs {
         for (key, option, value) in texts {
             value.map(|value| file.set(key, value, option)).transpose()?;
         }
+        // Options with whole numbers, each with its key.
         let numbers = [
             ("triangles", "--triangles", self.triangles),
             ("machine.n_gps", "--gps", self.gps),
@@ -129,6 +132,7 @@ impl SettingArgs {
             value.map(|value| file.set(key, value, option)).transpose()?;
         }
         self.judge_at.map(|metres| file.set("head.judge_at", metres, "--judge-at")).transpose()?;
+        // `--columns` sets one key for each column.
         for column in self.columns.iter().flat_map(|columns| columns.split(',')) {
             let (field, name) = column.split_once('=').unwrap_or((column, ""));
             file.set(&format!("head.columns.{}", field.trim()), name.trim(), "--columns")?;
@@ -139,6 +143,7 @@ impl SettingArgs {
         if self.cull {
             file.set("cull", true, "--cull")?;
         }
+        // `--set` comes last and overrides everything else.
         for assignment in &self.sets {
             file.set_text(assignment, "--set")?;
         }

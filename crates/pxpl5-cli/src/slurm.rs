@@ -90,6 +90,7 @@ impl Sample {
         let chosen: Vec<u64> = spread(points, SAMPLE).collect();
         let estimates = sweep.estimates(&chosen);
         let seconds = || estimates.iter().map(|estimate| estimate.seconds);
+        // The mean determines the time of the sweep, the maximum the limits of a task.
         Self {
             points,
             mean_s: seconds().sum::<f64>() / estimates.len().max(1) as f64,
@@ -189,6 +190,7 @@ pub(crate) fn write(sweep: &Sweep, jobs: &Jobs, folder: &Path) -> Result<Written
     let resources = Resources::of(sample, jobs.tasks, jobs.threads);
     let scripts = Scripts::of(jobs, sample, resources)?;
     let mut output = OutputFolder::open(folder, "--slurm")?;
+    // All three scripts appear together, or none.
     for (name, text) in [("array.sh", &scripts.array), ("merge.sh", &scripts.merge), ("submit.sh", &scripts.submit)] {
         output.put(name, text.as_bytes())?;
     }
@@ -205,6 +207,7 @@ struct Scripts {
 impl Scripts {
     /// Builds the scripts with absolute paths, because Slurm chooses the working directory of a task.
     fn of(jobs: &Jobs, sample: Sample, resources: Resources) -> Result<Self, CliError> {
+        // Relative paths would depend on the folder in which Slurm starts a task.
         let absolute = |path: &Path| {
             let found = std::path::absolute(path);
             let found = found.map_err(|error| CliError::failure(format!("{}: {error}", path.display())))?;
@@ -218,6 +221,7 @@ impl Scripts {
         let Resources { tasks, threads, minutes, megabytes, merge_minutes, merge_megabytes } = resources;
         let Sample { points, mean_s, most_s, most_bytes } = sample;
         let made = format!("# Written by pxpl5 {} (pxpl5 sweep --slurm).", env!("CARGO_PKG_VERSION"));
+        // Each task runs one shard, and retries while a lost copy of itself still holds the folder.
         let array = format!(
             "#!/bin/bash
 {made}
@@ -244,6 +248,7 @@ done
 ",
             most_bytes / 1e6
         );
+        // The merge job reads the shards of all tasks.
         let merge = format!(
             "#!/bin/bash
 {made}
@@ -259,6 +264,7 @@ out={out}
 \"$pxpl5\" merge \"$out\"/shard-* --out \"$out\"
 "
         );
+        // The user calls this script; it submits both jobs with a dependency.
         let submit = format!(
             "#!/bin/bash
 {made}

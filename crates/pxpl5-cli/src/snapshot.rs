@@ -89,6 +89,7 @@ impl SnapshotArgs {
     /// Fails when the snapshot cannot be used, or a setting contradicts the snapshot.
     pub(crate) fn experiment(&self, given: ExperimentFile) -> Result<ExperimentFile, CliError> {
         let Some(path) = &self.restore else { return Ok(given) };
+        // Most settings are part of the snapshot, and changing them would change the run.
         if let Some(key) = given.keys().find(|key| !BESIDE.iter().any(|allowed| key.starts_with(allowed))) {
             let message = format!("{key} is in the snapshot; beside --restore only fields, pixels, measure and output");
             return Err(CliError::usage(message));

@@ -73,6 +73,7 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     }
     let sweep = Sweep::new(file)?;
     warn(&supposed(&sweep), args.quiet);
+    // With --slurm nothing is simulated.
     if let Some(folder) = &args.slurm {
         return write_jobs(&args, &sweep, folder);
     }
@@ -90,6 +91,7 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     let options = RunOptions { shard: args.shard, threads };
     pxpl5::sweep::run(&sweep, &mut store, options, |_| bar.inc(1))?;
     bar.finish_and_clear();
+    // A sweep succeeds if at least one point could be simulated.
     let failed = tell_failures(&store, args.shard, total, "simulated")?;
     tell_place(&args.out, total, args.quiet)?;
     store.finish()?;
@@ -147,6 +149,7 @@ fn end_interrupted(again: &str) {
 fn again(args: &SweepArgs) -> String {
     let mut words = vec!["pxpl5 sweep".to_owned(), quoted(&args.file.display().to_string())];
     words.extend(["--out".to_owned(), quoted(&args.out.display().to_string())]);
+    // Only options that differ from their defaults are repeated.
     if args.shard != Shard::ALL {
         words.extend(["--shard".to_owned(), format!("{}/{}", args.shard.number(), args.shard.of())]);
     }

@@ -45,6 +45,7 @@ const ROWS: [TableRow; 13] = [
 pub(crate) fn table(runs: &[(&Report, Option<&Comparison>)]) -> String {
     let rows = ROWS.iter().map(|(name, cell)| (*name, runs.iter().map(|(report, _)| cell(report)).collect()));
     let mut rows: Vec<(&str, Vec<String>)> = rows.collect();
+    // Rows about published values appear only if a run has one.
     if runs.iter().any(|(_, comparison)| comparison.is_some()) {
         rows.extend(comparison_rows(runs));
     }

@@ -16,6 +16,7 @@ const SHORT_RUN: u64 = 60;
 pub(crate) fn too_heavy(plan: &Plan, scene: &Arc<Scene>, fields: u64) -> Option<String> {
     let work = Work::of(plan, scene, false);
     let entry = plan.registry.pipeline(plan.pipeline.name()).ok()?;
+    // A closed form predicts the first picture; it does not cover tracked heads.
     let expected = match entry.closed_form.filter(|_| plan.head.is_none()) {
         Some(form) => {
             let experiment = plan.experiment(Arc::clone(scene)).fields(fields);
@@ -32,6 +33,7 @@ pub(crate) fn too_heavy(plan: &Plan, scene: &Arc<Scene>, fields: u64) -> Option<
             }
         }
         None => {
+            // Without a closed form, the time of TRANSFORM is a lower bound.
             let transform = work.fields_of_transform();
             if transform <= fields as f64 {
                 return None;

@@ -70,11 +70,13 @@ pub(crate) fn run(args: TraceArgs) -> Result<(), CliError> {
     let format = args.format.map_or_else(|| Format::of(&args.out), Ok)?;
     let plan = args.settings.gather()?.resolve()?;
     warn(&plan.warnings(), args.quiet);
+    // Open the output first, so that a bad path fails before the run.
     let file = OutputFile::open(&args.out, "--out")?;
     let bar = progress(plan.fields, "fields", args.quiet);
     let scene = scenes::load(&plan, args.quiet)?;
     args.budget.admit(&Work::of(&plan, &scene, true))?;
     warn(too_heavy(&plan, &scene, plan.fields).as_slice(), args.quiet);
+    // A trace needs every message, which a run does not record by default.
     let experiment = plan.experiment(scene).record_traffic(true);
     let watch = args.budget.watch(plan.fields);
     let run = experiment.run_stopping(&YOUNG.map(|field| PeriodNumber::FIRST.after(field)), |field, _| {
@@ -88,6 +90,7 @@ pub(crate) fn run(args: TraceArgs) -> Result<(), CliError> {
     warn(&too_short.iter().map(|note| note.message().to_owned()).collect::<Vec<_>>(), args.quiet);
     let trace = Trace::of(&outcome);
     let mut bytes = Vec::new();
+    // The whole file is built in memory and then written at once.
     let written = match format {
         Format::Perfetto => perfetto(&trace, &mut bytes),
         Format::Chrome => chrome(&trace, &mut bytes),

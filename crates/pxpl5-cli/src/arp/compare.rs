@@ -82,6 +82,7 @@ fn text(comparison: &ArpComparison) -> String {
         format!("{}: {} at {} m/s\n\n", comparison.scene, count_of(comparison.frames, "frame"), comparison.m_per_s);
     let heads = COLUMNS.map(|(name, _)| name.to_owned());
     let rows = comparison.rows.iter().map(|row| COLUMNS.map(|(_, cell)| cell(row)));
+    // Each column is as wide as its longest cell, including its head.
     let lines: Vec<[String; COLUMNS.len()]> = std::iter::once(heads).chain(rows).collect();
     let widest: Vec<usize> =
         (0..COLUMNS.len()).map(|i| lines.iter().map(|line| line[i].len()).max().unwrap_or(0)).collect();

@@ -34,6 +34,7 @@ pub(super) struct RunArgs {
 }
 
 pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
+    // Open the output first, so that a bad path fails before the walk.
     let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "arp run")).transpose()?;
     let (scene, plan) = args.walk.gather()?;
     args.walk.admit(&plan, &scene, 1)?;
@@ -45,6 +46,7 @@ pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
     if let Some(mut folder) = folder {
         folder.put("report.json", json.as_bytes())?;
         folder.put("frames.csv", frames_csv(&outcome).as_bytes())?;
+        // The pictures need the scene at all poses, so they are drawn only for an output folder.
         let walk = &plan.walk;
         let pictures = of_walk(outcome.world.clone(), &outcome.path, &outcome.settings, walk.m_per_s, walk.frames)?;
         put(&mut folder, &pictures, &origin(&outcome))?;
@@ -78,6 +80,7 @@ fn frames_csv(outcome: &WalkOutcome) -> String {
     for (number, frame) in outcome.tally.outcomes.iter().enumerate() {
         let [x, y, z] = frame.eye.to_array();
         let _ = write!(text, "{number},{x},{y},{z},{}", u8::from(frame.deals_anew));
+        // Three columns for each memory: update due, picture shown, update missed.
         for k in 0..memories {
             let [due, shown, missed] = [&frame.due, &frame.swapped, &frame.missed].map(|list| u8::from(list[k]));
             let _ = write!(text, ",{due},{shown},{missed}");
@@ -105,8 +108,10 @@ fn text(outcome: &WalkOutcome, out: Option<&Path>) -> String {
         "missed",
         "eye age, mm"
     );
+    // One line for each memory.
     report.memories.iter().enumerate().for_each(|(k, memory)| line(&mut text, k, memory));
     let priority = &report.priority;
+    // Totals over all memories.
     let rows = [
         ("segments drawn a second", format!("{:.0} ({:.1} % saved)", priority.draws_per_s, priority.saved_percent)),
         ("triangles drawn a second", format!("{:.0}", outcome.triangles_per_s())),

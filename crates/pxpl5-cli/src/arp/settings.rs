@@ -88,6 +88,7 @@ impl WalkArgs {
             let lens = read_lens(Path::new(file), &plan)?;
             plan = plan.behind(lens, file);
         }
+        // Check all settings together before the scene is loaded.
         plan.settings()?;
         warn(&warnings(&plan), self.quiet);
         let scene = load(self.scene.as_deref().unwrap_or(&scene))?;
@@ -130,6 +131,7 @@ impl WalkArgs {
                 std::fs::read(path).map_err(|error| CliError::failure(format!("{place}: cannot be read: {error}")))?;
             let text = text_of(&bytes).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
             let file = toml::from_str(text).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
+            // Settings of the file come first, so that later ones override them.
             for (path, value) in leaves(file) {
                 match path.as_str() {
                     "scene" => scene = plain(&value),
@@ -137,6 +139,7 @@ impl WalkArgs {
                 }
             }
         }
+        // Each option is short for one path.
         let options = [
             ("policy", "--policy", &self.policy),
             ("segment", "--segment", &self.segment),
@@ -148,6 +151,7 @@ impl WalkArgs {
         for (path, option, text) in options {
             said.extend(text.iter().map(|text| (path.to_owned(), text.clone(), option.to_owned())));
         }
+        // `--set` comes last and overrides everything else.
         for assignment in &self.sets {
             let (path, value) = assignment
                 .split_once('=')

@@ -72,6 +72,7 @@ fn texels(display: &ArpConfig, footprint: &Footprint) -> [(Option<TexelAddress>,
 }
 
 fn record(args: &TexelArgs, display: &ArpConfig, footprint: &Footprint) -> Value {
+    // A missing texel beyond a cube corner has a weight but no address.
     let texels = texels(display, footprint).map(|(texel, weight)| match texel {
         Some(texel) => json!({
             "face": format!("{:?}", texel.face),

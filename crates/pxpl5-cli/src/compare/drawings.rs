@@ -111,6 +111,7 @@ const COLUMNS: [Column; 24] = [
 /// the error under each predictor and by each cause. Cells without an evaluation are empty.
 fn rows_csv(comparison: &Comparison) -> String {
     let causes: Vec<Option<Cause>> = Cause::ALL.into_iter().map(Some).chain([None]).collect();
+    // Names of columns equal the JSON paths of the same numbers.
     let of_predictors =
         PredictorKind::ALL.map(|kind| format!("predictors.{}.mean_px", written(serde_json::to_value(kind))));
     let of_causes = causes.iter().map(|cause| {
@@ -118,6 +119,7 @@ fn rows_csv(comparison: &Comparison) -> String {
         format!("causes.{cause}.px.mean")
     });
     let columns = COLUMNS.iter().map(|(name, _)| (*name).to_owned()).chain(of_predictors).chain(of_causes);
+    // Numbers that a row lacks become empty cells.
     let rows = comparison.pipelines.iter().map(|row| {
         let predictor =
             |kind: PredictorKind| row.predictors.iter().find(|mean| mean.kind == kind).map(|mean| mean.mean_px);

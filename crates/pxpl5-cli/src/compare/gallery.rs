@@ -16,6 +16,7 @@ use pxpl5::views::png_bytes;
 /// Fails when a file cannot be written.
 pub(super) fn put(folder: &mut OutputFolder, comparison: &Comparison) -> Result<(), CliError> {
     let mut gallery = Gallery { folder, comparison, pictures: Vec::new(), ideals: Vec::new() };
+    // The ideal picture precedes the first picture with the same shading.
     for row in &comparison.pipelines {
         if let Some(last) = &row.picture {
             gallery.ideal(row, last)?;

@@ -63,11 +63,13 @@ fn header() -> String {
 }
 
 fn line(row: &ComparisonRow) -> String {
+    // A failed row shows its reason instead of numbers.
     if let Some(failure) = &row.failure {
         return format!("{:<NAME$} {failure}\n", row.pipeline);
     }
     let missed =
         row.not_shown.zip(row.due).map_or_else(|| "-".to_owned(), |(missed, due)| format!("{missed} of {due}"));
+    // The cells follow the order of `COLUMNS`.
     let values = [
         number(row.head_to_light_ms.mean, 2),
         number(row.head_to_light_ms.sd, 2),
@@ -95,6 +97,7 @@ fn causes(comparison: &Comparison) -> String {
         let _ = write!(text, " {:>11}", cause.name());
     }
     let _ = writeln!(text, " {:>11} {:>11}", "interaction", "all");
+    // Rows without an evaluation have no causes.
     for row in comparison.pipelines.iter().filter(|row| !row.causes.is_empty()) {
         let _ = write!(text, "{:<NAME$}", row.pipeline);
         row.causes.iter().for_each(|share| {

@@ -104,6 +104,7 @@ pub(super) fn split(text: &str) -> Vec<String> {
 pub(super) fn parse(text: &str, now: Time) -> Result<Command, String> {
     let words: Vec<&str> = text.split_whitespace().collect();
     let Some((name, rest)) = words.split_first() else { return Ok(Command::Nothing) };
+    // Forms with fixed words come before forms that parse the remaining words.
     match (*name, rest) {
         ("run", []) => Ok(Command::RunToEnd),
         ("run", ["to", "field", field]) => Ok(Command::RunToField(PeriodNumber(number("run to field", field)?))),
@@ -138,6 +139,7 @@ pub(super) fn parse(text: &str, now: Time) -> Result<Command, String> {
 fn unknown(name: &str, text: &str) -> String {
     let forms: Vec<&str> =
         HELP.iter().map(|(form, _)| *form).filter(|form| form.split(' ').next() == Some(name)).collect();
+    // An unknown name gets the list of all commands.
     if forms.is_empty() {
         let mut names: Vec<&str> = HELP.iter().filter_map(|(form, _)| form.split(' ').next()).collect();
         names.dedup();
@@ -173,6 +175,7 @@ fn step(words: &[&str]) -> Result<Command, String> {
         [count, kind] => (number("step", count)?, *kind),
         _ => return Err(format!("step: expected [N] [event|line|field], found `{}`", words.join(" "))),
     };
+    // Plural forms are accepted: `step 2 lines`.
     let kind = match kind.trim_end_matches('s') {
         "event" => StepOf::Event,
         "line" => StepOf::Line,

@@ -57,6 +57,7 @@ impl Condition {
     ///
     /// Returns the expected form and the text found.
     pub(super) fn parse(words: &[&str]) -> Result<Self, String> {
+        // The first word selects the kind of condition.
         match words {
             ["swap"] => Ok(Self::Swap),
             ["region"] => Ok(Self::Region),
@@ -82,6 +83,7 @@ impl Condition {
     /// Returns an error if the condition names a board that the machine does not have.
     pub(super) fn check(&self, stepper: &Stepper) -> Result<(), String> {
         let renderers = stepper.record().renderers().len();
+        // Only conditions with a board can be wrong for a machine.
         match self {
             Self::Fifo(renderer, _) if *renderer >= renderers => {
                 Err(format!("renderer: expected 0 to {}, found {renderer}", renderers - 1))
@@ -96,6 +98,7 @@ impl Condition {
     /// Returns true if the condition holds now.
     pub(super) fn holds(&self, stepper: &Stepper, before: Before) -> bool {
         let observation = stepper.record().observation();
+        // Swaps and arrivals count from the instant when the run was resumed.
         match self {
             Self::Swap => observation.swaps.len() > before.swaps,
             Self::Region => observation.arrivals.len() > before.arrivals,

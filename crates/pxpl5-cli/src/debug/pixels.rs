@@ -41,6 +41,7 @@ pub(super) fn enabled(stepper: &Stepper, renderer: u64) -> Result<String, String
     let plane = array.enable();
     let count: u32 = plane.iter().map(|word| word.count_ones()).sum();
     let mut text = format!("renderer {number}: {count} of {} pixels enabled\n", SIDE * SIDE);
+    // Each character stands for a block of 2 x 4 pixels.
     for row in 0..SIDE / BLOCK.1 {
         let line = (0..SIDE / BLOCK.0).map(|column| {
             let pixels = (0..BLOCK.0 * BLOCK.1).map(|n| (BLOCK.0 * column + n % BLOCK.0, BLOCK.1 * row + n / BLOCK.0));
@@ -82,6 +83,7 @@ pub(super) fn ideal(stepper: &Stepper, label: &str, file: Option<&str>) -> Resul
 
 fn picture_said(picture: &RgbImage, label: &str, file: Option<&str>) -> Result<String, String> {
     let (width, height) = picture.dimensions();
+    // The pixel at the top left serves as the background color.
     let background = picture.get_pixel(0, 0);
     let drawn = picture.pixels().filter(|pixel| *pixel != background).count();
     let mut text = format!("{label}: {width} x {height} pixels, {drawn} other than that of the left top\n");

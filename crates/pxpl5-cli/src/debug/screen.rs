@@ -43,6 +43,7 @@ pub(super) fn run(session: Session) -> io::Result<()> {
     };
     // The closure collects every terminal error, so that the terminal is restored before the error is returned.
     let result = (|| {
+        // Redraw after every event, even if no key was pressed.
         while !session.is_over() {
             terminal.draw(|frame| draw(frame, &session, &talk))?;
             if let Event::Key(key) = event::read()?
@@ -63,6 +64,7 @@ fn key_waits() -> bool {
 }
 
 fn pressed(session: &mut Session, talk: &mut Talk, key: KeyEvent) {
+    // Letters edit the input line; function keys are short for steps.
     match key.code {
         KeyCode::Char('c' | 'd') if key.modifiers.contains(KeyModifiers::CONTROL) => say(session, talk, "quit"),
         KeyCode::Char(letter) => talk.line.push(letter),
@@ -96,6 +98,7 @@ fn say(session: &mut Session, talk: &mut Talk, line: &str) {
     talk.log.push(format!("> {line}"));
     let said = session.obey(line).unwrap_or_else(|error| error);
     talk.log.extend(said.lines().map(str::to_owned));
+    // Keep the log bounded by dropping its oldest lines.
     let gone = talk.log.len().saturating_sub(LOG);
     talk.log.drain(..gone);
 }
@@ -125,6 +128,7 @@ fn panes(area: Rect) -> [Rect; 5] {
             [Constraint::Length(8), Constraint::Fill(2), Constraint::Fill(1), Constraint::Fill(1), Constraint::Fill(1)];
         return Layout::vertical(rows).areas(area);
     }
+    // A wide terminal has two columns.
     let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Fill(1)]).areas(area);
     let [time, boards] = Layout::vertical([Constraint::Length(8), Constraint::Fill(1)]).areas(left);
     let thirds = [Constraint::Fill(1), Constraint::Fill(1), Constraint::Fill(1)];

@@ -48,6 +48,7 @@ impl Session {
     ///
     /// Returns the expected form and the text found. The session is unchanged after an error.
     pub(super) fn obey(&mut self, line: &str) -> Result<String, String> {
+        // Only `run`, `next` and `step` change the machine.
         match parse(line, self.stepper.now())? {
             Command::Nothing => Ok(String::new()),
             Command::RunToEnd => {
@@ -92,6 +93,7 @@ impl Session {
 
     fn run_to(&mut self, time: Time) -> Result<String, String> {
         let now = self.stepper.now();
+        // A run cannot go back in time.
         if time < now {
             return Err(format!("expected an instant not before now, {}, found {}", ms(now), ms(time)));
         }
@@ -134,6 +136,7 @@ impl Session {
                     StepOf::Line => stepper.step_line(),
                     StepOf::Field => stepper.step_period(),
                 };
+                // A breakpoint or the end stops the remaining steps.
                 if pause != Pause::Reached {
                     break;
                 }
@@ -200,6 +203,7 @@ impl Session {
         let state = hit.map(|hit| (*hit.state).clone()).or(of_call).ok_or("no processor")?;
         let whence = if hit.is_some() { "at the breakpoint" } else { "after the last call" };
         let mut text = format!("{board}, {whence}: pc {:#010x}, psr {:#010x}\n", state.pc, state.psr);
+        // Eight registers in a line.
         for (name, registers) in [("r", &state.r), ("f", &state.f)] {
             for (row, four) in registers.chunks(8).enumerate() {
                 let words: Vec<String> = four.iter().map(|word| format!("{word:08x}")).collect();
@@ -235,6 +239,7 @@ impl Session {
         let begin = views::place_in_code(&self.stepper, Some(board), place)?;
         let words = views::words(processor, begin, count)?;
         let mut text = String::new();
+        // Four words in a line.
         for (row, four) in words.chunks(4).enumerate() {
             let row_words: Vec<String> = four.iter().map(|word| format!("{word:08x}")).collect();
             let _ = writeln!(text, "{:#010x}  {}", begin + 16 * row as u32, row_words.join(" "));

@@ -20,6 +20,7 @@ pub(super) fn time(stepper: &Stepper) -> String {
     let fields = stepper.experiment().length();
     let beam = stepper.beam_line().map_or_else(String::new, |line| format!(", beam in line {line}"));
     let _ = writeln!(text, "now     {}, field {} of {fields}{}", ms(stepper.now()), stepper.period(), beam);
+    // Lines for a failure, the last event and the next event appear only if they exist.
     if let Some(error) = stepper.failure() {
         let _ = writeln!(text, "failed  {error}");
     }
@@ -92,6 +93,7 @@ const STAGES: usize = 12;
 pub(super) fn timeline(stepper: &Stepper) -> String {
     let record = stepper.record();
     let mut stages = record.stages();
+    // Leave out stages in the future, then show the most recent ones.
     stages.retain(|stage| stage.begin <= stepper.now());
     stages.sort_by_key(|stage| stage.begin);
     let first = stages.len().saturating_sub(STAGES);
@@ -176,6 +178,7 @@ pub(super) fn place_in_code(stepper: &Stepper, board: Option<Board>, text: &str)
     if let Some(at) = address(text).map(|at| at & !3) {
         return Ok(at);
     }
+    // Any other text must be a label of loaded code.
     let programs: Vec<Arc<Program>> = with_code.iter().flat_map(|board| programs_of(board)).collect();
     let found = programs.iter().find_map(|program| program.symbol(text));
     found.ok_or_else(|| {

@@ -12,6 +12,7 @@ pub(super) fn time(text: &str, now: Time) -> Result<Time, String> {
 
 /// Parses a duration exactly, in picoseconds. Digits below one picosecond are refused, so nothing is rounded.
 fn span(text: &str) -> Option<Span> {
+    // Split the number from its unit.
     let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
     let (unit, places): (u64, usize) = match &text[digits.len()..] {
         "s" => (1_000_000_000_000, 12),
@@ -22,6 +23,7 @@ fn span(text: &str) -> Option<Span> {
         _ => return None,
     };
     let (whole, part) = digits.split_once('.').unwrap_or((digits, ""));
+    // Digits below one picosecond cannot be represented.
     if !part.bytes().all(|byte| byte.is_ascii_digit()) || part.len() > places {
         return None;
     }
@@ -51,6 +53,7 @@ pub(super) fn below(what: &str, text: &str, bound: u64) -> Result<u64, String> {
 /// Parses the board's name at the beginning of `words`, and returns the board and the remaining words. `gp 3` and
 /// `gp3` name the same board.
 pub(super) fn board<'a>(words: &'a [&'a str]) -> Result<(Board, &'a [&'a str]), String> {
+    // Try two words such as `gp 3` first, then one word such as `gp3`.
     let two = words.get(..2).map(|two| two.concat()).and_then(|name| name.parse().ok());
     if let Some(board) = two.filter(|_| words[0].chars().all(|c| c.is_ascii_alphabetic())) {
         return Ok((board, &words[2..]));

@@ -124,6 +124,7 @@ pub(crate) fn run(args: I860Args) -> Result<(), CliError> {
             warnings.tell(&program);
             let options = RunOptions { entry, stop, budget, memory, show, json, quiet };
             let (report, result) = execute(&program, &options).map_err(CliError::failure)?;
+            // The report is printed even if the program did not reach its end.
             print(&report)?;
             result.map_err(CliError::failure)
         }
@@ -216,6 +217,7 @@ fn unpacked(file: &Path, bytes: Vec<u8>, most: u64) -> Result<Vec<u8>, String> {
         return Ok(bytes);
     }
     let mut plain = Vec::new();
+    // Read one byte more than allowed, so that an excess is noticed.
     let mut limited = MultiGzDecoder::new(bytes.as_slice()).take(most + 1);
     limited.read_to_end(&mut plain).map_err(|e| format!("{}: gzip: {e}", file.display()))?;
     if plain.len() as u64 > most {

@@ -53,6 +53,7 @@ pub(super) fn execute(program: &Program, options: &RunOptions) -> Result<(String
     let mut cpu = Cpu::at(Config::cycle(), place(program, options.entry.as_deref(), "start", program.base)?);
     let wanted = options.show.iter().map(|text| span(program, text)).collect::<Result<Vec<_>, _>>()?;
     let before = ram.clone();
+    // Count the clocks of each instruction address.
     cpu.watch(Some(AddressProfile::new(program.base, size.div_ceil(4))));
     let outcome = cpu.run(&mut ram, Some(stop), options.budget);
     // Without --show, the report lists the words that the run changed.
@@ -110,6 +111,7 @@ fn changed(before: &Ram, after: &Ram) -> (Vec<Span>, usize) {
         ram.bytes().chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
     };
     let all = words(before).into_iter().zip(words(after)).enumerate();
+    // Compare whole words and join neighbours into spans.
     let different: Vec<(u32, u32)> =
         all.filter(|(_, (old, new))| old != new).map(|(n, (_, new))| (4 * n as u32, new)).collect();
     let mut spans: Vec<Span> = Vec::new();
@@ -203,6 +205,7 @@ impl Run<'_> {
         let profile = self.cpu.profile();
         let hex = |word: &u32| format!("{word:08x}");
         let words = |words: &[u32]| words.iter().map(hex).collect::<Vec<_>>();
+        // Words of 32 bits are written as hexadecimal text.
         let memory = self.memory.iter().map(|span| {
             json!({
                 "address": hex(&span.address),

@@ -49,6 +49,7 @@ fn beside(path: &Path, end: &str) -> PathBuf {
 fn is_temporary(name: &OsStr) -> bool {
     let parts = name.to_str().and_then(|name| name.strip_prefix(TEMPORARY)?.rsplit_once('.'));
     let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    // Both numbers must be decimal, so that files of other programs are never removed.
     parts.is_some_and(|(numbers, end)| {
         let both = numbers.split_once('-');
         ["tmp", "old"].contains(&end) && both.is_some_and(|(process, number)| is_number(process) && is_number(number))
@@ -64,6 +65,7 @@ pub(super) fn remove_left_over(folder: &Path) {
         let path = entry.path();
         let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
         let opened = is_file.then(|| File::open(&path).ok()).flatten();
+        // A lock that can be taken shows that the writer has ended.
         if opened.is_some_and(|file| file.try_lock().is_ok()) {
             let _ = fs::remove_file(path);
         }
@@ -147,11 +149,13 @@ impl Batch {
     }
 
     fn place_all(&mut self, placed: &mut Vec<Placed>) -> Result<(), CliError> {
+        // Keep the previous contents of each name before the rename, so that a failure can restore them.
         for Staged { temporary, name, .. } in &self.files {
             let before = kept(name, temporary).map_err(|error| self.place.refused(name, &error))?;
             placed.push(Placed { name: name.clone(), before });
             fs::rename(temporary, name).map_err(|error| self.place.refused(name, &error))?;
         }
+        // Files of the previous run are renamed first, and deleted only after everything succeeded.
         for name in &self.gone {
             let old = beside(name, "old");
             fs::rename(name, &old).map_err(|error| self.place.refused(name, &error))?;

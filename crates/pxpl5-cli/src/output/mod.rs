@@ -77,16 +77,19 @@ impl OutputFolder {
     fn begin(path: &Path, place: Place, listing: Listing) -> Result<Self, CliError> {
         let batch = Batch::new(place.clone());
         let mut folder = Self { path: path.to_path_buf(), place, made: Vec::new(), batch, listing };
+        // A temporary file shows whether the folder is writable.
         folder.in_folder(|batch| batch.try_in(path))?;
         if let Some(_lock) = folder.lock() {
             batch::remove_left_over(path);
         }
+        // The folder is created again when files are written.
         folder.unmake();
         Ok(folder)
     }
 
     /// Executes `what` in the folder while no other process can remove or change it.
     fn in_folder(&mut self, mut what: impl FnMut(&mut Batch) -> io::Result<()>) -> Result<(), CliError> {
+        // Another process may remove the folder between its creation and the write.
         let mut tries = 0;
         loop {
             self.make()?;
@@ -166,6 +169,7 @@ impl OutputFolder {
     /// Adds the manifest as the first file to be renamed. After a crash between two renames, the hashes in the
     /// manifest show which files belong to the new run.
     fn put_manifest(&mut self) -> Result<(), CliError> {
+        // A new run replaces the previous manifest; derived files extend it.
         let manifest = match &mut self.listing {
             Listing::None => return Ok(()),
             Listing::Own(manifest) => {
@@ -184,6 +188,7 @@ impl OutputFolder {
         let target = Target::of(&self.path.join(MANIFEST_FILE), &self.place)?;
         let put = self.batch.put(&target, manifest.to_text().as_bytes());
         put.map_err(|error| self.place.refused(&self.path, &error))?;
+        // The manifest must get its name before all other files.
         self.batch.last_first();
         Ok(())
     }
@@ -303,6 +308,7 @@ pub(crate) fn timeline(outcome: &Outcome, report: &Report) -> String {
     let origin: String = origin_lines(report, "").chars().filter(|c| *c == '\n' || !is_forbidden(*c)).collect();
     // XML comments must not contain two hyphens in a row.
     let comment = format!("<!--\n{}-->\n", origin.replace("--", "- -"));
+    // The comment goes behind the XML declaration, which must be the first line.
     let at = if svg.starts_with("<?xml") { svg.find('\n').map_or(0, |end| end + 1) } else { 0 };
     format!("{}{comment}{}", &svg[..at], &svg[at..])
 }

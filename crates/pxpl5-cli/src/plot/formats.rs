@@ -24,6 +24,7 @@ impl Format {
     /// Fails for an unknown extension, and for PNG and PDF without the feature `print`.
     pub(super) fn of(path: &Path) -> Result<Self, CliError> {
         let ending = path.extension().map(|end| end.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+        // PNG and PDF need the feature `print`.
         match ending.as_str() {
             "svg" => Ok(Self::Svg),
             #[cfg(feature = "print")]

@@ -128,9 +128,11 @@ pub(crate) fn run(args: PlotArgs) -> Result<(), CliError> {
             count_of(missing, "row")
         )));
     }
+    // The SVG is drawn first; other formats are converted from it.
     let svg = drawing::chart(&args, &groups).svg();
     let figure = formats::bytes(&svg, format)?;
     write(&args, &results, (&figure, &csv(&question, &groups)))?;
+    // Rows without a number are reported, because the means leave them out.
     if missing > 0 {
         let (have, are) = if missing == 1 { ("has", "is") } else { ("have", "are") };
         let rows = count_of(missing, "row");
@@ -180,6 +182,7 @@ impl PlotArgs {
 
 /// Writes all three files, or none.
 fn write(args: &PlotArgs, results: &ResultRows, (figure, csv): (&[u8], &str)) -> Result<(), CliError> {
+    // The three files differ only in their extension.
     let name = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned());
     let parent = args.out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let (Some(figure_name), Some(csv_name), Some(json_name)) =

@@ -76,6 +76,7 @@ impl Question {
         let known: BTreeSet<&str> = results.rows.iter().flatten().map(|(key, _)| key.as_str()).collect();
         let only = self.only.iter().map(|(name, _)| name);
         for name in [&self.x, &self.y].into_iter().chain(&self.by).chain(only) {
+            // A misspelled column gets the most similar name as advice.
             if !known.contains(name.as_str()) {
                 let near = nearest(name, known.iter().copied()).unwrap_or("nothing");
                 let all = known.iter().copied().collect::<Vec<_>>().join(", ");
@@ -88,6 +89,7 @@ impl Question {
     fn group(&self, results: &ResultRows, by: Vec<String>, x: Value, rows: &[&Row]) -> Result<Group, CliError> {
         let numbers: Vec<f64> = rows.iter().filter_map(|row| value(row, &self.y).and_then(Value::as_f64)).collect();
         let missing = rows.len() - numbers.len();
+        // A row of a comparison already is a mean over seeds.
         if results.kind == RowsKind::Comparison {
             return Ok(self.of_row(by, x, rows[0], missing));
         }

@@ -41,6 +41,7 @@ pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
     let settings = options.gather()?;
     let scene = args.volume.load_scene()?;
     options.admit(&settings, &scene, variant_count() as usize)?;
+    // Pictures are rendered only for an output folder.
     let viewpoint = folder.is_some().then_some(Viewpoint { azimuth_deg: 40.0, elevation_deg: 25.0, side: args.size });
     let bar = progress(variant_count(), "volumes", options.quiet);
     let comparison = compare(&settings, &scene, viewpoint, &options.threads(), |done, of| advance(&bar, done, of));
@@ -54,6 +55,7 @@ pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
         pictures(folder, &comparison)?;
     }
     folder.map(OutputFolder::commit).transpose()?;
+    // Files and JSON hold all numbers; the terminal shows a table.
     match (args.json, options.quiet) {
         (true, _) => print(&json),
         (false, true) => Ok(()),
@@ -113,6 +115,7 @@ fn text(comparison: &VolumeComparison) -> String {
         format!("{} ({}), seed {}\n\n", comparison.scene, count_of(comparison.triangles, "primitive"), comparison.seed);
     let rows: Vec<[String; COLUMNS.len()]> =
         comparison.variants.iter().map(|row| COLUMNS.map(|(_, cell)| cell(row))).collect();
+    // Each column is as wide as its longest cell or head.
     let widths: Vec<usize> = (0..COLUMNS.len())
         .map(|i| rows.iter().map(|row| row[i].len()).chain(HEADS.iter().map(|head| head[i].len())).max().unwrap_or(0))
         .collect();
@@ -186,6 +189,7 @@ fn brightness(comparison: &VolumeComparison) -> String {
         up: "lit pixels of all slices, a pixel of radius".to_owned(),
     };
     let ring = f64::from(comparison.ring_px);
+    // Only variants that differ in the clip are comparable in one chart.
     let plain = comparison.variants.iter().filter(|row| row.projection == "orthographic" && row.samples == 1);
     let curves = plain.filter(|row| row.coverage == "sampled").map(|row| {
         let points = row.brightness_by_radius.iter().enumerate();

@@ -46,6 +46,7 @@ const SCENES: [&str; 3] = ["mig", "head", "molecules"];
 pub(super) fn run(args: FiguresArgs) -> Result<(), CliError> {
     let document = args.write.as_deref().map(|path| OutputFile::open(path, "--write")).transpose()?;
     let mut folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "volume figures")).transpose()?;
+    // Rows are measured on all scenes; drawings use the first one.
     let scenes = SCENES.iter().map(|name| load(name, None)).collect::<Result<Vec<_>, _>>()?;
     let bar = progress(0, "scenes", args.quiet);
     let figures = all(&scenes, &Threads::all(), |done, of| advance(&bar, done, of));
@@ -87,6 +88,7 @@ fn text(figures: &Figures) -> String {
     );
     figures.figures.iter().for_each(|row| line(&mut text, row));
     text.push_str("\nStated without numbers:\n");
+    // Statements without a number are checked for their shape.
     for shown in &figures.shown {
         let mark = if shown.holds { "shown" } else { "NOT SHOWN" };
         let _ = writeln!(text, "  {mark:<9} {}: {}", shown.statement, shown.evidence);

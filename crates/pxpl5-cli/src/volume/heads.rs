@@ -41,6 +41,7 @@ pub(super) fn run(
     side: u32,
     out: &Path,
 ) -> Result<(), CliError> {
+    // The renderer accepts only pictures whose width is a multiple of 8.
     if !side.is_multiple_of(8) {
         return Err(CliError::usage(format!("--size: expected a multiple of 8 with --head, found {side}")));
     }
@@ -58,6 +59,7 @@ pub(super) fn run(
     folder.put("report.json", json.as_bytes())?;
     folder.put("errors.csv", errors_csv(&study).as_bytes())?;
     folder.put("errors.svg", errors_svg(&study, name).as_bytes())?;
+    // All pictures have one exposure, so that the film does not flicker.
     let instants = before.film_instants(&question, args.frames)?;
     let exposure = before.exposure(instants[0], side, &threads)?;
     let mut bytes = Vec::new();

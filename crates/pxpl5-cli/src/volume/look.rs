@@ -106,6 +106,7 @@ impl EyeArgs {
 }
 
 pub(super) fn view(args: ViewArgs) -> Result<(), CliError> {
+    // With --head the command writes a folder instead of a picture.
     if let Some(motion) = &args.head.head {
         return heads::run(motion, &args.head, &args.volume, args.eye.size, &args.out);
     }
@@ -131,6 +132,7 @@ pub(super) fn film(args: FilmArgs) -> Result<(), CliError> {
     let threads = args.volume.settings.threads();
     let mut bytes = Vec::new();
     let size = (args.eye.size, args.eye.size);
+    // Pictures are encoded one by one, so that only one is in memory.
     let mut animation =
         Animation::begin(&mut bytes, size, args.frames, (1, args.rate), &origin(&volume)).map_err(CliError::failure)?;
     let bar = progress(u64::from(args.frames), "pictures", args.volume.settings.quiet);

@@ -33,6 +33,7 @@ pub(super) struct RunArgs {
 }
 
 pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
+    // Open the output first, so that a bad path fails before the volume is drawn.
     let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "volume run")).transpose()?;
     let volume = args.volume.draw(&args.volume.settings.gather()?)?;
     let report = volume.report();
@@ -43,6 +44,7 @@ pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
         folder.put("slices.csv", slices_csv(&volume).as_bytes())?;
         folder.put("sheet.png", &png(&sheet(&volume), &volume)?)?;
         folder.put("slice-0.png", &png(&before_and_after(&volume, 0), &volume)?)?;
+        // A volume without tiles has no map of tiles.
         if let Some(map) = tile_map(&volume) {
             folder.put("tiles.png", &png(&map, &volume)?)?;
         }
@@ -76,6 +78,7 @@ fn bounds(planes: &PixelPlanesReport) -> String {
         "processors, ms",
         "volumes/s"
     );
+    // Closed-form bounds for several sizes of the machine.
     for row in &planes.bounds {
         let [renderers, ring, port, processors] = row.ms;
         let _ = writeln!(
@@ -172,6 +175,7 @@ fn text(report: &VolumeReport, out: Option<&std::path::Path>) -> String {
     );
     let draws = 100.0 * report.draws as f64 / report.draws_unbinned.max(1) as f64;
     let megabytes = |bytes: u64| format!("{:.1} MB", bytes as f64 / 1e6);
+    // Counts of the drawing, then the model of its time.
     let rows = [
         (
             "slices drawn",
@@ -200,6 +204,7 @@ fn text(report: &VolumeReport, out: Option<&std::path::Path>) -> String {
     for (name, value) in rows {
         let _ = writeln!(text, "{name:<20} {value}");
     }
+    // Only volumes drawn by Pixel-Planes 5 have bounds.
     if let Some(planes) = &report.pixel_planes {
         text.push_str(&bounds(planes));
     }

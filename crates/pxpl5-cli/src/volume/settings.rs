@@ -104,6 +104,7 @@ impl SettingOptions {
             ("draw.strobes", "--strobes", &self.strobes),
             ("on", "--on", &self.on),
         ];
+        // Options override the paper's settings, and `--set` overrides options.
         for (path, option, text) in options {
             text.as_ref().map(|text| settings.set(path, text, option)).transpose()?;
         }

@@ -54,15 +54,18 @@ impl VolumeSpace {
             _ => return Err(wrong(place, "sweep", "a table [sweep.grid] with lists or ranges of settings", "none")),
         };
         let mut settings: BTreeMap<String, Value> = leaves(file).into_iter().collect();
+        // Settings of the command line override the file.
         for assignment in sets {
             let (path, value) =
                 assignment.split_once('=').ok_or_else(|| wrong("--set", "PATH=VALUE", "an equals sign", assignment))?;
             settings.insert(path.trim().to_owned(), Value::from(value.trim()));
         }
         let axes = axes(sweep, place)?;
+        // Every path must exist before any volume is drawn.
         for path in settings.keys().chain(axes.iter().flat_map(|axis| &axis.paths)) {
             check_path(path, place)?;
         }
+        // Multiply with care: the product of long axes can overflow.
         let points = axes.iter().try_fold(1u64, |all, axis| all.checked_mul(axis.len()));
         let points = points.filter(|points| *points <= MAX_POINTS);
         let points = points.ok_or_else(|| wrong(place, "sweep", &format!("at most {MAX_POINTS} points"), "more"))?;
@@ -169,6 +172,7 @@ fn values(path: &str, value: &Value, place: &str) -> Result<Values, CliError> {
             let whole = |key: &str| range.get(key).and_then(Value::as_integer);
             let step = range.get("step").map_or(Some(1), Value::as_integer).filter(|step| *step > 0);
             let known = range.keys().all(|key| ["from", "to", "step"].contains(&key.as_str()));
+            // A range that ends before its beginning is refused.
             let length = whole("to").zip(whole("from")).and_then(|(to, from)| to.checked_sub(from));
             match (whole("from"), step, length.filter(|length| known && *length >= 0)) {
                 (Some(from), Some(step), Some(length)) => {

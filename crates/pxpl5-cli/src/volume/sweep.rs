@@ -134,6 +134,7 @@ fn header(space: &VolumeSpace, measure: BTreeMap<String, String>) -> Result<Head
     // The hash also covers the contents of model files, so that a changed file is not resumed.
     let version = env!("CARGO_PKG_VERSION");
     let inputs: Vec<String> = scene_files(space).iter().map(|path| of_contents(path)).collect();
+    // The hash covers everything that determines the rows.
     let named = json!([version, settings, axes, measure, inputs]).to_string();
     let seed = space.settings.get("seed").and_then(toml::Value::as_integer).unwrap_or(1);
     serde_json::from_value(json!({
@@ -199,6 +200,7 @@ fn row(space: &VolumeSpace, point: u64, scenes: &mut Scenes, how: (&Threads, Bud
         trace_hash: None,
         error: None,
     };
+    // Errors become part of the row, so that the other points go on.
     match drawn(&all, point, scenes, how) {
         Ok(volume) => {
             let report = serde_json::to_value(volume.report()).unwrap_or_default();
@@ -228,6 +230,7 @@ fn drawn(
         settings.set(path, &plain(value), &place)?;
     }
     let name = all.get("scene").map_or_else(|| "mig".to_owned(), plain);
+    // `scene` and `triangles` are not settings of the volume.
     let triangles = match all.get("triangles").map(plain) {
         None => None,
         Some(text) => Some(text.parse::<u64>().ok().filter(|count| *count > 0).ok_or_else(|| {
@@ -236,6 +239,7 @@ fn drawn(
     };
     let scene = scenes.get(&name, triangles)?;
     settings.swept_display()?;
+    // Each point has to fit the budget by itself.
     let one = VolumeWork::of(&settings, &scene, threads.0.get()).estimate();
     let seconds = one.seconds / threads.0.get() as f64;
     budget.admit_estimate(Estimate { seconds, ..one }, SMALLER)?;
