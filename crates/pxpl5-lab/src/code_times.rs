@@ -167,6 +167,7 @@ pub fn code_times(version: CodeVersion, of: CodeUse) -> Result<CodeTimes, Experi
     // The clipper is measured one eye after the other. A pass for both eyes always clips the same fractions, which
     // leaves the equations underdetermined.
     let cut = measured(of, Rig::of_list(version, "full-screen:30", 1, beyond_the_guard_band)?, false, sample)?;
+    // Triangles, spheres and the beginning of a pass are measured in separate runs.
     let scenes: Vec<Vec<Sample>> =
         SCENES.iter().map(|scene| samples(version, of, scene, BOARDS)).collect::<Result<_, _>>()?;
     let of_spheres: Vec<Vec<SphereSample>> =
@@ -177,6 +178,7 @@ pub fn code_times(version: CodeVersion, of: CodeUse) -> Result<CodeTimes, Experi
     let token_entry_ns = messages::token_entry_ns(&traffic);
     let messages: Vec<f64> = traffic.iter().map(|traffic| traffic.message_ns(token_entry_ns)).collect();
     let range = [0.0; 2];
+    // Times that other times influence start at zero.
     let mut times = CodeTimes {
         triangle_ns: 0.0,
         triangle_range_ns: range,
@@ -202,12 +204,15 @@ pub fn code_times(version: CodeVersion, of: CodeUse) -> Result<CodeTimes, Experi
 impl CodeTimes {
     /// Computes the times of entries, triangles and the clipper, each from the samples minus the other two.
     fn improve(&mut self, of: CodeUse, cut: &[Sample], scenes: &[Vec<Sample>]) {
+        // Clipped triangles are counted apart, so their time is subtracted here.
         let of_clipper = self.triangle_ns + self.guard_ns;
         let uncut = |sample: &Sample| [sample[0], sample[2], sample[3] - of_clipper * sample[1]];
+        // Only PPHIGS bins triangles by region; Slats sends every clump to all regions.
         if of == CodeUse::Pphigs {
             self.entry_ns = solve(scenes.iter().flatten().map(uncut).map(|[uncut, n, ns]| ([n, uncut], ns)));
         }
         let entry_ns = self.entry_ns;
+        // The mean of a scene weighs all of its triangles equally.
         let of_scene = |samples: &Vec<Sample>| {
             let rows = samples.iter().map(uncut);
             let [n, ns] = rows.fold([0.0; 2], |sum, [uncut, n, ns]| [sum[0] + uncut, sum[1] + ns - entry_ns * n]);
@@ -216,6 +221,7 @@ impl CodeTimes {
         let means: Vec<f64> = scenes.iter().map(of_scene).collect();
         self.triangle_ns = mean(means.iter().copied());
         self.triangle_range_ns = extremes(&means);
+        // The clipper's time is the rest of the run with clipped triangles.
         let without_entries = |[uncut, cut, n, ns]: &Sample| ([*cut, *uncut], ns - entry_ns * n);
         self.guard_ns = solve(cut.iter().map(without_entries)) - self.triangle_ns;
     }
@@ -250,6 +256,7 @@ fn solve(rows: impl Iterator<Item = ([f64; 2], f64)>) -> f64 {
             *sum += value;
         }
     }
+    // Solve the normal equations of two unknowns.
     let [aa, ab, bb, ay, by] = sums;
     if bb == 0.0 { ay / aa } else { (ay * bb - by * ab) / (aa * bb - ab * ab) }
 }
@@ -286,6 +293,7 @@ impl Rig {
         let hmd = Hmd::new(HmdConfig::unc()).map_err(|error| ExperimentError::Scene(error.to_string()))?;
         let (views, _) = views(&scene, 1, hmd, 2);
         let share = Share::new(list, 0, boards);
+        // The board holds its share of the display list in memory, as in a run.
         let mut processor = Processor::new(NodeId(1), MEMORY, version, MachineConfig::small_hmd().i860);
         share.install(&mut processor).map_err(fault)?;
         Ok(Self { share, views, processor })
@@ -316,11 +324,13 @@ fn measured<const N: usize>(
 ) -> Result<Vec<[f64; N]>, ExperimentError> {
     let mut samples = Vec::new();
     let parts = of.parts(&rig.share);
+    // Each view moves the head, so that other triangles are visible.
     for number in 0..VIEWS {
         let view = rig.view(number);
         for part in &parts {
             let passes = [0, 1].map(|eye| part.transform(&view, eye, of.picture()));
             let [left, right] = &passes;
+            // Slats transforms both eyes in one pass, whose parts are one sample.
             if together && let Some(made) = left.run_code_for_both(right, &mut rig.processor, 0).map_err(fault)? {
                 let [left, right] = [sample(left, &made[0]), sample(right, &made[1])];
                 samples.push(std::array::from_fn(|n| left[n] + right[n]));
@@ -332,6 +342,7 @@ fn measured<const N: usize>(
             }
         }
     }
+    // The first pass fills the caches.
     samples.remove(0);
     Ok(samples)
 }
@@ -418,6 +429,7 @@ fn edit_ns(version: CodeVersion) -> Result<f64, ExperimentError> {
         let view = FrameView { number: ViewNumber::FIRST, eyes: Vec::new(), edits };
         Editing(&view).by_code(&GpTiming::PAPERS, &mut processor).map(|span| span.0 as f64 / 1e3).map_err(fault)
     };
+    // The difference removes the constant cost of a message.
     let [one, more] = [ns(1)?, ns(1 + EDITS)?];
     Ok((more - one) / f64::from(EDITS))
 }

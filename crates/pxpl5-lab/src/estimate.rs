@@ -146,6 +146,7 @@ impl Work {
     #[must_use]
     pub fn of(plan: &Plan, scene: &Scene, keeps_everything: bool) -> Self {
         let settings = plan.pipeline.settings();
+        // Settings that a pipeline does not have count as 0.
         let whole = |key: &str| match settings.iter().find(|(name, _)| *name == key) {
             Some((_, KeyValue::Whole(value))) => *value,
             _ => 0,
@@ -164,6 +165,7 @@ impl Work {
             is_tracked: plan.head.is_some(),
             computes_all_pixels: plan.pixels == Pixels::All,
         };
+        // A pipeline shows at most one picture in a field, and fewer if TRANSFORM takes longer.
         work.pictures_a_field = (1.0 / work.fields_of_transform()).min(1.0);
         work
     }
@@ -199,6 +201,7 @@ impl Work {
     #[must_use]
     pub fn bytes(&self) -> f64 {
         let fields = self.fields as f64;
+        // Observations dominate long runs; lists dominate large scenes.
         let kept = if self.keeps_everything {
             fields * (FIELD + COPY * self.most_blocks())
         } else {
@@ -216,6 +219,7 @@ impl Work {
         let (fields, eyes, primitives) = (self.fields as f64, self.eyes as f64, self.primitives as f64);
         let as_code = if self.is_cycle_level { PRIMITIVE_AS_CODE_S * primitives } else { 0.0 };
         let picture = eyes * (PICTURE_S + GP_S * self.gps as f64 + as_code);
+        // Fields, pictures and blocks each add their own cost.
         let run = fields * FIELD_S + fields * self.pictures_a_field * picture + fields * self.blocks() * BLOCK_S;
         let load = if self.is_by_form { LOAD_S * eyes * primitives } else { 0.0 };
         let (runs, judged) = if self.is_tracked { (RUNS_OF_HEAD, fields * JUDGED_FIELD_S) } else { (1.0, 0.0) };

@@ -68,6 +68,7 @@ fn run(triangles: u32, n_gps: usize, n_renderers: usize) -> Result<Point, Experi
 
 fn run_once(triangles: u32, n_gps: usize, n_renderers: usize) -> Result<Point, ExperimentError> {
     let mut config = MachineConfig { n_gps, n_renderers, ..MachineConfig::preset("large")? };
+    // The memory of a real board would limit the scenes.
     config.gp.memory_bytes = MEMORY_BYTES;
     config.gp.bin_bytes = MEMORY_BYTES;
     let fields = fields(&config, u64::from(triangles))?;
@@ -75,6 +76,7 @@ fn run_once(triangles: u32, n_gps: usize, n_renderers: usize) -> Result<Point, E
     let experiment = Experiment::new(config, RenderingControl::stereo(), scene).fields(fields).pixels(Pixels::Off);
     let run = experiment.host(Workstation::new()).run();
     let primitives = triangles as usize;
+    // A machine that shows no frame in time still has a row.
     let outcome = match run {
         Err(ExperimentError::TooShort { .. }) => {
             return Ok(Point { primitives, n_gps, n_renderers, ..Point::default() });
@@ -155,6 +157,7 @@ fn application(scene: &'static str, machine: &'static str) -> Result<Application
     let seeds: Vec<u64> = (1..=SEEDS).collect();
     let mut latencies = Vec::new();
     let mut hz = 0.0;
+    // Pool the latencies of all seeds, and average their rates.
     for outcome in parallel::map(&seeds, |seed| run_seed(&experiment, *seed)) {
         let (of_seed, updates_hz) = outcome.map_err(ExperimentError::Stopped)?;
         latencies.extend(of_seed);
@@ -199,6 +202,7 @@ pub fn markdown(triangles: &[Point], machines: &[Point], applications: &[Applica
         power(triangles, 100_000, |p| p.host_ms),
         power(triangles, 100_000, |p| p.latency_fields),
     );
+    // First the growth with triangles, then the growth with boards.
     table(&mut text, triangles);
     text.push_str("\n```text\n");
     chart(&mut text, triangles);
@@ -218,6 +222,7 @@ pub fn markdown(triangles: &[Point], machines: &[Point], applications: &[Applica
          motion, 616 fields\neach (300 frames at 30 Hz); the published Mig is 4.61 fields (sd 0.589).\n\n\
          | scene | machine | latency, fields | sd | frames/s | frames |\n|---|---|---|---|---|---|\n",
     );
+    // The papers' scenes on three possible machines.
     for a in applications {
         let [mean, sd] = a.latency_fields;
         let _ = writeln!(

@@ -100,6 +100,7 @@ pub fn walk(text: &str, path: &[Vec3]) -> Result<Walk, MotionError> {
         "a walk of -100 to 100 metres per second, such as walk:1, and a seed to look around by, such as walk:1:7";
     let wrong = || MotionError::Number { found: text.to_owned(), expected };
     let numbers = text.strip_prefix("walk:").ok_or_else(wrong)?;
+    // The speed comes before the optional seed.
     let speed = numbers.split(':').next().and_then(|speed| within(speed, FASTEST_SLIDE)).ok_or_else(wrong)?;
     let seed = match numbers.split_once(':') {
         Some((_, seed)) => Some(seed.parse().map_err(|_| wrong())?),
@@ -107,6 +108,7 @@ pub fn walk(text: &str, path: &[Vec3]) -> Result<Walk, MotionError> {
     };
     let no_path = |_| MotionError::NoPath { found: text.to_owned() };
     let corners: Vec<DVec3> = path.iter().map(|corner| corner.as_dvec3()).collect();
+    // An empty path is the error of a scene without a path.
     let ahead = Walk::new(&corners, speed).map_err(no_path)?;
     Ok(match seed {
         Some(seed) => ahead.looking_around(seed),
@@ -139,6 +141,7 @@ pub fn motion(text: &str) -> Result<Arc<dyn Motion + Send + Sync>, MotionError> 
 /// Fails in the same cases as [`motion`].
 pub fn replayed(text: &str, replay: &Replay) -> Result<Arc<dyn Motion + Send + Sync>, MotionError> {
     let number = |found: &str, expected| MotionError::Number { found: found.to_owned(), expected };
+    // Each motion has a name, and most have parameters after a colon.
     Ok(match text.split_once(':').unwrap_or((text, "")) {
         ("still", "") => Arc::new(Still(Pose::IDENTITY)),
         ("pendulum", "") => Arc::new(Pendulum::rig()),

@@ -100,6 +100,7 @@ impl PixelWorker for PixelThreads {
     /// Panics when a worker has panicked, which is a bug.
     fn finish(self: Box<Self>) -> u64 {
         let Self { regions, waiting, threads, own } = *self;
+        // Closing the queue ends the workers once it is empty.
         drop(regions);
         let own = own + compute_all(&waiting);
         threads.into_iter().map(|thread| thread.join().expect("a pixel worker panicked")).sum::<u64>() + own

@@ -138,10 +138,13 @@ pub fn intervals(bench: &Bench) -> Vec<Interval> {
     let variations = variations();
     let nominal = measure(&bench, Vec::new());
     let ends: Vec<_> = variations.iter().flat_map(|v| [(v, v.range.0), (v, v.range.1)]).collect();
+    // One at a time: both ends of every range.
     let at_ends = crate::parallel::map(&ends, |(v, value)| measure(&bench, vec![(v.path.clone(), *value)]));
     let samples: Vec<u64> = (0..SAMPLES).collect();
+    // Joint: machines with all parameters drawn at random.
     let joint = crate::parallel::map(&samples, |sample| measure(&bench, draw(&variations, *sample)));
     let neighbours = bench.reading.neighbours();
+    // Interpretations: one question answered otherwise.
     let read = crate::parallel::map(&neighbours, |reading| measure(&bench.with(*reading), Vec::new()));
     // Collect the designs for each figure. A missing value counts as the value for the presets.
     let mut intervals = Vec::new();
@@ -228,6 +231,7 @@ impl Interval {
     /// Adds the values under other interpretations.
     fn add_readings(&mut self, usual: &Reading, values: impl Iterator<Item = (Reading, f64)>) {
         let reach = |value: f64| (value / self.nominal - 1.0).abs();
+        // Interpretations without a visible effect are left out.
         let moving = values.filter(|(_, value)| reach(*value) > VISIBLE);
         let mut rules: Vec<_> = moving.map(|(reading, value)| (reading.difference(usual), value)).collect();
         rules.sort_by(|a, b| reach(b.1).total_cmp(&reach(a.1)));
@@ -243,6 +247,7 @@ fn percentile(sorted: &[f64], share: f64) -> f64 {
 
 fn draw(variations: &[Variation], sample: u64) -> Vec<(String, u64)> {
     let drawn = (0..).zip(variations).map(|(index, v)| {
+        // The hash depends on the sample and the parameter only, so samples are reproducible.
         let hash = mix(SEED ^ mix(sample * 1_000 + index));
         (v.path.clone(), v.range.0 + hash % (v.range.1 - v.range.0 + 1))
     });

@@ -187,6 +187,7 @@ impl Manifest {
     #[must_use]
     pub fn replace(&mut self, before: &Self, folder: &Path) -> Vec<PathBuf> {
         let gone = before.files.iter().chain(&before.replaced).filter(|entry| !self.lists(&entry.name));
+        // Files that the user has changed are kept.
         let gone: Vec<ManifestEntry> = gone.filter(|entry| is_unchanged(folder, entry)).cloned().collect();
         self.replaced = gone;
         self.replaced.iter().map(|entry| folder.join(&entry.name)).collect()

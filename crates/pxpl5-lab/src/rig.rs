@@ -106,6 +106,7 @@ impl Rig {
     pub fn measure(&self, machine: &MachineConfig, pipeline: Arc<dyn Pipeline>) -> Result<Measurement, RigRunError> {
         let tracker = TrackerModel::new(self.tracker.clone())?;
         check_frames(machine, pipeline.as_ref())?;
+        // The pendulum determines when frames start.
         let sightings = self.rig.sightings(&tracker, self.seed, self.passes.max(2))?;
         let experiment = self.experiment(machine, pipeline, &sightings)?;
         // Watch the screen during the run, then read the pipeline's records for the inside measurement.
@@ -121,6 +122,7 @@ impl Rig {
             started_ps: frame.sampled_at.unwrap_or(frame.transform_at).0,
             shown_ps: frame.shown_at.0,
         });
+        // Compare the oscilloscope's times with the pipeline's time stamps.
         let measured = self.rig.compare(&tracker, photodiode.place_ps, &oscilloscope, inside.collect())?;
         let counted = frames.iter().map(|frame| behind_the_retrace(outcome.record(), frame.shown_at)).max();
         Ok(measured.counted_in_the_scan(counted.unwrap_or_default()))
@@ -134,6 +136,7 @@ impl Rig {
         pipeline: Arc<dyn Pipeline>,
         sightings: &[Sighting],
     ) -> Result<Experiment, RigRunError> {
+        // Even sightings make a light frame, odd ones a dark frame.
         let reports = (0..).zip(sightings).map(|(number, sighting)| TrackerReport {
             solution: number,
             measured_ps: sighting.measured_ps,
@@ -149,6 +152,7 @@ impl Rig {
             .pixels(Pixels::Lazy)
             .host(Workstation::with_threads(1));
         let last_ps = sightings.last().map_or(0, |last| last.arrives_ps);
+        // The run ends half a period of the pendulum after the last sighting.
         let end = Time(last_ps + nearest_ps(self.rig.pendulum.period_s() / 2.0));
         let fields = experiment.build()?.record().display().period_at(end).0 + 1;
         Ok(experiment.fields(fields))
@@ -266,6 +270,7 @@ impl Photodiode {
         let Some(at) = display.lights(0, x, y, period) else { return };
         self.place_ps = self.place_ps.max(at.since(display.tick(period)).0);
         self.ring.push((record.ring().stats().messages, record.ring().is_idle()));
+        // A picture is read only if it can have changed.
         let is_light = self.unchanged().unwrap_or_else(|| brightness(display, x, y, period) >= LIGHT);
         self.samples.push((at.0, is_light));
     }
@@ -292,6 +297,7 @@ fn frames_asked_for(outcome: &Outcome, sightings: &[Sighting]) -> Result<Vec<Pic
     let arrived_at: BTreeMap<ViewNumber, Time> =
         sampled.iter().filter_map(|s| Some((s.number, s.arrived_at?))).collect();
     let mut first: BTreeMap<u64, PictureTimes> = BTreeMap::new();
+    // The first complete picture of a sighting counts.
     for times in outcome.pictures().iter().filter(|times| times.is_shown()) {
         if let Some(arrived) = arrived_at.get(&times.view) {
             first.entry(arrived.0).or_insert(*times);

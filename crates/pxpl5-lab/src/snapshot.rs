@@ -154,6 +154,7 @@ impl Snapshot {
         let value: Value =
             serde_json::from_str(text).map_err(|error| foreign(file, format!("not whole JSON: {error}")))?;
         let found = value.get("schema").and_then(Value::as_str).unwrap_or("none");
+        // A foreign file and another version get different errors.
         if !found.starts_with("pxpl5-snapshot/") {
             return Err(foreign(file, format!("expected schema {}, found {found}", Self::SCHEMA)));
         }
@@ -163,6 +164,7 @@ impl Snapshot {
             return Err(SnapshotError::Version { file, expected: Self::SCHEMA, found });
         }
         let sealed: Sealed = serde_json::from_value(value).map_err(|error| foreign(file, error.to_string()))?;
+        // The checksum detects every later change.
         let expected = sealed.snapshot.checksum();
         if sealed.checksum != expected {
             return Err(SnapshotError::Damaged { file: file.to_owned(), expected, found: sealed.checksum });

@@ -75,6 +75,7 @@ pub(super) fn traffic(version: CodeVersion, of: CodeUse, scene: &str) -> Result<
     let mut traffic = Traffic::default();
     for number in 0..VIEWS {
         let view = rig.view(number);
+        // Both pipelines are measured with the messages of their own protocol.
         match of {
             CodeUse::Pphigs => slave(&mut rig, of, &view, &mut traffic),
             CodeUse::Slats | CodeUse::SlatsLit => field(&mut rig, of, &view, &mut traffic),
@@ -92,9 +93,11 @@ pub(super) fn traffic(version: CodeVersion, of: CodeUse, scene: &str) -> Result<
 /// TRANSFORM, and reports both. For each eye the slave receives and passes on the token of every region.
 fn slave(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) -> Result<(), Fault> {
     let regions = of.picture().viewport.grid().regions() as u16;
+    // The host's view, then the master's permission, then the slave's report.
     traffic.receive(&mut rig.processor, 1 + view.to_words().len() as u32)?;
     traffic.receive(&mut rig.processor, ORDER)?;
     traffic.send_words(&mut rig.processor, ORDER)?;
+    // Each eye has its own TRANSFORM, report and tokens.
     for eye in 0..2 {
         if eye > 0 {
             traffic.receive(&mut rig.processor, ORDER)?;
@@ -119,6 +122,7 @@ fn token(
     traffic: &mut Traffic,
 ) -> Result<(), Fault> {
     let envelope = RegionEnvelope::default();
+    // Receive the token, send the bin of the region, and pass the token on.
     traffic.receive(processor, TOKEN)?;
     let span = Handing { pass, context, view: 0, region, envelope }.by_code(&GpTiming::PAPERS, processor)?;
     traffic.handed.push([pass.counts(region).total().into(), span.0 as f64 / 1e3]);
@@ -133,6 +137,7 @@ fn token(
 fn field(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) -> Result<(), Fault> {
     let regions = of.picture().viewport.grid().regions() as u16;
     traffic.receive(&mut rig.processor, view.to_words().len() as u32)?;
+    // Each clump is transformed and sent to all regions of both eyes as one chain.
     for clump in of.parts(&rig.share) {
         let passes = [0, 1].map(|eye| clump.transform(view, eye, of.picture()));
         if passes[0].run_code_for_both(&passes[1], &mut rig.processor, 0)?.is_none() {

@@ -90,11 +90,13 @@ struct Measured {
 fn measured(version: CodeVersion, boards: usize) -> Result<Measured, ExperimentError> {
     let mut rig = Rig::of_triangles(version, SCENE, boards)?;
     let triangles = f64::from(rig.share.counts().triangles);
+    // Strips without entries give the cost of a search, the others the cost of entries.
     let rows = searches(&mut rig).map_err(fault)?;
     let search_ns = mean(rows.iter().filter(|[entries, _]| *entries == 0.0).map(|[_, ns]| *ns));
     let [entries, more_ns] = rows.iter().fold([0.0; 2], |sum, [n, ns]| [sum[0] + n, sum[1] + ns - search_ns]);
     let entry_ns = more_ns / entries;
     let ends_ns = ends_ns(&mut rig).map_err(fault)?;
+    // The widest range of lines includes every triangle, the reversed range none.
     let all = [i32::MIN, i32::MAX];
     let passed_ns = between_ns(&mut rig, false, [i32::MAX, i32::MIN]).map_err(fault)?;
     let [on_screen, in_view] = [false, true].map(|in_view| between_ns(&mut rig, in_view, all).map_err(fault));
@@ -123,6 +125,7 @@ fn searches(rig: &mut Rig) -> Result<Vec<[f64; 2]>, ProcessorFault> {
     let counts = [PrimitiveCounts { triangles: rig.share.counts().triangles, spheres: 0 }; 5];
     let columns = GRID.columns() as u16;
     let mut rows = Vec::new();
+    // Each strip is one line, divided into five windows.
     for strip in 0..GRID.rows() as u16 {
         let windows: Vec<_> = (strip * columns..(strip + 1) * columns).map(RegionId).collect();
         let part = MemoryPart::WHOLE;

@@ -40,7 +40,9 @@ const DISTANCE_M: f32 = 2.0;
 pub fn edge_scene(yaw_deg: f64) -> Scene {
     let vertex =
         |x: f32, y: f32| Vertex { position: Vec3::new(x, y, -DISTANCE_M), normal: Vec3::Z, colour: [255, 255, 255] };
+    // The wall is far larger than the view, so only its right edge is visible.
     let vertices = vec![vertex(-9.0, -9.0), vertex(0.0, -9.0), vertex(0.0, 9.0), vertex(-9.0, 9.0)];
+    // The pan starts beside the edge, so that the edge is in the middle at the evaluated field.
     let (sin, cos) = yaw_deg.to_radians().sin_cos();
     let target = DVec3::new(-sin, 0.0, -cos).as_vec3();
     let motion = HeadMotion::new(HeadPath::Still { eye: Vec3::ZERO, target }, Sway::none());
@@ -81,6 +83,7 @@ pub fn edge_pictures(config: &MachineConfig, deg_per_s: f64) -> Result<EdgePictu
 /// Returns a field as scanned and as seen.
 fn draw(config: &MachineConfig, deg_per_s: f64, viewpoint: Viewpoint) -> Result<(RgbImage, RgbImage), ExperimentError> {
     let video = Video::new(FrameBufferConfig::NTSC.video).map_err(|e| ExperimentError::Scene(e.to_string()))?;
+    // Start the pan so that the edge is in the middle of the screen in the middle of the field.
     let middle = video.when(320, 240 + FieldParity::of_field(FIELD).first_line(), FIELD).unwrap_or_default();
     let scene = edge_scene(-deg_per_s * middle.0 as f64 * 1e-12);
     let pan = Arc::new(Pan::at(deg_per_s));
@@ -91,9 +94,11 @@ fn draw(config: &MachineConfig, deg_per_s: f64, viewpoint: Viewpoint) -> Result<
         .fields(FIELD.after(2).since(PeriodNumber::FIRST))
         .pixels(Pixels::Lazy)
         .run()?;
+    // Read the field as the display scanned it.
     let scanned = outcome.record().display_of_kind::<NtscDisplay>().and_then(|ntsc| ntsc.boards().first()?.seen(FIELD));
     let black = || RgbImage::new(video.width(), video.height() / 2);
     let picture = scanned.map_or_else(black, |field| field.picture());
+    // Compute the picture that the turning eye sees.
     let seen = as_seen(&picture, FIELD, &video, &Pan::at(deg_per_s));
     Ok((picture, seen))
 }

@@ -110,6 +110,7 @@ impl CompareQuery {
     /// Returns [`CompareError`] when a setting is invalid, or when the run is too short to evaluate.
     pub fn run(&self, finished: impl Fn(u64, u64) + Sync) -> Result<Comparison, CompareError> {
         let contenders = self.contenders()?;
+        // The first row serves to check the settings that all rows share.
         let any = self.any_plan(&contenders)?;
         let scene = any.load_scene()?;
         let runs = self.runs(&contenders);
@@ -123,6 +124,7 @@ impl CompareQuery {
             step();
             trial
         });
+        // Group the trials by row again, in the order in which they were created.
         let mut of_row = trials.into_iter();
         let rows: Vec<_> = contenders
             .iter()
@@ -182,6 +184,7 @@ impl CompareQuery {
         if plan.head.is_none() {
             return Err(CompareError::NoHead);
         }
+        // The run must be longer than the warm-up of every pipeline.
         let expected = (WARM_UP_PERIODS + 1, MOST_FIELDS);
         if !(expected.0..=expected.1).contains(&plan.fields) {
             return Err(CompareError::Fields { expected, found: plan.fields });
@@ -195,6 +198,7 @@ impl CompareQuery {
     }
 
     fn trial(&self, contender: &Contender, seed: u64, scene: &Arc<Scene>) -> Result<Trial, String> {
+        // Pixels are needed only for the picture of the first seed.
         let is_seen = self.pictures && self.seeds.first() == Some(&seed) && !contender.is_reference();
         let pixels = if is_seen { Pixels::Lazy } else { Pixels::Off };
         let plan = contender.plan(&self.shared, seed).map_err(|error| error.to_string())?;
@@ -208,12 +212,14 @@ impl CompareQuery {
         scene: &Arc<Scene>,
     ) -> Result<ComparisonRow, CompareError> {
         let plan = contender.plan(&self.shared, self.seeds[0])?;
+        // Failed runs are left out, and their first error is reported below.
         let ran: Vec<&Trial> = trials.iter().flatten().collect();
         let mut row = ComparisonRow::of(contender, plan.pipeline.as_ref(), &ran);
         if let Some(Ok(first)) = trials.first()
             && !contender.is_reference()
         {
             let experiment = plan.experiment(Arc::clone(scene)).rehearsed_as(first.rehearsed.clone());
+            // The dry run of the first trial is reused for every predictor.
             row.predictors = predictor_means(&experiment, contender.showing, first.errors.pixels.mean);
         }
         if self.limits && !contender.is_reference() {
@@ -221,6 +227,7 @@ impl CompareQuery {
             row.triangles_possible = LimitQuery::of_plan(&plan).search().ok().map(|limit| limit.triangles);
         }
         let error = trials.iter().find_map(|trial| trial.as_ref().err().cloned());
+        // A row that showed no picture explains the reason.
         let shown: usize = ran.iter().map(|trial| trial.shown).sum();
         row.failure = error.or_else(|| (shown == 0 && !row.is_judged()).then(|| nothing_shown(&row, plan.fields)));
         Ok(row)

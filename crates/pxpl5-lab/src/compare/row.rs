@@ -133,6 +133,7 @@ impl ComparisonRow {
     /// Combines the runs of a row. A row without runs has no numbers.
     pub(super) fn of(contender: &Contender, pipeline: &dyn Pipeline, trials: &[&Trial]) -> Self {
         let is_reference = contender.showing == Showing::Ideal;
+        // The reference is computed for each pixel's own instant and has no latency.
         let definition = if is_reference {
             "none: every pixel's own moment, computed and not timed"
         } else {
@@ -200,6 +201,7 @@ fn causes(trials: &[&Trial]) -> Vec<CauseShare> {
     if split.is_empty() {
         return Vec::new();
     }
+    // Each cause gets the mean of its contribution over all seeds.
     let of_cause = |cause: Cause| {
         let px: Vec<f64> = split
             .iter()
@@ -210,6 +212,7 @@ fn causes(trials: &[&Trial]) -> Vec<CauseShare> {
         CauseShare { cause: Some(cause), px: MeanInterval::of(&px) }
     };
     let mut shares: Vec<CauseShare> = Cause::ALL.into_iter().map(of_cause).collect();
+    // The part of the error that no single cause explains comes last.
     let interaction: Vec<f64> = split.iter().map(|causes| causes.interaction_px).collect();
     shares.push(CauseShare { cause: None, px: MeanInterval::of(&interaction) });
     shares
@@ -236,6 +239,7 @@ impl ErrorSpread {
 /// that the given share of numbers does not exceed.
 fn hundredths(sorted: &[f64]) -> Vec<f64> {
     let Some(least) = sorted.first() else { return Vec::new() };
+    // Position of the smallest number that the given percentage does not exceed.
     let place = |percent: usize| (sorted.len() * percent).div_ceil(100).max(1) - 1;
     std::iter::once(*least).chain((1..=100).map(|percent| sorted[place(percent)])).collect()
 }

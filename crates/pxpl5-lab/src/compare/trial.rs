@@ -54,6 +54,7 @@ impl Contender {
 impl Trial {
     fn of(outcome: &Outcome, showing: Showing) -> Self {
         let report = outcome.report();
+        // The reference has errors but no times.
         let is_timed = showing != Showing::Ideal;
         let times = |values: Vec<f64>| if is_timed { values } else { Vec::new() };
         let errors = PixelErrors::shown(outcome, showing);
@@ -93,6 +94,7 @@ fn turns_ms(outcome: &Outcome) -> Vec<f64> {
 /// milliseconds.
 fn prediction_intervals_ms(outcome: &Outcome) -> Vec<f64> {
     let Some(head) = outcome.head() else { return Vec::new() };
+    // Only views whose pictures were shown completely count.
     let views: BTreeSet<ViewNumber> = outcome.complete_pictures().map(|times| times.view).collect();
     let sampled = head.sampled().into_iter().filter(|sampled| views.contains(&sampled.number));
     sampled

@@ -112,6 +112,7 @@ impl HeadChoice {
         .map(|(key, value)| (key.to_owned(), Value::from(value)))
         .into();
         all.extend(self.head.judge_at_m().map(|metres| ("head.judge_at".to_owned(), Value::from(metres))));
+        // Only recordings have an end, axes and columns.
         if is_recording(&self.motion) {
             let Replay { format, end } = &self.replay;
             all.push(("head.end".to_owned(), Value::from(end.name())));
@@ -132,6 +133,7 @@ fn moving(
     name: &str,
     replay: &Replay,
 ) -> Result<Arc<dyn tracking::motion::Motion + Send + Sync>, FileError> {
+    // A recording in memory has priority over a file.
     if let Some(contents) = file.contents(name).filter(|_| is_recording(name)) {
         let recording = recording_of(&**contents, name, replay);
         return Ok(Arc::new(recording.map_err(|error| refused(file, "head.motion", &error))?));

@@ -83,16 +83,19 @@ const RENAMED: [(&str, &str); 1] = [("head.display", "head.raster")];
 pub(super) fn keys(registry: &Registry) -> Vec<FileKey> {
     let pipelines: Vec<&str> = registry.pipelines().iter().map(|entry| entry.name).collect();
     let displays: Vec<&str> = registry.displays().iter().map(|entry| entry.name).collect();
+    // The names of pipelines and displays depend on the registry.
     let mut all = vec![
         common("pipeline", &pipelines.join(", ")),
         common("display", &format!("what the pipeline draws for: {}", displays.join(", "))),
     ];
     all.extend(COMMON.iter().map(|(path, about)| common(path, about)));
+    // One key for each column of a recording.
     all.extend(Columns::fields().map(|field| FileKey {
         path: format!("{COLUMNS}{field}"),
         about: "name or number of the column of a recording that holds it; _ms, _us, _ns and _mm are units, else s and m".to_owned(),
         applies_to: Vec::new(),
     }));
+    // Keys of pipelines state the families to which they apply.
     let of_pipelines = registry.keys().into_iter();
     all.extend(of_pipelines.map(|(key, applies_to)| FileKey {
         path: key.name.to_owned(),
@@ -109,6 +112,7 @@ fn common(path: &str, about: &str) -> FileKey {
 /// Returns the full path of a key, or `None` for an unknown key. The prefix `machine.` of a machine's parameter is
 /// optional.
 pub(super) fn canonical(registry: &Registry, path: &str) -> Option<String> {
+    // Former names of keys are still accepted.
     let path = RENAMED.iter().find(|(before, _)| *before == path).map_or(path, |(_, now)| now);
     if is_key(registry, path) || is_machine_parameter(registry, path) || is_tracking_parameter(path) {
         return Some(path.to_owned());

@@ -152,6 +152,7 @@ impl ExperimentFile {
         for (key, value) in values {
             let at = spans.get_ref().get_key_value(key.as_str());
             let start = at.map_or(0, |(key, _)| key.span().start);
+            // The table of a sweep is kept as a whole and checked later.
             if key == "sweep" {
                 self.sweep = Some(Setting { value, place: place(text, name, start), folder: folder.to_owned() });
                 let inner = at.map_or_else(Vec::new, |(_, value)| starts("sweep", value.get_ref()));
@@ -227,6 +228,7 @@ impl ExperimentFile {
             place: place.to_owned(),
             reason: format!("expected path=value, found `{assignment}`"),
         })?;
+        // Numbers and lists need no quotes; any other text is taken literally.
         let parsed: Result<toml::Table, _> = toml::from_str(&format!("value = {text}"));
         let value = parsed.ok().filter(|table| table.len() == 1).and_then(|mut table| table.remove("value"));
         self.set(path.trim(), value.unwrap_or_else(|| Value::String(text.trim().to_owned())), place)
@@ -287,6 +289,7 @@ fn flat(
     spans: Option<&toml::de::DeValue<'_>>,
     start: usize,
 ) -> Vec<(String, Value, usize)> {
+    // A value that is no table is a leaf.
     let table = match value {
         Value::Table(table) if !table.is_empty() => table,
         leaf => return vec![(path, leaf, start)],

@@ -60,6 +60,7 @@ impl MotionChoice {
         let path = file.choice("motion.path", &paths)?.flatten();
         let takes_distance = !matches!(path, None | Some(PathChoice::Pan { .. }));
         let takes_rate = matches!(path, Some(PathChoice::Orbit { .. } | PathChoice::Pan { .. }));
+        // A setting without effect is an error, not ignored.
         for (key, taken) in [("motion.distance", takes_distance), ("motion.deg_per_s", takes_rate)] {
             if let (Some(setting), false) = (file.get(key), taken) {
                 return Err(wrong(key, setting, "nothing: this motion.path does not take it"));
@@ -72,6 +73,7 @@ impl MotionChoice {
     pub(super) fn motion(&self, scene: &Scene) -> Result<HeadMotion, FileError> {
         let own = scene.motion();
         let path = self.path.map_or(*own.path(), |path| path.around(scene));
+        // A replaced path loses the scene's own sway.
         let own_scale = if self.path.is_none() { own.sway().scale } else { 0.0 };
         let scale = match self.path {
             Some(PathChoice::Look { .. }) => self.sway.unwrap_or(1.0),

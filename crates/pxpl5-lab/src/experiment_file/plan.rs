@@ -104,6 +104,7 @@ impl ExperimentFile {
     ///
     /// Returns a [`FileError`] that names the first setting that is wrong or missing.
     pub fn resolve(&self) -> Result<Plan, FileError> {
+        // The pipeline comes first, because other settings depend on it.
         let (entry, given) = self.pipeline()?;
         let pipeline = (entry.build)(&given);
         let seed = self.seed()?;
@@ -146,6 +147,7 @@ impl ExperimentFile {
         let entry = self.choice("pipeline", &names)?.ok_or(missing)?;
         self.refuse_keys_of_others(entry)?;
         let mut given = PipelineSettings::default();
+        // Collect the values of the pipeline's own keys.
         for key in entry.keys {
             if let Some(value) = self.pipeline_key(key)? {
                 given.set(key.name, value);
@@ -190,6 +192,7 @@ impl ExperimentFile {
     fn level(&self, entry: &PipelineEntry, has_head: bool) -> Result<Level, FileError> {
         let choices = Level::ALL.map(|level| (level.name(), level));
         let level = self.choice("level", &choices)?.unwrap_or(Level::Transaction);
+        // A closed form does not cover tracked heads.
         let has_form = entry.closed_form.is_some() && !has_head;
         match self.get("level").filter(|_| level == Level::Analytic && !has_form) {
             Some(setting) => Err(wrong("level", setting, "transaction or cycle for this pipeline or a head.motion")),
@@ -202,12 +205,14 @@ impl ExperimentFile {
         let preset = self.text("machine.preset")?.unwrap_or(entry.preset);
         let place = self.get("machine.preset").map_or("machine", |setting| &setting.place);
         let machine = MachineConfig::preset(preset).map_err(|error| refused(place, error))?;
+        // Start from the preset, with the parameters of every pipeline's firmware.
         let mut machine = self.registry().machine_of(machine);
         if let Some(display) = self.display()? {
             machine.displays = vec![display];
             let place = self.get("display").map_or("display", |setting| &setting.place);
             check_faces(&machine, pipeline).map_err(|error| refused(place, error))?;
         }
+        // The pipeline adapts the machine to its needs.
         let mut machine = pipeline.adapt(machine);
         if let Some(code) = self.choice("machine.code", &CODES)? {
             machine.code = code;
@@ -215,6 +220,7 @@ impl ExperimentFile {
         if self.choice("machine.times", &TIMES)? == Some(true) {
             machine = machine.with_times_of_code();
         }
+        // Remember the adapted machine to detect parameters that are set twice.
         let adapted = machine.clone();
         for (path, setting) in &self.settings {
             if let Some(parameter) =
@@ -225,6 +231,7 @@ impl ExperimentFile {
                 machine.set(parameter, value).map_err(|error| refused(&setting.place, error))?;
             }
         }
+        // Parameters are valid one by one, but may contradict each other.
         machine.check().map_err(|error| refused(self.place_of_error(&error), error))?;
         Ok(machine)
     }

@@ -32,6 +32,7 @@ impl SceneChoice {
         let name = if is_file(name) { beside(&folder, name) } else { name.to_owned() };
         let triangles = file.integer("triangles", 1..=u64::from(u32::MAX))?.map(|n| n as usize);
         let placement = if file.flag("fit")?.unwrap_or(true) { Placement::Fitted } else { Placement::AsInFile };
+        // Built-in scenes are already in the view.
         if let (Some(setting), false) = (file.get("fit"), is_file(&name)) {
             return Err(wrong("fit", setting, "nothing: only model files are fitted into the view"));
         }
@@ -70,6 +71,7 @@ impl SceneChoice {
             Some(n) if n < whole.triangles().len() + whole.spheres().len() => Arc::new(whole.decimated(n)?),
             _ => whole,
         };
+        // The scene's own motion needs no copy of the scene.
         if self.motion == MotionChoice::default() {
             return Ok(scene);
         }

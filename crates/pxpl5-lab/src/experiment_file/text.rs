@@ -72,6 +72,7 @@ impl Plan {
     /// excluded.
     #[must_use]
     pub fn fingerprint(&self) -> Fingerprint {
+        // These settings do not change the simulated result.
         let outside = ["title", "pixels", "measure", "output.", "published."];
         let settings = self.settings();
         let inside = settings.values.iter().filter(|(path, _)| !outside.iter().any(|o| path.starts_with(o)));
@@ -94,6 +95,7 @@ impl Plan {
 
     fn scene_settings(&self, all: &mut Settings) {
         all.put("scene", self.scene.name.clone());
+        // `fit` and `cull` are written only if they differ from their defaults.
         if self.scene.placement == Placement::AsInFile {
             all.put("fit", false);
         }
@@ -143,6 +145,7 @@ impl Settings {
         self.put("machine.code", machine.code_name());
         self.put("machine.n_gps", machine.n_gps as i64);
         self.put("machine.n_renderers", machine.n_renderers as i64);
+        // The remarks name the values of the preset that differ.
         let preset = MachineConfig::preset(&machine.preset).map(|preset| preset.parameters()).unwrap_or_default();
         for parameter in machine.parameters().into_iter().filter(|parameter| !parameter.read_only) {
             self.parameter(&format!("machine.{}", parameter.path), &parameter, &preset);

@@ -65,6 +65,7 @@ pub(super) fn read(file: &ExperimentFile, tracker: &str) -> Result<Tables, FileE
     let own = known.as_ref().map_or("", |(_, own)| *own);
     for (path, setting) in &file.settings {
         let Some((table, name)) = path.strip_prefix(PREFIX).and_then(|path| path.split_once('.')) else { continue };
+        // Facts of the papers cannot be changed.
         refuse_facts(path, setting)?;
         if !applies(table, own) && !own.is_empty() {
             let reason = format!("{path} does not apply to head.tracker = {tracker}; leave it out");
@@ -74,6 +75,7 @@ pub(super) fn read(file: &ExperimentFile, tracker: &str) -> Result<Tables, FileE
             let reason = format!("{path} does not apply to head.tracker = {tracker}, {why}");
             return Err(FileError::Head { place: setting.place.clone(), reason });
         }
+        // Each assignment is checked together with the rest of its table.
         let value = file.parameter_value(path, setting)?;
         if let Some(table) = tables.named_mut(table) {
             let set = table.set(name, value).and_then(|()| table.check());

@@ -88,6 +88,7 @@ impl Applications {
 /// result. `make` must not run work on other threads. A thread that waits for them could take over work that requests
 /// the same key, and deadlock.
 fn find_or_make<K: Ord, T>(all: &Places<K, T>, key: K, make: impl FnOnce() -> Result<Arc<T>>) -> Result<Arc<T>> {
+    // The outer lock is held only to find the slot; the inner lock is held while the value is computed.
     let place = Arc::clone(locked(all).entry(key).or_default());
     let mut known = locked(&place);
     if let Some(known) = &*known {

@@ -69,10 +69,12 @@ impl FigureGroup {
         if !missed.is_empty() {
             text.push('\n');
         }
+        // Each miss is followed by its known cause.
         for row in missed {
             let _ = writeln!(text, "- **{}**: {}", row.id, row.cause);
         }
         text.push('\n');
+        // The experiments come last, for readers who want to repeat them.
         for row in &self.rows {
             let also: Vec<_> =
                 row.details.iter().map(|d| format!("{} {} {}", d.name, digits(d.value), d.unit)).collect();
@@ -123,6 +125,7 @@ impl Measurement {
     fn interval(&self, bench: &Bench, nominal: f64) -> Option<[f64; 2]> {
         let all = variations().into_iter().chain(photodiode_line());
         let moved = all.filter(|variation| self.moved_by.contains(&variation.path.as_str()));
+        // Each parameter is set to the low and to the high end of its range.
         let ends: Vec<_> = moved.flat_map(|v| [(v.path.clone(), v.range.0), (v.path, v.range.1)]).collect();
         let values = parallel::map(&ends, |end| {
             let changes = bench.changes.iter().cloned().chain([end.clone()]).collect();

@@ -85,6 +85,7 @@ pub(super) fn tracker_and_rendering(
     let head = Head::new(motion, TrackerConfig::optical_ceiling(), PredictorKind::None, 1);
     let head = head.map_err(|error| ExperimentError::Scene(error.to_string()))?;
     let experiment = Experiment::new(machine, pipeline, scene_named("full-screen:12")?);
+    // One run gives all stages from head to light.
     let outcome = experiment.head(head).fields(FIELDS).pixels(Pixels::Off).run()?;
     let Budget { tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, total_ms, .. } =
         Budget::of(&outcome);

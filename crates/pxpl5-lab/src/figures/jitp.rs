@@ -40,6 +40,7 @@ const MIDDLE_LINE: u32 = 240;
 const LAST_LINE: u32 = 478;
 
 pub(super) fn measurements() -> Vec<Measurement> {
+    // All figures of this group come from JITP and have no varied parameters.
     let row = |id, statement, value, experiment, cause, measure| Measurement {
         figure: free((id, "JITP", "raster"), statement, value, experiment, cause),
         measure,
@@ -121,6 +122,7 @@ fn error_of_field(bench: &Bench) -> Result<FigureValue> {
     // The evaluated pixel lies below the horizon, so a rotation about the vertical axis moves the pixel along a
     // smaller circle.
     let level = focal_px / f64::hypot(focal_px, f64::from(LAST_LINE) + 0.5 - height / 2.0);
+    // The measured angle is a chord, so it is converted to a rotation.
     let chord = (degrees(&outcome, COLUMN, LAST_LINE)? / 2.0).to_radians().sin();
     let turn_deg = 2.0 * (chord / level).asin().to_degrees();
     let scan_s = beam_s(&outcome, (0, 0), (COLUMN, LAST_LINE));
@@ -173,6 +175,7 @@ fn transforms(bench: &Bench) -> Result<FigureValue> {
     let counted = |viewpoint, fields| -> Result<u64> {
         Ok(run(free_slave(bench)?, viewpoint, Aim::Middle, fields)?.record().vertex_transforms())
     };
+    // The difference of two runs removes the start.
     let a_field = |viewpoint| -> Result<f64> {
         let before = counted(viewpoint, FIELD.0)?;
         Ok((counted(viewpoint, FIELD.0 + COUNTED)? - before) as f64 / COUNTED as f64)

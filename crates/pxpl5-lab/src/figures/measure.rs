@@ -77,6 +77,7 @@ impl Bench {
     /// Returns the bench with the times of primitives of executed code, for the code that each preset runs.
     #[must_use]
     pub fn with_times_of_code(mut self) -> Self {
+        // Each preset runs its own code, so each has its own times.
         for preset in PRESETS {
             let Ok(machine) = MachineConfig::preset(preset.name) else { continue };
             let by_code = machine.clone().with_times_of_code().gp.entries();
@@ -97,6 +98,7 @@ impl Bench {
     ///
     /// Returns [`ExperimentError`] if the experiment fails, and [`ExperimentError::Scene`] for an unknown figure.
     pub fn measure(&self, id: &str) -> Result<FigureValue> {
+        // Experiments that several figures need are cached.
         match id {
             "1" => Ok(self.trivial()?.region_copy_us.into()),
             "2" => self.trivial().map(|s| (s.first_copy_ms + s.last_copy_ms).into()),
@@ -142,6 +144,7 @@ impl Bench {
     pub fn machine(&self, preset: &str) -> std::result::Result<MachineConfig, ConfigError> {
         let mut machine = MachineConfig::preset(preset)?;
         for (path, value) in &self.changes {
+            // A path with a preset's name applies only to this preset.
             match path.split_once(':') {
                 Some((only, path)) if only == preset => machine.set(path, *value)?,
                 Some(_) => {}
@@ -162,6 +165,7 @@ impl Bench {
     /// Runs an experiment with a built-in scene at the bench's level, without pixels. The result is cached, because
     /// several figures and interpretations share experiments.
     fn run(&self, machine: MachineConfig, pipeline: impl Pipeline, scene: &str, fields: u64) -> Result<Arc<Summary>> {
+        // The key needs an experiment, but the scene is loaded only if the result is not cached.
         let empty = self.applications.scene("full-screen:1", false)?;
         let experiment = Experiment::new(machine, pipeline, empty).fields(fields).level(self.level);
         let make = || self.summarise(&experiment.clone().with_scene(scene_named(scene)?));
@@ -268,6 +272,7 @@ impl Bench {
     fn application(&self, scene: &'static str, seeds_of_one: u64) -> Result<FigureValue> {
         let samples_a_frame = if self.reading.samples == Samples::EachEye { 2 } else { 1 };
         let seeds: Vec<u64> = (1..=self.seeds.div_ceil(seeds_of_one)).collect();
+        // One seed gives one fly-through.
         let latencies = parallel::map(&seeds, |seed| {
             let summary = self.fly_through(scene, *seed, seeds.len() as u64)?;
             let samples = self.reading.latencies_ms(&summary).iter().take(samples_a_frame * self.frames as usize);
@@ -276,6 +281,7 @@ impl Bench {
         let latencies = latencies.into_iter().collect::<Result<Vec<Vec<f64>>>>()?.concat();
         let samples = latencies.len() as f64;
         let all = Statistics::of(latencies.into_iter());
+        // The ranking of interpretations also uses the deviation.
         let details = vec![
             detail("standard deviation", all.sd, "fields"),
             detail("least", all.min, "fields"),
@@ -293,6 +299,7 @@ impl Bench {
     }
 
     fn fly_through_once(&self, experiment: &Experiment, scene: &'static str, seed: u64, seeds: u64) -> Result<Summary> {
+        // At the analytic level the loads of all views are computed once for all seeds.
         if self.level != Level::Analytic {
             return self.summarise(experiment);
         }
@@ -375,6 +382,7 @@ fn touched(scene: &Arc<Scene>, n_views: u64) -> Result<f64> {
     for number in 0..n_views {
         let view = views(pxpl5_wire::ViewNumber(number), Time(number * VIEW_PERIOD_PS));
         for eye in 0..2 {
+            // Both eyes of every view count.
             let pass = share.transform(&view, eye, picture);
             let regions = (0..picture.viewport.grid().regions() as u16).map(pxpl5_wire::RegionId);
             entries += regions.map(|region| u64::from(pass.counts(region).triangles)).sum::<u64>();

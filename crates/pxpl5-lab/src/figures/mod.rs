@@ -105,6 +105,7 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
         row
     };
     let rows = || parallel::map(&FIGURES, with_step).into_iter().collect::<Result<Vec<_>, _>>();
+    // The parts below are closures, so that they can run in parallel.
     let of_code = || {
         let by_code = bench.clone().with_times_of_code();
         let rows = parallel::map(&FIGURES, |figure| row_of(&by_code, figure));
@@ -142,6 +143,7 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
         || parallel::both(|| parallel::both(readings, intervals), || parallel::both(families, of_application));
     let (((rows, groups), of_code), ((readings, intervals), (families, application_times))) =
         parallel::both(of_machine, of_models);
+    // Report the first error in the order of the parts.
     let (mut rows, groups, of_code, readings, families) = (rows?, groups?, of_code?, readings?, vec![families?]);
     fill(&mut rows, &intervals);
     Ok(Figures { rows, of_code, intervals, families, groups, readings, application_times: application_times? })

@@ -169,6 +169,7 @@ fn triangle_rate(bench: &Bench, preset: &str, shading: Shading) -> Result<Figure
 fn renderer_rate(bench: &Bench, shading: Shading) -> Result<FigureValue> {
     let machine = MachineConfig { n_renderers: 1, ..bench.machine("small-hmd")? };
     let outcome = drawn(machine, shading, TRIANGLES / 2, 2 * FIELDS)?;
+    // Idle time of the array does not count.
     let rates = outcome.record().renderers().iter().map(|renderer| {
         let busy_s = renderer.busy().0 as f64 / 1e12;
         renderer.stats().commands as f64 / busy_s
@@ -182,6 +183,7 @@ fn processor_rate(bench: &Bench) -> Result<FigureValue> {
     let machine = MachineConfig { n_gps: 2, ..bench.machine("small-hmd")? };
     let outcome = drawn(machine, Shading::Phong, triangles, 60)?;
     let stages = outcome.stages();
+    // The first frame includes the start.
     let transforms = stages.iter().filter(|span| span.stage == Stage::Transform).skip(1);
     let spans_s: Vec<f64> = transforms.filter_map(|span| Some((span.end? - span.begin).as_ms() / 1e3)).collect();
     let mean_s = spans_s.iter().sum::<f64>() / spans_s.len() as f64;
@@ -191,6 +193,7 @@ fn processor_rate(bench: &Bench) -> Result<FigureValue> {
 fn rig_total(bench: &Bench) -> Result<FigureValue> {
     let machine = bench.reading.on(bench.machine("small-hmd")?)?;
     let mut rig = Rig::assumed(TrackerConfig::optical_ceiling());
+    // The photodiode's line may be varied by the bench.
     if let Some((_, line)) = bench.changes.iter().rev().find(|(path, _)| path == PHOTODIODE_LINE) {
         rig.rig.photodiode_line = u32::try_from(*line).unwrap_or(u32::MAX);
     }
@@ -211,6 +214,7 @@ fn i860_peak() -> Result<FigureValue> {
     let failed = |reason: String| ExperimentError::Scene(format!("the peak of the i860: {reason}"));
     let body = "m12apm.ss f8, f9, f0\n".repeat(MULTIPLY_ADDS);
     let source = format!("begin: or {TURNS}, r0, r16\nagain: {body}adds -1, r16, r16\nbtne r0, r16, again\nend: nop");
+    // The loop is unrolled, so that its branch costs little.
     let program = assemble("peak.s", CODE, &source).map_err(|error| failed(error.to_string()))?;
     let end = program.symbol("end").ok_or_else(|| failed("the loop has no end".to_owned()))?;
     let mut ram = Ram::new(0, 0x4000);
@@ -226,6 +230,7 @@ fn i860_peak() -> Result<FigureValue> {
             other => return Err(failed(format!("expected the end of the loop, found {other:?}"))),
         }
     }
+    // Each multiply-add counts as two operations.
     let operations = f64::from(2 * TURNS) * MULTIPLY_ADDS as f64;
     Ok((operations / clocks as f64 * 40.0).into())
 }

@@ -54,6 +54,7 @@ impl FigureRow {
     /// Creates the row of a figure from its measurement.
     #[must_use]
     pub fn new(figure: &Figure, measured: FigureValue) -> Self {
+        // The provenance decides whether the row counts as a free check.
         let (standing, fitted) = match figure.basis {
             Basis::Free => ("free", ""),
             Basis::Fitted { parameter } => ("fitted", parameter),
@@ -88,6 +89,7 @@ impl FigureRow {
     #[must_use]
     pub fn is_out_of_reach(&self) -> bool {
         let Some([low, high]) = self.interval else { return false };
+        // Allow for the distance between the levels and for the printed precision.
         let of_levels = self.analytic.map_or(0.0, |analytic| (analytic - self.simulated).abs());
         let spread = self.spread.unwrap_or(0.0);
         let slack = of_levels + spread.max(self.published.abs() * ROUNDING);
@@ -99,6 +101,7 @@ impl FigureRow {
     /// the condition reproduces it.
     #[must_use]
     pub fn misses(&self) -> bool {
+        // A tiny margin absorbs rounding in floating-point arithmetic.
         let allowed = self.spread.unwrap_or(self.published * MISS_PERCENT / 100.0) * (1.0 + 1e-9);
         let [low, high] = self.unprinted.unwrap_or([self.simulated; 2]);
         self.published + allowed < low || self.published - allowed > high

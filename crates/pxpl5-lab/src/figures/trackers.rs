@@ -56,6 +56,7 @@ fn polling(bench: &Bench) -> Result<FigureValue> {
     let patched = TrackerConfig::fastrak();
     let polled = patched.clone().with_polling_by(&Tables::PAPERS);
     let mut waits_ms = Vec::new();
+    // Each seed gives the kernel another phase relative to the tracker.
     for seed in 1..=SEEDS {
         let arrivals = |config: &TrackerConfig| {
             let reports: Vec<TrackerReport> =
@@ -68,6 +69,7 @@ fn polling(bench: &Bench) -> Result<FigureValue> {
     let field_ms = 1001.0 / 60.0;
     let mean = waits_ms.iter().sum::<f64>() / waits_ms.len() as f64 / field_ms;
     let greatest = waits_ms.iter().copied().fold(0.0, f64::max) / field_ms;
+    // A run of the pipeline shows the same delay from outside.
     let in_a_run = (pose_to_transform_ms(bench, polled)? - pose_to_transform_ms(bench, patched)?) / field_ms;
     let details = vec![detail("mean of all reports", mean, "fields"), detail("mean in a run", in_a_run, "fields")];
     Ok(FigureValue::with(greatest, details))
@@ -97,6 +99,7 @@ fn apparent_latency(gain: f64) -> Result<FigureValue> {
     let config = TrackerConfig::fastrak_by(&tables).without_noise();
     let (output_ps, rate_hz) = (config.sync_to_output_ps, u64::from(config.rate_hz));
     let motion = Pan::at(SLOW);
+    // After 1,000 reports the filter has settled.
     let settled = model(config)?.reports(&motion, 1).nth(1_000);
     let report = settled.ok_or_else(|| ExperimentError::Scene("the Fastrak fell silent".to_owned()))?;
     let sent_ps = report.solution * tracking::time::PS_PER_S / rate_hz + output_ps;

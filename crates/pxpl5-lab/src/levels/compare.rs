@@ -70,6 +70,7 @@ pub fn compare_with(query: LevelQuery, finished: impl Fn(u64, u64) + Sync) -> Re
     let mut levels = Vec::new();
     for (variant, values) in VARIANTS.into_iter().zip(&of_experiments) {
         let rows = rows_of(variant, &step)?;
+        // Compare each level with the cycle level, experiment by experiment.
         let deviations = values.iter().zip(&of_cycle).map(|(value, of_cycle)| deviation_percent(*value, *of_cycle));
         let is_cycle = variant.0 == Level::Cycle;
         levels.push(LevelReport {
@@ -143,6 +144,7 @@ fn speed(variant: (Level, bool), pixels: Pixels) -> Result<f64, ExperimentError>
     for number in 0..TIMED {
         let experiment = of_variant(variant, number)?.pixels(pixels);
         simulated += experiment.length() as f64 * experiment.config().period()?.as_ms() * 1e-3;
+        // Only the simulation is timed, not the construction of the scene.
         let begin = Instant::now();
         let result = if variant.0 == Level::Analytic {
             summarise(&registry, &experiment).map(|_| ())
@@ -150,6 +152,7 @@ fn speed(variant: (Level, bool), pixels: Pixels) -> Result<f64, ExperimentError>
             experiment.run().map(|_| ())
         };
         taken += begin.elapsed().as_secs_f64();
+        // Runs that are too short take time like all others.
         match result {
             Ok(()) | Err(ExperimentError::TooShort { .. } | ExperimentError::Run { .. }) => {}
             Err(error) => return Err(error),

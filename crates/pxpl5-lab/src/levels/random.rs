@@ -49,6 +49,7 @@ pub fn experiment(number: u64) -> Result<Experiment, ExperimentError> {
 
 fn stereo(dice: &mut Dice) -> Result<Experiment, ExperimentError> {
     let machine = machine("small-hmd", dice, (4, 24))?;
+    // One of three kinds of scenes: the aircraft, screen-filling triangles, small triangles.
     let scene = match dice.between(0, 2) {
         0 => {
             let mig = builtin("mig").map_err(|error| ExperimentError::Scene(error.to_string()))?;
@@ -66,6 +67,7 @@ fn slats(dice: &mut Dice) -> Result<Experiment, ExperimentError> {
     let machine = machine(preset, dice, (1, 12))?;
     let binning = dice.of(&[RegionBinning::All, RegionBinning::Touched]);
     let program = Slats { binning, ..dice.of(&[Slats::whole(), Slats::split()]) };
+    // Larger machines get larger scenes.
     let triangles = dice.between(5, 50 + 10 * machine.n_gps as u64) as u32;
     let scene: Scene = test_scene(TestScene::Typical, triangles);
     Ok(Experiment::new(machine, program, Arc::new(scene)).fields(FIELDS.1))

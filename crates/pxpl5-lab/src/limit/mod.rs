@@ -118,6 +118,7 @@ impl LimitQuery {
     /// not fit into a board's memory, or is never shown, misses the goal.
     pub fn search(&self) -> Result<Limit, ExperimentError> {
         let limit = most(self.ceiling(), &self.hints(), |triangles| self.reached(triangles))?;
+        // A limit of zero may mean that the goal cannot be evaluated.
         if limit.triangles == 0 {
             self.check_rate()?;
         }
@@ -157,6 +158,7 @@ impl LimitQuery {
         if self.level == Level::Analytic && self.model.is_none() {
             return Hints::default();
         }
+        // Small triangles stand for a model, whose sizes are expensive to build.
         let scene = if self.model.is_some() { TestScene::Typical } else { self.criterion.scene };
         let criterion = LimitCriterion { scene, ..self.criterion };
         let analytic = Self { level: Level::Analytic, model: None, criterion, ..self.clone() };
@@ -171,6 +173,7 @@ impl LimitQuery {
         let step = most.div_ceil(MARGINS).max(1) as usize;
         let margin = |triangles: u32| Some((self.margin(triangles)?, triangles));
         let margins: Vec<(f64, u32)> = (1..=most).step_by(step).filter_map(margin).collect();
+        // A local minimum of the margin may hide a miss.
         let dips = margins.windows(3).filter(|of| of[1].0 < of[0].0 && of[1].0 <= of[2].0);
         let mut least: Vec<(f64, u32)> = dips.map(|of| of[1]).collect();
         least.sort_by(|a, b| a.0.total_cmp(&b.0));

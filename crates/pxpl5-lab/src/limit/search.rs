@@ -74,6 +74,7 @@ impl<F> Tried<F> {
         F: FnMut(u32) -> Result<bool, E>,
     {
         let mut size = near.clamp(1, ceiling);
+        // The first step is proportional to the size.
         let mut step = (size / 64).max(1);
         let up = self.ask(size)?;
         while if up { size < ceiling } else { size > 1 } {
@@ -118,6 +119,7 @@ impl<F> Tried<F> {
         let first_miss = self.first_miss();
         let triangles = first_miss.map_or(ceiling, |miss| miss - 1);
         let island = self.answers.iter().rev().find(|(size, reached)| **reached && **size > triangles);
+        // Walk down while every size was tried.
         let mut unbroken_from = triangles;
         while unbroken_from > 1 && self.answers.contains_key(&(unbroken_from - 1)) {
             unbroken_from -= 1;
@@ -174,6 +176,7 @@ pub fn about<E>(ceiling: u32, reached: impl FnMut(u32) -> Result<bool, E>) -> Re
 /// Returns the sizes to try below a result: consecutive ones, doubtful ones, and some at distances that double.
 fn below(limit: u32, doubtful: &[u32]) -> impl Iterator<Item = u32> {
     let in_a_row = in_a_row(limit);
+    // All sizes directly below, from the largest down.
     let near = (limit.saturating_sub(in_a_row)..limit).rev();
     let far = (1..=5).rev().map(move |halvings| limit - (limit >> halvings));
     near.chain(doubtful.iter().copied().filter(move |size| *size < limit)).chain(far).filter(|size| *size > 0)

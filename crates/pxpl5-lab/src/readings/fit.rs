@@ -69,6 +69,7 @@ impl FitOfFigure {
         let published_sd = published_sd(figure);
         let sd = measured.details.iter().find(|detail| detail.name == "standard deviation").map(|detail| detail.value);
         let off = measured.value - figure.value;
+        // A printed range counts as exact within its bounds.
         let range = figure.spread.filter(|_| published_sd.is_none()).unwrap_or(0.0);
         let beyond = off.signum() * (off.abs() - range).max(0.0);
         Ok(Self {
@@ -88,6 +89,7 @@ impl FitOfFigure {
     #[must_use]
     pub fn log_likelihood(&self) -> f64 {
         let of_samples = self.published_sd.map_or(0.0, |sd| sd / SAMPLES.sqrt());
+        // Three independent errors of the mean.
         let sigma = of_samples.hypot(DISCREPANCY * self.published).hypot(half_a_digit(self.published));
         let of_mean = -0.5 * (self.error_percent / 100.0 * self.published / sigma).powi(2);
         let ratio =

@@ -51,6 +51,7 @@ pub fn run(bench: &Bench, best: usize, finished: impl Fn(u64, u64) + Sync) -> Re
     let steps = (readings.len() + best) as u64;
     let done = AtomicU64::new(0);
     let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
+    // The same steps serve both levels.
     let fits = |level: Level, readings: &[Reading]| {
         let bench = Bench { level, ..bench.clone() };
         let fits = parallel::map(readings, |reading| {
@@ -61,10 +62,12 @@ pub fn run(bench: &Bench, best: usize, finished: impl Fn(u64, u64) + Sync) -> Re
         fits.into_iter().collect::<Result<Vec<_>, _>>().map(ranked)
     };
     let analytic = fits(Level::Analytic, &readings)?;
+    // Only the best interpretations are worth simulating with events.
     let chosen: Vec<Reading> = analytic.iter().take(best).map(|fit| fit.reading).collect();
     let transaction = fits(Level::Transaction, &chosen)?;
     let rounding_percent = rounding_percent(&analytic);
     let least = analytic.first().map_or(f64::NAN, |fit| fit.mean_error_percent);
+    // Errors within the rounding of printed digits are indistinguishable.
     let as_good = analytic.iter().filter(|fit| fit.mean_error_percent <= least + rounding_percent).count();
     let left_out = FIGURES.iter().filter_map(|id| left_out(&analytic, id)).collect();
     Ok(Readings { schema: "pxpl5-readings/1", analytic, transaction, left_out, as_good, rounding_percent })

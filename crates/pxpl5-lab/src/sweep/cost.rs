@@ -31,6 +31,7 @@ impl Sweep {
         let mut estimates = Vec::with_capacity(points.len());
         for point in points {
             let mut settings = self.space().settings(*point);
+            // Points that differ only in their seed share one estimate.
             settings.remove("seed");
             estimates.push(*known.entry(format!("{settings:?}")).or_insert_with(|| self.estimate(*point)));
         }

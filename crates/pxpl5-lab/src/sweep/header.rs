@@ -72,6 +72,7 @@ impl Sweep {
     ///
     /// Returns the [`FileError`] of the first point if no point is valid.
     pub fn header(&self) -> Result<Header, FileError> {
+        // The header describes the first valid point.
         let looked_at = self.space.points().min(MOST_LOOKED_AT);
         let mut points = (0..looked_at).map(|point| self.plan(point));
         let first = points.find_map(Result::ok).map_or_else(|| self.plan(0), Ok)?;
@@ -80,6 +81,7 @@ impl Sweep {
             self.base.settings.iter().map(|(path, setting)| (path.clone(), json(&setting.value))).collect();
         let measure: BTreeMap<String, String> =
             first.measure.iter().map(|m| (m.name().to_owned(), m.definition().to_owned())).collect();
+        // The version is part of the hash, because results may change between versions.
         let version = env!("CARGO_PKG_VERSION").to_owned();
         Ok(Header {
             schema: Header::SCHEMA.to_owned(),
@@ -125,6 +127,7 @@ fn hash(
 
 fn record(axis: &Axis) -> AxisRecord {
     let paths = axis.paths.clone();
+    // Long ranges are written as three numbers, so that the header stays short.
     let ranges: Option<Vec<[i64; 3]>> = axis.values.iter().map(range).collect();
     let steps = match ranges.filter(|_| axis.len() > LISTED_STEPS) {
         Some(ranges) => Steps::Ranges(ranges),

@@ -44,6 +44,7 @@ impl Joined {
         for folder in folders {
             let path = folder.join(ROWS_FILE);
             let mut scan = Scan::open(&path)?;
+            // A shard that was interrupted at its start contributes nothing.
             let Some(header) = scan.header.take() else { continue };
             let joined = joined.get_or_insert_with(|| Self::new(header.clone()));
             check_header(&path, &joined.header, Some(&header))?;
@@ -71,6 +72,7 @@ impl Joined {
     /// Adds a row of the newest file.
     fn add(&mut self, row: &SweepRow, byte: u64) -> Result<(), SweepError> {
         let point = row.point as usize;
+        // A second row of a point must equal the first.
         if let Some(first) = self.row(row.point)? {
             if first != *row {
                 let [first, second] = [self.holders[point] as usize, self.files.len()]
@@ -152,6 +154,7 @@ impl RowBlocks {
         file.seek(SeekFrom::Start(byte))?;
         self.begin = byte;
         self.block.clear();
+        // A row may be longer than a block.
         loop {
             let read = (&mut file).take(BLOCK as u64).read_to_end(&mut self.block)?;
             if read == 0 || self.line_at(byte).is_some() {

@@ -42,6 +42,7 @@ fn write(joined: &mut Joined, folders: &[PathBuf], out: &Path) -> Result<(), Swe
     check_command(out)?;
     std::fs::create_dir_all(out).map_err(SweepError::io(out, "cannot be made"))?;
     let header = joined.header().clone();
+    // Times of all shards are concatenated; they need no order.
     let mut times = Replacement::of(&out.join(TIMES_FILE))?;
     times.put(line_of(&header).as_bytes())?;
     folders.iter().try_for_each(|folder| put_times(&mut times, &folder.join(TIMES_FILE)))?;

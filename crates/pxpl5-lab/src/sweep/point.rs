@@ -64,9 +64,11 @@ impl Sweep {
 
     /// Simulates a point. Errors, even panics, become the point's row.
     pub(super) fn row(&self, point: u64) -> SweepRow {
+        // A panic in one point must not end the sweep.
         let result = catch_unwind(AssertUnwindSafe(|| self.simulate(point)));
         let result = result.unwrap_or_else(|panic| Err(format!("a bug of the emulator: {}", panic_text(&*panic))));
         let parameters = self.space.settings(point).iter().map(|(path, value)| (path.clone(), json(value))).collect();
+        // A failed row has the parameters and the error only.
         let empty = SweepRow {
             point,
             status: Status::Failed,
@@ -91,6 +93,7 @@ impl Sweep {
     fn simulate(&self, point: u64) -> Result<Simulated, String> {
         let plan = self.plan(point).map_err(|error| error.to_string())?;
         let scene = self.scenes.scene_of(&plan).map_err(|error| error.to_string())?;
+        // The hash identifies the point even if its run fails later.
         let config_hash = plan.experiment(scene.clone()).config_hash().to_string();
         // No pixels are computed, because a sweep keeps no pictures and pixels do not change simulated times.
         let results = plan.run(scene).map_err(|error| error.to_string())?;

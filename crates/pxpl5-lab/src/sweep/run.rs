@@ -41,6 +41,7 @@ pub fn run(
         stop: AtomicBool::new(false),
     };
     let (sender, rows) = bounded(WAITING_ROWS);
+    // Workers send rows to this thread, which owns the store.
     thread::scope(|scope| {
         let points = usize::try_from(sweep.space().points()).unwrap_or(usize::MAX);
         for _ in 0..options.threads.clamp(1, points.max(1)) {

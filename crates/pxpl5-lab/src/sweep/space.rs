@@ -111,6 +111,7 @@ impl SweepSpace {
         axes.extend(fault.together(fault.table(table, "together")?)?);
         axes.extend(fault.seeds(table.get("seeds"))?);
         fault.check(file, &axes)?;
+        // Multiply with care: the product of long axes can overflow.
         let points = axes.iter().try_fold(1u64, |all, axis| all.checked_mul(axis.len()));
         let points = points.filter(|points| *points <= MAX_POINTS);
         let points = points.ok_or_else(|| fault.text("sweep", &format!("at most {MAX_POINTS} points"), "more"))?;
@@ -134,6 +135,7 @@ impl SweepSpace {
     pub fn settings(&self, point: u64) -> BTreeMap<String, Value> {
         let mut rest = point;
         let mut settings = BTreeMap::new();
+        // The number of the point has one mixed-radix digit for each axis, the last axis lowest.
         for axis in self.axes.iter().rev() {
             let step = axis.step(rest % axis.len());
             rest /= axis.len();
@@ -203,6 +205,7 @@ impl Fault<'_> {
         for (path, value) in leaves(table) {
             let values = self.values(&path, &value)?;
             let expected = axis.values.first().map_or(values.len(), Values::len);
+            // All lists of one axis need the same length.
             if values.len() != expected {
                 let expected = format!("{expected} values, as many as the other lists of sweep.together");
                 return Err(self.text(&path, &expected, &values.len().to_string()));

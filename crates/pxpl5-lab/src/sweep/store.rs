@@ -54,11 +54,13 @@ impl Store {
     pub fn open(folder: &Path, header: Header, resume: bool) -> Result<Self, SweepError> {
         check_command(folder)?;
         fs::create_dir_all(folder).map_err(SweepError::io(folder, "cannot be made"))?;
+        // The lock comes before any change to the folder.
         let lock = lock(folder)?;
         remove_left_over(folder);
         let path = folder.join(ROWS_FILE);
         let rows = RowFile::open_or_none(&path)?;
         check_header(&path, &header, rows.header())?;
+        // Without --resume, existing rows are never extended by accident.
         if !resume && rows.finished() > 0 {
             return Err(SweepError::NotEmpty { path: folder.display().to_string(), rows: rows.finished() });
         }
@@ -68,6 +70,7 @@ impl Store {
         let times_path = folder.join(TIMES_FILE);
         let times_end = whole_lines(&times_path);
         let times_file = opened(&times_path, times_end)?;
+        // The manifest marks the folder as a sweep's from the start.
         if Manifest::read(folder)?.is_none() {
             renew_manifest(folder)?;
         }
@@ -121,6 +124,7 @@ impl Store {
     ///
     /// Returns [`SweepError::Io`] if a file cannot be written.
     pub fn append(&mut self, row: &SweepRow, host_seconds: f64) -> Result<(), SweepError> {
+        // Plots and pages of fewer rows become outdated with the first new row.
         if !self.is_renewed {
             renew_manifest(&self.folder)?;
             self.is_renewed = true;
@@ -191,6 +195,7 @@ pub(super) fn write_all(
     let table = Table::of(header);
     lines.put(line_of(header).as_bytes())?;
     results.put(&table.head())?;
+    // Both files are written in one pass over the rows.
     for row in rows {
         let row = row?;
         lines.put(line_of(&row).as_bytes())?;
@@ -205,6 +210,7 @@ pub(super) fn write_all(
 fn remove_left_over(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
+        // Temporary names end with a process number and `.tmp`.
         let is_temporary = |file: &str| {
             let stem = file.split('.').next().unwrap_or_default();
             let number =
