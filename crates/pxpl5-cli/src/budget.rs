@@ -35,8 +35,8 @@ const MOST_SECONDS: u64 = 86_400;
 /// progress.
 pub(crate) const YOUNG: [u64; 6] = [1, 2, 4, 8, 16, 32];
 
-/// Seconds that a run must have taken before its total time is extrapolated. Earlier, pipelines fill and caches are
-/// cold.
+/// Seconds that a run must have taken before its total time is extrapolated. In the first seconds, pipelines fill and
+/// caches are cold.
 const TELLING_SECONDS: f64 = 0.5;
 
 /// Bytes that a run must have allocated before its total memory is extrapolated.

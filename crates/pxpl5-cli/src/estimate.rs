@@ -49,7 +49,7 @@ pub(crate) struct WalkWork {
 const BASE: f64 = 15e6;
 /// Bytes of a primitive, including its entries in all lists.
 const PRIMITIVE: f64 = 200.0;
-/// Bytes of a pixel in the buffer of one slice: three color channels and one stencil bit.
+/// Bytes of a pixel in the buffer of one slice: three colour channels and one stencil bit.
 const TARGET: f64 = 3.125;
 /// Bytes of a pixel that a surface covers, including spare capacity of its list.
 const SAMPLE: f64 = 12.0;

@@ -45,7 +45,7 @@ pub(crate) struct LevelsArgs {
     scaling: Option<PathBuf>,
 }
 
-/// The recorded measurement.
+/// The recorded measurement of the levels, as JSON.
 const RECORD: &str = include_str!("../../../docs/levels.json");
 
 pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {

@@ -160,7 +160,7 @@ fn even_tasks(wanted: u64, points: u64) -> u64 {
     (wanted..=most).find(is_even).or_else(|| (1..wanted).rev().find(is_even)).unwrap_or(wanted)
 }
 
-/// Result of [`write`]: the requested resources and the path of the script that submits the jobs.
+/// Result of writing the scripts: the requested resources and the path of the script that submits the jobs.
 #[derive(Debug)]
 pub(crate) struct Written {
     resources: Resources,

@@ -427,7 +427,7 @@ fn without_arguments_both_pipelines_run_and_leave_pictures() {
             let name = format!("out/{}-{eye}.png", run["name"].as_str().expect("text"));
             let picture = image::open(folder.0.join(&name)).expect("a picture").to_rgb8();
             assert_eq!((picture.width(), picture.height()), (640, 480), "{name}");
-            // Background colors of the two scenes. Twelve triangles cover the screen, and an aircraft covers part of
+            // Background colours of the two scenes. Twelve triangles cover the screen, and an aircraft covers part of
             // the sky.
             let is_flight = name.contains("mig") || name.contains("aircraft");
             let (empty, least) = if is_flight { ([92, 140, 200], 5_000) } else { ([16, 24, 48], 640 * 480) };

@@ -88,7 +88,7 @@ const MEMORY: u64 = 8 << 20;
 pub enum CodeUse {
     /// PPHIGS: frames in Phong shading, with bins.
     Pphigs,
-    /// Slats with precomputed colors: fields, clumps of thirty triangles, both eyes in one pass.
+    /// Slats with precomputed colours: fields, clumps of thirty triangles, both eyes in one pass.
     Slats,
     /// Slats with lighting on the graphics processors: fields, clumps of thirty triangles, one eye after the other.
     SlatsLit,
@@ -347,8 +347,8 @@ fn measured<const N: usize>(
     Ok(samples)
 }
 
-/// Enlarges every triangle beyond the guard band: a right angle at the lower left, with legs of four times
-/// [`CLIPPED_M`] per metre of distance, plus a margin of 0.5 m for the positions of the eyes.
+/// Replaces every triangle by a larger right-angled one that reaches beyond the guard band. At the distance d both
+/// legs measure 4 ([`CLIPPED_M`] d + 0.5 m). The 0.5 m allow for the positions of the eyes.
 fn beyond_the_guard_band(mut list: DisplayList) -> DisplayList {
     for triangle in list.positions.chunks_exact_mut(3) {
         for (corner, [x, y]) in triangle.iter_mut().zip([[-1.0, -1.0], [3.0, -1.0], [-1.0, 3.0]]) {

@@ -8,8 +8,8 @@
 //! switches the line when it samples the pose of a frame.
 //!
 //! The oscilloscope's traces do not use the pipeline's own records of its pictures. The low points come from the
-//! pendulum, the light from the pixels that the display scans at the photodiode, and the D/A line from the board that
-//! starts the frame. The pipeline's records give the inside measurement.
+//! pendulum. The light comes from the pixels that the display scans at the photodiode. The D/A line comes from the
+//! board that starts the frame. The pipeline's records give the inside measurement.
 
 use crate::Workstation;
 use core::f64::consts::FRAC_PI_2;
@@ -77,7 +77,7 @@ pub enum RigRunError {
         /// The pipeline's own definition of when a picture is due.
         definition: &'static str,
     },
-    /// A photodiode below the screen.
+    /// A line of the photodiode that lies below the screen.
     #[error("photodiode: expected one of the {lines} lines that are lit in a period, from 0; found {found}")]
     Photodiode {
         /// Number of lines of the screen.
@@ -92,7 +92,7 @@ pub enum RigRunError {
 pub const PASSES: usize = 24;
 
 impl Rig {
-    /// Creates the assumed rig with a tracker.
+    /// Creates a rig with a tracker and the assumed pendulum, detection and photodiodes.
     #[must_use]
     pub fn assumed(tracker: TrackerConfig) -> Self {
         Self { rig: PendulumRig::assumed(), tracker, seed: 1, passes: PASSES }

@@ -132,7 +132,7 @@ fn rows_csv(comparison: &Comparison) -> String {
     csv_table(columns.collect::<Vec<String>>(), rows)
 }
 
-/// Returns a name as JSON spells the name.
+/// Returns a name in the spelling of the JSON output.
 fn written(name: serde_json::Result<Value>) -> String {
     name.ok().and_then(|name| name.as_str().map(str::to_owned)).unwrap_or_default()
 }

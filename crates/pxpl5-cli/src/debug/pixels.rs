@@ -83,7 +83,7 @@ pub(super) fn ideal(stepper: &Stepper, label: &str, file: Option<&str>) -> Resul
 
 fn picture_said(picture: &RgbImage, label: &str, file: Option<&str>) -> Result<String, String> {
     let (width, height) = picture.dimensions();
-    // The pixel at the top left serves as the background color.
+    // The pixel at the top left serves as the background colour.
     let background = picture.get_pixel(0, 0);
     let drawn = picture.pixels().filter(|pixel| *pixel != background).count();
     let mut text = format!("{label}: {width} x {height} pixels, {drawn} other than that of the left top\n");

@@ -16,7 +16,7 @@ pub(super) struct Batch {
     files: Vec<Staged>,
     /// Files of the previous run to delete after all new files have their names.
     gone: Vec<PathBuf>,
-    /// Data for devices, pipes and standard output. They cannot be undone, so they are written last.
+    /// Data for devices, pipes and standard output. A write to them cannot be undone, so it comes last.
     streams: Vec<(Target, Vec<u8>)>,
 }
 

@@ -51,7 +51,7 @@ pub(super) struct ViewArgs {
     volume: VolumeSettingArgs,
     #[command(flatten)]
     eye: EyeArgs,
-    /// Show the colors before halftoning.
+    /// Show the colours before halftoning.
     #[arg(long)]
     undithered: bool,
     /// Brightness of one lit pixel of one slice, in steps of 255; default: 98 % of the picture stays below white.

@@ -20,7 +20,7 @@ use std::sync::Arc;
 /// The scene of a volume, and the settings that differ from the paper's.
 #[derive(Args, Debug)]
 pub(super) struct VolumeSettingArgs {
-    /// A built-in scene (see `pxpl5 scenes`) or a model file: .ply, .obj, .pdb. The scene is centered on the axis,
+    /// A built-in scene (see `pxpl5 scenes`) or a model file: .ply, .obj, .pdb. The scene is centred on the axis,
     /// its farthest corner at 0.9 of the display's radius.
     #[arg(long, value_name = "NAME|FILE", default_value = "mig")]
     scene: String,

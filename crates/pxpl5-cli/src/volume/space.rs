@@ -72,7 +72,7 @@ impl VolumeSpace {
         Ok(Self { title, measure, settings, axes, points })
     }
 
-    /// Returns the settings of a point that differ between points.
+    /// Returns the settings that vary in the sweep, with their values at a point.
     pub(super) fn of_point(&self, point: u64) -> BTreeMap<String, Value> {
         let mut rest = point;
         let mut settings = BTreeMap::new();

@@ -13,8 +13,8 @@ pub(super) struct Contender {
 }
 
 /// Settings that send each clump of Slats only to the regions that the clump touches. As published, every clump goes
-/// to all regions, which limits the scene to little more than 100 triangles and leaves too little of a picture to
-/// evaluate the raster offset.
+/// to all regions. This limits the scene to little more than 100 triangles, too few for an evaluation of the raster
+/// offset.
 const TOUCHED: &[(&str, &str)] = &[("binning", "touched")];
 
 /// Settings of [`TOUCHED`] with a raster that is shifted before the eyes.

@@ -102,8 +102,8 @@ impl CompareQuery {
     /// Runs every row with every seed. `finished` is called with the number of finished runs and the number of all
     /// runs.
     ///
-    /// A pipeline that cannot run on the machine, or shows no picture of the scene, has a row with the reason and the
-    /// number of triangles that it could draw.
+    /// Every pipeline has a row. If a pipeline cannot run on the machine or shows no picture of the scene, its row
+    /// has the reason and the number of triangles that it could draw.
     ///
     /// # Errors
     ///

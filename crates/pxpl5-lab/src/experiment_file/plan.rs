@@ -305,8 +305,8 @@ impl Plan {
         self.scene.load()
     }
 
-    /// Returns all parameters of the experiment: those of its machine, and with a tracked head also those of the
-    /// tracker, the host's port and the predictor, whose paths begin with `tracking.`.
+    /// Returns all parameters of the experiment. They are the parameters of its machine and, with a tracked head,
+    /// those of the tracker, the host's port and the predictor. Paths of the latter begin with `tracking.`.
     #[must_use]
     pub fn parameters(&self) -> Vec<Parameter> {
         let of_head = self.head.iter().flat_map(HeadChoice::parameters);

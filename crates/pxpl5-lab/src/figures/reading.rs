@@ -44,7 +44,7 @@ pub struct Reading {
     pub machine: &'static str,
     /// True if the application scenes were drawn without their back faces.
     pub culled: bool,
-    /// Number of eyes, 1 or 2, whose drawing fills the bins with 7,700 triangles (`gp.bin_bytes`).
+    /// Number of eyes, 1 or 2, whose entries fill the bins when 7,700 triangles are drawn (`gp.bin_bytes`).
     pub bins: u64,
 }
 
@@ -52,7 +52,7 @@ fn by_name<S: serde::Serializer>(finished: &FinishedRegions, serializer: S) -> R
     serializer.serialize_str(finished.name())
 }
 
-/// Number of regions that fit in a renderer's backing store: 4,096 bits a pixel, of which the colors of a region take
+/// Number of regions that fit in a renderer's backing store: 4,096 bits a pixel, of which the colours of a region take
 /// a block of 32.
 pub const ROOM: u64 = RendererTiming::PAPERS.backing_regions();
 

@@ -84,8 +84,8 @@ impl FigureRow {
     /// an error of the model's rules.
     ///
     /// The interval comes from the analytic level. It is widened on both sides by the distance between `analytic` and
-    /// `simulated`, because the levels may differ as much at the ends of the ranges as at the presets. The published
-    /// value is met within its printed range, or within its last digit if no range is printed.
+    /// `simulated`: the levels may differ as much at the ends of the ranges as at the presets. The published value is
+    /// met within its printed range, or within its last digit if no range is printed.
     #[must_use]
     pub fn is_out_of_reach(&self) -> bool {
         let Some([low, high]) = self.interval else { return false };

@@ -19,7 +19,7 @@ pub struct LevelRecord {
     pub date: Option<String>,
     /// Host on which the levels were measured.
     pub host: Option<String>,
-    /// Reports of each level, for both tables of times.
+    /// Reports of the levels. A level that uses the timing table has two reports, one for each source of its times.
     pub levels: Vec<LevelReport>,
 }
 

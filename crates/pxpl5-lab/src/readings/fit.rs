@@ -84,7 +84,7 @@ impl FitOfFigure {
     }
 
     /// Returns the logarithm of the figure's likelihood. The error of the mean is normal with three parts: the
-    /// printed digits, the error of a mean of [`SAMPLES`] samples, and 2 % for the model. The logarithm of the ratio
+    /// printed digits, the error of a mean of 87 samples, and 2 % for the model. The logarithm of the ratio
     /// of deviations is normal with a standard deviation of 0.25.
     #[must_use]
     pub fn log_likelihood(&self) -> f64 {

@@ -10,8 +10,8 @@
 //!
 //! - The row of a point depends only on the file and the point, not on threads, shards, order or host. Data that
 //!   depend on the host are in times.jsonl.
-//! - Each row is appended by one write when its point is finished. At the end the rows are sorted by their points, so
-//!   the bytes of the finished file do not depend on the execution.
+//! - Each row is appended by one write when its point is finished. At the end the rows are sorted by their points.
+//!   The bytes of the finished file therefore do not depend on the execution.
 //! - After a crash the last line may be incomplete. [`Store::open`] removes the incomplete line, and only its point
 //!   is computed again.
 //! - A point that cannot be simulated has a row with the reason. The other points continue.

@@ -27,7 +27,7 @@ pub struct SweepRow {
     pub point: u64,
     /// Status of the point.
     pub status: Status,
-    /// Settings of the point that differ between points, by key.
+    /// Settings that vary in the sweep, with their values at this point, by key.
     pub parameters: BTreeMap<String, Value>,
     /// Measured quantities by name. Null if the run does not define the quantity.
     pub measured: BTreeMap<String, Option<f64>>,

@@ -130,7 +130,7 @@ impl SweepSpace {
         self.points
     }
 
-    /// Returns the settings of a point that differ between points.
+    /// Returns the settings that vary in the sweep, with their values at a point.
     #[must_use]
     pub fn settings(&self, point: u64) -> BTreeMap<String, Value> {
         let mut rest = point;

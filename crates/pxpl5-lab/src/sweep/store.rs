@@ -49,8 +49,8 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// Returns [`SweepError`] in these cases: the folder cannot be read or written, is in use, holds finished points
-    /// although `resume` is false, holds results of another sweep, or has a damaged line before the last.
+    /// Returns [`SweepError`] if the folder cannot be read or written, is in use, or has a damaged line before the
+    /// last. Also fails if the folder holds results of another sweep, or finished points although `resume` is false.
     pub fn open(folder: &Path, header: Header, resume: bool) -> Result<Self, SweepError> {
         check_command(folder)?;
         fs::create_dir_all(folder).map_err(SweepError::io(folder, "cannot be made"))?;
