@@ -1,8 +1,8 @@
-//! A pipeline of one's own, complete: one graphics processor draws mono frames, each shown as soon as it is finished; and
-//! the command `pxpl5` that knows it.
+//! A complete example of a pipeline in a crate outside pxpl5. One graphics processor draws mono frames and shows each
+//! frame when it is finished. The example is also a command `pxpl5` that includes this pipeline.
 //!
-//! `docs/guide/own-pipeline.md` explains it. `cargo run --release -p pxpl5-cli --example own_pipeline -- run --pipeline
-//! one-at-a-time --scene mig`.
+//! `docs/guide/own-pipeline.md` explains the example. To run it:
+//! `cargo run --release -p pxpl5-cli --example own_pipeline -- run --pipeline one-at-a-time --scene mig`.
 
 // ANCHOR: imports
 use pxpl5_cli::pxpl5::firmware::{

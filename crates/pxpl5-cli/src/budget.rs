@@ -1,4 +1,5 @@
-//! What a run may take of this computer: estimated before it starts and while it is young, and refused before it is felt.
+//! Limits on the memory and time of a command. A run is refused by an estimate before it starts, or stopped early
+//! when its first fields show that it would exceed a limit.
 
 use crate::error::CliError;
 use crate::estimate::{Estimate, Work};
@@ -7,80 +8,83 @@ use clap::Args;
 use std::cell::OnceCell;
 use std::time::Instant;
 
-/// Most memory and time that a command may take.
+/// Limits on the memory and time of a command.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct BudgetArgs {
-    /// Refuse what would take more memory than this, in MB of 10^6 bytes.
+    /// Refuse a command that would take more memory than this, in MB of 10^6 bytes.
     #[arg(long, value_name = "MB", default_value_t = MOST_MEGABYTES, value_parser = whole::<u64>(1, 1_000_000_000))]
     max_memory: u64,
-    /// Refuse what would take longer than this, in seconds.
+    /// Refuse a command that would take longer than this, in seconds.
     #[arg(long, value_name = "S", default_value_t = MOST_SECONDS, value_parser = whole::<u64>(1, 1_000_000_000))]
     max_seconds: u64,
 }
 
-/// What a command allows that has no such options.
+/// The budget of commands without these options.
 impl Default for BudgetArgs {
     fn default() -> Self {
         Self { max_memory: MOST_MEGABYTES, max_seconds: MOST_SECONDS }
     }
 }
 
-/// What is allowed where nothing is said. Assumed: a workstation's memory, and a day.
+/// Default memory limit in MB. Assumed: the memory of a workstation.
 const MOST_MEGABYTES: u64 = 16_000;
+/// Default time limit in seconds. Assumed: one day.
 const MOST_SECONDS: u64 = 86_400;
 
-/// Fields at which a young run is looked at; later it is whenever it reports progress.
+/// Numbers of simulated fields after which an early run is checked. Later the run is checked whenever it reports
+/// progress.
 pub(crate) const YOUNG: [u64; 6] = [1, 2, 4, 8, 16, 32];
 
-/// Seconds that a run must have taken before its whole time is estimated from them: pipelines fill, caches are cold.
+/// Seconds that a run must have taken before its total time is extrapolated. In the first seconds, pipelines fill and
+/// caches are cold.
 const TELLING_SECONDS: f64 = 0.5;
 
-/// Bytes that a run must have taken before the whole is estimated from them.
+/// Bytes that a run must have allocated before its total memory is extrapolated.
 const TELLING_BYTES: f64 = 50e6;
 
-/// A run that goes on, and what this process had taken when it began.
+/// A monitor of the time and memory of one run.
 #[derive(Clone, Debug)]
 pub(crate) struct Watch {
     budget: BudgetArgs,
     fields: u64,
     begun: Instant,
     bytes_before: Option<f64>,
-    /// Fields that were done at the first look, and what had been taken by then: what comes before a run (a rehearsal, a predictor that is
-    /// tuned) comes once and not for each field.
+    /// Fields simulated at the first check, and the time and memory used until then. Work before a run, such as a dry
+    /// run or the tuning of a predictor, occurs once and must not be extrapolated per field.
     first: OnceCell<(u64, Taken)>,
 }
 
 impl BudgetArgs {
-    /// Of limits, each of which may be missing.
+    /// Returns a budget from limits, where `None` means no limit.
     pub(crate) fn of(max_memory: Option<u64>, max_seconds: Option<u64>) -> Self {
         Self { max_memory: max_memory.unwrap_or(u64::MAX), max_seconds: max_seconds.unwrap_or(u64::MAX) }
     }
 
-    /// Refuses a run before it starts, by what it is estimated to take.
+    /// Refuses a run before it starts if its estimate exceeds the budget.
     ///
     /// # Errors
     ///
-    /// The estimate, and what to do about it.
+    /// Returns the estimate and advice on how to reduce the work.
     pub(crate) fn admit(&self, work: &Work) -> Result<(), CliError> {
         self.admit_estimate(work.estimate(), "simulate fewer fields")
     }
 
-    /// Refuses many runs before the first starts: their times one after the other, on so many threads; the memory of the largest on
-    /// each of them.
+    /// Refuses a set of runs before the first starts. The estimate divides their time over `threads` threads and
+    /// counts the memory of the largest run once for each thread.
     ///
     /// # Errors
     ///
-    /// As [`BudgetArgs::admit`].
+    /// Fails in the same cases as [`BudgetArgs::admit`].
     pub(crate) fn admit_all(&self, runs: impl IntoIterator<Item = Work>, threads: usize) -> Result<(), CliError> {
         let whole = Estimate::of_all(runs.into_iter().map(|work| work.estimate()), threads);
         self.admit_estimate(whole, "simulate fewer fields")
     }
 
-    /// Refuses anything before it starts; `advice` says how to make it smaller.
+    /// Refuses a command if `estimate` exceeds the budget. `advice` tells the user how to reduce the work.
     ///
     /// # Errors
     ///
-    /// As [`BudgetArgs::admit`].
+    /// Fails in the same cases as [`BudgetArgs::admit`].
     pub(crate) fn admit_estimate(&self, estimate: Estimate, advice: &str) -> Result<(), CliError> {
         let Estimate { bytes, seconds } = estimate;
         match self.excess(bytes / 1e6, seconds, advice) {
@@ -91,19 +95,21 @@ impl BudgetArgs {
         }
     }
 
-    /// Of a run of so many fields, which begins now.
+    /// Starts to monitor a run of `fields` fields.
     pub(crate) fn watch(self, fields: u64) -> Watch {
         Watch { budget: self, fields, begun: Instant::now(), bytes_before: resident_bytes(), first: OnceCell::new() }
     }
 }
 
 impl Watch {
-    /// What to say when the run would take too much; `done` fields are simulated.
+    /// Extrapolates the cost of the whole run from the `done` fields simulated so far.
     ///
     /// # Errors
     ///
-    /// The estimate, and what to do about it.
+    /// Returns the estimate and advice on how to reduce the work if the run would exceed the budget.
     pub(crate) fn check(&self, done: u64) -> Result<(), String> {
+        // The cost until the first check is a constant; the cost since then is extrapolated over the rest of the
+        // fields.
         let taken = self.taken();
         let (first, before) = *self.first.get_or_init(|| (done, taken));
         let part = (done.min(self.fields) - first.min(done)) as f64 / self.fields as f64;
@@ -121,7 +127,7 @@ impl Watch {
     }
 }
 
-/// What part of a run has taken.
+/// Seconds and bytes that a part of a run has used.
 #[derive(Clone, Copy, Debug, Default)]
 struct Taken {
     seconds: f64,
@@ -135,14 +141,16 @@ impl Taken {
 }
 
 impl BudgetArgs {
-    /// Why the whole is too much, when so much was taken before a part of it, and so much by the part: it goes on as it began.
+    /// Returns the reason to stop a run that used `before` at its start and then `taken` for the fraction `part` of
+    /// its fields. The rest of the fields is assumed to cost the same.
     fn refusal(&self, before: Taken, taken: Taken, part: f64) -> Option<String> {
+        // Short runs and small ones say too little about the rest.
         let megabytes = if taken.bytes > TELLING_BYTES { taken.bytes / part / 1e6 } else { 0.0 };
         let seconds = if taken.seconds > TELLING_SECONDS { taken.seconds / part } else { 0.0 };
         self.excess(before.bytes / 1e6 + megabytes, before.seconds + seconds, "simulate fewer fields")
     }
 
-    /// What is more than allowed, if anything is.
+    /// Returns an error message if the memory or the time exceeds its limit.
     fn excess(&self, megabytes: f64, seconds: f64, advice: &str) -> Option<String> {
         let most = self.max_memory;
         if megabytes > most as f64 {
@@ -159,7 +167,8 @@ impl BudgetArgs {
     }
 }
 
-/// Memory that this process holds; `None` where the operating system does not tell.
+/// Returns the resident memory of this process in bytes, or `None` if the operating system does not report the
+/// number.
 fn resident_bytes() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
@@ -205,7 +214,7 @@ mod tests {
     #[test]
     fn memory_of_this_process_is_known() {
         let before = resident_bytes().expect("Linux tells");
-        // Nobody reads it: without this the optimiser would not fill it.
+        // `black_box` keeps the optimizer from removing the allocation, which no code reads.
         let held = std::hint::black_box(vec![1u8; 64 << 20]);
         let after = resident_bytes().expect("Linux tells");
         assert!(after - before > 32e6, "{before} to {after}, {}", held.len());

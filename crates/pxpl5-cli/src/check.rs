@@ -1,4 +1,4 @@
-//! `pxpl5 check`.
+//! The command `pxpl5 check`, which prints the effective configuration of an experiment.
 
 use crate::error::CliError;
 use crate::scenes;
@@ -9,9 +9,10 @@ use pxpl5::sweep::Sweep;
 use pxpl5::{ExperimentFile, Plan};
 use std::fmt::Write as _;
 
-/// Print the effective configuration of an experiment; nothing is run.
+/// Print the effective configuration of an experiment without a run.
 ///
-/// What is printed is itself an experiment file that says the same. Of a sweep that is its first point that is an experiment.
+/// The output is itself an experiment file with the same settings. For a sweep, the output describes the first point
+/// that is a valid experiment.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 check experiments/figure-04.toml
@@ -38,10 +39,11 @@ pub(crate) fn run(args: CheckArgs) -> Result<(), CliError> {
     ))
 }
 
-/// Points of a sweep that are checked at most. Assumed: some seconds.
+/// Maximum number of sweep points that are checked. Assumed: the check takes some seconds.
 const MOST_CHECKED: u64 = 1_000;
 
-/// The first point of a sweep that is an experiment, and lines about the sweep. What `pxpl5 sweep` refuses is refused here.
+/// Returns the first valid point of a sweep and comment lines about the sweep. Refuses every sweep that `pxpl5 sweep`
+/// refuses.
 fn of_sweep(file: ExperimentFile) -> Result<(Plan, String), CliError> {
     let sweep = Sweep::new(file)?;
     sweep.header()?;
@@ -49,6 +51,7 @@ fn of_sweep(file: ExperimentFile) -> Result<(Plan, String), CliError> {
     let checked = points.min(MOST_CHECKED);
     let mut first = None;
     let mut failed: Option<(u64, u64, String)> = None;
+    // Resolve each point, keep the first plan, and count points that are invalid.
     for point in 0..checked {
         match sweep.plan(point) {
             Ok(plan) => first = first.or(Some((point, plan))),
@@ -58,7 +61,7 @@ fn of_sweep(file: ExperimentFile) -> Result<(Plan, String), CliError> {
             }
         }
     }
-    // The header has found one, perhaps behind those that are checked.
+    // `Sweep::header` found a valid point, which may lie behind the points checked here.
     let (point, plan) = match first {
         Some(first) => first,
         None => (0, sweep.plan(0)?),

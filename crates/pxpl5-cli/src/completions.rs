@@ -1,4 +1,4 @@
-//! `pxpl5 completions`.
+//! The command `pxpl5 completions`, which prints a completion script for a shell.
 
 use crate::error::CliError;
 use crate::terminal::print;

@@ -1,4 +1,5 @@
-//! `pxpl5 demo`, and `pxpl5` alone: both pipelines at work.
+//! The command `pxpl5 demo`, which shows Rendering Control and Slats on built-in scenes. `pxpl5` without a command
+//! does the same.
 
 use crate::error::CliError;
 use crate::output::{OutputFolder, timeline};
@@ -12,12 +13,12 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::PathBuf;
 
-/// Show both pipelines at work on built-in scenes.
+/// Show Rendering Control and Slats on built-in scenes.
 #[derive(Args, Debug)]
 #[command(after_help = "Example:
   pxpl5 demo --out /tmp/demo")]
 pub(crate) struct DemoArgs {
-    /// Where pictures and report.json go.
+    /// Folder for pictures and report.json.
     #[arg(long, value_name = "DIR", default_value = OUT)]
     out: PathBuf,
     /// Print nothing but errors.
@@ -33,8 +34,8 @@ impl Default for DemoArgs {
     }
 }
 
-/// Published measurements that take no time to reproduce, each as its figure is read (experiments/figure-*.toml): TR94's aircraft, one that Slats
-/// draws in time, and TR94's trivial scene last, since its pictures show nothing but a rectangle.
+/// Three published measurements that simulate in little time, with the settings of experiments/figure-*.toml. TR94's
+/// trivial scene comes last, because its pictures show only a rectangle.
 const EXPERIMENTS: [(&str, &str); 3] = [
     (
         "rendering-control-mig",
@@ -78,6 +79,7 @@ pub(crate) fn run(args: DemoArgs) -> Result<(), CliError> {
     let folder = OutputFolder::of_run(&args.out, "demo")?;
     let runs: Vec<Run> =
         EXPERIMENTS.iter().map(|(name, text)| one(name, text, args.quiet)).collect::<Result<_, _>>()?;
+    // Files are written even with --quiet.
     write(folder, &runs)?;
     if args.quiet {
         return Ok(());
@@ -98,6 +100,7 @@ fn one(name: &'static str, text: &str, quiet: bool) -> Result<Run, CliError> {
 fn closing(runs: &[Run], args: &DemoArgs) -> String {
     let seconds: f64 = runs.iter().filter_map(|run| run.report.host_seconds).sum();
     let mut text = String::new();
+    // Define the latency of each pipeline once.
     let mut told = Vec::new();
     for report in runs.iter().map(|run| &run.report) {
         if !told.contains(&&report.pipeline) {
@@ -114,6 +117,7 @@ fn closing(runs: &[Run], args: &DemoArgs) -> String {
 }
 
 fn write(mut folder: OutputFolder, runs: &[Run]) -> Result<(), CliError> {
+    // Names of files start with the experiment, so that three runs share a folder.
     for run in runs {
         pictures(&mut folder, &format!("{}-", run.name), &run.outcome, &run.report)?;
         folder.put(&format!("{}-pictures.csv", run.name), pxpl5::results::csv(&run.outcome).as_bytes())?;

@@ -1,4 +1,4 @@
-//! What ends a command early.
+//! Errors that end a command, with their exit codes.
 
 use pxpl5::compare::CompareError;
 use pxpl5::lab::manifest::ManifestError;
@@ -7,15 +7,15 @@ use pxpl5::{ExperimentError, FileError, SnapshotError};
 use std::fmt::Display;
 use std::process::ExitCode;
 
-/// The command line or an experiment file is wrong.
+/// Exit code for a wrong command line or experiment file.
 const USAGE: u8 = 2;
-/// Exit code of a command that was understood but failed.
+/// Exit code of a valid command that failed.
 const FAILURE: u8 = 1;
 
-/// Another process is at work there; the same command may succeed later (`EX_TEMPFAIL` of sysexits.h).
+/// Exit code when another process holds the folder. The same command may succeed later (`EX_TEMPFAIL` of sysexits.h).
 pub(crate) const BUSY: u8 = 75;
 
-/// A message and an exit code.
+/// An error message with an exit code.
 #[derive(Debug)]
 pub(crate) struct CliError {
     code: u8,
@@ -35,7 +35,7 @@ impl CliError {
         &self.message
     }
 
-    /// The exit code that stands for it.
+    /// Returns the exit code of this error.
     pub(crate) fn exit_code(&self) -> ExitCode {
         ExitCode::from(self.code)
     }
@@ -98,7 +98,7 @@ impl From<ExperimentError> for CliError {
     }
 }
 
-/// What to do about a run that ended early.
+/// Returns advice for a run that ended with an error.
 fn advice(error: &ExperimentError) -> &'static str {
     let text = error.to_string();
     if text.contains("bytes") {
@@ -108,9 +108,9 @@ fn advice(error: &ExperimentError) -> &'static str {
     }
 }
 
-/// Help, version, or what is wrong with the command line.
+/// Prints help, version or a command line error, and returns the exit code.
 pub(crate) fn usage(error: &clap::Error) -> ExitCode {
-    // A closed pipe (`| head`) is no fault.
+    // A closed pipe (`| head`) is not an error.
     let _ = error.print();
     ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(USAGE))
 }

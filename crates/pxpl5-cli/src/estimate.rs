@@ -1,23 +1,28 @@
-//! What a command will take of this computer, known before it starts: of runs as [`pxpl5::lab::estimate`] says, of volumes and of walks by
-//! the formulas here.
+//! Estimates of memory and time before a command starts. [`pxpl5::lab::estimate`] estimates runs; the formulas here
+//! estimate volumes and walks.
 //!
-//! Volumes, bytes: `BASE + slices width height / 2 + SAMPLE drawn + targets width height TARGET samples + PRIMITIVE primitives`, where
-//! `drawn = ROWS slices width + AREAS width height`: pixels that surfaces touch, some in each column of each slice, and `targets` is the
-//! slices that all threads draw at a time. The bits of all slices count in full, though a computer may give memory only to those that are lit.
-//! Volumes, seconds: `samples (SLICE_S slices primitives + DRAWN_S drawn) + WORD_S slices width height / 8`.
+//! A volume needs `BASE + slices width height / 2 + SAMPLE drawn + targets width height TARGET samples + PRIMITIVE
+//! primitives` bytes:
 //!
-//! Renderers of Pixel-Planes 5 that draw a volume take `PLANES` times as long, and `PLANES_BYTES` more.
+//! - `drawn = ROWS slices width + AREAS width height` is the number of pixels that surfaces touch.
+//! - `targets` is the number of slices that all threads draw at a time.
+//! - The bits of all slices count in full, although the operating system may allocate only pages that are written.
 //!
-//! Walks, bytes: `BASE + TEXEL 6 face_texels^2 + FRAME frames + WALKED primitives`; seconds: `FACE_S 6 face_texels^2 + FRAME_S frames primitives`.
+//! A volume needs `samples (SLICE_S slices primitives + DRAWN_S drawn) + WORD_S slices width height / 8` seconds.
 //!
-//! The constants are measured: memory at the peak and time of the processor of the runs in the tests, rounded up.
+//! Renderers of Pixel-Planes 5 take `PLANES` times as long for a volume, and `PLANES_BYTES` more memory.
+//!
+//! A walk needs `BASE + TEXEL 6 face_texels^2 + FRAME frames + WALKED primitives` bytes and `FACE_S 6 face_texels^2 +
+//! FRAME_S frames primitives` seconds.
+//!
+//! The constants are measured: peak memory and processor time of the runs in the tests below, rounded up.
 
 use pxpl5::arp::Plan as WalkPlan;
 pub(crate) use pxpl5::lab::estimate::{Estimate, Work};
 use pxpl5::scene::Scene;
 use pxpl5::volume::{RendererKind, VolumeSettings};
 
-/// What decides on memory and time of a volume.
+/// Sizes that determine the memory and time of a volume.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct VolumeWork {
     pub(crate) slices: u64,
@@ -27,57 +32,64 @@ pub(crate) struct VolumeWork {
     pub(crate) samples: u64,
     pub(crate) primitives: u64,
     pub(crate) threads: u64,
-    /// Renderers of Pixel-Planes 5 draw it.
+    /// True if renderers of Pixel-Planes 5 draw the volume.
     pub(crate) is_pixel_planes: bool,
 }
 
-/// What decides on memory and time of a walk.
+/// Sizes that determine the memory and time of a walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct WalkWork {
     pub(crate) frames: u64,
     pub(crate) primitives: u64,
-    /// Texels of the edge of a face.
+    /// Texels along one edge of a cube face.
     pub(crate) face_texels: u64,
 }
 
-/// Bytes of the command itself.
+/// Bytes of the process without any work.
 const BASE: f64 = 15e6;
-/// Bytes of a primitive with its place in all lists.
+/// Bytes of a primitive, including its entries in all lists.
 const PRIMITIVE: f64 = 200.0;
-/// Bytes of a pixel of a slice that is drawn: three channels and a bit of the stencil.
+/// Bytes of a pixel in the buffer of one slice: three colour channels and one stencil bit.
 const TARGET: f64 = 3.125;
-/// Bytes of a pixel that was drawn on, with room to grow.
+/// Bytes of a pixel that a surface covers, including spare capacity of its list.
 const SAMPLE: f64 = 12.0;
-/// Pixels of a column of a slice, and pictures of the whole, that surfaces touch.
+/// Number of pixels in each column of a slice that surfaces touch.
 const ROWS: f64 = 2.0;
+/// Number of whole pictures, summed over all slices, that surfaces touch.
 const AREAS: f64 = 2.0;
-/// Seconds of a primitive in a slice, of a pixel that is drawn on, and of eight pixels that are packed and looked at.
+/// Seconds for one primitive in one slice.
 const SLICE_S: f64 = 30e-9;
+/// Seconds for one covered pixel.
 const DRAWN_S: f64 = 100e-9;
+/// Seconds to pack and read eight pixels.
 const WORD_S: f64 = 1e-9;
 
-/// Renderers of Pixel-Planes 5: how many times longer, and bytes of their arrays.
+/// Slowdown factor when renderers of Pixel-Planes 5 draw.
 const PLANES: f64 = 15.0;
+/// Bytes of the pixel arrays of Pixel-Planes 5.
 const PLANES_BYTES: f64 = 60e6;
 
-/// Bytes of a texel of a face, of a frame of a walk, and of a primitive in its world.
+/// Bytes of a texel of a cube face.
 const TEXEL: f64 = 10.0;
+/// Bytes of a frame of a walk.
 const FRAME: f64 = 3e3;
+/// Bytes of a primitive in the world of a walk.
 const WALKED: f64 = 2e3;
-/// Seconds of a texel of a face, and of a primitive in a frame.
+/// Seconds for one texel of a cube face.
 const FACE_S: f64 = 15e-9;
+/// Seconds for one primitive in one frame of a walk.
 const FRAME_S: f64 = 65e-9;
 
-/// How much longer it takes on a computer that does other work too. Assumed, as for runs.
+/// Slowdown factor on a computer that is busy with other work. Assumed, as for runs.
 const BUSY: f64 = 2.5;
 
-/// Triangles and spheres.
+/// Returns the number of triangles and spheres of a scene.
 pub(crate) fn primitives(scene: &Scene) -> u64 {
     (scene.triangles().len() + scene.spheres().len()) as u64
 }
 
 impl VolumeWork {
-    /// Of settings that have been checked.
+    /// Returns the work of a volume with valid settings, drawn by `threads` threads.
     pub(crate) fn of(settings: &VolumeSettings, scene: &Scene, threads: usize) -> Self {
         Self {
             slices: settings.display.slices,
@@ -96,7 +108,7 @@ impl VolumeWork {
         let [samples, primitives] = [self.samples, self.primitives].map(|number| number as f64);
         let area = width * height;
         let drawn = ROWS * slices * width + AREAS * area;
-        // A batch is drawn by one thread; more threads than batches have nothing to do.
+        // One thread draws a batch of slices, so threads beyond the number of batches are idle.
         let targets = (self.threads * self.batch).min(self.slices) as f64;
         let bytes =
             BASE + slices * area / 2.0 + SAMPLE * drawn + targets * area * TARGET * samples + PRIMITIVE * primitives;
@@ -139,7 +151,8 @@ mod tests {
     };
     const MIG: VolumeWork = VolumeWork { primitives: 417, ..PAPER };
 
-    /// Volumes: MB that the process had at its peak (`ru_maxrss`), and seconds of the processor (`ru_utime + ru_stime`, opt-level 1).
+    /// Measured volumes: peak memory in MB (`ru_maxrss`) and processor time in seconds (`ru_utime + ru_stime`,
+    /// opt-level 1).
     const VOLUMES: [(VolumeWork, f64, f64); 9] = [
         (PAPER, 127.4, 0.85),
         (MIG, 36.0, 0.21),
@@ -152,7 +165,7 @@ mod tests {
         (VolumeWork { slices: 198, is_pixel_planes: true, ..MIG }, 97.3, 5.4),
     ];
 
-    /// The same of walks.
+    /// Measured walks, with the same quantities as [`VOLUMES`].
     const WALKS: [(WalkWork, f64, f64); 4] = [
         (WalkWork { frames: 120, primitives: 740, face_texels: 512 }, 36.8, 0.05),
         (WalkWork { frames: 1_800, primitives: 740, face_texels: 512 }, 41.6, 0.13),
@@ -160,7 +173,8 @@ mod tests {
         (WalkWork { frames: 60, primitives: 740, face_texels: 2_048 }, 251.2, 0.38),
     ];
 
-    /// Bits of slices that nothing lights are asked for and never touched: an estimate may be greater than what was taken, and never much less.
+    /// The process reserves the bits of dark slices without writing them. An estimate may therefore exceed the
+    /// measured memory, but must not fall much below the measurement.
     #[test]
     fn memory_of_volumes_and_walks_is_not_underestimated() {
         let volumes =

@@ -1,4 +1,4 @@
-//! `pxpl5 figures`.
+//! The command `pxpl5 figures`, which compares every published figure with a simulation.
 
 use crate::error::CliError;
 use crate::output::OutputFile;
@@ -12,7 +12,7 @@ use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Measure every published figure and compare.
+/// Simulate every published figure and compare.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 figures
@@ -26,29 +26,31 @@ pub(crate) struct FiguresArgs {
     /// Write the document of all figures to this file.
     #[arg(long, value_name = "FILE", conflicts_with = "check")]
     write: Option<PathBuf>,
-    /// Compare the document with this file.
+    /// Fail if this file differs from the document of all figures.
     #[arg(long, value_name = "FILE")]
     check: Option<PathBuf>,
 }
 
 pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
+    // Open the output first, so that a bad path fails before the simulations.
     let file = args.write.as_deref().map(|path| OutputFile::open(path, "--write")).transpose()?;
     let bar = progress(0, "figures", false);
     let figures = run_all_with(&Bench::new(Level::Transaction), |done, of| advance(&bar, done, of));
     bar.finish_and_clear();
     let figures = figures.map_err(CliError::failure)?;
     file.map(|file| file.write(markdown(&figures).as_bytes())).transpose()?;
+    // `--check` fails if the repository's document is stale.
     if let Some(path) = &args.check {
         fresh(path, &markdown(&figures), "figures")?;
     }
     print(&if args.json { json_text(&figures) } else { text(&figures) })
 }
 
-/// That a generated document is what a subcommand writes.
+/// Checks that a generated document is the one that `subcommand` would write now.
 ///
 /// # Errors
 ///
-/// When it cannot be read, or is another text.
+/// Fails when the document cannot be read or differs.
 pub(crate) fn fresh(path: &Path, document: &str, subcommand: &str) -> Result<(), CliError> {
     let kept = fs::read_to_string(path).map_err(|error| CliError::failure(format!("{}: {error}", path.display())))?;
     if kept == document {
@@ -81,17 +83,18 @@ fn text(figures: &Figures) -> String {
     text
 }
 
-/// Rows of a family under its title.
+/// Formats the rows of a family of figures below its title.
 fn of_family(family: &FigureFamily) -> String {
     format!("\n{} ({})\n{}", family.title, family.document, family_rows(&family.rows))
 }
 
-/// Rows of a family, and how many of them are missed.
+/// Formats the rows of a family of figures, with the number of misses.
 pub(crate) fn family_rows(rows: &[Row]) -> String {
     let mut text = format!(
         "{:<3} {:<7} {:>10} {:>10}  {:<7} {:>8}  {:<34} {}\n",
         "", "#", "published", "simulated", "unit", "error", "standing", "what"
     );
+    // Shapes without a published number show "-".
     for row in rows {
         let error = row.error_percent().map_or_else(String::new, |error| format!("{error:+.1}%"));
         let published = if row.published.is_nan() { "-".to_owned() } else { format!("{:.2}", row.published) };
@@ -112,7 +115,7 @@ pub(crate) fn family_rows(rows: &[Row]) -> String {
     text
 }
 
-/// Rows of Pixel-Planes 5.
+/// Formats the rows of the figures of Pixel-Planes 5.
 fn own(rows: &[FigureRow]) -> String {
     let mut text = format!(
         "{:<4} {:>10} {:>10}  {:<13} {:>8}  {:<22} {:<7} {}\n",

@@ -1,4 +1,4 @@
-//! `pxpl5 film`.
+//! The command `pxpl5 film`, which writes an animated PNG of a viewer's picture.
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
@@ -13,7 +13,7 @@ use clap::{Args, ValueEnum};
 use pxpl5::{Eye, Film, FilmOf, PeriodNumber, Pixels};
 use std::path::PathBuf;
 
-/// Write what a viewer sees as an animated PNG at the true field rate.
+/// Write a viewer's picture as an animated PNG at the true field rate.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 film --pipeline slats --scene mig --triangles 140 --out mig.png
@@ -26,13 +26,13 @@ pub(crate) struct FilmArgs {
     /// The file to write (PNG).
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
-    /// Whose eye.
+    /// Eye whose picture is written.
     #[arg(long, value_enum, default_value_t = Whose::Left)]
     eye: Whose,
-    /// The first field of the film.
+    /// Number of the film's first field.
     #[arg(long, value_name = "FIELD", default_value_t = 12, value_parser = whole::<u64>(0, 10_000_000))]
     from: u64,
-    /// How many fields it has.
+    /// Number of fields of the film.
     #[arg(long, value_name = "FIELDS", default_value_t = 60, value_parser = whole::<u64>(1, 10_000))]
     length: u64,
     #[command(flatten)]
@@ -48,7 +48,7 @@ enum Whose {
     Left,
     /// The right eye's picture alone.
     Right,
-    /// Side by side, the left eye left.
+    /// The pictures of both eyes side by side, the left eye's picture on the left.
     Both,
 }
 
@@ -61,10 +61,12 @@ pub(crate) fn run(args: FilmArgs) -> Result<(), CliError> {
         Whose::Both => FilmOf::All,
     };
     let file = OutputFile::open(&args.out, "--out")?;
+    // The run ends one field after the film, because the last picture is final only then.
     let (scene, fields) = (scenes::load(&plan, args.quiet)?, args.from + args.length + 1);
     args.budget.admit(&Work { fields, ..Work::of(&plan, &scene, true) })?;
     warn(too_heavy(&plan, &scene, fields).as_slice(), args.quiet);
     let experiment = plan.experiment(scene).pixels(Pixels::Lazy).fields(fields);
+    // The settings are stored in the PNG, so that the film can be reproduced.
     let texts = [("config_hash", experiment.config_hash().to_string()), ("settings", plan.settings().to_string())];
     let mut bytes = Vec::new();
     Film::new(experiment, PeriodNumber(args.from), args.length, eyes)

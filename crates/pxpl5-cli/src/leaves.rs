@@ -1,13 +1,14 @@
-//! Settings of TOML files, by path.
+//! Settings of TOML files as pairs of path and value.
 
 use toml::{Table, Value};
 
-/// A value as `--set` writes it.
+/// Formats a value in the syntax of `--set`.
 pub(crate) fn plain(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 
-/// Paths and values; a table with `from` is a range, any other one part of the path.
+/// Flattens a table into paths and values. A table with the key `from` is a range and stays a value; every other
+/// table adds a part to the path.
 pub(crate) fn leaves(table: Table) -> Vec<(String, Value)> {
     let mut all = Vec::new();
     for (key, value) in table {

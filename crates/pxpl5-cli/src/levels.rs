@@ -1,4 +1,4 @@
-//! `pxpl5 levels`.
+//! The command `pxpl5 levels`, which compares the speed and accuracy of the levels of modelling.
 
 use crate::error::CliError;
 use crate::output::OutputFile;
@@ -10,9 +10,9 @@ use pxpl5::views::charts::{SpeedAndError, level_chart};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-/// Compare the levels of modelling: speed against error, and what each level is for.
+/// Compare the levels of modelling: speed, error, and the use of each level.
 ///
-/// Prints what was measured last, with its date. --measure measures all again on this machine.
+/// Prints the last recorded measurement with its date. --measure measures again on this computer.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 levels
@@ -25,30 +25,31 @@ pub(crate) struct LevelsArgs {
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
-    /// Measure errors and speeds now, instead of printing those that were measured last.
+    /// Measure errors and speeds now, instead of printing the recorded ones.
     #[arg(long)]
     measure: bool,
-    /// Measure no speeds.
+    /// Do not measure speeds.
     #[arg(long, requires = "measure")]
     errors_only: bool,
-    /// Random experiments for the error against the cycle level.
+    /// Number of random experiments for the error against the cycle level.
     #[arg(long, default_value_t = 200, value_name = "N", requires = "measure", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     experiments: u64,
-    /// Write what was measured to this file (JSON).
+    /// Write the measurement to this file (JSON).
     #[arg(long, value_name = "FILE", requires = "measure")]
     write: Option<PathBuf>,
     /// Write a chart of speed against error (SVG) to this file.
     #[arg(long, value_name = "FILE")]
     chart: Option<PathBuf>,
-    /// Write the tables of growth with triangles and boards to this file instead.
+    /// Write only the tables of growth with triangles and boards to this file.
     #[arg(long, value_name = "FILE")]
     scaling: Option<PathBuf>,
 }
 
-/// What was measured last.
+/// The recorded measurement of the levels, as JSON.
 const RECORD: &str = include_str!("../../../docs/levels.json");
 
 pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
+    // --scaling writes three tables and nothing else.
     if let Some(path) = &args.scaling {
         let file = OutputFile::open(path, "--scaling")?;
         let bar = progress(3, "tables", false);
@@ -63,6 +64,7 @@ pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
     let open = |path: Option<&Path>, option| path.map(|path| OutputFile::open(path, option)).transpose();
     let chart = open(args.chart.as_deref(), "--chart")?;
     let written = open(args.write.as_deref(), "--write")?;
+    // Without --measure the recorded numbers are used, because measuring takes long.
     let record = if args.measure { measured(&args)? } else { LevelRecord::read(RECORD).map_err(CliError::failure)? };
     if let Some(file) = written {
         file.write(json_text(&record)?.as_bytes())?;
@@ -74,12 +76,13 @@ pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
     print(&if args.json { json_text(&record)? } else { text(&record) })
 }
 
-/// Measures all levels now.
+/// Measures all levels now, and adds today's date and a description of the host.
 fn measured(args: &LevelsArgs) -> Result<LevelRecord, CliError> {
     let bar = progress(0, "experiments and figures at all levels", false);
     let query = LevelQuery { experiments: args.experiments, speeds: !args.errors_only };
     let record = compare_with(query, |done, of| advance(&bar, done, of));
     bar.finish_and_clear();
+    // Speeds depend on the host, so the record describes the host.
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let host = format!("{}, {threads} threads", std::env::consts::ARCH);
     let seconds = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).ok();
@@ -87,9 +90,9 @@ fn measured(args: &LevelsArgs) -> Result<LevelRecord, CliError> {
     Ok(LevelRecord { date, host: Some(host), ..record? })
 }
 
-/// The day of so many days after 1 January 1970, in the Gregorian calendar, which repeats every 146,097 days.
+/// Converts days since 1 January 1970 to a date of the Gregorian calendar, which repeats every 146,097 days.
 fn date_of(days: u64) -> String {
-    // Years begin in March here, so that the day that not all have is the last one.
+    // Years start in March in this calculation, so that a leap day is the last day of its year.
     let days = days + 719_468;
     let (era, day) = (days / 146_097, days % 146_097);
     let year = (day - day / 1_460 + day / 36_524 - day / 146_096) / 365;
@@ -100,7 +103,7 @@ fn date_of(days: u64) -> String {
     format!("{:04}-{month:02}-{day:02}", year + u64::from(month <= 2))
 }
 
-/// A point for each choice of pixels of which a speed is known.
+/// Returns a chart point for each choice of pixels with a measured speed.
 fn points(report: &LevelReport) -> Vec<SpeedAndError> {
     let Some(mean_error_percent) = report.published_error_percent else { return Vec::new() };
     let speeds = report.speeds.iter().filter_map(|speed| {
@@ -113,7 +116,7 @@ fn points(report: &LevelReport) -> Vec<SpeedAndError> {
     speeds.collect()
 }
 
-/// NTSC fields a second.
+/// NTSC fields per second.
 const NTSC_FIELDS: f64 = 60_000.0 / 1_001.0;
 
 const fn pixels(pixels: pxpl5::Pixels) -> &'static str {
@@ -134,6 +137,7 @@ fn text(record: &LevelRecord) -> String {
         "{:<28} {:>9}  {:<26} simulated seconds a second\n{:<28} {:>9}  {:<26} {:>10} {:>10} {:>10}\n",
         "", "", "against the cycle level", "level", "published", "median (5 to 95 %)", "pixels off", "lazy", "all"
     );
+    // One line for each level: errors, then the speed for each choice of pixels.
     for report in &record.levels {
         let published = report.published_error_percent.map_or_else(unknown, |error| format!("{error:.1} %"));
         let from_cycle = report.from_cycle_percent.map_or_else(unknown, |spread| {
@@ -151,6 +155,7 @@ fn text(record: &LevelRecord) -> String {
     for report in &record.levels {
         let _ = writeln!(text, "{}: {}.", report.name(), report.advice());
     }
+    // The last paragraph defines the columns.
     let when = record.date.as_deref().unwrap_or("on an unknown day");
     let host = record.host.as_deref().unwrap_or("an unknown machine");
     let _ = write!(

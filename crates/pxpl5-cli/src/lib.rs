@@ -1,11 +1,16 @@
-//! The command `pxpl5`: runs experiments on the emulated Pixel-Planes 5, and prints and writes what came of them.
+//! The command `pxpl5`, which runs experiments on the emulated Pixel-Planes 5 and reports the results.
 //!
-//! A command with pipelines or displays of one's own is a binary that calls [`main`] with another registry:
-//! `docs/guide/own-pipeline.md` has a complete one.
+//! A binary with its own pipelines or displays calls [`main`] with another registry. `docs/guide/own-pipeline.md` has
+//! a complete example.
 //!
-//! Exit codes: 0 when all went well, 1 when something failed, 2 when the command line or an experiment file is wrong, 75 when another
-//! process writes into the folder of a sweep.
-//! Results go to standard output, everything else to standard error.
+//! Exit codes:
+//!
+//! - 0: success
+//! - 1: failure
+//! - 2: wrong command line or experiment file
+//! - 75: another process writes into the folder of a sweep
+//!
+//! Results go to standard output, all other messages to standard error.
 
 mod arp;
 mod budget;
@@ -44,7 +49,7 @@ mod too_heavy;
 mod trace;
 mod volume;
 
-/// The emulator: a crate with pipelines of its own needs nothing beside this one.
+/// The emulator, re-exported so that a crate with its own pipelines needs no other dependency.
 pub use pxpl5;
 
 use clap::{Parser, Subcommand};
@@ -55,7 +60,7 @@ use std::sync::Arc;
 
 /// Emulator of Pixel-Planes 5 and its low-latency rendering pipelines.
 ///
-/// Without a command it does what `pxpl5 demo` does.
+/// Without a command, pxpl5 runs `pxpl5 demo`.
 #[derive(Parser, Debug)]
 #[command(name = "pxpl5", version, propagate_version = true, after_help = EXAMPLES)]
 struct Cli {
@@ -73,54 +78,55 @@ Exit codes: 0 all went well, 1 something failed, 2 the command line or an experi
 
 #[derive(Subcommand, Debug)]
 enum Command {
-    /// Show both pipelines at work on built-in scenes: a table, pictures, timelines and report.json.
+    /// Show Rendering Control and Slats on built-in scenes: a table, pictures, timelines and report.json.
     Demo(demo::DemoArgs),
-    /// Run one experiment and print what came of it.
+    /// Run one experiment and print its report.
     Run(run::RunArgs),
     /// Print the effective configuration of an experiment.
     Check(check::CheckArgs),
-    /// Compare every way to fight latency in pixels: one scene, head motion and tracker for all pipelines.
+    /// Compare all low-latency methods in pixels of error: one scene, head motion and tracker for all pipelines.
     Compare(compare::CompareArgs),
-    /// Measure every published figure and compare.
+    /// Simulate every published figure and compare.
     Figures(figures::FiguresArgs),
     Readings(readings::ReadingsArgs),
-    /// Find the most triangles that a pipeline draws in time.
+    /// Find the largest number of triangles that a pipeline draws in time.
     Limit(limit::LimitArgs),
     /// Compare the levels of modelling: speed against error.
     Levels(levels::LevelsArgs),
     /// List the built-in scenes.
     Scenes(scenes::ScenesArgs),
-    /// List the machines that are built in.
+    /// List the built-in machines.
     Machines(machines::MachinesArgs),
-    /// Run an experiment at every point of a space of settings.
+    /// Run an experiment at every point of a parameter space.
     Sweep(sweep::SweepArgs),
     /// Join the shards of a sweep.
     Merge(merge::MergeArgs),
-    /// Draw what a sweep or a comparison found, with intervals: SVG, PNG or PDF, and the numbers as CSV.
+    /// Plot the results of a sweep or a comparison with intervals: SVG, PNG or PDF, and the numbers as CSV.
     Plot(plot::PlotArgs),
-    /// Measure latency from outside: pendulum and photodiodes, beside the system's time stamps.
+    /// Measure latency from outside with a pendulum and photodiodes, and compare with the system's time stamps.
     Rig(rig::RigArgs),
-    /// Make one page of a results folder.
+    /// Write one HTML page of a results folder.
     Report(report::ReportArgs),
-    /// Run one experiment and write a trace of everything that happened.
+    /// Run one experiment and write a trace of all events.
     Trace(trace::TraceArgs),
-    /// Run one experiment in pieces and look at its boards between them.
+    /// Run one experiment step by step and inspect its boards.
     Debug(debug::DebugArgs),
-    /// Write what a viewer sees as an animated PNG.
+    /// Write a viewer's picture as an animated PNG.
     Film(film::FilmArgs),
     /// Draw a scene as slices of a spinning volumetric display.
     Volume(volume::VolumeArgs),
-    /// Walk through a scene behind a display that turns with the head.
+    /// Walk through a scene with a display that follows the head's rotation.
     Arp(arp::ArpArgs),
-    /// Work with programs of the graphics processor's CPU.
+    /// Assemble, disassemble and run programs of the graphics processor's CPU.
     I860(i860::I860Args),
     /// Print a completion script for a shell.
     Completions(completions::CompletionsArgs),
 }
 
-/// Runs the command of this process with some pipelines and displays.
+/// Runs the command line of this process with the pipelines and displays of a registry, and returns the exit code.
 #[must_use]
 pub fn main(registry: Arc<Registry>) -> ExitCode {
+    // The options of pipelines must be known before clap builds the command line.
     options::know(registry);
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
@@ -136,6 +142,7 @@ pub fn main(registry: Arc<Registry>) -> ExitCode {
 }
 
 fn run(command: Option<Command>) -> Result<(), CliError> {
+    // Each subcommand is a module with its own arguments.
     match command {
         None => demo::run(demo::DemoArgs::default()),
         Some(Command::Demo(args)) => demo::run(args),
@@ -168,17 +175,18 @@ mod tests {
     use super::*;
     use clap::CommandFactory;
 
-    /// Lines that begin with the command, joined where they end in a backslash, without comments and shell variables.
+    /// Returns the lines that begin with the command. Lines that end in a backslash are joined; comments and shell
+    /// variables are replaced.
     fn commands(text: &str) -> Vec<Vec<String>> {
         let joined = text.replace("\\\n", " ");
         let lines = joined.lines().map(str::trim).filter(|line| line.starts_with("pxpl5"));
         lines.map(words).collect()
     }
 
-    /// The words of a line, without what explains it.
+    /// Returns the words of a line without its explanation.
     fn words(line: &str) -> Vec<String> {
         let line = line.split(['#', '>']).next().unwrap_or_default().replace('"', "");
-        // Help texts explain after three spaces.
+        // Help texts separate an explanation by three spaces.
         let line = line.split("   ").next().unwrap_or_default().replace("$SLURM_ARRAY_TASK_ID", "1");
         line.split_whitespace().map(str::to_owned).collect()
     }

@@ -1,4 +1,4 @@
-//! `pxpl5 limit`.
+//! The command `pxpl5 limit`, which finds how many triangles a pipeline draws in time.
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
@@ -12,7 +12,7 @@ use pxpl5::limit::{Limit, LimitQuery, Model};
 use pxpl5::{ExperimentFile, Goal, Level, LimitCriterion, TestScene};
 use serde_json::json;
 
-/// Find the most triangles that a pipeline draws in time.
+/// Find the largest number of triangles that a pipeline draws in time.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 limit --pipeline slats                            140 triangles were published (TR94)
@@ -28,29 +28,30 @@ Which triangles and what must hold is the pipeline's own, unless said.")]
 pub(crate) struct LimitArgs {
     #[command(flatten)]
     pipeline: PipelineOptions,
-    /// Graphics processors.
+    /// Number of graphics processors.
     #[arg(long, value_name = "N", value_parser = whole::<u64>(0, i64::MAX as u64))]
     gps: Option<u64>,
-    /// Renderers.
+    /// Number of renderers.
     #[arg(long, value_name = "N", value_parser = whole::<u64>(0, i64::MAX as u64))]
     renderers: Option<u64>,
-    /// Preset of the machine; default: the one on which the pipeline was measured.
+    /// Preset of the machine; default: the machine on which the papers measured the pipeline.
     #[arg(long, value_name = "PRESET")]
     machine: Option<String>,
-    /// What the pipeline draws for: ntsc or hires.
+    /// Display of the pipeline's pictures: ntsc or hires.
     #[arg(long)]
     display: Option<String>,
-    /// Triangles: full-screen, typical (small ones that touch 1.3 regions on average), or a built-in scene or model file that is thinned
-    /// out evenly; default: full-screen where every region gets them all, typical otherwise.
+    /// Triangles: full-screen, typical (small ones that touch 1.3 regions on average), or a built-in scene or model
+    /// file that is thinned out evenly; default: full-screen for pipelines that send all triangles to every region,
+    /// typical otherwise.
     #[arg(long, value_name = "full-screen|typical|NAME|FILE")]
     scene: Option<String>,
-    /// Least updates per second.
+    /// Minimum updates per second.
     #[arg(long, value_name = "HZ", conflicts_with = "latency")]
     rate: Option<f64>,
-    /// Greatest mean latency in fields.
+    /// Maximum mean latency in fields.
     #[arg(long, value_name = "FIELDS")]
     latency: Option<f64>,
-    /// Fields that each size is simulated for; default: enough for a steady state of the pipeline.
+    /// Fields simulated for each number of triangles; default: enough for a steady state of the pipeline.
     #[arg(long, value_name = "N", value_parser = whole::<u64>(0, 10_000_000))]
     fields: Option<u64>,
     /// Level of modelling: analytic, transaction or cycle; default transaction.
@@ -72,15 +73,16 @@ pub(crate) fn run(args: LimitArgs) -> Result<(), CliError> {
     print(&if args.json { json_text(&query, limit) } else { text(&query, limit) })
 }
 
-/// Sizes that a search tries at most: twice the halvings of all that are possible.
+/// Maximum number of sizes that a search simulates: twice the number of halvings of the whole range.
 const SIZES: usize = 40;
 
-/// Fewer fields than this show no pictures behind the warm-up of any pipeline.
+/// Minimum number of simulated fields. Shorter runs end within the warm-up of every pipeline.
 const LEAST_FIELDS: u64 = 10;
 
 impl LimitArgs {
     fn query(&self) -> Result<LimitQuery, CliError> {
         let plan = self.file()?.resolve()?;
+        // An option replaces one part of the pipeline's own criterion.
         warn(&plan.warnings(), false);
         let query = LimitQuery::of_plan(&plan);
         let fields = self.fields.unwrap_or(query.criterion.fields);
@@ -89,11 +91,13 @@ impl LimitArgs {
         }
         let scene = self.test_scene().unwrap_or(query.criterion.scene);
         let goal = self.goal()?.unwrap_or(query.criterion.goal);
+        // Any other scene name is a model that is thinned out to every size.
         let model = if self.scene.is_some() && self.test_scene().is_none() {
             Some(Model::load(plan.scene.clone())?)
         } else {
             None
         };
+        // Closed forms cost almost nothing, so only levels with events are checked against the budget.
         if query.level != Level::Analytic {
             let size = Work { fields, ..Work::of(&plan, &*scenes::load(&plan, false)?, false) };
             self.budget.admit_all([size; SIZES], 1)?;
@@ -101,17 +105,20 @@ impl LimitArgs {
         Ok(LimitQuery { criterion: LimitCriterion { goal, scene, fields }, model, ..query })
     }
 
-    /// The triangles of the papers' limits, where `--scene` names them.
+    /// Returns the test scene of the papers that `--scene` names, if any.
     fn test_scene(&self) -> Option<TestScene> {
         TestScene::ALL.into_iter().find(|scene| self.scene.as_deref() == Some(scene.name()))
     }
 
-    /// The settings of all sizes, with a scene that stands for each of them.
+    /// Returns the settings shared by all sizes. Their scene is a placeholder with one triangle unless `--scene`
+    /// names a model.
     fn file(&self) -> Result<ExperimentFile, CliError> {
         let mut file = ExperimentFile::with(registry());
         file.set("pipeline", "slats", "--pipeline")?;
+        // A test scene depends on the size, so a placeholder with one triangle stands for it.
         let model = self.scene.as_deref().filter(|_| self.test_scene().is_none());
         file.set("scene", model.unwrap_or("full-screen:1"), "--scene")?;
+        // Options override the pipeline's defaults, and `--set` overrides options.
         for (key, value) in &self.pipeline.given {
             file.set_text(&format!("{key}={value}"), &format!("--{}", option_of(key)))?;
         }
@@ -164,7 +171,7 @@ fn json_text(query: &LimitQuery, limit: Limit) -> String {
     format!("{object:#}\n")
 }
 
-/// What was drawn at every size.
+/// Returns the name of the scene drawn at every size.
 fn scene(query: &LimitQuery) -> String {
     query.model.as_ref().map_or_else(|| query.criterion.scene.name().to_owned(), |model| model.whole.name().to_owned())
 }
@@ -174,6 +181,7 @@ fn text(query: &LimitQuery, limit: Limit) -> String {
     let island = limit.island.map_or(String::new(), |n| {
         format!("An island above the first miss: {n} triangles reach the goal all the same.\n")
     });
+    // Explain the search only if its result is not trivial.
     let row = if limit.unbroken_from < limit.triangles {
         format!("All sizes from {} to {} were tried, smaller ones in part.\n", limit.unbroken_from, limit.triangles)
     } else {
@@ -191,7 +199,7 @@ fn text(query: &LimitQuery, limit: Limit) -> String {
     )
 }
 
-/// The pipeline's keys and their values, as they take effect.
+/// Returns the pipeline's keys and their effective values.
 fn settings(query: &LimitQuery) -> serde_json::Value {
     query.pipeline.settings().into_iter().map(|(key, value)| (key, value.to_string())).collect()
 }

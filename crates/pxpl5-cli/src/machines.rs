@@ -1,4 +1,4 @@
-//! `pxpl5 machines`.
+//! The command `pxpl5 machines`, which lists the built-in machines and their parameters.
 
 use crate::error::CliError;
 use crate::numbers::count_of;
@@ -9,14 +9,14 @@ use pxpl5::{ConfigError, MachineConfig, PRESETS, Parameter, Preset, Suitability,
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
-/// List the machines that are built in.
+/// List the built-in machines.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 machines
   pxpl5 machines small-hmd      every parameter with unit, standing, allowed range and source,
                                 those of the i860 and of trackers too; --set PATH=VALUE changes it")]
 pub(crate) struct MachinesArgs {
-    /// Show all parameters of this one.
+    /// Show all parameters of this machine.
     #[arg(value_name = "PRESET")]
     preset: Option<String>,
     /// Print one JSON object.
@@ -29,6 +29,7 @@ pub(crate) fn run(args: MachinesArgs) -> Result<(), CliError> {
         let machine = registry().machine_of(MachineConfig::preset(name).map_err(CliError::usage)?);
         return print(&if args.json { one_json(&machine) } else { one_text(&machine) });
     }
+    // Testing every pipeline on every preset takes some seconds.
     let bar = progress(PRESETS.len() as u64, "machines", false);
     let mut machines = Vec::new();
     for preset in &PRESETS {
@@ -39,7 +40,7 @@ pub(crate) fn run(args: MachinesArgs) -> Result<(), CliError> {
     print(&if args.json { all_json(&machines) } else { all_text(&machines) })
 }
 
-/// A preset, and which pipelines it can run.
+/// A preset and the pipelines that it can run.
 struct Listed {
     preset: &'static Preset,
     machine: MachineConfig,
@@ -122,6 +123,7 @@ fn one_text(machine: &MachineConfig) -> String {
         let _ = writeln!(text, "{pipeline:<42} {said}");
     }
     text.push('\n');
+    // Parameters of the machine come first, those of tracking second.
     machine.parameters().iter().for_each(|parameter| line(&mut text, parameter));
     text.push_str("\nWith a tracked head (head.motion, --head), whatever the machine:\n\n");
     tracking_parameters().iter().for_each(|parameter| line(&mut text, parameter));

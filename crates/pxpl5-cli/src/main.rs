@@ -1,4 +1,4 @@
-//! The command `pxpl5`, with the pipelines and displays of the papers.
+//! The command `pxpl5` with all built-in pipelines and displays.
 
 use std::process::ExitCode;
 

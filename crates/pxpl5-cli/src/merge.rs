@@ -1,4 +1,4 @@
-//! `pxpl5 merge`.
+//! The command `pxpl5 merge`, which joins the shards of a sweep.
 
 use crate::error::CliError;
 use crate::numbers::{are, count_of, were};
@@ -9,8 +9,8 @@ use std::path::PathBuf;
 
 /// Join the shards of a sweep.
 ///
-/// The result is the file that the sweep would have written without shards. Missing points are an error; points that
-/// are there twice with equal rows are told and kept once; with different rows they are an error.
+/// The result is the file that the sweep would have written without shards. Missing points are an error. A point that
+/// occurs twice with equal rows is reported and kept once. A point with different rows is an error.
 #[derive(Args, Debug)]
 #[command(after_help = "Example:
   pxpl5 merge out/slats-1 out/slats-2 --out out/slats")]
@@ -18,10 +18,10 @@ pub(crate) struct MergeArgs {
     /// Folders of shards.
     #[arg(value_name = "DIR", required = true)]
     folders: Vec<PathBuf>,
-    /// Where the joined files go.
+    /// Folder for the joined files.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Join what there is, though points are missing.
+    /// Join the existing points even if others are missing.
     #[arg(long)]
     partial: bool,
     /// Print nothing but errors.
@@ -31,6 +31,7 @@ pub(crate) struct MergeArgs {
 
 pub(crate) fn run(args: MergeArgs) -> Result<(), CliError> {
     let Merged { points, failed, duplicates, missing } = merge(&args.folders, &args.out, args.partial)?;
+    // Duplicates and missing points are warnings; other problems have ended the command by now.
     if let Some(first) = duplicates.first() {
         let points = were(duplicates.len() as u64, "point");
         complain(&format!("pxpl5: {points} there more than once, the first of them point {first}\n"));

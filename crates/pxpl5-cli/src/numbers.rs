@@ -1,4 +1,4 @@
-//! Whole numbers of the command line: what is wrong with one says which there can be.
+//! Parsers and formatters of whole numbers. An error message states the range that was expected.
 
 /// Returns a parser of whole numbers from `low` to `high`.
 pub(crate) fn whole<T: TryFrom<u64>>(low: u64, high: u64) -> impl Fn(&str) -> Result<T, String> + Clone {
@@ -9,23 +9,23 @@ pub(crate) fn whole<T: TryFrom<u64>>(low: u64, high: u64) -> impl Fn(&str) -> Re
     }
 }
 
-/// Reads a whole number that an experiment file could have; which ones make sense is known there.
+/// Parses a whole number of an experiment file. The experiment file checks the range of each key.
 pub(crate) fn signed(text: &str) -> Result<i64, String> {
     text.parse().map_err(|_| format!("expected a whole number of at most {}, found {text}", i64::MAX))
 }
 
-/// A number of things with their name in the right form: `1 triangle`, `2 triangles`.
+/// Formats a count with its noun in singular or plural: `1 triangle`, `2 triangles`.
 pub(crate) fn count_of(count: impl TryInto<u64>, name: &str) -> String {
     let count = count.try_into().unwrap_or(u64::MAX);
     format!("{count} {name}{}", if count == 1 { "" } else { "s" })
 }
 
-/// The same with its verb: `1 point is`, `2 points are`.
+/// Formats a count with its noun and verb in the present: `1 point is`, `2 points are`.
 pub(crate) fn are(count: u64, name: &str) -> String {
     format!("{} {}", count_of(count, name), if count == 1 { "is" } else { "are" })
 }
 
-/// The same of what is over: `1 size was`, `2 sizes were`.
+/// Formats a count with its noun and verb in the past: `1 size was`, `2 sizes were`.
 pub(crate) fn were(count: u64, name: &str) -> String {
     format!("{} {}", count_of(count, name), if count == 1 { "was" } else { "were" })
 }

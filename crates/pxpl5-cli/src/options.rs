@@ -1,31 +1,31 @@
-//! Options that the pipelines of this process bring with them.
+//! Command line options for the keys of the registered pipelines.
 
 use clap::{Arg, ArgMatches, Command};
 use pxpl5::{KeyValues, Registry};
 use std::sync::{Arc, OnceLock};
 
-/// The pipelines and displays of this process, said once by [`crate::main`]: options are made before anything is parsed.
+/// The pipelines and displays of this process. [`crate::main`] sets them before clap builds the options.
 static KNOWN: OnceLock<Arc<Registry>> = OnceLock::new();
 
-/// Says which pipelines and displays there are.
+/// Sets the pipelines and displays of this process.
 pub(crate) fn know(registry: Arc<Registry>) {
-    // A second call could only come from a second `main`; the first one's options stand.
+    // Only a second call of `main` would set the registry again. The options of the first call are kept.
     let _ = KNOWN.set(registry);
 }
 
-/// The pipelines and displays of this process.
+/// Returns the pipelines and displays of this process, by default the built-in ones.
 pub(crate) fn registry() -> Arc<Registry> {
     Arc::clone(KNOWN.get_or_init(pxpl5::registry))
 }
 
-/// The pipeline and its keys, as given on the command line: option and value.
+/// The pipeline and its keys, as given on the command line.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PipelineOptions {
-    /// Keys of the experiment file with the text given for each.
+    /// Keys of the experiment file, each with the text given on the command line.
     pub(crate) given: Vec<(&'static str, String)>,
 }
 
-/// How a key is written on the command line.
+/// Returns the option name of a key, with hyphens instead of underscores.
 pub(crate) fn option_of(key: &str) -> String {
     key.replace('_', "-")
 }
@@ -35,6 +35,7 @@ impl clap::Args for PipelineOptions {
         let registry = registry();
         let names: Vec<&str> = registry.pipelines().iter().map(|entry| entry.name).collect();
         let pipeline = Arg::new("pipeline").long("pipeline").value_name("PIPELINE").help(names.join(", "));
+        // Each key of a registered pipeline becomes an option whose syntax depends on the type of its values.
         registry.keys().into_iter().fold(command.arg(pipeline), |command, (key, families)| {
             let help = format!("{}: {}", families.join(", "), key.about);
             let arg = Arg::new(key.name).long(option_of(key.name)).help(help);

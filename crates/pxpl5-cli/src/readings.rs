@@ -1,4 +1,5 @@
-//! `pxpl5 readings`: what the papers leave open about Rendering Control, and which answers explain their figures.
+//! The command `pxpl5 readings`, which ranks interpretations of the papers on Rendering Control by their fit to the
+//! published figures.
 
 use crate::error::CliError;
 use crate::numbers::whole;
@@ -9,26 +10,27 @@ use pxpl5::figures::Bench;
 use pxpl5::readings::{Fit, LeftOut, Readings, run as rank};
 use std::fmt::Write;
 
-/// Rank all readings of the papers' open questions by how well they explain the figures of Rendering Control.
+/// Rank all interpretations of the papers' open questions by how well they explain the figures of Rendering Control.
 ///
-/// Whose latency is a mean, how fields were counted, how many finished regions a renderer keeps, what the master does with it meanwhile,
-/// which machine drew the application scenes, and whether back faces were culled: every combination, with one machine for all figures.
+/// Every combination of answers is simulated, with one machine for all figures. The questions are: which latency is
+/// averaged, how fields were counted, how many finished regions a renderer keeps, what the master does with it
+/// meanwhile, which machine drew the application scenes, and whether back faces were culled.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 readings
   pxpl5 readings --best 5 --rows 40
   pxpl5 readings --json > readings.json")]
 pub(crate) struct ReadingsArgs {
-    /// Readings that are measured with events as well.
+    /// Number of best interpretations that are also simulated with events.
     #[arg(long, default_value_t = 20, value_name = "N", value_parser = whole::<u64>(0, 256))]
     best: u64,
-    /// Readings of each level that are printed.
+    /// Number of interpretations printed for each level.
     #[arg(long, default_value_t = 20, value_name = "N")]
     rows: usize,
-    /// Seeds of figure 7's fly-through; a third of them for the molecules, a fifth for the head.
+    /// Number of seeds of figure 7's fly-through; the molecules use a third of them, the head a fifth.
     #[arg(long, default_value_t = 6, value_name = "N", value_parser = whole::<u64>(1, 100))]
     seeds: u64,
-    /// Frames of each fly-through.
+    /// Number of frames of each fly-through.
     #[arg(long, default_value_t = 150, value_name = "N", value_parser = whole::<u64>(10, 1_000))]
     frames: u64,
     /// Print one JSON object.
@@ -39,11 +41,11 @@ pub(crate) struct ReadingsArgs {
     quiet: bool,
 }
 
-/// Ranks them.
+/// Runs the command `pxpl5 readings`.
 ///
 /// # Errors
 ///
-/// Why a figure cannot be measured.
+/// Fails if a figure cannot be simulated.
 pub(crate) fn run(args: ReadingsArgs) -> Result<(), CliError> {
     let bench = Bench::new(Level::Analytic).with_mig(args.seeds, args.frames);
     let bar = progress(0, "readings", args.quiet);
@@ -65,6 +67,7 @@ fn text(readings: &Readings, rows: usize) -> String {
             fits.iter().take(rows).for_each(|fit| text.push_str(&line(fit)));
         }
     }
+    // The summary tells how far the choice is from unique.
     let _ = writeln!(
         text,
         "\n{} of them are as good as the best but for the printed digits ({:.2} % of a mean error).",

@@ -1,4 +1,4 @@
-//! `pxpl5 report`: a results folder as one page.
+//! The command `pxpl5 report`, which writes one HTML page of a results folder.
 
 mod files;
 mod load;
@@ -13,7 +13,7 @@ use files::Files;
 use pxpl5::views::page;
 use std::path::PathBuf;
 
-/// Make one self-contained HTML page of a results folder.
+/// Write one self-contained HTML page of a results folder.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 run --pipeline slats --scene mig --triangles 140 --out out/mig
@@ -23,8 +23,8 @@ use std::path::PathBuf;
 
 The page needs no network, fits a phone and can be printed.")]
 pub(crate) struct ReportArgs {
-    /// What `pxpl5 run --out`, `pxpl5 demo`, `pxpl5 sweep --out` or `pxpl5 compare --out` wrote: the folder, or its report.json,
-    /// rows.jsonl or comparison.json.
+    /// Results of `pxpl5 run --out`, `pxpl5 demo`, `pxpl5 sweep --out` or `pxpl5 compare --out`: the folder, or its
+    /// report.json, rows.jsonl or comparison.json.
     #[arg(value_name = "DIR|FILE")]
     results: PathBuf,
     /// The file to write; default: report.html in the folder.

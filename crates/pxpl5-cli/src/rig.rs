@@ -1,4 +1,5 @@
-//! `pxpl5 rig`: latency measured from outside, as by I3D95's pendulum, beside the system's own time stamps.
+//! The command `pxpl5 rig`, which measures latency from outside with a simulated pendulum, as I3D95 did, and compares
+//! the result with the system's time stamps.
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
@@ -13,12 +14,12 @@ use pxpl5::{ExperimentFile, Plan};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// Measure the latency of a pipeline from outside, with a pendulum and photodiodes, beside what its time stamps say.
+/// Measure the latency of a pipeline from outside with a pendulum and photodiodes, and compare with its time stamps.
 ///
-/// A tracker on a pendulum's bob feeds the host. When the host sees the low point it starts a frame; frames alternate dark and
-/// light under a photodiode in the middle of a line of the screen. The pipeline draws nothing else: it is not full.
-/// Displays that turn with the head and frameless rendering are refused, because no frame can be told by its light. Outside and
-/// inside that do not agree are an error.
+/// A tracker on a pendulum's bob feeds the host. When the host sees the low point, it starts a frame. Frames
+/// alternate between dark and light under a photodiode in the middle of a line of the screen. The pipeline draws
+/// nothing else, so it is never full. Displays that follow the head's rotation and frameless rendering are refused,
+/// because their light does not identify a frame. A disagreement between outside and inside measurements is an error.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 rig --pipeline rendering-control
@@ -29,7 +30,7 @@ Scene, motion and length are the rig's own: --scene, --triangles, --head, --fiel
 pub(crate) struct RigArgs {
     #[command(flatten)]
     settings: SettingArgs,
-    /// Low points to measure, 2 to 10,000.
+    /// Number of low points to measure, 2 to 10,000.
     #[arg(long, default_value_t = PASSES as u64, value_name = "N", value_parser = whole::<u64>(2, 10_000))]
     passes: u64,
     /// Line of a field under the photodiode on the screen, 0 at the top; default 120, the middle of NTSC's 240.
@@ -42,32 +43,34 @@ pub(crate) struct RigArgs {
     json: bool,
 }
 
-/// Fields from one low point to the next at most: a second.
+/// Maximum number of fields between two low points: one second.
 const FIELDS_OF_PASS: u64 = 60;
 
-/// Keys that would say what the rig itself says.
+/// Settings that the rig determines itself and does not accept.
 const NOT_OURS: [&str; 8] =
     ["scene", "triangles", "head.motion", "head.predict", "head.aim", "head.raster", "fields", "pixels"];
 
-/// Runs the measurement.
+/// Runs the command `pxpl5 rig`.
 ///
 /// # Errors
 ///
-/// What is wrong with an option, why nothing can be measured, or that outside and inside do not agree.
+/// Fails when an option is invalid, nothing can be measured, or the outside and inside measurements disagree.
 pub(crate) fn run(args: RigArgs) -> Result<(), CliError> {
     let plan = plan(args.settings.gather()?)?;
     let tracker = plan.head.as_ref().map(|head| head.head().tracker().config().clone());
     let tracker = tracker.ok_or_else(|| CliError::failure("no tracker"))?;
+    // Options replace single values of the assumed rig.
     let mut rig = Rig { seed: plan.seed, passes: args.passes as usize, ..Rig::assumed(tracker) };
     rig.rig.photodiode_line = args.line.unwrap_or(rig.rig.photodiode_line);
     let fields = args.passes * FIELDS_OF_PASS;
     args.budget.admit(&Work { fields, ..Work::of(&plan, &*plan.load_scene()?, true) })?;
     let measured = rig.measure(&plan.machine, plan.pipeline.clone()).map_err(CliError::failure)?;
+    // The result is printed even if both sides disagree.
     print(&if args.json { json_text(&plan, &rig, &measured) } else { text(&plan, &rig, &measured) })?;
     if measured.agrees() { Ok(()) } else { Err(CliError::failure(verdict(&measured))) }
 }
 
-/// Pipeline, machine, tracker and seed of the settings, with what the rig brings along.
+/// Returns the plan with the user's pipeline, machine, tracker and seed, and the rig's own scene and motion.
 fn plan(mut file: ExperimentFile) -> Result<Plan, CliError> {
     if let Some(key) = file.keys().find(|key| NOT_OURS.contains(key) || key.starts_with("motion.")) {
         return Err(CliError::usage(format!(
@@ -79,7 +82,7 @@ fn plan(mut file: ExperimentFile) -> Result<Plan, CliError> {
     Ok(file.resolve()?)
 }
 
-/// A latency of either side of the rig, by name.
+/// Name of a latency and the function that reads it from one side of the rig.
 type Column = (&'static str, fn(&Side) -> &Latency);
 
 fn text(plan: &Plan, rig: &Rig, measured: &Measurement) -> String {
@@ -95,6 +98,7 @@ fn text(plan: &Plan, rig: &Rig, measured: &Measurement) -> String {
         "outside",
         "inside"
     );
+    // The same latencies as seen from outside and from inside.
     let rows: [Column; 3] = [
         ("tracking latency", |side| &side.tracking),
         ("rendering latency", |side| &side.rendering),
@@ -127,7 +131,7 @@ fn verdict(measured: &Measurement) -> String {
          photodiode's place in the scan). They {}.",
         measured.outside_less_inside_s() * 1e3,
         measured.tracking_bound_ps as f64 * 1e-9,
-        // No "-0.00".
+        // The subtraction from 0.0 avoids the output "-0.00".
         0.0 - measured.rendering_early_ps as f64 * 1e-9,
         measured.rendering_bound_ps as f64 * 1e-9,
         if measured.agrees() { "agree" } else { "DO NOT AGREE" }

@@ -1,4 +1,4 @@
-//! Rows of a results folder: what `pxpl5 sweep` and `pxpl5 compare` wrote.
+//! Reader of the rows that `pxpl5 sweep` and `pxpl5 compare` write into a results folder.
 
 use crate::error::CliError;
 use parameters::text_of;
@@ -10,39 +10,41 @@ use std::path::Path;
 
 const COMPARISON_FILE: &str = "comparison.json";
 
-/// A row: names and values in the order of the file.
+/// A row as names and values in the order of the file.
 pub(crate) type Row = Vec<(String, Value)>;
 
-/// What the rows are.
+/// The kind of a results file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum RowsKind {
-    /// A row for each point.
+    /// Results of a sweep, with one row for each point.
     Sweep,
-    /// A row for each way to fight latency, a value for each path in it; lists are left to the file.
+    /// Results of a comparison, with one row for each pipeline and one value for each JSON path. Lists of plain
+    /// numbers are left out.
     Comparison,
 }
 
-/// All rows of a folder.
+/// All rows of a results folder.
 #[derive(Debug)]
 pub(crate) struct ResultRows {
     pub(crate) kind: RowsKind,
-    /// The header of a sweep; of a comparison everything but its rows.
+    /// Header of a sweep, or all of a comparison except its rows.
     pub(crate) about: Map<String, Value>,
     pub(crate) rows: Vec<Row>,
 }
 
-/// The rows of a folder; nothing where it holds neither a sweep nor a comparison.
+/// Returns the rows of a folder, or `None` if the folder holds neither a sweep nor a comparison.
 ///
 /// # Errors
 ///
-/// When its file cannot be read, or is none of these.
+/// Fails when the results file cannot be read or has another format.
 pub(crate) fn of(folder: &Path) -> Result<Option<ResultRows>, CliError> {
     type Reader = fn(&str) -> Result<ResultRows, String>;
     let readers: [(&str, Reader); 2] = [(ROWS_FILE, sweep), (COMPARISON_FILE, comparison)];
     let manifest = Manifest::read(folder)?;
+    // The first kind of results that the folder holds is used.
     for (name, read) in readers {
         let path = folder.join(name);
-        // A file that is not listed is of another run.
+        // An unlisted file belongs to another run.
         if path.is_file() && manifest.as_ref().is_none_or(|manifest| manifest.lists(name)) {
             let problem = |what: String| CliError::failure(format!("{}: {what}", path.display()));
             let listed = manifest.as_ref().map(|manifest| manifest.read_file(folder, name)).transpose()?.flatten();
@@ -54,13 +56,13 @@ pub(crate) fn of(folder: &Path) -> Result<Option<ResultRows>, CliError> {
     Ok(None)
 }
 
-/// The folder of a results file, or the folder itself.
+/// Returns the folder of a results file, or the path itself if it is a folder.
 pub(crate) fn folder_of(results: &Path) -> &Path {
     let folder = if results.is_file() { results.parent() } else { None };
     folder.map_or(results, |folder| if folder.as_os_str().is_empty() { Path::new(".") } else { folder })
 }
 
-/// The value of a row under a name.
+/// Returns the value of a row under a name.
 pub(crate) fn value<'a>(row: &'a Row, name: &str) -> Option<&'a Value> {
     row.iter().find(|(key, _)| key == name).map(|(_, value)| value)
 }
@@ -76,7 +78,7 @@ fn expect_schema(object: &Map<String, Value>, expected: &str) -> Result<(), Stri
     if is_expected { Ok(()) } else { Err(format!("schema: expected {expected}, found {found}")) }
 }
 
-/// Header and rows of a sweep; the last line of one that was interrupted may be torn and is left out.
+/// Returns the header and rows of a sweep. An incomplete last line of an interrupted sweep is left out.
 fn sweep(text: &str) -> Result<ResultRows, String> {
     let mut lines = text.split_inclusive('\n').filter(|line| line.ends_with('\n'));
     let about = parsed(lines.next().unwrap_or_default(), "line 1")?;
@@ -86,7 +88,7 @@ fn sweep(text: &str) -> Result<ResultRows, String> {
     Ok(ResultRows { kind: RowsKind::Sweep, about, rows })
 }
 
-/// Point, what varies, what was measured, and why there is nothing, if so.
+/// Returns a row with the point's number, its parameters, the measured values, and the error if the point failed.
 fn of_point(mut point: Map<String, Value>) -> Row {
     let mut row = Row::new();
     for key in ["point", "status", "parameters", "measured", "error"] {
@@ -105,6 +107,7 @@ fn comparison(text: &str) -> Result<ResultRows, String> {
     let Some(Value::Array(pipelines)) = about.remove("pipelines") else {
         return Err("expected a list `pipelines`".to_owned());
     };
+    // A nested object becomes one column for each path.
     let rows = pipelines.into_iter().map(|pipeline| {
         let mut row = Row::new();
         flatten("", pipeline, &mut row);
@@ -113,7 +116,7 @@ fn comparison(text: &str) -> Result<ResultRows, String> {
     Ok(ResultRows { kind: RowsKind::Comparison, rows: rows.collect(), about })
 }
 
-/// Every single value with its path; of a list of objects, each by what it is of: its `cause` or `kind`.
+/// Adds every plain value with its path to a row. An object of a list is named by its `cause` or `kind`.
 fn flatten(path: &str, value: Value, row: &mut Row) {
     match value {
         Value::Object(inner) => {
@@ -131,7 +134,7 @@ fn flatten(path: &str, value: Value, row: &mut Row) {
     }
 }
 
-/// What an object of a list is of; the share of no cause is the interaction of all.
+/// Returns the name of an object in a list. A `cause` of null is the interaction of all causes.
 fn name_of(value: &Value) -> Option<String> {
     let object = value.as_object()?;
     match object.get("cause").or_else(|| object.get("kind"))? {
@@ -141,7 +144,7 @@ fn name_of(value: &Value) -> Option<String> {
     }
 }
 
-/// The name of a column today, where it had another one in tables of comparisons.
+/// Returns the current name of a comparison column that once had another name.
 pub(crate) fn renamed(old: &str) -> Option<String> {
     let new = match old {
         "updates_hz" => "updates_hz.mean",
@@ -158,6 +161,7 @@ pub(crate) fn renamed(old: &str) -> Option<String> {
                 return Some(format!("causes.{cause}.px.mean"));
             }
             let statistics = ["latency_ms", "head_to_light_ms", "prediction_interval_ms"];
+            // Statistics had an underscore where JSON has a dot.
             let (name, end) = old.rsplit_once('_').filter(|(_, end)| ["mean", "sd"].contains(end))?;
             return statistics.contains(&name).then(|| format!("{name}.{end}"));
         }

@@ -1,4 +1,4 @@
-//! `pxpl5 run`.
+//! The command `pxpl5 run`, which runs one experiment and reports the results.
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
@@ -15,7 +15,7 @@ use pxpl5::{ExperimentFile, HeadReport, Keep, Level, Measured, Outcome, Plan, Re
 use std::fmt::Write;
 use std::path::PathBuf;
 
-/// Run one experiment.
+/// Run one experiment and print its report.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 run --pipeline slats --scene mig --triangles 140 --copy whole
@@ -32,13 +32,16 @@ written all the same, with null for what was not measured. 2: the command line o
 pub(crate) struct RunArgs {
     #[command(flatten)]
     settings: SettingArgs,
-    /// Worker threads for --pixels all; default: one a core; 0: the thread that simulates computes the pixels.
+    /// Number of worker threads for --pixels all; default: one for each core; with 0 the simulating thread computes
+    /// the pixels.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64>(0, 1024))]
     threads: Option<u64>,
-    /// Do without a saving, to see what it is worth: idle-boards, transfers, empty-regions or repeated-code; may be repeated.
+    /// Disable an optimization of the simulator to measure its effect: idle-boards, transfers, empty-regions or
+    /// repeated-code; may be repeated.
     #[arg(long, value_name = "SAVING")]
     without: Vec<Saving>,
-    /// Write report.json, results.csv, pictures.csv, experiment.toml, timeline.svg and the last pictures into this folder.
+    /// Write report.json, results.csv, pictures.csv, experiment.toml, timeline.svg and the last pictures into this
+    /// folder.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
@@ -56,19 +59,22 @@ pub(crate) struct RunArgs {
 pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     let plan = plan(args.snapshot.experiment(args.settings.gather()?)?)?;
     warn(&plan.warnings(), args.quiet);
+    // Open the output first, so that a bad path fails before the run.
     let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "run")).transpose()?;
-    // Files list every picture; the report needs statistics only, however long the run is.
+    // Files list every picture. The report alone needs only statistics, whose size does not grow with the run.
     let keep = if folder.is_some() { Keep::Everything } else { Keep::Statistics };
     let how = How { threads: args.threads, without: &args.without, keep, budget: args.budget, quiet: args.quiet };
     let Simulated { outcome, too_short } = args.snapshot.simulate(&plan, how)?;
     let results = Results::of_run(outcome);
     let Some((_, report)) = &results.run else { return Err(no_events()) };
+    // A run without a latency still writes its files and its report, and then ends with an error.
     let written = folder.map(|folder| write(folder, &plan, &results)).transpose()?;
     if args.json {
         print(&format!("{}\n", json(report)?))?;
     } else if !args.quiet {
         print(&text(&plan, &results, report, written))?;
     }
+    // The exit code tells scripts that the report lacks a latency.
     match too_short {
         Some(error) => Err(error),
         None if report.shown == 0 => Err(nothing_shown(report)),
@@ -76,7 +82,7 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     }
 }
 
-/// More fields would not help: pictures came, and all of them came too late.
+/// Returns the error for a run in which every picture came after its deadline. A longer run would not help.
 fn nothing_shown(report: &Report) -> CliError {
     let advice = report.too_heavy.as_ref().map_or("draw fewer primitives (--triangles)", |heavy| &heavy.advice);
     CliError::failure(format!(
@@ -89,6 +95,7 @@ fn nothing_shown(report: &Report) -> CliError {
 fn text(plan: &Plan, results: &Results, report: &Report, written: Option<PathBuf>) -> String {
     let comparison = comparison(plan, results);
     let mut text = String::new();
+    // Warnings come first: a scene that is too heavy, then faults of a display.
     if let Some(heavy) = &report.too_heavy {
         let _ = writeln!(text, "{heavy}\n");
     }
@@ -101,6 +108,7 @@ fn text(plan: &Plan, results: &Results, report: &Report, written: Option<PathBuf
     if let Some(lines) = report.lines_never_shown().filter(|lines| *lines > 0) {
         let _ = writeln!(text, "Lines that were overwritten before they had been shown: {lines}.");
     }
+    // A run with a tracked head has a latency to light and an error in pixels.
     if let Some(head) = &report.head {
         let HeadReport { tracker, predictor, training, aim, display, end_to_end, error, .. } = head;
         let tuned = training.map_or_else(String::new, |on| format!(", tuned for {} ms", on.interval_ps / PS_PER_MS));
@@ -121,12 +129,12 @@ fn text(plan: &Plan, results: &Results, report: &Report, written: Option<PathBuf
     text
 }
 
-/// What was not judged is no number.
+/// Formats a number, or returns "-" for NaN.
 fn known(value: f64, digits: usize) -> String {
     if value.is_nan() { "-".to_owned() } else { format!("{value:.digits$}") }
 }
 
-/// The checked experiment; a sweep is none.
+/// Returns the checked experiment of a file. Refuses sweeps and the analytic level.
 fn plan(file: ExperimentFile) -> Result<Plan, CliError> {
     if file.is_sweep() {
         return Err(CliError::usage("this file describes a sweep: use `pxpl5 sweep FILE --out DIR`"));
@@ -160,11 +168,13 @@ pub(crate) fn comparison(plan: &Plan, results: &Results) -> Option<Comparison> {
 
 fn write(mut folder: OutputFolder, plan: &Plan, results: &Results) -> Result<PathBuf, CliError> {
     let Some((outcome, report)) = &results.run else { return Err(no_events()) };
+    // The experiment file reproduces the run from any folder.
     folder.put("report.json", format!("{}\n", json(report)?).as_bytes())?;
     folder.put(
         "experiment.toml",
         format!("{}{}", origin_lines(report, "# "), plan.settings_for_any_folder()).as_bytes(),
     )?;
+    // Files that the experiment's `output` keys turn off are left out.
     if plan.output.csv {
         folder.put("results.csv", quantities_csv(&plan.measure, results).as_bytes())?;
         folder.put("pictures.csv", pxpl5::results::csv(outcome).as_bytes())?;
@@ -182,10 +192,10 @@ fn write(mut folder: OutputFolder, plan: &Plan, results: &Results) -> Result<Pat
     Ok(path)
 }
 
-/// What ends the name of a picture that was not complete in time.
+/// Suffix of the file name of a picture that was not complete in time.
 pub(crate) const INCOMPLETE: &str = "-incomplete";
 
-/// The last displayed pictures; `prefix` begins their names.
+/// Writes the last displayed picture of every surface. Each file name starts with `prefix`.
 pub(crate) fn pictures(
     folder: &mut OutputFolder,
     prefix: &str,

@@ -1,4 +1,4 @@
-//! `pxpl5 scenes`.
+//! The command `pxpl5 scenes`, which lists the built-in scenes.
 
 use crate::error::CliError;
 use crate::terminal::{print, warn};
@@ -16,18 +16,18 @@ pub(crate) struct ScenesArgs {
     json: bool,
 }
 
-/// The scene of a plan; warns of what its file holds and the reader makes something else of.
+/// Loads the scene of a plan, and prints warnings about parts of its file that the reader changed.
 ///
 /// # Errors
 ///
-/// For a scene that cannot be had.
+/// Fails when the scene does not exist or its file cannot be read.
 pub(crate) fn load(plan: &Plan, quiet: bool) -> Result<Arc<Scene>, CliError> {
     let scene = plan.load_scene()?;
     tell(&scene, quiet);
     Ok(scene)
 }
 
-/// Warns of what a scene's file holds and the reader makes something else of.
+/// Prints warnings about parts of a scene's file that the reader changed.
 pub(crate) fn tell(scene: &Scene, quiet: bool) {
     let named: Vec<String> = scene.warnings().iter().map(|warning| format!("{}: {warning}", scene.name())).collect();
     warn(&named, quiet);

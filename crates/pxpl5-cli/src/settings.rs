@@ -1,4 +1,4 @@
-//! Options that say what an experiment is; each stands for a key of an experiment file.
+//! Options that describe an experiment. Each option sets a key of an experiment file.
 
 use crate::error::CliError;
 use crate::numbers::signed;
@@ -7,13 +7,13 @@ use clap::Args;
 use pxpl5::{ExperimentFile, Raster};
 use std::path::PathBuf;
 
-/// An experiment file, and options that take precedence over it.
+/// An experiment file and the options that override its keys.
 #[derive(Args, Debug, Default)]
 pub(crate) struct SettingArgs {
     /// Experiment file (TOML).
     #[arg(value_name = "FILE")]
     experiment: Option<PathBuf>,
-    /// The same, as an option.
+    /// Experiment file (TOML), given as an option.
     #[arg(long, value_name = "FILE", conflicts_with = "experiment")]
     file: Option<PathBuf>,
     #[command(flatten)]
@@ -24,46 +24,50 @@ pub(crate) struct SettingArgs {
     /// Decimate the scene to at most N primitives, keeping its shape.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = signed)]
     triangles: Option<i64>,
-    /// Leave a model file where its coordinates say, in metres, instead of fitting it into the view of both eyes.
+    /// Keep the coordinates of a model file, in metres, instead of fitting the model into the view of both eyes.
     #[arg(long)]
     no_fit: bool,
-    /// Drop triangles that face away from the eye: of surfaces without holes nothing is missing then.
+    /// Drop triangles that face away from the eye. A surface without holes looks the same.
     #[arg(long)]
     cull: bool,
-    /// Preset of the machine (see `pxpl5 machines`); default: the one on which the pipeline was published.
+    /// Preset of the machine (see `pxpl5 machines`); default: the machine of the pipeline's paper.
     #[arg(long, value_name = "PRESET")]
     machine: Option<String>,
-    /// Graphics processors, the master included.
+    /// Number of graphics processors, including the master.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = signed)]
     gps: Option<i64>,
-    /// Renderers.
+    /// Number of renderers.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = signed)]
     renderers: Option<i64>,
-    /// Motion of a head with a tracker: still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED, walk:M_PER_S
-    /// along the scene's path (walk:M_PER_S:SEED looks around as synthetic:SEED) or a recording (FILE.csv, .txt, .tum: time_s,x,y,z,qw,qx,qy,qz, EuRoC, TUM, or any with --columns).
+    /// Motion of a head with a tracker: still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED,
+    /// walk:M_PER_S along the scene's path (walk:M_PER_S:SEED looks around as synthetic:SEED) or a recording
+    /// (FILE.csv, .txt, .tum: time_s,x,y,z,qw,qx,qy,qz, EuRoC, TUM, or any with --columns).
     #[arg(long, alias = "motion", value_name = "MOTION", allow_hyphen_values = true)]
     head: Option<String>,
-    /// Columns of a recording, by name or number: t_ns=stamp,x=px,y=py,z=pz,qw=qw,qx=qx,qy=qy,qz=qz (t, t_ms, t_us or t_ns; x or
-    /// x_mm).
+    /// Columns of a recording, by name or number: t_ns=stamp,x=px,y=py,z=pz,qw=qw,qx=qx,qy=qy,qz=qz (t, t_ms, t_us or
+    /// t_ns; x or x_mm).
     #[arg(long, value_name = "FIELD=COLUMN,...")]
     columns: Option<String>,
-    /// Metres from the eye at which pixel errors are judged; default where the scene's content lies.
+    /// Distance from the eye, in metres, at which pixel errors are evaluated; default: the distance of the scene's
+    /// content.
     #[arg(long, value_name = "METRES")]
     judge_at: Option<f64>,
-    /// Its tracker: optical, fastrak, fastrak-polled, flock, flock-patched, 3space, 3space-patched or ideal; default optical.
+    /// Tracker of the head: optical, fastrak, fastrak-polled, flock, flock-patched, 3space, 3space-patched or ideal;
+    /// default optical.
     #[arg(long)]
     tracker: Option<String>,
-    /// Prediction: none, velocity, acceleration or kalman; default kalman.
+    /// Predictor of the head's pose: none, velocity, acceleration or kalman; default kalman.
     #[arg(long)]
     predict: Option<String>,
-    /// The instant of what is shown from it that a view is predicted for: middle, first-pixel, last-pixel or retrace; default
-    /// middle.
+    /// Instant of a picture's display for which its view is predicted: middle, first-pixel, last-pixel or retrace;
+    /// default middle.
     #[arg(long)]
     aim: Option<String>,
-    /// What the pipeline draws for: ntsc or hires; default ntsc. (plain and vdrt are taken for --raster.)
+    /// Display of the pipeline's pictures: ntsc or hires; default ntsc. (plain and vdrt set --raster.)
     #[arg(long)]
     display: Option<String>,
-    /// Raster before a tracked head's eyes: plain, or vdrt (shifted by what the pose was wrong); default plain.
+    /// Raster before a tracked head's eyes: plain, or vdrt (shifted by the error of the predicted pose); default
+    /// plain.
     #[arg(long)]
     raster: Option<String>,
     /// Periods of the display to simulate: NTSC fields of 1/60 s; default 120.
@@ -72,33 +76,35 @@ pub(crate) struct SettingArgs {
     /// Level of modelling: transaction, cycle or (for sweeps) analytic; default transaction.
     #[arg(long)]
     level: Option<String>,
-    /// Which pixels are computed: off, lazy (those looked at) or all; default lazy.
+    /// Pixels that are computed: off, lazy (only pixels that are read) or all; default lazy.
     #[arg(long)]
     pixels: Option<String>,
-    /// Seed of the head motion's sway, or of the tracker's noise; default 1.
+    /// Seed of the head motion's sway and of the tracker's noise; default 1.
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = signed)]
     seed: Option<i64>,
-    /// Set any key of an experiment file, such as machine.gp.triangle_ns=30000 or tracking.optical.latency=20; `pxpl5 machines
-    /// small-hmd` lists all numbers; may be repeated.
+    /// Set any key of an experiment file, such as machine.gp.triangle_ns=30000 or tracking.optical.latency=20; `pxpl5
+    /// machines small-hmd` lists all numbers; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     sets: Vec<String>,
 }
 
 impl SettingArgs {
-    /// The file with the options applied; `--set` last.
+    /// Returns the experiment file with all options applied, `--set` last.
     ///
     /// # Errors
     ///
-    /// For an unusable file or an unknown key.
+    /// Fails when the file cannot be used or a key is unknown.
     pub(crate) fn gather(self) -> Result<ExperimentFile, CliError> {
         let file = ExperimentFile::with(registry());
         let mut file = match self.experiment.as_ref().or(self.file.as_ref()) {
             Some(path) => file.and_load(path)?,
             None => file,
         };
+        // Options of the pipeline override the file.
         for (key, value) in &self.pipeline.given {
             file.set_text(&format!("{key}={value}"), &format!("--{}", option_of(key)))?;
         }
+        // Options with text, each with its key.
         let texts = [
             ("scene", "--scene", self.scene),
             ("machine.preset", "--machine", self.machine),
@@ -114,6 +120,7 @@ impl SettingArgs {
         for (key, option, value) in texts {
             value.map(|value| file.set(key, value, option)).transpose()?;
         }
+        // Options with whole numbers, each with its key.
         let numbers = [
             ("triangles", "--triangles", self.triangles),
             ("machine.n_gps", "--gps", self.gps),
@@ -125,6 +132,7 @@ impl SettingArgs {
             value.map(|value| file.set(key, value, option)).transpose()?;
         }
         self.judge_at.map(|metres| file.set("head.judge_at", metres, "--judge-at")).transpose()?;
+        // `--columns` sets one key for each column.
         for column in self.columns.iter().flat_map(|columns| columns.split(',')) {
             let (field, name) = column.split_once('=').unwrap_or((column, ""));
             file.set(&format!("head.columns.{}", field.trim()), name.trim(), "--columns")?;
@@ -135,6 +143,7 @@ impl SettingArgs {
         if self.cull {
             file.set("cull", true, "--cull")?;
         }
+        // `--set` comes last and overrides everything else.
         for assignment in &self.sets {
             file.set_text(assignment, "--set")?;
         }
@@ -142,7 +151,8 @@ impl SettingArgs {
     }
 }
 
-/// A display's name is the machine's; a raster's was given by the same option before there were other displays.
+/// Returns the key that `--display NAME` sets. The names of rasters are accepted for compatibility with earlier
+/// versions, in which `--display` set the raster.
 fn display_key(name: Option<&str>) -> &'static str {
     if Raster::ALL.iter().any(|(raster, _)| Some(*raster) == name) { "head.raster" } else { "display" }
 }

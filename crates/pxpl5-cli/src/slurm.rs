@@ -1,14 +1,17 @@
-//! `pxpl5 sweep --slurm`: a sweep as jobs of Slurm. Nothing is run or submitted here.
+//! The option `pxpl5 sweep --slurm`, which writes scripts that run a sweep as jobs of Slurm. Nothing is run or
+//! submitted here.
 //!
 //! ```text
 //!  submit.sh --> array.sh   task I of N: pxpl5 sweep --shard I/N --resume, into OUT/shard-I
 //!           `--> merge.sh   when all tasks have ended: pxpl5 merge OUT/shard-* --out OUT
 //! ```
 //!
-//! A task that Slurm starts again, because its node was lost, goes on with the rows that it finds. Where the one before it still lives,
-//! on a node that does not answer, it waits until that is gone: two would write into one folder.
+//! Slurm restarts a task after its node was lost. The restarted task resumes with the rows that it finds. If the
+//! earlier task still runs on a node that does not answer, the restarted task waits, because two processes must not
+//! write into one folder.
 //!
-//! Time and memory that are asked for follow from estimates of points that lie evenly in the space ([`Resources`]).
+//! The requested time and memory follow from estimates of points that are spread evenly over the space
+//! ([`Resources`]).
 
 use crate::error::{BUSY, CliError};
 use crate::estimate::Estimate;
@@ -17,58 +20,63 @@ use crate::output::OutputFolder;
 use pxpl5::sweep::Sweep;
 use std::path::{Path, PathBuf};
 
-/// Where a sweep is, and how it is to be cut.
+/// Inputs and outputs of a sweep, and its division into tasks.
 #[derive(Clone, Debug)]
 pub(crate) struct Jobs<'a> {
-    /// The experiment file.
+    /// Path of the experiment file.
     pub(crate) file: &'a Path,
-    /// Settings for all points.
+    /// Settings shared by all points.
     pub(crate) sets: &'a [String],
-    /// Where the rows go.
+    /// Folder for the joined rows.
     pub(crate) out: &'a Path,
-    /// Tasks of the array; by the estimate where nothing is said.
+    /// Number of tasks in the array. `None` computes the number from an estimate.
     pub(crate) tasks: Option<u64>,
-    /// Points at a time in a task.
+    /// Number of points that a task simulates in parallel.
     pub(crate) threads: u64,
 }
 
-/// Seconds of work that a task is given: far above what starting it costs, far below what waiting for the last one may cost.
+/// Seconds of work in one task. The value is far above the cost of starting a task, and far below the time that the
+/// last task may delay the sweep.
 const TASK_S: f64 = 900.0;
-/// Most tasks of an array, as Slurm has it where its configuration says nothing (`MaxArraySize` 1001).
+/// Maximum number of tasks in an array: Slurm's default (`MaxArraySize` 1001).
 const MOST_TASKS: u64 = 1_000;
-/// Points that are estimated.
+/// Number of points whose cost is estimated.
 const SAMPLE: u64 = 300;
-/// Seconds to start a task and to load its scenes. Assumed.
+/// Seconds to start a task and load its scenes. Assumed.
 const START_S: f64 = 60.0;
-/// How much slower a node, and dearer its points, may be than estimated: a task that hits its limit is killed. Points of a pipeline together took at most
-/// three times their estimate (docs/sweeps.md, "What a point costs").
+/// Safety factor on the time of a task, because Slurm kills a task at its limit. The points of one pipeline together
+/// took at most three times their estimate (docs/sweeps.md, "What a point costs").
 const TIME_MARGIN: f64 = 5.0;
-/// How far estimates of memory are off at most (docs/hardening.md).
+/// Maximum ratio of used to estimated memory (docs/hardening.md).
 const MEMORY_MARGIN: f64 = 2.0;
-/// Seconds that merging takes for a row, and bytes that it holds of one, with as much for the tasks' files; rounded up (docs/sweeps.md, "A million points").
+/// Seconds to merge one row, rounded up (docs/sweeps.md, "A million points").
 const MERGE_ROW_S: f64 = 40e-6;
+/// Bytes held for one row while merging, rounded up (docs/sweeps.md, "A million points").
 const MERGE_ROW_BYTES: f64 = 16.0;
+/// Bytes held for the files of one task while merging, rounded up.
 const MERGE_TASK_BYTES: f64 = 32e3;
+/// Bytes of the merging process without rows, rounded up.
 const MERGE_BYTES: f64 = 50e6;
 
-/// What some points of a sweep are estimated to take.
+/// Estimated cost of a sample of points of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Sample {
-    /// Points of the sweep.
+    /// Number of points of the whole sweep.
     points: u64,
-    /// Seconds of a point on one core: in the mean, and the most.
+    /// Mean seconds of a point on one core.
     mean_s: f64,
+    /// Maximum seconds of a point on one core.
     most_s: f64,
-    /// Bytes of the greatest point.
+    /// Memory of the largest point, in bytes.
     most_bytes: f64,
 }
 
-/// What is asked of Slurm.
+/// Time and memory requested from Slurm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Resources {
     tasks: u64,
     threads: u64,
-    /// For each task, and for the merging.
+    /// Time limit of one task. Fields with the prefix `merge` belong to the job that merges.
     minutes: u64,
     megabytes: u64,
     merge_minutes: u64,
@@ -76,12 +84,13 @@ struct Resources {
 }
 
 impl Sample {
-    /// Of points that lie evenly in the space.
+    /// Estimates points that are spread evenly over the space.
     fn of(sweep: &Sweep) -> Self {
         let points = sweep.space().points();
         let chosen: Vec<u64> = spread(points, SAMPLE).collect();
         let estimates = sweep.estimates(&chosen);
         let seconds = || estimates.iter().map(|estimate| estimate.seconds);
+        // The mean determines the time of the sweep, the maximum the limits of a task.
         Self {
             points,
             mean_s: seconds().sum::<f64>() / estimates.len().max(1) as f64,
@@ -90,38 +99,39 @@ impl Sample {
         }
     }
 
-    /// The whole sweep on so many threads.
+    /// Returns the estimate of the whole sweep on a number of threads.
     fn whole(self, threads: usize) -> Estimate {
         let threads = threads.max(1) as f64;
         Estimate { bytes: self.most_bytes * threads, seconds: self.mean_s * self.points as f64 / threads }
     }
 }
 
-/// Numbers of some points, each once, that lie evenly in every axis: steps of the golden section of the whole, which have no factor in common with it.
+/// Returns at most `most` distinct point numbers that are spread evenly over every axis. The step is the golden
+/// section of the number of points, increased until both have no common factor.
 fn spread(points: u64, most: u64) -> impl Iterator<Item = u64> {
     let golden = (points as f64 * 0.618_033_988_75) as u64;
     let step = (golden..).find(|step| common_factor(*step, points) == 1).unwrap_or(1);
     (0..points.min(most)).map(move |n| (u128::from(n) * u128::from(step) % u128::from(points.max(1))) as u64)
 }
 
-/// The greatest number that divides both; 1 for 0 and 1.
+/// Returns the greatest common divisor.
 const fn common_factor(a: u64, b: u64) -> u64 {
     if b == 0 { a } else { common_factor(b, a % b) }
 }
 
-/// What a sweep is estimated to take on so many threads, by points that lie evenly in its space.
+/// Estimates a whole sweep on a number of threads from a sample of its points.
 pub(crate) fn estimate(sweep: &Sweep, threads: usize) -> Estimate {
     Sample::of(sweep).whole(threads)
 }
 
 impl Resources {
-    /// By the formulas
+    /// Computes the resources by these formulas:
     ///
-    /// - tasks: `mean_s points / (threads TASK_S)`, rounded up to a number without a factor in common with the points, so that every
-    ///   task has its share of every value of every axis;
-    /// - time of a task: `START_S + TIME_MARGIN (mean_s points / (tasks threads) + most_s)`;
-    /// - memory of a task: `MEMORY_MARGIN threads most_bytes`;
-    /// - merging: `START_S + MERGE_ROW_S points`, `MERGE_BYTES + MERGE_ROW_BYTES points + MERGE_TASK_BYTES tasks`.
+    /// - tasks: `mean_s points / (threads TASK_S)`, rounded up to a number without a common factor with the number of
+    ///   points, so that every task has its share of every value of every axis
+    /// - time of a task: `START_S + TIME_MARGIN (mean_s points / (tasks threads) + most_s)`
+    /// - memory of a task: `MEMORY_MARGIN threads most_bytes`
+    /// - merging: `START_S + MERGE_ROW_S points`, `MERGE_BYTES + MERGE_ROW_BYTES points + MERGE_TASK_BYTES tasks`
     fn of(sample: Sample, tasks: Option<u64>, threads: u64) -> Self {
         let Sample { points, mean_s, most_s, most_bytes } = sample;
         let work_s = mean_s * points as f64 / threads as f64;
@@ -141,7 +151,8 @@ impl Resources {
     }
 }
 
-/// The next number of tasks from `wanted` on that has no factor in common with the points, at most what an array takes.
+/// Returns the smallest number of tasks from `wanted` on that has no common factor with the number of points. Returns
+/// a smaller number if the array would exceed [`MOST_TASKS`].
 fn even_tasks(wanted: u64, points: u64) -> u64 {
     let most = MOST_TASKS.min(points).max(1);
     let wanted = wanted.clamp(1, most);
@@ -149,7 +160,7 @@ fn even_tasks(wanted: u64, points: u64) -> u64 {
     (wanted..=most).find(is_even).or_else(|| (1..wanted).rev().find(is_even)).unwrap_or(wanted)
 }
 
-/// What was written.
+/// Result of writing the scripts: the requested resources and the path of the script that submits the jobs.
 #[derive(Debug)]
 pub(crate) struct Written {
     resources: Resources,
@@ -157,7 +168,7 @@ pub(crate) struct Written {
 }
 
 impl Written {
-    /// What to tell about it.
+    /// Returns the message for the user.
     pub(crate) fn text(&self) -> String {
         let Resources { tasks, threads, minutes, megabytes, .. } = self.resources;
         format!(
@@ -173,12 +184,13 @@ impl Written {
 ///
 /// # Errors
 ///
-/// When the folder cannot be written.
+/// Fails when the folder cannot be written.
 pub(crate) fn write(sweep: &Sweep, jobs: &Jobs, folder: &Path) -> Result<Written, CliError> {
     let sample = Sample::of(sweep);
     let resources = Resources::of(sample, jobs.tasks, jobs.threads);
     let scripts = Scripts::of(jobs, sample, resources)?;
     let mut output = OutputFolder::open(folder, "--slurm")?;
+    // All three scripts appear together, or none.
     for (name, text) in [("array.sh", &scripts.array), ("merge.sh", &scripts.merge), ("submit.sh", &scripts.submit)] {
         output.put(name, text.as_bytes())?;
     }
@@ -193,8 +205,9 @@ struct Scripts {
 }
 
 impl Scripts {
-    /// Paths in them are absolute: a task begins wherever Slurm likes.
+    /// Builds the scripts with absolute paths, because Slurm chooses the working directory of a task.
     fn of(jobs: &Jobs, sample: Sample, resources: Resources) -> Result<Self, CliError> {
+        // Relative paths would depend on the folder in which Slurm starts a task.
         let absolute = |path: &Path| {
             let found = std::path::absolute(path);
             let found = found.map_err(|error| CliError::failure(format!("{}: {error}", path.display())))?;
@@ -204,9 +217,11 @@ impl Scripts {
         let command = command.map_err(|error| CliError::failure(format!("the path of this command: {error}")))?;
         let (command, file, out) = (absolute(&command)?, absolute(jobs.file)?, absolute(jobs.out)?);
         let sets: String = jobs.sets.iter().map(|set| format!(" --set {}", quoted(set))).collect();
+        // The command is the executable of this process; PXPL5 in the environment of a job overrides the path.
         let Resources { tasks, threads, minutes, megabytes, merge_minutes, merge_megabytes } = resources;
         let Sample { points, mean_s, most_s, most_bytes } = sample;
         let made = format!("# Written by pxpl5 {} (pxpl5 sweep --slurm).", env!("CARGO_PKG_VERSION"));
+        // Each task runs one shard, and retries while a lost copy of itself still holds the folder.
         let array = format!(
             "#!/bin/bash
 {made}
@@ -233,6 +248,7 @@ done
 ",
             most_bytes / 1e6
         );
+        // The merge job reads the shards of all tasks.
         let merge = format!(
             "#!/bin/bash
 {made}
@@ -248,6 +264,7 @@ out={out}
 \"$pxpl5\" merge \"$out\"/shard-* --out \"$out\"
 "
         );
+        // The user calls this script; it submits both jobs with a dependency.
         let submit = format!(
             "#!/bin/bash
 {made}
@@ -265,7 +282,7 @@ echo \"array $array, merging ${{merge%%;*}}\"
     }
 }
 
-/// A word as a shell takes it.
+/// Quotes a word for a shell.
 pub(crate) fn quoted(word: &str) -> String {
     let is_plain = word.chars().all(|c| c.is_alphanumeric() || "-_./=:,".contains(c)) && !word.is_empty();
     if is_plain { word.to_owned() } else { format!("'{}'", word.replace('\'', "'\\''")) }
@@ -278,7 +295,8 @@ mod tests {
 
     const SAMPLED: Sample = Sample { points: 20_000, mean_s: 0.9, most_s: 3.0, most_bytes: 40e6 };
 
-    /// 20,000 points of 0.9 s are 18,000 s: on one thread 20 tasks of 900 s; 21 is the next number that 20,000 = 2^5 5^4 has no factor of.
+    /// 20,000 points of 0.9 s are 18,000 s: 20 tasks of 900 s on one thread. The next number without a common factor
+    /// with 20,000 = 2^5 5^4 is 21.
     #[test]
     fn resources_follow_the_formulas() {
         let one = Resources::of(SAMPLED, None, 1);

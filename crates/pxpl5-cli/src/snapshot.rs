@@ -1,4 +1,4 @@
-//! Running an experiment, with a snapshot saved or restored on the way.
+//! Execution of an experiment with its budget, and saving and restoring of snapshots.
 
 use crate::budget::{BudgetArgs, YOUNG};
 use crate::error::CliError;
@@ -17,34 +17,34 @@ use pxpl5::{
 };
 use std::path::{Path, PathBuf};
 
-/// A moment to be kept or to go on from.
+/// Options to save a snapshot of a run, or to resume a run from a snapshot.
 #[derive(Args, Debug, Default)]
 pub(crate) struct SnapshotArgs {
-    /// Save a snapshot at the first retrace of this field (see --save), and go on.
+    /// Save a snapshot at the first retrace of this field (see --save), and continue.
     #[arg(long, value_name = "FIELD", requires = "save", value_parser = whole::<u64>(0, 10_000_000))]
     save_at: Option<u64>,
-    /// Where the snapshot goes.
+    /// File of the snapshot.
     #[arg(long, value_name = "FILE", requires = "save_at")]
     save: Option<PathBuf>,
-    /// Go on from a snapshot: the run is repeated up to its field, without pixels, compared, and continued.
+    /// Resume from a snapshot: the run is repeated up to its field, without pixels, compared, and continued.
     #[arg(long, value_name = "FILE")]
     restore: Option<PathBuf>,
 }
 
-/// How a run is to be made, whatever comes of it.
+/// Options of an execution that do not change its result.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct How<'a> {
-    /// Worker threads for all pixels; one a core where it is not said.
+    /// Number of worker threads for pixels. `None` means one for each core.
     pub(crate) threads: Option<u64>,
-    /// Savings to do without.
+    /// Optimizations that are disabled.
     pub(crate) without: &'a [Saving],
-    /// What of the observations is kept.
+    /// Observations that are kept in the outcome.
     pub(crate) keep: Keep,
     pub(crate) budget: BudgetArgs,
     pub(crate) quiet: bool,
 }
 
-/// What came of a run, and that it was too short to say much.
+/// The outcome of a run, with an error if the run was too short for statistics.
 #[derive(Debug)]
 pub(crate) struct Simulated {
     pub(crate) outcome: Outcome,
@@ -52,7 +52,7 @@ pub(crate) struct Simulated {
 }
 
 impl Simulated {
-    /// A run that is too short has an outcome all the same.
+    /// Converts the result of a run. A run that is too short for statistics still has an outcome.
     pub(crate) fn of(run: Result<Outcome, ExperimentError>) -> Result<Self, CliError> {
         match run {
             Ok(outcome) => Ok(Self { outcome, too_short: None }),
@@ -68,27 +68,28 @@ impl Simulated {
         }
     }
 
-    /// Of a run that is known to be long enough.
+    /// Returns the outcome of a run that must be long enough for statistics.
     ///
     /// # Errors
     ///
-    /// When it was not.
+    /// Returns the stored error if the run was too short.
     pub(crate) fn long_enough(self) -> Result<Outcome, CliError> {
         self.too_short.map_or(Ok(self.outcome), Err)
     }
 }
 
-/// What may be said beside a snapshot: the rest is in it.
+/// Prefixes of keys that a command may set when it restores a snapshot. The snapshot determines all others.
 const BESIDE: [&str; 4] = ["fields", "pixels", "measure", "output."];
 
 impl SnapshotArgs {
-    /// The experiment of the snapshot with the settings given beside it, or the experiment given.
+    /// Returns the experiment of the snapshot with the given settings applied, or `given` if no snapshot is restored.
     ///
     /// # Errors
     ///
-    /// For an unusable snapshot, or settings that contradict it.
+    /// Fails when the snapshot cannot be used, or a setting contradicts the snapshot.
     pub(crate) fn experiment(&self, given: ExperimentFile) -> Result<ExperimentFile, CliError> {
         let Some(path) = &self.restore else { return Ok(given) };
+        // Most settings are part of the snapshot, and changing them would change the run.
         if let Some(key) = given.keys().find(|key| !BESIDE.iter().any(|allowed| key.starts_with(allowed))) {
             let message = format!("{key} is in the snapshot; beside --restore only fields, pixels, measure and output");
             return Err(CliError::usage(message));
@@ -106,14 +107,14 @@ impl SnapshotArgs {
         Ok(Snapshot::read(text, &name)?)
     }
 
-    /// Runs it.
+    /// Simulates the plan, and saves or restores a snapshot on the way.
     ///
     /// # Errors
     ///
-    /// When the run fails, is not the one of the snapshot, or the snapshot cannot be written.
+    /// Fails when the run fails, differs from the snapshot, or the snapshot cannot be written.
     pub(crate) fn simulate(&self, plan: &Plan, how: How<'_>) -> Result<Simulated, CliError> {
         let saving = self.saving(plan)?;
-        // Kept until the run has ended, so that a run that is ended in any way leaves nothing.
+        // The text is written after the run, so that an interrupted run leaves no file.
         let mut saved = None;
         let scene = scenes::load(plan, how.quiet)?;
         how.budget.admit(&Work::of(plan, &scene, how.keep == Keep::Everything))?;
@@ -125,9 +126,10 @@ impl SnapshotArgs {
         let restored = self.restored(plan)?;
         if let Some((snapshot, name)) = &restored {
             snapshot.check_scene(&scene, name)?;
-            // Pixels of what was seen before the snapshot are computed only if somebody looks.
+            // Pixels of pictures before the snapshot are computed only if they are read.
             experiment = experiment.pixels(if plan.pixels == Pixels::All { Pixels::Lazy } else { plan.pixels });
         }
+        // The run stops at these fields: to save, to compare, and to extrapolate its cost early.
         let save_at = self.save_at.map(PeriodNumber);
         let young = YOUNG.map(|field| PeriodNumber::FIRST.after(field));
         let stops = save_at.into_iter().chain(restored.iter().map(|(s, _)| s.field)).chain(young);
@@ -138,6 +140,7 @@ impl SnapshotArgs {
             let done = field.since(PeriodNumber::FIRST);
             bar.set_position(done);
             watch.check(done).map_err(ExperimentError::Stopped)?;
+            // The repeated part must match the snapshot before the run continues.
             if let Some((snapshot, name)) = restored.as_ref().filter(|(snapshot, _)| snapshot.field == field) {
                 snapshot.check_machine(machine, name).map_err(|error| ExperimentError::Stopped(error.to_string()))?;
                 continue_pixels(plan, machine, host);
@@ -153,7 +156,7 @@ impl SnapshotArgs {
         Ok(simulated)
     }
 
-    /// Where the snapshot goes.
+    /// Opens the file of `--save` and checks that the field lies within the run.
     fn saving(&self, plan: &Plan) -> Result<Option<OutputFile>, CliError> {
         let (Some(field), Some(path)) = (self.save_at, &self.save) else { return Ok(None) };
         if !(1..plan.fields).contains(&field) {
@@ -163,7 +166,7 @@ impl SnapshotArgs {
         OutputFile::open(path, "--save").map(Some)
     }
 
-    /// The snapshot to go on from, and its name.
+    /// Returns the snapshot of `--restore` and its name, and checks that the snapshot lies within the run.
     fn restored(&self, plan: &Plan) -> Result<Option<(Snapshot, String)>, CliError> {
         let Some(path) = &self.restore else { return Ok(None) };
         let snapshot = self.read(path)?;

@@ -1,4 +1,4 @@
-//! `pxpl5 sweep`.
+//! The command `pxpl5 sweep`, which runs an experiment at every point of a parameter space.
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
@@ -12,10 +12,10 @@ use pxpl5::ExperimentFile;
 use pxpl5::sweep::{ROWS_FILE, RunOptions, Shard, Store, Sweep};
 use std::path::{Path, PathBuf};
 
-/// Run an experiment at every point of a space of settings.
+/// Run an experiment at every point of a parameter space.
 ///
-/// Rows are appended to rows.jsonl as points are finished; a point that cannot be simulated has a row that says why, and only when
-/// none can the command fails. The file is the same whatever the threads, shards and interruptions.
+/// Each finished point appends a row to rows.jsonl. A point that cannot be simulated has a row with the reason; the
+/// command fails only if no point can be simulated. The file does not depend on threads, shards or interruptions.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 sweep experiments/sweep-slats.toml --out out/slats
@@ -26,23 +26,23 @@ pub(crate) struct SweepArgs {
     /// Experiment file with a table `sweep`.
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Where rows.jsonl, times.jsonl and results.csv go.
+    /// Folder for rows.jsonl, times.jsonl and results.csv.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Keep the points that are finished, and run the others.
+    /// Keep the finished points and run the others.
     #[arg(long)]
     resume: bool,
-    /// Run share I of N disjoint ones.
+    /// Run share I of N disjoint shares.
     #[arg(long, value_name = "I/N", value_parser = shard, default_value = "1/1")]
     shard: Shard,
-    /// Run nothing, but write what submits the sweep to Slurm into DIR: an array of tasks, with time and memory by estimate, and a job
-    /// that joins their rows in --out.
+    /// Run nothing, but write scripts that submit the sweep to Slurm into DIR: an array of tasks, with time and
+    /// memory by estimate, and a job that joins their rows in --out.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["resume", "shard"])]
     slurm: Option<PathBuf>,
-    /// Tasks of that array; default: by estimate, about a quarter of an hour each.
+    /// Number of tasks of that array; default: by estimate, about a quarter of an hour each.
     #[arg(long, value_name = "N", requires = "slurm", value_parser = whole::<u64>(1, 1_000_000))]
     tasks: Option<u64>,
-    /// Points at a time; default: one a core, and one in a task of Slurm.
+    /// Number of points simulated in parallel; default: one for each core, and one in a task of Slurm.
     #[arg(long, value_name = "N", value_parser = whole::<u64>(1, 1024))]
     threads: Option<u64>,
     /// Set any key of the experiment file for all points; may be repeated.
@@ -51,7 +51,8 @@ pub(crate) struct SweepArgs {
     /// Refuse a sweep that would take more memory than this, in MB of 10^6 bytes.
     #[arg(long, value_name = "MB", value_parser = whole::<u64>(1, 1_000_000_000))]
     max_memory: Option<u64>,
-    /// Refuse a sweep that would take longer than this, in seconds; default: any time, since it can be interrupted and resumed.
+    /// Refuse a sweep that would take longer than this, in seconds; default: no limit, because a sweep can be
+    /// interrupted and resumed.
     #[arg(long, value_name = "S", value_parser = whole::<u64>(1, 1_000_000_000))]
     max_seconds: Option<u64>,
     /// Print nothing but errors.
@@ -72,6 +73,7 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     }
     let sweep = Sweep::new(file)?;
     warn(&supposed(&sweep), args.quiet);
+    // With --slurm nothing is simulated.
     if let Some(folder) = &args.slurm {
         return write_jobs(&args, &sweep, folder);
     }
@@ -79,6 +81,7 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = args.threads.map_or(cores, |threads| threads as usize);
     args.admit(&sweep, threads)?;
+    // The store keeps finished rows, so that Ctrl-C loses only the points in progress.
     let mut store = Store::open(&args.out, header, args.resume)?;
     told_when_interrupted(&args)?;
     let total = args.shard.share_of(sweep.space().points());
@@ -88,6 +91,7 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     let options = RunOptions { shard: args.shard, threads };
     pxpl5::sweep::run(&sweep, &mut store, options, |_| bar.inc(1))?;
     bar.finish_and_clear();
+    // A sweep succeeds if at least one point could be simulated.
     let failed = tell_failures(&store, args.shard, total, "simulated")?;
     tell_place(&args.out, total, args.quiet)?;
     store.finish()?;
@@ -95,9 +99,9 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
 }
 
 impl SweepArgs {
-    /// Refuses a sweep before it starts, if a limit is given that it would pass.
+    /// Refuses a sweep before it starts if its estimate exceeds a given limit.
     fn admit(&self, sweep: &Sweep, threads: usize) -> Result<(), CliError> {
-        // An estimate of hundreds of points takes seconds.
+        // The estimate of hundreds of points takes seconds, so a sweep without limits skips the estimate.
         if self.max_memory.is_none() && self.max_seconds.is_none() {
             return Ok(());
         }
@@ -108,7 +112,7 @@ impl SweepArgs {
     }
 }
 
-/// Writes the jobs of a sweep that could be run.
+/// Writes the scripts of `--slurm` after checking that the sweep is valid.
 fn write_jobs(args: &SweepArgs, sweep: &Sweep, folder: &Path) -> Result<(), CliError> {
     sweep.header()?;
     let threads = args.threads.unwrap_or(1);
@@ -117,7 +121,7 @@ fn write_jobs(args: &SweepArgs, sweep: &Sweep, folder: &Path) -> Result<(), CliE
     if args.quiet { Ok(()) } else { print(&written.text()) }
 }
 
-/// What cannot be taken for the machine at the first or the last point.
+/// Returns the warnings of the plans at the first and the last point.
 fn supposed(sweep: &Sweep) -> Vec<String> {
     let ends = [0, sweep.space().points() - 1].map(|point| sweep.plan(point).map(|plan| plan.warnings()));
     let mut all: Vec<String> = ends.into_iter().flatten().flatten().collect();
@@ -125,10 +129,11 @@ fn supposed(sweep: &Sweep) -> Vec<String> {
     all
 }
 
-/// How a process that Ctrl-C ended is told from others: 128 and the number of the signal, as shells have it.
+/// Exit code of a sweep that Ctrl-C ended: 128 plus the number of the signal, as in shells.
 const INTERRUPTED: i32 = 130;
 
-/// Ctrl-C ends the sweep and says how it goes on: finished rows are in the file already.
+/// Installs a handler that ends the sweep on Ctrl-C and prints the command to resume. Finished rows are in the file
+/// already.
 fn told_when_interrupted(args: &SweepArgs) -> Result<(), CliError> {
     let again = again(args);
     let listening = ctrlc::set_handler(move || end_interrupted(&again));
@@ -140,10 +145,11 @@ fn end_interrupted(again: &str) {
     std::process::exit(INTERRUPTED);
 }
 
-/// The command that goes on with what this one began.
+/// Returns the command that resumes this sweep.
 fn again(args: &SweepArgs) -> String {
     let mut words = vec!["pxpl5 sweep".to_owned(), quoted(&args.file.display().to_string())];
     words.extend(["--out".to_owned(), quoted(&args.out.display().to_string())]);
+    // Only options that differ from their defaults are repeated.
     if args.shard != Shard::ALL {
         words.extend(["--shard".to_owned(), format!("{}/{}", args.shard.number(), args.shard.of())]);
     }
@@ -153,7 +159,7 @@ fn again(args: &SweepArgs) -> String {
     words.join(" ")
 }
 
-/// Says how many points of a shard hold nothing but a reason, and the first of them; so many are given.
+/// Prints the number of failed points of a shard and the error of the first. Returns that number.
 pub(crate) fn tell_failures(store: &Store, shard: Shard, total: u64, done: &str) -> Result<u64, CliError> {
     let failed = store.failed(shard).count() as u64;
     if let Some(point) = store.failed(shard).next() {
@@ -164,7 +170,7 @@ pub(crate) fn tell_failures(store: &Store, shard: Shard, total: u64, done: &str)
     Ok(failed)
 }
 
-/// Says where the rows are.
+/// Prints the path of the file of rows.
 pub(crate) fn tell_place(out: &Path, total: u64, quiet: bool) -> Result<(), CliError> {
     if quiet { Ok(()) } else { print(&format!("{} in {}.\n", are(total, "point"), out.join(ROWS_FILE).display())) }
 }

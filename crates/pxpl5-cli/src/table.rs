@@ -1,18 +1,18 @@
-//! A table of runs: a column each, a row per quantity.
+//! A text table of runs, with one column for each run and one row for each quantity.
 
 use crate::numbers::count_of;
 use pxpl5::{DuePictures, Report, Statistics};
 
-/// What a run is compared with.
+/// A published value and the simulated value of the same quantity.
 #[derive(Clone, Debug)]
 pub(crate) struct Comparison {
     /// Name of the quantity, with its unit.
     pub(crate) quantity: String,
-    /// The value that the paper prints.
+    /// Value printed in the paper.
     pub(crate) published: f64,
-    /// The value that the run gave.
+    /// Value of the run.
     pub(crate) simulated: f64,
-    /// The paper, or which figure.
+    /// The paper, or the paper and its figure.
     pub(crate) source: String,
 }
 
@@ -22,7 +22,7 @@ impl Comparison {
     }
 }
 
-/// What a table says of a run: the name of a row and the text of its cell.
+/// Name of a table row and the function that formats its cell for a run.
 type TableRow = (&'static str, fn(&Report) -> String);
 
 const ROWS: [TableRow; 13] = [
@@ -41,10 +41,11 @@ const ROWS: [TableRow; 13] = [
     ("all over periods", window),
 ];
 
-/// The table as text.
+/// Returns the table as text.
 pub(crate) fn table(runs: &[(&Report, Option<&Comparison>)]) -> String {
     let rows = ROWS.iter().map(|(name, cell)| (*name, runs.iter().map(|(report, _)| cell(report)).collect()));
     let mut rows: Vec<(&str, Vec<String>)> = rows.collect();
+    // Rows about published values appear only if a run has one.
     if runs.iter().any(|(_, comparison)| comparison.is_some()) {
         rows.extend(comparison_rows(runs));
     }
@@ -60,12 +61,12 @@ fn comparison_rows(runs: &[(&Report, Option<&Comparison>)]) -> [(&'static str, V
     ]
 }
 
-/// A cell for each run, empty where it is compared with nothing.
+/// Returns a cell for each run, empty for a run without a published value.
 fn comparison_cells(runs: &[(&Report, Option<&Comparison>)], cell: impl Fn(&Comparison) -> String) -> Vec<String> {
     runs.iter().map(|(_, comparison)| comparison.map_or_else(String::new, &cell)).collect()
 }
 
-/// Pictures that were due and not shown, and of how many.
+/// Returns the number of due pictures that were not shown, and the number of due pictures.
 fn not_shown(report: &Report) -> String {
     of_due(report, |due| format!("{} of {} due", due.not_shown(), count_of(due.due, "picture")))
 }
@@ -74,12 +75,12 @@ fn ends(report: &Report) -> String {
     of_due(report, |due| format!("{}, {}, {}", due.late, due.incomplete, due.missed))
 }
 
-/// The window over which all results are computed.
+/// Returns the range of periods over which all results are computed.
 fn window(report: &Report) -> String {
     report.window.map_or_else(|| "-".to_owned(), |window| format!("{} to {}", window.first_period, window.last_period))
 }
 
-/// Where no picture is ever due, nothing.
+/// Returns "-" for a pipeline whose pictures are never due.
 fn of_due(report: &Report, cell: impl Fn(&DuePictures) -> String) -> String {
     report.due.as_ref().map_or_else(|| "-".to_owned(), cell)
 }
@@ -92,7 +93,7 @@ fn primitives(report: &Report) -> String {
     }
 }
 
-/// Of nothing there are no statistics, and of one picture there is no deviation.
+/// Formats mean, standard deviation and count. The mean of no values and the deviation of one value are "-".
 fn mean_and_sd(s: &Statistics, digits: usize) -> String {
     if s.mean.is_nan() {
         return "-".to_owned();
@@ -121,7 +122,7 @@ fn laid_out(rows: &[(&str, Vec<String>)]) -> String {
     text
 }
 
-/// Bytes of the longest cell of a column.
+/// Returns the length of the longest cell of a column in bytes.
 fn width(rows: &[(&str, Vec<String>)], column: usize) -> usize {
     rows.iter().filter_map(|(_, cells)| cells.get(column)).map(String::len).max().unwrap_or(0)
 }

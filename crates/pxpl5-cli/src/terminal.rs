@@ -1,23 +1,23 @@
-//! Standard output and standard error.
+//! Output of results to standard output, and of messages to standard error.
 
 use crate::error::CliError;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{ErrorKind, IsTerminal, Write};
 
-/// Prints a result. A reader that has gone away (`| head`) is no fault.
+/// Prints a result to standard output. A closed pipe (`| head`) is not an error.
 ///
 /// # Errors
 ///
-/// When standard output cannot be written for another reason, such as a full disk.
+/// Fails when standard output cannot be written for another reason, such as a full disk.
 pub(crate) fn print(text: &str) -> Result<(), CliError> {
     print_bytes(text.as_bytes())
 }
 
-/// As [`print`], of what is no text.
+/// Prints bytes to standard output, as [`print`] does for text.
 ///
 /// # Errors
 ///
-/// As [`print`].
+/// Fails in the same cases as [`print`].
 pub(crate) fn print_bytes(bytes: &[u8]) -> Result<(), CliError> {
     let mut out = std::io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {
@@ -28,25 +28,25 @@ pub(crate) fn print_bytes(bytes: &[u8]) -> Result<(), CliError> {
     }
 }
 
-/// Says something on standard error; if nobody can read that, there is nobody to tell.
+/// Prints a message to standard error. Errors are ignored, because no other channel is left to report them.
 pub(crate) fn complain(text: &str) {
     let _ = std::io::stderr().lock().write_all(text.as_bytes());
 }
 
-/// Says what cannot be taken for the machine, such as numbers that no source allows, each once.
+/// Prints warnings to standard error unless `quiet` is true.
 pub(crate) fn warn(warnings: &[String], quiet: bool) {
     if !quiet {
         warnings.iter().for_each(|warning| complain(&format!("pxpl5: warning: {warning}\n")));
     }
 }
 
-/// Moves a bar on.
+/// Sets the position and length of a progress bar.
 pub(crate) fn advance(bar: &ProgressBar, done: u64, of: u64) {
     bar.set_length(of);
     bar.set_position(done);
 }
 
-/// A bar with the time to go, on standard error and only on a terminal.
+/// Returns a progress bar with the remaining time. The bar is shown on standard error, and only on a terminal.
 pub(crate) fn progress(total: u64, what: &str, quiet: bool) -> ProgressBar {
     let shown = !quiet && std::io::stderr().is_terminal();
     let target = if shown { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };

@@ -1,4 +1,4 @@
-//! What is known of a scene before it is run: that nothing of it will be shown.
+//! Prediction before a run that no picture will be shown, because the scene is too heavy.
 
 use crate::estimate::Work;
 use crate::numbers::count_of;
@@ -6,14 +6,17 @@ use pxpl5::Plan;
 use pxpl5::scene::Scene;
 use std::sync::Arc;
 
-/// Fields of a run that is too short for any pipeline to fill, however light its scene is: a second.
+/// Length of a short run, in fields: one second. No warning is given if the pipeline needs no more than this, even in
+/// a shorter run.
 const SHORT_RUN: u64 = 60;
 
-/// Says that a run of so many fields is expected to show nothing behind the warm-up: by the closed form of its pipeline, or, without one, where
-/// its processors cannot even transform all primitives once.
+/// Returns a warning if a run of `fields` fields is expected to show no picture after the warm-up. The prediction
+/// uses the closed form of the pipeline. Without a closed form, the run is too short if the processors cannot
+/// transform all primitives once.
 pub(crate) fn too_heavy(plan: &Plan, scene: &Arc<Scene>, fields: u64) -> Option<String> {
     let work = Work::of(plan, scene, false);
     let entry = plan.registry.pipeline(plan.pipeline.name()).ok()?;
+    // A closed form predicts the first picture; it does not cover tracked heads.
     let expected = match entry.closed_form.filter(|_| plan.head.is_none()) {
         Some(form) => {
             let experiment = plan.experiment(Arc::clone(scene)).fields(fields);
@@ -22,7 +25,7 @@ pub(crate) fn too_heavy(plan: &Plan, scene: &Arc<Scene>, fields: u64) -> Option<
                 Some(needed) => {
                     format!("by the closed form the first picture with a latency is shown after about {needed} fields")
                 }
-                // Of some machines and displays the closed form says nothing, and not that there are none.
+                // The closed form covers only some machines and displays. Without a prediction there is no warning.
                 None if (form.summary)(&experiment).is_ok_and(|summary| summary.updates_hz.is_none()) => {
                     "by the closed form no picture is shown in time".to_owned()
                 }
@@ -30,6 +33,7 @@ pub(crate) fn too_heavy(plan: &Plan, scene: &Arc<Scene>, fields: u64) -> Option<
             }
         }
         None => {
+            // Without a closed form, the time of TRANSFORM is a lower bound.
             let transform = work.fields_of_transform();
             if transform <= fields as f64 {
                 return None;

@@ -1,4 +1,4 @@
-//! `pxpl5 trace`.
+//! The command `pxpl5 trace`, which writes a trace of one run for Perfetto or Chrome.
 
 use crate::budget::{BudgetArgs, YOUNG};
 use crate::error::CliError;
@@ -15,7 +15,7 @@ use pxpl5::trace_export::{Trace, chrome, perfetto};
 use pxpl5::{ExperimentError, PeriodNumber};
 use std::path::{Path, PathBuf};
 
-/// Run one experiment and write what happened as a trace for ui.perfetto.dev.
+/// Run one experiment and write a trace of its events for ui.perfetto.dev.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 trace --pipeline slats --scene mig --triangles 140 --fields 20 --out slats.pftrace
@@ -28,7 +28,7 @@ pub(crate) struct TraceArgs {
     /// The file to write: .pftrace (or .perfetto-trace) for Perfetto's format, .json for Chrome's.
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
-    /// Format of the file, whatever its name; default: by the end of its name.
+    /// Format of the file; default: by the extension of its name.
     #[arg(long, value_enum)]
     format: Option<Format>,
     #[command(flatten)]
@@ -40,18 +40,18 @@ pub(crate) struct TraceArgs {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Format {
-    /// A protobuf of Perfetto, times in nanoseconds.
+    /// Perfetto's protobuf, with times in nanoseconds.
     Perfetto,
-    /// Chrome's JSON, in exact microseconds.
+    /// Chrome's JSON, with exact times in microseconds.
     Chrome,
 }
 
 impl Format {
-    /// By the end of a file's name; Perfetto's for what is no file, such as a pipe.
+    /// Returns the format for a file's extension. Pipes and devices get Perfetto's format.
     ///
     /// # Errors
     ///
-    /// For any other end.
+    /// Fails for any other extension.
     fn of(path: &Path) -> Result<Self, CliError> {
         let end = path.extension().map(|end| end.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
         match end.as_str() {
@@ -70,11 +70,13 @@ pub(crate) fn run(args: TraceArgs) -> Result<(), CliError> {
     let format = args.format.map_or_else(|| Format::of(&args.out), Ok)?;
     let plan = args.settings.gather()?.resolve()?;
     warn(&plan.warnings(), args.quiet);
+    // Open the output first, so that a bad path fails before the run.
     let file = OutputFile::open(&args.out, "--out")?;
     let bar = progress(plan.fields, "fields", args.quiet);
     let scene = scenes::load(&plan, args.quiet)?;
     args.budget.admit(&Work::of(&plan, &scene, true))?;
     warn(too_heavy(&plan, &scene, plan.fields).as_slice(), args.quiet);
+    // A trace needs every message, which a run does not record by default.
     let experiment = plan.experiment(scene).record_traffic(true);
     let watch = args.budget.watch(plan.fields);
     let run = experiment.run_stopping(&YOUNG.map(|field| PeriodNumber::FIRST.after(field)), |field, _| {
@@ -83,11 +85,12 @@ pub(crate) fn run(args: TraceArgs) -> Result<(), CliError> {
         watch.check(done).map_err(ExperimentError::Stopped)
     });
     bar.finish_and_clear();
-    // A run that is too short for statistics has a trace all the same.
+    // A run that is too short for statistics still has a trace.
     let Simulated { outcome, too_short } = Simulated::of(run)?;
     warn(&too_short.iter().map(|note| note.message().to_owned()).collect::<Vec<_>>(), args.quiet);
     let trace = Trace::of(&outcome);
     let mut bytes = Vec::new();
+    // The whole file is built in memory and then written at once.
     let written = match format {
         Format::Perfetto => perfetto(&trace, &mut bytes),
         Format::Chrome => chrome(&trace, &mut bytes),

@@ -1,4 +1,4 @@
-//! What a user sees: results on standard output, files that are whole, and messages that help.
+//! Tests of the command as a user runs it: results on standard output, complete files, and helpful messages.
 
 mod support;
 
@@ -13,7 +13,7 @@ fn with<'a>(first: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
     [first, more].concat()
 }
 
-/// Exit code, and standard error holds all of these.
+/// Asserts the exit code of a command, and that standard error contains all given texts.
 fn refused(args: &[&str], code: i32, says: &[&str]) {
     let folder = Folder::new(&format!(
         "refused-{:x}",
@@ -28,7 +28,7 @@ fn refused(args: &[&str], code: i32, says: &[&str]) {
     assert!(folder.names().is_empty(), "{args:?} left {:?}", folder.names());
 }
 
-/// More than the machine can draw for many seconds, on slaves with room for the bins of both eyes.
+/// A load that the machine cannot draw for many seconds. Its slaves have room for the bins of both eyes.
 const FULL: [&str; 9] = [
     "run",
     "--pipeline",
@@ -41,7 +41,8 @@ const FULL: [&str; 9] = [
     "gp.bin_bytes=400000",
 ];
 
-/// A run that ends before anything can be said of it: it fails, says how long it would have to be, and prints what it has.
+/// Asserts that a run is too short for results: the command fails, states the necessary length, and prints the
+/// results that exist.
 fn too_short(args: &[&str], says: &str) {
     let output = Folder::new(&format!("short-{}", args.len())).run(args);
     assert_eq!(output.status.code(), Some(1), "{args:?}");
@@ -73,9 +74,9 @@ fn a_run_prints_one_object_with_units_in_its_names() {
 
 #[test]
 fn a_run_that_shows_nothing_says_so_and_fails() {
-    // A frame of 20,000 triangles takes 70 fields and more, and the first four are discarded.
+    // A frame of 20,000 triangles takes at least 70 fields, and the first four frames are discarded.
     too_short(&with(&FULL, &["--fields", "200"]), "simulate more fields: the next one is shown after about");
-    // Slats shows every field, and none of these is complete in time.
+    // Slats shows every field, and none of these fields is complete in time.
     let folder = Folder::new("always-late");
     let late = ["run", "--pipeline", "slats", "--scene", "full-screen:1000", "--fields", "60", "--pixels", "off"];
     let output = folder.run(&with(&late, &["--json"]));
@@ -111,7 +112,7 @@ fn a_run_that_is_too_short_prints_what_it_has() {
     }
 }
 
-/// The object on standard output, whatever the exit code.
+/// Returns the JSON object on standard output, for any exit code.
 fn json_of(output: &std::process::Output) -> serde_json::Value {
     serde_json::from_str(&out(output)).expect("one object")
 }
@@ -121,7 +122,7 @@ fn one_picture_of_many_that_are_due_has_no_deviation() {
     let folder = Folder::new("one-picture");
     let report = json(&folder.run(&with(&FULL, &["--fields", "400", "--json"])));
     assert_eq!((&report["pictures"], &report["latency_ms"]["sd"]), (&1.into(), &serde_json::Value::Null));
-    // A frame is due every second field, and takes 70 and more.
+    // A frame is due every second field, and takes at least 70 fields.
     let [due, shown] = ["due", "shown"].map(|key| report["due"][key].as_u64().expect("a number"));
     assert!(due > 100 && (1..=5).contains(&shown), "{shown} of {due}");
     assert_eq!(report["missed_retraces"].as_u64(), Some(due - shown));
@@ -135,7 +136,7 @@ fn read(folder: &Path, name: &str) -> Vec<u8> {
 fn result_files_open_with_preset_configuration_version_level_and_seed_and_tables_with_names() {
     let folder = Folder::new("files");
     let report = json(&folder.run(&with(&SLATS, &["--json", "--out", "a/b", "--set", "gp.triangle_ns=31000"])));
-    // With the feature of that name there is a Parquet file too.
+    // With the feature `parquet` there is also a Parquet file.
     let names: Vec<String> = names(&folder.0.join("a/b")).into_iter().filter(|n| !n.ends_with(".parquet")).collect();
     assert_eq!(
         names,
@@ -156,7 +157,8 @@ fn result_files_open_with_preset_configuration_version_level_and_seed_and_tables
     let config_hash = format!("# config_hash: {hash}");
     let expected = ["# machine: slats", &config_hash, "# version: 0.1.0", "# level: transaction", "# seed: 1"];
     assert_eq!(text("experiment.toml").lines().take(5).collect::<Vec<_>>(), expected);
-    // Tables open in other programs without options: names, then rows; the files beside them say where they come from.
+    // Tables open in other programs without options: names, then rows. The other files state the origin of the
+    // tables.
     assert!(text("results.csv").starts_with("quantity,value,definition\n"));
     assert!(text("pictures.csv").starts_with("picture,steady,complete,"));
     let saved: serde_json::Value = serde_json::from_slice(&read(&written, "report.json")).expect("JSON");
@@ -270,7 +272,7 @@ fn a_million_triangles_do_not_fit_and_the_message_says_what_to_do() {
     refused(&args, 1, &["GP 0", "bytes", "--gps", "--triangles"]);
 }
 
-/// A PLY file of one triangle with these coordinates for its first vertex and this last index.
+/// Returns a PLY file of one triangle with the given coordinates of its first vertex and the given last index.
 fn ply(first: &str, last_index: &str, faces: usize) -> String {
     let header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
     let face = if faces == 0 { String::new() } else { format!("3 0 1 {last_index}\n") };
@@ -425,7 +427,8 @@ fn without_arguments_both_pipelines_run_and_leave_pictures() {
             let name = format!("out/{}-{eye}.png", run["name"].as_str().expect("text"));
             let picture = image::open(folder.0.join(&name)).expect("a picture").to_rgb8();
             assert_eq!((picture.width(), picture.height()), (640, 480), "{name}");
-            // Backgrounds of the two scenes; twelve triangles cover the screen, an aircraft part of the sky.
+            // Background colours of the two scenes. Twelve triangles cover the screen, and an aircraft covers part of
+            // the sky.
             let is_flight = name.contains("mig") || name.contains("aircraft");
             let (empty, least) = if is_flight { ([92, 140, 200], 5_000) } else { ([16, 24, 48], 640 * 480) };
             let drawn = picture.pixels().filter(|pixel| pixel.0 != empty).count();
@@ -497,7 +500,7 @@ fn a_snapshot_of_a_model_file_that_has_changed_is_refused() {
     assert!(err(&output).contains("s.json: the run is not the one that was saved"), "{}", err(&output));
 }
 
-/// The experiment files of the repository: name and text.
+/// Returns the names and texts of the repository's experiment files.
 fn experiments() -> Vec<(String, String)> {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../experiments");
     let files = names(&folder).into_iter().filter(|name| name.ends_with(".toml"));
@@ -519,12 +522,12 @@ fn every_experiment_file_is_valid_and_every_figure_that_a_run_can_show_has_one()
         plan.load_scene().expect("a scene");
         figures.extend(name.strip_prefix("figure-").map(|rest| rest[..2].to_owned()));
     }
-    // Figure 8 is about scenes, not about a run.
+    // Figure 8 is a property of scenes, so no run reproduces it.
     let expected = (1..=15).filter(|n| *n != 8).map(|n| format!("{n:02}"));
     assert_eq!(figures, expected.collect());
 }
 
-/// Published and simulated value of a figure in ACCURACY.md.
+/// Returns the published and the simulated value of a figure in ACCURACY.md.
 fn accuracy(id: &str) -> (f64, f64) {
     let document = include_str!("../../../ACCURACY.md");
     let row = document.lines().find(|line| line.starts_with(&format!("| {id} |"))).expect("a row");
@@ -533,7 +536,8 @@ fn accuracy(id: &str) -> (f64, f64) {
     (number(cells[3]), number(cells[4]))
 }
 
-/// A run of the main job is its figure as ACCURACY.md reads it: on the same machine, and by the same quantity.
+/// Asserts that an experiment file reproduces its figure as in ACCURACY.md, on the same machine and by the same
+/// quantity.
 fn assert_agrees_with_accuracy(published: &serde_json::Value) {
     let id = published["source"].as_str().and_then(|source| source.strip_prefix("figure ")?.split(',').next());
     let (printed, found) = accuracy(id.expect("a figure"));
@@ -542,7 +546,7 @@ fn assert_agrees_with_accuracy(published: &serde_json::Value) {
     assert!((simulated / found - 1.0).abs() < 0.001, "{published}: in ACCURACY.md {found}");
 }
 
-/// A file may say why it does not give ACCURACY.md's number.
+/// Comment with which an experiment file explains a difference from ACCURACY.md.
 const DIFFERS: &str = "# Not the number of ACCURACY.md: ";
 
 #[test]
@@ -557,7 +561,8 @@ fn the_files_of_figures_agree_with_accuracy_md_or_say_why_not() {
         let id = published.figure.expect("its number").to_string();
         let results = plan.run(plan.load_scene().expect("a scene")).expect("it runs");
         let simulated = published.quantity.of(&results).expect("measured");
-        // By their errors, since the units may differ: figure 10 is in region times there. Four digits are printed there.
+        // Errors are compared instead of values, because the units may differ: ACCURACY.md has figure 10 in region
+        // times. Four digits are printed there.
         let (printed, found) = accuracy(&id);
         let here = simulated / published.value;
         let there = found / printed;
@@ -567,7 +572,7 @@ fn the_files_of_figures_agree_with_accuracy_md_or_say_why_not() {
 
 #[test]
 fn the_files_of_figures_1_2_9_10_and_11_reproduce_them() {
-    // Figures that follow from rules of the machine: exact but for the first word's way through the ring.
+    // Figures that follow from rules of the machine are exact except for the first word's time on the ring.
     let folder = Folder::new("figures");
     for (name, text) in experiments() {
         if ["01", "02", "09", "10", "11"].iter().any(|n| name == format!("figure-{n}.toml")) {
@@ -581,13 +586,14 @@ fn the_files_of_figures_1_2_9_10_and_11_reproduce_them() {
     }
 }
 
-/// What stands behind a name in the table on the terminal.
+/// Returns the cell after a row's name in the table on the terminal.
 fn cell(text: &str, name: &str) -> String {
     let line = text.lines().find(|line| line.starts_with(name)).unwrap_or_else(|| panic!("no {name}: {text}"));
     line[name.len()..].trim().to_owned()
 }
 
-/// Runs of all kinds, light and too heavy: the table on the terminal rounds what JSON has, and has `-` where that has null.
+/// For light and heavy runs of all kinds, the table on the terminal rounds the values of the JSON report, and shows
+/// `-` for null.
 #[test]
 fn the_terminal_says_what_json_says() {
     let folder = Folder::new("terminal");
@@ -624,7 +630,7 @@ fn the_terminal_says_what_json_says() {
     }
 }
 
-/// A ball that stays where it is, before a head that stays: one update is all that a display needs that turns what was drawn.
+/// A still ball in front of a still head needs only one update on a display that turns cube faces.
 #[test]
 fn a_scene_that_is_drawn_once_has_no_rate_and_no_limit_by_rate_and_is_shown() {
     let folder = Folder::new("drawn-once");

@@ -1,4 +1,4 @@
-//! `pxpl5 compare` as a user starts it.
+//! Tests of `pxpl5 compare` as a user runs it.
 
 use serde_json::Value;
 use std::path::PathBuf;
@@ -175,7 +175,7 @@ fn what_was_not_shown_or_is_never_due_is_null_in_json_and_empty_in_the_table() {
     let settings =
         ["--head", "pan:200", "--scene", "typical:500", "--gps", "3", "--fields", "30", "--seeds", "2", "--no-limits"];
     let json = json(&compare(&[settings.as_slice(), &only, &["--json", "--out", path]].concat()));
-    // Of 22 fields due of either seed none was shown; what stands on the screen is from start-up.
+    // None of the 22 due fields of either seed was shown. The screen still shows the picture of the start.
     let heavy = row(&json, "jitp-dual-screen");
     assert_eq!((&heavy["due"], &heavy["not_shown"]), (&Value::from(44), &Value::from(44)), "{heavy}");
     assert!(heavy["error"]["mean_px"]["mean"].is_null() && heavy["error"]["n"] == 0, "{heavy}");
@@ -189,7 +189,7 @@ fn what_was_not_shown_or_is_never_due_is_null_in_json_and_empty_in_the_table() {
         }
     }
     assert!(row(&json, "ideal")["end_to_end"]["n"] == 0 && row(&json, "ideal")["updates_hz"]["mean"].is_null());
-    // The stages are those of both seeds, as the sum is.
+    // The stages and their sum cover both seeds.
     let frameless = row(&json, "frameless");
     assert_eq!(frameless["end_to_end"]["n"], frameless["head_to_light_ms"]["n"]);
     let [total, mean] = [&frameless["end_to_end"]["total_ms"], &frameless["head_to_light_ms"]["mean"]];
@@ -209,7 +209,7 @@ fn what_was_not_shown_or_is_never_due_is_null_in_json_and_empty_in_the_table() {
         }
         assert_eq!(cell(line, "error.mean_px.mean").parse().ok(), row["error"]["mean_px"]["mean"].as_f64(), "{name}");
     }
-    // No point stands for what is not there.
+    // A row without numbers has no point in the chart.
     let drawing = out.join("plot.svg");
     let plot = pxpl5("plot", &[path, "--x", "pipeline", "--y", "not_shown", "--out", drawing.to_str().expect("plain")]);
     assert!(plot.status.success(), "{}", String::from_utf8_lossy(&plot.stderr));

@@ -1,4 +1,5 @@
-//! What the command tells without being asked: doubtful numbers, how to go on after Ctrl-C, what runs where.
+//! Tests of unrequested help: warnings about doubtful numbers, the command to resume after Ctrl-C, and the pipelines
+//! that a machine can run.
 
 mod support;
 
@@ -31,7 +32,7 @@ fn a_value_outside_its_range_is_warned_of_once_with_range_and_source() {
     assert_eq!(err(&checked).matches("warning").count(), 1);
 }
 
-/// Nothing may look as if code had given it that has none.
+/// Output must not attribute times to executed code if no code ran.
 #[test]
 fn times_of_the_table_at_the_cycle_level_are_warned_of() {
     let folder = Folder::new("times-of-the-table");
@@ -47,7 +48,7 @@ fn times_of_the_table_at_the_cycle_level_are_warned_of() {
     assert_eq!([run(&pipeline, "transaction"), run(&pipeline, "cycle")], [0, 1], "{pipeline:?}");
     let by_code: [&[&str]; 9] = [
         &["jitp-field"],
-        // Of one line, no strip is drawn in time by code.
+        // With strips of one line, no strip is drawn in time by executed code.
         &["jitp-scanline", "--set", "strip_rows=32"],
         &["jitp-dual-view", "--set", "strip_rows=32"],
         &["frameless"],
@@ -151,12 +152,12 @@ fn fewer_triangles_keep_the_whole_model() {
     let picture = image::open(folder.0.join("out/left.png")).expect("a picture").to_rgb8();
     let background = [16, 24, 48];
     let rows: Vec<u32> = picture.enumerate_pixels().filter(|(_, _, p)| p.0 != background).map(|(_, y, _)| y).collect();
-    // The first 100 triangles are the crown: a strip of some lines.
+    // The first 100 triangles are the crown of the head: a strip of some lines.
     let height = rows.iter().max().expect("something") - rows.iter().min().expect("something");
     assert!(height > 200, "{height} lines");
 }
 
-/// Runs that would take hours, and gigabytes: they are refused within seconds, with what they would take.
+/// Runs that would take hours or gigabytes are refused within seconds, with their estimated cost.
 #[test]
 fn a_run_that_takes_too_much_is_refused_with_an_estimate() {
     let folder = Folder::new("budget");
@@ -170,7 +171,7 @@ fn a_run_that_takes_too_much_is_refused_with_an_estimate() {
             &["trace", "--pixels", "off", "--out", "o/t.pftrace", "--max-seconds", "60", "--max-memory", "1000000"],
             "--max-seconds",
         ),
-        // However slow the host is, memory is what it is refused for.
+        // Memory is the reason for the refusal on a host of any speed.
         (
             &["trace", "--pixels", "off", "--out", "o/t.pftrace", "--max-memory", "200", "--max-seconds", "1000000000"],
             "--max-memory",
@@ -184,7 +185,7 @@ fn a_run_that_takes_too_much_is_refused_with_an_estimate() {
     }
 }
 
-/// What takes much by what it is, and not by how long it is, is known before it starts.
+/// Costs that depend on the size of a run and not on its length are known before the start.
 #[test]
 fn batches_and_processors_by_the_thousand_are_estimated_before_the_run() {
     let folder = Folder::new("estimate");
@@ -203,7 +204,7 @@ fn batches_and_processors_by_the_thousand_are_estimated_before_the_run() {
     }
 }
 
-/// Commands that make many runs, or a long one, add them up before the first.
+/// Commands that execute many runs, or a long one, add up the cost before the first run.
 #[test]
 fn films_comparisons_and_searches_are_estimated_before_the_first_run() {
     let folder = Folder::new("many-runs");
@@ -222,7 +223,7 @@ fn films_comparisons_and_searches_are_estimated_before_the_first_run() {
     }
 }
 
-/// Volumes, walks, sweeps and sessions of the debugger have the same budgets: they are refused before they ask for memory.
+/// Volumes, walks, sweeps and debugger sessions have the same budgets and are refused before they allocate memory.
 #[test]
 fn every_command_that_computes_is_estimated_before_it_starts() {
     let folder = Folder::new("all-budgets");
@@ -256,13 +257,13 @@ fn every_command_that_computes_is_estimated_before_it_starts() {
         assert!(text.contains("expected to take") && text.contains(says), "{args:?}: {text}");
         assert_eq!(folder.names(), ["s.toml", "v.toml"], "{args:?}");
     }
-    // A point of a sweep of volumes that is too great fails alone; here it is the only one.
+    // A sweep point of volumes that is too large fails alone. Here it is the only point.
     let output = folder.run(&["volume", "sweep", "v.toml", "--out", "o"]);
     assert_eq!(output.status.code(), Some(1), "{}", err(&output));
     assert!(err(&output).contains("expected to take 3"), "{}", err(&output));
 }
 
-/// A scene of which nothing can be shown is told before it is run.
+/// A scene of which no picture will be shown causes a warning before the run.
 #[test]
 fn a_scene_that_is_too_heavy_to_be_shown_is_told_before_the_run() {
     let folder = Folder::new("too-heavy");
@@ -272,12 +273,12 @@ fn a_scene_that_is_too_heavy_to_be_shown_is_told_before_the_run() {
         let said = err(&output);
         (said.lines().find(|line| line.contains("warning: TOO HEAVY")).map(str::to_owned), output.status.code())
     };
-    // A frame of 20,000 triangles that cover the screen takes 70 fields and more.
+    // A frame of 20,000 triangles that cover the screen takes at least 70 fields.
     let (said, code) = heavy("rendering-control", "full-screen:20000", "60");
     let said = said.expect("it is told");
     assert!(said.contains("20000 primitives on 13 graphics processors") && said.contains("60 fields"), "{said}");
     assert_eq!(code, Some(1));
-    // Without a closed form: 100,000 triangles of 21.7 us on 13 processors are 10 fields.
+    // Without a closed form: 100,000 triangles of 21.7 us on 13 processors take 10 fields.
     let (said, _) = heavy("jitp-field", "typical:100000", "5");
     assert!(said.is_some_and(|said| said.contains("to transform all of it once")));
     for (pipeline, scene, fields) in [("rendering-control", "full-screen:12", "30"), ("slats", "full-screen:12", "30")]
@@ -286,7 +287,8 @@ fn a_scene_that_is_too_heavy_to_be_shown_is_told_before_the_run() {
     }
 }
 
-/// A number that is too great says how great it may be, and a byte that is no text where it stands.
+/// An error about a number that is too large states the maximum. An error about a byte that is not text states its
+/// position.
 #[test]
 fn what_is_wrong_with_an_input_is_told_with_its_limits_and_its_place() {
     let folder = Folder::new("told");
@@ -335,7 +337,7 @@ fn what_is_wrong_with_an_input_is_told_with_its_limits_and_its_place() {
     }
 }
 
-/// A scene that has fewer triangles than are asked for is drawn whole.
+/// A scene with fewer triangles than requested is drawn whole.
 #[test]
 fn more_triangles_than_a_scene_has_are_all_of_them() {
     let folder = Folder::new("all-triangles");
@@ -348,7 +350,7 @@ fn more_triangles_than_a_scene_has_are_all_of_them() {
     );
 }
 
-/// One of anything is told as one, and what does not vary has no deviation, in JSON as in CSV.
+/// A count of one has the singular form, and constant values have no deviation, in JSON and in CSV.
 #[test]
 fn one_is_told_as_one_and_a_constant_without_deviation() {
     let folder = Folder::new("plurals");
@@ -371,7 +373,7 @@ fn one_is_told_as_one_and_a_constant_without_deviation() {
     assert!(out(&output).contains("1 point is in p/rows.jsonl"), "{}", out(&output));
 }
 
-/// No XML document may hold control characters, wherever a user's text comes to stand in it.
+/// XML documents contain no control characters, wherever a user's text appears.
 #[cfg(unix)]
 #[test]
 fn labels_with_control_characters_give_valid_drawings() {
@@ -395,7 +397,7 @@ fn labels_with_control_characters_give_valid_drawings() {
     }
 }
 
-/// What a screen cannot have is refused; what it can have runs, however odd.
+/// Settings that a screen cannot have are refused. Unusual but possible settings run.
 #[test]
 fn numbers_that_once_hung_or_panicked_are_refused_or_run() {
     let folder = Folder::new("odd");
@@ -413,7 +415,7 @@ fn numbers_that_once_hung_or_panicked_are_refused_or_run() {
         assert!(code == Some(2) && text.contains(set.split_once('=').expect("a setting").0), "{set}: {text}");
     }
     run("slats", "video.pixel_ps=4294967295");
-    // The papers' pipelines for single fields draw 640 x 480 pixels, whatever the screen has.
+    // The papers' pipelines for single fields draw 640 x 480 pixels on every screen.
     for (pipeline, set) in [("slats", "video.visible_pixels=639"), ("frameless", "video.visible_lines=239")] {
         let (code, text) = run(pipeline, set);
         let number = set.split_once('=').expect("a setting").1;
@@ -431,7 +433,7 @@ fn numbers_that_once_hung_or_panicked_are_refused_or_run() {
     assert!(output.status.code() == Some(2) && err(&output).contains("at least 10"), "{}", err(&output));
 }
 
-/// A picture that is ordered long after its field has been scanned has no latency, and not one of a billion fields.
+/// A picture that is requested long after its field was scanned has no latency, rather than one of a billion fields.
 #[test]
 fn no_latency_is_longer_than_the_run() {
     let folder = Folder::new("latency");

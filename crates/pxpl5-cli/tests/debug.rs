@@ -1,4 +1,5 @@
-//! `pxpl5 debug`: scripts, what they say, and what is refused; the guide's sessions are as it prints them.
+//! Tests of `pxpl5 debug`: scripts, their output, and refused commands. The sessions in the guide must match the
+//! actual output.
 
 mod support;
 
@@ -12,7 +13,7 @@ fn page() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/guide/debugger.md")
 }
 
-/// The words of a line of the shell, with those in quotes kept together.
+/// Splits a shell command into words, and keeps quoted words together.
 fn words(line: &str) -> Vec<String> {
     let parts = line.split('"').enumerate();
     let words = parts.flat_map(|(n, part)| match n % 2 {
@@ -22,7 +23,7 @@ fn words(line: &str) -> Vec<String> {
     words.collect()
 }
 
-/// Sessions of the guide: blocks whose first line is a command behind `$`.
+/// Runs the sessions of the guide again: blocks whose first line is a command after `$`.
 fn made_anew(text: &str) -> (String, usize) {
     let mut made = String::new();
     let mut sessions = 0;
@@ -75,7 +76,7 @@ fn a_script_runs_to_times_fields_boards_and_conditions() {
     assert_eq!(text.lines().filter(|line| line.starts_with("> ")).count(), 7, "{text}");
 }
 
-/// A snapshot has the hash of what happened before its field, written by a run in one go.
+/// A snapshot contains the hash of the events before its field, as in a run without a snapshot.
 #[test]
 fn the_trace_is_that_of_the_run_however_often_somebody_looked() {
     let folder = Folder::new("debug-trace");

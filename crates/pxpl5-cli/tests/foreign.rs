@@ -1,11 +1,11 @@
-//! Files of other programs as the command takes them.
+//! Tests with files of other programs as inputs of the command.
 
 mod support;
 
 use serde_json::Value;
 use support::{Folder, err, out};
 
-/// A pyramid with a material, lines that go on, and a comment in Latin-1.
+/// A pyramid with a material, continued lines, and a comment in Latin-1.
 const MODEL: &[u8] =
     b"# Gr\xf6\xdfe\nusemtl M\xe9tall\nv 0 0 0\nv 1 0 \\\n0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
@@ -53,7 +53,8 @@ fn a_model_in_a_format_that_cannot_be_read_is_refused_with_those_that_can() {
     assert!(!run.status.success() && err(&run).contains("point.obj: expected at least one triangle with an area"));
 }
 
-/// A hundred poses a second for three seconds, none between 0.28 s and 2.49 s, and one twice.
+/// Returns a recording of a hundred poses a second for three seconds, with none between 0.28 s and 2.49 s and one
+/// duplicate.
 fn recording() -> String {
     let times = (0..300).map(|n| 10 * n).filter(|ms| !(281..2490).contains(ms));
     let rows = times.map(|ms| format!("{}.{:03} 0 0 0 0 0 0 1\n", 1000 + ms / 1000, ms % 1000));
@@ -159,7 +160,7 @@ fn columns_of_comparisons_have_the_same_names_in_tables_plots_and_json() {
     assert!(compared.status.success(), "{}", err(&compared));
     let table = std::fs::read_to_string(folder.0.join("c/rows.csv")).expect("written");
     let header = table.lines().next().expect("a header").to_owned();
-    // `plot` names all columns of comparison.json when it is asked for one that there is not.
+    // `plot` lists all columns of comparison.json if a requested column does not exist.
     let unknown = folder.run(&["plot", "c", "--x", "no-column", "--y", "due", "--out", "f.svg"]);
     let known: Vec<String> =
         err(&unknown).trim_end().rsplit_once("There are: ").expect("a list").1.split(", ").map(str::to_owned).collect();

@@ -1,4 +1,4 @@
-//! Where outputs go: regular files are replaced, whole; devices, pipes and links stay what they are.
+//! Tests of output files. Regular files are replaced as a whole. Devices, pipes and links are written through.
 #![cfg(unix)]
 
 mod support;
@@ -40,7 +40,7 @@ fn is_link(path: &Path) -> bool {
     path.symlink_metadata().is_ok_and(|found| found.is_symlink())
 }
 
-/// As `mknod NAME c 1 3`: true where this process may do it.
+/// Creates a null device like `mknod NAME c 1 3`. Returns true if this process has the permission.
 fn null_device(path: &Path) -> bool {
     Command::new("mknod").arg(path).args(["c", "1", "3"]).stderr(Stdio::null()).status().is_ok_and(|s| s.success())
 }
@@ -156,7 +156,8 @@ fn where_one_file_cannot_be_written_none_is() {
     assert_eq!(read(&folder, "r/report.json"), b"old");
 }
 
-/// A device that takes nothing comes last, when all others have their names: they get their old contents back.
+/// A device that accepts no data is written last, after all files have their new names. On failure the files get
+/// their old contents back.
 #[test]
 fn what_was_given_its_name_gets_its_old_contents_back() {
     let folder = folder("back");
@@ -185,7 +186,7 @@ fn of_runs_that_write_into_one_folder_at_once_one_is_there_whole() {
         let hash = report["config_hash"].as_str().expect("text");
         let all = names(&folder.0.join("r"));
         assert!(all.iter().all(|name| !name.starts_with('.')), "{all:?}");
-        // Tables do not name their configuration.
+        // Tables do not contain the hash of their configuration.
         for name in ["experiment.toml", "timeline.svg", "left.png", "right.png"] {
             let bytes = read(&folder, &format!("r/{name}"));
             assert!(bytes.windows(hash.len()).any(|part| part == hash.as_bytes()), "{name} is of another run, {round}");
@@ -194,7 +195,7 @@ fn of_runs_that_write_into_one_folder_at_once_one_is_there_whole() {
     assert!(json(&folder.run(&["run", "r/experiment.toml", "--json"]))["config_hash"].is_string());
 }
 
-/// A model that lay beside the command is found again, wherever the written experiment is run.
+/// A written experiment finds a model beside the original command, whatever the current folder.
 #[test]
 fn what_was_written_runs_again_from_anywhere() {
     let folder = folder("again");
@@ -207,7 +208,7 @@ fn what_was_written_runs_again_from_anywhere() {
     assert_eq!((&first["trace_hash"], &first["config_hash"]), (&second["trace_hash"], &second["config_hash"]));
 }
 
-/// What takes long to compute is not computed for a file that cannot be written.
+/// A long computation does not start if its output file cannot be written.
 #[test]
 fn a_path_that_cannot_be_written_is_told_before_the_work() {
     let folder = folder("early");
@@ -218,7 +219,7 @@ fn a_path_that_cannot_be_written_is_told_before_the_work() {
     }
 }
 
-/// Runs that follow each other into one folder: of the first nothing is left that the second does not write.
+/// Of two runs into the same folder, only the files of the second remain.
 #[test]
 fn a_run_takes_the_place_of_the_run_before_as_a_whole() {
     let folder = folder("replaced");
@@ -233,7 +234,7 @@ fn a_run_takes_the_place_of_the_run_before_as_a_whole() {
     for name in ["right.png", "timeline.svg", "report.html"] {
         assert!(folder.0.join("r").join(name).exists(), "{name}");
     }
-    // One screen for both eyes has one picture; a timeline is not asked for.
+    // A single screen for both eyes has one picture. The timeline is turned off.
     run("jitp-field", &["--set", "output.timeline=false"]);
     let alone = folder.0.join("alone");
     let args = ["run", "--pipeline", "jitp-field", "--scene", "full-screen:2", "--fields", "20", "--quiet"];
@@ -242,7 +243,7 @@ fn a_run_takes_the_place_of_the_run_before_as_a_whole() {
     expected.push("notes.txt".to_owned());
     expected.sort();
     assert_eq!(names(&folder.0.join("r")), expected);
-    // A file that its user has changed since is his.
+    // A file that the user has changed since the run is kept.
     run("slats", &[]);
     folder.file("r/right.png", "mine");
     run("jitp-field", &[]);
@@ -268,7 +269,7 @@ fn rows_of_a_sweep_are_not_replaced_and_a_sweep_replaces_no_run() {
     assert!(err(&output).contains("files of `pxpl5 run`"), "{}", err(&output));
 }
 
-/// Another program's manifest is not ours to replace.
+/// The manifest of another program is not replaced.
 #[test]
 fn a_manifest_of_another_program_is_left_alone() {
     let folder = folder("foreign");
@@ -280,7 +281,7 @@ fn a_manifest_of_another_program_is_left_alone() {
     assert_eq!(read(&folder, "r/manifest.json"), b"{\"name\": \"page\"}");
 }
 
-/// Files under temporary names: of a process that is dead they go, of one that is alive they stay.
+/// Temporary files of a process that has ended are removed, and those of a running process are kept.
 #[test]
 fn the_next_run_removes_what_dead_processes_have_left() {
     let folder = folder("left-over");
@@ -321,7 +322,7 @@ fn a_run_that_is_interrupted_leaves_no_folder() {
     }
 }
 
-/// What an error names is what its user wrote: the file, and the option that the command has.
+/// An error names the user's file and an option that the command has.
 #[test]
 fn an_error_names_the_file_and_the_option_that_were_given() {
     let folder = folder("named");
@@ -339,7 +340,7 @@ fn an_error_names_the_file_and_the_option_that_were_given() {
         assert!(err(&output).contains(&format!("choose another place with {option}")), "{args:?}: {}", err(&output));
     }
     read_only(true).expect("ours");
-    // Who may write everywhere is not told.
+    // A process with permission to write everywhere gets no error.
     if fs::write(folder.0.join("d/mine"), "").is_err() {
         let output = folder.run(&[&SAVE[..], &["d/s.json"]].concat());
         assert!(err(&output).contains("d/s.json cannot be written"), "{}", err(&output));

@@ -1,4 +1,4 @@
-//! The guide's pipeline of one's own: the page is the example, and the example runs in every command.
+//! Tests of the guide's own pipeline. The page equals the example, and the example runs in every command.
 
 mod support;
 
@@ -9,7 +9,7 @@ use support::Folder;
 const PAGE: &str = include_str!("../../../docs/guide/own-pipeline.md");
 const EXAMPLE: &str = include_str!("../examples/own_pipeline.rs");
 
-/// The example's program, which cargo builds beside the tests.
+/// Returns the path of the example's program, which cargo builds with the tests.
 fn program() -> PathBuf {
     let tests = std::env::current_exe().expect("a test is a program");
     let folder = tests.ancestors().nth(2).expect("target/PROFILE/deps").join("examples");
@@ -26,7 +26,7 @@ fn succeeded(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
-/// The lines between the marks of a piece of the example.
+/// Returns the lines of the example between two marks.
 fn piece(name: &str) -> String {
     let begin = format!("// ANCHOR: {name}\n");
     let end = format!("// ANCHOR_END: {name}\n");
@@ -42,7 +42,8 @@ fn every_piece_of_the_guide_is_cut_from_the_example() {
     }
 }
 
-/// The guide's Cargo.toml has one dependency, so every path of the example begins with it or with the standard library.
+/// The guide's Cargo.toml has one dependency, so every path in the example starts with that crate or the standard
+/// library.
 #[test]
 fn the_example_needs_one_dependency() {
     let section = PAGE.split_once("[dependencies]\n").expect("a Cargo.toml").1;
@@ -69,8 +70,9 @@ fn it_runs_and_its_latency_is_that_of_its_stages() {
     let folder = Folder::new("own-run");
     let args = ["run", "--pipeline", "one-at-a-time", "--scene", "mig", "--fields", "60", "--json", "--out", "out"];
     let report: serde_json::Value = serde_json::from_str(&succeeded(&run(&folder, &args))).expect("JSON");
-    // TRANSFORM takes at least 417 x 21.7 us = 9.05 ms, and COPY at least 300 x 52 us = 15.6 ms, one after the other:
-    // more than a field and less than two, so a frame that starts just after a retrace is shown at the second one.
+    // TRANSFORM takes at least 417 x 21.7 us = 9.05 ms, and COPY at least 300 x 52 us = 15.6 ms, one after the other.
+    // The sum is between one and two fields, so a frame that starts just after a retrace is shown at the second
+    // retrace.
     assert!(report["latency_ms"]["min"].as_f64() >= Some(9.05 + 15.6));
     assert!((report["latency_fields"]["mean"].as_f64().expect("a number") - 2.0).abs() < 1e-4);
     assert_eq!(report["variant"], "shading=phong");
@@ -113,8 +115,8 @@ fn it_is_swept_compared_and_limited() {
     assert!(succeeded(&run(&folder, &compared)).contains("\"pipeline\": \"one-at-a-time\""));
     let limit = succeeded(&run(&folder, &["limit", "--pipeline", "one-at-a-time", "--json"]));
     let limit: serde_json::Value = serde_json::from_str(&limit).expect("JSON");
-    // A mean latency of 2.5 fields leaves 2 fields of 16.7 ms for most frames: TRANSFORM of 21.7 us a triangle and COPY of
-    // 15.6 ms fit for at most (33.4 - 15.6) / 0.0217 = 820 triangles.
+    // A mean latency of 2.5 fields leaves 2 fields of 16.7 ms for most frames. TRANSFORM of 21.7 us a triangle and
+    // COPY of 15.6 ms fit for at most (33.4 - 15.6) / 0.0217 = 820 triangles.
     let triangles = limit["triangles"].as_u64().expect("a number");
     assert!((1..=820).contains(&triangles), "{triangles}");
 }

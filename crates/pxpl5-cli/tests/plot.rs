@@ -1,11 +1,11 @@
-//! `pxpl5 plot` as a user starts it, on rows whose means are known by hand.
+//! Tests of `pxpl5 plot` as a user runs it, on rows whose means were computed by hand.
 
 mod support;
 
 use serde_json::{Value, json};
 use support::{Folder, err, out};
 
-/// A sweep of three seeds at three places of two curves: `measured` says what each point has.
+/// Writes a sweep of three seeds at three points of two curves. `measured` returns the values of each point.
 fn sweep(folder: &Folder, measured: impl Fn(&str, u64, u64) -> Value) {
     let axes =
         [("copy", json!([["whole"], ["split"]])), ("n", json!([[1], [2], [4]])), ("seed", json!([[1], [2], [3]]))];
@@ -25,8 +25,9 @@ fn sweep(folder: &Folder, measured: impl Fn(&str, u64, u64) -> Value) {
     folder.file("rows.jsonl", text);
 }
 
-/// The seeds are 1, 2, 3 above ten times the place: mean 2, standard deviation 1, and of two degrees of freedom the 97.5th
-/// percentile of Student's t is 4.302653 (any table of it), so that half of the interval is 4.302653 / sqrt(3) = 2.484138.
+/// The values are 1, 2, 3 plus ten times the x value: mean 2, standard deviation 1. For two degrees of freedom the
+/// 97.5th percentile of Student's t is 4.302653 (any table). Half of the interval is therefore 4.302653 / sqrt(3) =
+/// 2.484138.
 #[test]
 fn means_deviations_and_intervals_are_those_of_the_seeds() {
     let folder = Folder::new("plot-means");
@@ -59,7 +60,7 @@ fn means_deviations_and_intervals_are_those_of_the_seeds() {
     assert_eq!((&origin["about"]["title"], &origin["by"]), (&json!("t"), &json!(["copy"])));
     let svg = std::fs::read_to_string(folder.0.join("fig.svg")).expect("written");
     assert!(svg.contains("width=\"84mm\"") && svg.contains("whole") && svg.contains("split"));
-    // Two bands, two curves and their samples.
+    // The chart has two bands, two curves and their samples in the legend.
     assert_eq!(svg.matches("<polygon").count(), 2 + 4, "and the triangles of the second curve with its sample");
 }
 
@@ -79,7 +80,7 @@ fn what_was_not_judged_is_no_zero() {
     assert!(err(&run).contains("none of 18 rows has a number") && !folder.names().contains(&"none.svg".to_owned()));
 }
 
-/// 84 mm are 992 dots of 1/300 inch, and 238.11 points of 1/72.
+/// 84 mm are 992 dots of 1/300 inch, and 238.11 points of 1/72 inch.
 #[cfg(feature = "print")]
 #[test]
 fn figures_have_their_width_in_every_format() {
@@ -140,7 +141,7 @@ fn what_is_asked_wrongly_is_said_and_nothing_is_written() {
     assert!(std::fs::read_to_string(folder.0.join("b.csv")).expect("written").contains("\n1,1,0,6,"));
 }
 
-/// A comparison's rows are means over seeds, with their intervals beside them.
+/// Rows of a comparison are means over seeds, with an interval for each.
 #[test]
 fn a_comparison_is_a_point_for_each_pipeline() {
     let folder = Folder::new("plot-comparison");

@@ -1,7 +1,8 @@
-//! Everything that reads what a user hands in, against damaged files: a corpus in tests/corpus, and mutations of it.
+//! Tests of all readers of user input with damaged files: a corpus in tests/corpus, and mutations of it.
 //!
-//! No damage makes a reader panic, or run on; what is accepted is sound, prints, and reads back as the same. Every damage follows
-//! from a number, so that a failure names it; `PXPL5_FUZZ=100` tries a hundred times as many, `PXPL5_FUZZ_FROM` begins elsewhere.
+//! Damaged input must not cause a panic or an endless loop. Accepted input is valid, can be written, and reads back
+//! as the same value. Every mutation follows from a number, so that a failure names it. `PXPL5_FUZZ=100` runs a
+//! hundred times as many mutations, and `PXPL5_FUZZ_FROM` starts at another number.
 
 use i860::vectors;
 use pxpl5::scene::{Format, Scene, from_bytes};
@@ -11,7 +12,7 @@ use pxpl5::{Experiment, ExperimentError, ExperimentFile, MachineConfig, PeriodNu
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Files of a folder below tests/corpus, or elsewhere in the repository, with their extensions.
+/// Returns the files of a folder below tests/corpus, or elsewhere in the repository, with the given extension.
 fn corpus(folder: &str, extension: Option<&str>) -> Vec<(String, Vec<u8>)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
     let entries = fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
@@ -24,7 +25,7 @@ fn corpus(folder: &str, extension: Option<&str>) -> Vec<(String, Vec<u8>)> {
     files
 }
 
-/// SplitMix64: a stream of numbers that follows from its begin.
+/// SplitMix64, a pseudo-random number generator.
 struct Numbers(u64);
 
 impl Numbers {
@@ -40,7 +41,7 @@ impl Numbers {
     }
 }
 
-/// What stands for trouble in some format.
+/// Words that are likely to cause trouble in some format.
 const WORDS: [&str; 28] = [
     "nan",
     "inf",
@@ -72,7 +73,7 @@ const WORDS: [&str; 28] = [
     "#",
 ];
 
-/// A file with one to six damages.
+/// Returns a file with one to six random mutations.
 fn damaged(file: &[u8], others: &[(String, Vec<u8>)], numbers: &mut Numbers) -> Vec<u8> {
     let mut bytes = file.to_vec();
     for _ in 0..=numbers.below(6) {
@@ -100,7 +101,8 @@ fn setting(name: &str, otherwise: u64) -> u64 {
     std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(otherwise)
 }
 
-/// Hands `rounds` damaged files of a corpus to a reader, which says whether it accepted one; then all files as they are.
+/// Passes `rounds` mutated files of a corpus to a reader, and then all files unchanged. The reader returns true if it
+/// accepted the input.
 fn try_all(files: &[(String, Vec<u8>)], rounds: u64, mut read: impl FnMut(&str, &[u8]) -> bool) {
     let mut accepted = 0;
     let first = setting("PXPL5_FUZZ_FROM", 0);
@@ -109,7 +111,7 @@ fn try_all(files: &[(String, Vec<u8>)], rounds: u64, mut read: impl FnMut(&str, 
         let mut numbers = Numbers(round << 8);
         let (extension, file) = &files[numbers.below(files.len())];
         let bytes = damaged(file, files, &mut numbers);
-        // The hook of a panic prints what the thread was called for last.
+        // The panic hook prints the last input of the thread.
         let _told = Told(round, &bytes);
         accepted += u64::from(read(extension, &bytes));
     }
@@ -117,7 +119,7 @@ fn try_all(files: &[(String, Vec<u8>)], rounds: u64, mut read: impl FnMut(&str, 
     assert!(files.iter().any(|(extension, file)| read(extension, file)), "the corpus itself is read");
 }
 
-/// Names the round and the input of a panic.
+/// Prints the round and the input of a panic when dropped.
 struct Told<'a>(u64, &'a [u8]);
 
 impl Drop for Told<'_> {
@@ -216,7 +218,7 @@ fn snapshots() {
 fn sources() {
     try_all(&corpus("tests/corpus/assembler", None), 1_000, |_, bytes| {
         let Ok(program) = i860::assemble("damaged.s", 0x1000, &String::from_utf8_lossy(bytes)) else { return false };
-        // What is no instruction disassembles as data, so that any program can be written down and read again.
+        // A word that is not an instruction disassembles as data, so that any program can be written and read again.
         let text: String = program.words().iter().map(|word| format!(".long {word:#x}\n")).collect();
         assert_eq!(i860::assemble("again.s", 0x1000, &text).expect("data").words(), program.words());
         true
@@ -233,7 +235,7 @@ fn conformance_vectors() {
     });
 }
 
-/// What is accepted runs: small machines with numbers from all over their limits end, and say so.
+/// Accepted settings run: small machines with parameters from all over their limits end and report their results.
 #[test]
 fn machines_of_any_numbers_run_or_are_refused() {
     let parameters = MachineConfig::small_hmd().parameters();
@@ -249,7 +251,7 @@ fn machines_of_any_numbers_run_or_are_refused() {
             let (Some(least), Some(most)) = (parameter.info.limits.0.whole(), parameter.info.limits.1.whole()) else {
                 continue;
             };
-            // All sizes are as likely.
+            // All sizes are equally likely.
             let size = numbers.below(41) as u32;
             let value = (numbers.next() >> (63 - size.min(63))).clamp(least, most);
             if config.set(&parameter.path, value).is_ok() {
@@ -259,13 +261,13 @@ fn machines_of_any_numbers_run_or_are_refused() {
         let told = changed.join(" ");
         let _told = Told(round, told.as_bytes());
         if first > 0 {
-            // What hangs has no last word.
+            // Output before the run identifies the input if the run does not end.
             println!("{round}: {told}");
         }
         if config.check().is_ok() {
             let scene = pxpl5::scene::builtin("full-screen:6").expect("built in");
             let experiment = Experiment::new(config, Slats::split(), scene).fields(16).pixels(Pixels::Off);
-            // Some numbers let nothing be shown in time, which is an answer too.
+            // Some parameters allow no picture in time, which is a valid result.
             ran += u64::from(matches!(experiment.run(), Ok(_) | Err(ExperimentError::TooShort { .. })));
         }
     }

@@ -1,4 +1,4 @@
-//! Report pages, traces and films, as a user makes them.
+//! Tests of report pages, traces and films as a user creates them.
 
 mod support;
 
@@ -19,7 +19,7 @@ fn a_report_page_holds_everything_of_its_folder_and_asks_for_nothing_else() {
     assert!(output.status.success(), "{}", err(&output));
     assert!(out(&output).contains("results/report.html"));
     let page = std::fs::read_to_string(folder.0.join("results/report.html")).expect("written");
-    // A timeline and two pictures; a histogram and the parts of latency.
+    // The page has a timeline and two pictures, a histogram and the stages of latency.
     assert_eq!(page.matches("data:image/svg+xml;base64,").count(), 1);
     assert_eq!(page.matches("data:image/png;base64,").count(), 2);
     assert_eq!(page.matches("<svg ").count(), 2);
@@ -61,7 +61,8 @@ fn traces_come_in_both_formats() {
     let output = folder.run(&[&run[..], &["a.pftrace"]].concat());
     assert!(output.status.success(), "{}", err(&output));
     let trace = std::fs::read(folder.0.join("a.pftrace")).expect("written");
-    // A trace is packets, field 1 of the outermost message; the first describes the host's track.
+    // A trace is a sequence of packets, field 1 of the outermost message. The first packet describes the host's
+    // track.
     assert_eq!(trace[0], 0x0a);
     assert!(trace.windows(4).any(|bytes| bytes == b"host"));
     let output = folder.run(&[&run[..], &["a.json"]].concat());
@@ -120,7 +121,7 @@ fn a_report_of_a_sweep_is_its_rows() {
             assert!(page.contains(&format!("<th>{column}</th>")), "{column}: {page}");
         }
     }
-    // Interrupted in the middle of a line: what is whole is shown.
+    // After an interruption in the middle of a line, the page shows the complete lines.
     let rows = std::fs::read_to_string(folder.0.join("o/rows.jsonl")).expect("written");
     folder.file("o/rows.jsonl", &rows[..rows.len() - 9]);
     assert!(folder.run(&["report", "o", "--quiet"]).status.success());
@@ -144,7 +145,7 @@ fn a_report_of_a_comparison_has_a_row_for_each_pipeline_and_its_pictures() {
     assert!(page.contains("<h2>Comparison</h2>") && page.contains("pipeline</th>"));
 }
 
-/// What is not listed, or not as it was written, is of another run.
+/// Files that are unlisted or changed belong to another run.
 #[test]
 fn a_report_reads_what_its_manifest_lists_and_nothing_else() {
     let folder = Folder::new("report-manifest");
@@ -171,7 +172,7 @@ fn a_report_reads_what_its_manifest_lists_and_nothing_else() {
     assert!(err(&output).contains("report.json") && err(&output).contains("other contents"), "{}", err(&output));
 }
 
-/// Three pictures are a trace, a film and files, though they have no latency behind the warm-up.
+/// A run of three pictures has a trace, a film and files, although no latency is known after the warm-up.
 #[test]
 fn runs_of_few_pictures_write_all_that_was_computed() {
     let folder = Folder::new("few-pictures");
@@ -192,7 +193,7 @@ fn runs_of_few_pictures_write_all_that_was_computed() {
     for name in ["left.png", "right.png", "timeline.svg", "experiment.toml", "manifest.json"] {
         assert!(folder.0.join("o").join(name).exists(), "{name}");
     }
-    // The number of fields that was said is enough, and not much too much.
+    // The number of fields in the message is sufficient, and not much too large.
     for (fields, is_enough) in [(needed + 1, true), (needed - 4, false)] {
         let output = folder.run(&[&["run"], &few[..], &[&fields.to_string(), "--quiet"]].concat());
         assert_eq!(output.status.success(), is_enough, "{fields} fields, {needed} were said: {}", err(&output));
@@ -209,7 +210,7 @@ fn runs_of_few_pictures_write_all_that_was_computed() {
     assert!(output.status.success() && out(&output).contains("the run is over"), "{}", err(&output));
 }
 
-/// A pipeline without a closed form says from its own pictures how long it takes.
+/// A pipeline without a closed form estimates the necessary length from its own pictures.
 #[test]
 fn fields_that_a_run_needs_are_told_of_every_pipeline() {
     let folder = Folder::new("fields-needed");

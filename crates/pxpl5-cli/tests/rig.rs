@@ -1,4 +1,4 @@
-//! `pxpl5 rig` as a user starts it.
+//! Tests of `pxpl5 rig` as a user runs it.
 
 mod support;
 
@@ -18,7 +18,7 @@ fn outside_stands_beside_inside_with_number_and_spread() {
             assert_eq!(latency["n"], 3);
         }
     }
-    // A field from TRANSFORM to the retrace.
+    // Rendering takes one field, from TRANSFORM to the retrace.
     assert!((json["inside_ms"]["rendering"]["mean"].as_f64().expect("a number") - 16.683).abs() < 1e-3, "{json}");
 }
 

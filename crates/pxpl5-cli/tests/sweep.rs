@@ -1,4 +1,4 @@
-//! Sweeps as a user runs them: killed, continued, cut into shards, joined.
+//! Tests of sweeps as a user runs them: killed, resumed, divided into shards, and joined.
 
 mod support;
 
@@ -9,7 +9,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 use support::{Folder, command, err, names, out};
 
-/// 64 points of some milliseconds.
+/// A sweep of 64 points that take some milliseconds each.
 const FILE: &str = "pipeline = \"slats\"\nscene = \"mig\"\nfields = 20\n\
     [sweep]\nseeds = 2\n[sweep.grid]\ncopy = [\"whole\", \"split\"]\ntriangles = { from = 1, to = 151, step = 10 }\n";
 const POINTS: usize = 2 * 2 * 16;
@@ -32,7 +32,7 @@ fn read(folder: &Folder, name: &str) -> String {
     fs::read_to_string(folder.0.join(name)).expect(name)
 }
 
-/// Whole lines of a file of JSON lines after its header; a torn last line does not count.
+/// Returns the complete lines of a JSON lines file after its header. An incomplete last line is left out.
 fn lines(path: &Path) -> Vec<String> {
     let text = fs::read_to_string(path).unwrap_or_default();
     let whole = text.split_inclusive('\n').filter(|line| line.ends_with('\n')).skip(1);
@@ -70,7 +70,7 @@ fn the_rows_are_the_same_bytes_whatever_threads_and_shards() {
     assert_eq!(keys, ["schema", "version", "machine", "config_hash", "level", "seed"]);
 }
 
-/// Kills it as `kill -9` does, after a while.
+/// Kills a process after some time, like `kill -9`.
 fn killed_after(mut child: Child, time: Duration) -> bool {
     std::thread::sleep(time);
     let running = child.try_wait().expect("it can be asked").is_none();
@@ -103,7 +103,7 @@ fn a_sweep_killed_again_and_again_loses_no_finished_point_and_repeats_none() {
     succeeds(&sweep(&folder, &["--out", "killed", "--resume"]));
     succeeds(&sweep(&folder, &["--out", "whole"]));
     assert!(read(&folder, "killed/rows.jsonl") == read(&folder, "whole/rows.jsonl"));
-    // Every computation of a finished point leaves a time; a kill between a row and its time may lose one.
+    // Every computed point adds a line of time. A kill between a row and its time may lose one line.
     let times = points(&folder.0.join("killed/times.jsonl"));
     assert_eq!(times.iter().collect::<BTreeSet<_>>().len(), times.len(), "no point was computed twice");
     assert!(times.len() + kills >= POINTS);
@@ -205,7 +205,7 @@ fn wrong_use_is_refused() {
     assert!(err(&output).contains("file"), "{}", err(&output));
 }
 
-/// The script of docs/sweeps.md, as it stands in the repository.
+/// Runs the script of docs/sweeps.md that the repository contains.
 fn script(folder: &Folder, args: &[&str], task: Option<&str>) -> std::process::Output {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../experiments/sweep-shards.sh");
     let mut command = Command::new("sh");
@@ -224,7 +224,7 @@ fn the_script_spreads_a_sweep_over_processes_or_array_tasks_and_joins_it() {
     succeeds(&sweep(&folder, &["--out", "whole"]));
     succeeds(&script(&folder, &["s.toml", "all", "3"], None));
     assert!(read(&folder, "all/rows.jsonl") == read(&folder, "whole/rows.jsonl"));
-    // As Slurm starts an array of two tasks; the last command is what the user types afterwards.
+    // Runs the script as Slurm does for an array of two tasks. The last command is the user's.
     for task in ["1", "2"] {
         succeeds(&script(&folder, &["s.toml", "array", "2"], Some(task)));
     }
@@ -240,7 +240,7 @@ fn the_published_sweep_has_some_hundred_points() {
     (0..sweep.space().points()).for_each(|point| drop(sweep.plan(point).expect("an experiment")));
 }
 
-/// A relative scene lies beside the sweep's file, wherever the command is started, in an axis too.
+/// A relative path of a scene refers to the folder of the sweep's file, in any current folder and in axes too.
 #[test]
 fn scenes_of_a_sweep_lie_beside_its_file_and_what_fails_altogether_fails() {
     let folder = Folder::new("beside");
@@ -271,7 +271,7 @@ fn an_edited_model_is_not_mixed_with_what_was_made_of_it_before() {
     assert!(err(&output).contains("results of another sweep"), "{}", err(&output));
 }
 
-/// Stands for `sbatch`: runs what is submitted, task after task, and notes with which options.
+/// A substitute for `sbatch` that runs the submitted tasks one by one and records its options.
 const SBATCH: &str = "#!/bin/bash
 script=${@: -1}
 echo \"$@\" >> calls
@@ -321,7 +321,7 @@ fn the_jobs_of_slurm_find_the_rows_of_the_whole_sweep() {
     for name in ["rows.jsonl", "results.csv"] {
         assert!(read(&folder, &format!("a b/{name}")) == read(&folder, &format!("whole/{name}")), "{name}");
     }
-    // Submitted again, nothing is computed again.
+    // A second submission computes no point again.
     let before = read(&folder, "a b/shard-2/times.jsonl");
     succeeds(&submit(&[]));
     assert_eq!(read(&folder, "a b/shard-2/times.jsonl"), before);

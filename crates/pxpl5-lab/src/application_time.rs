@@ -1,32 +1,34 @@
-//! The time that a viewer's application takes for a frame, which no paper prints, and what it does to the latencies of fly-throughs.
+//! Effect of the application's time per frame on the latencies of fly-throughs. No paper prints this time.
 //!
-//! The host of a real viewer ran a loop on Unix: it read input, changed its model, and asked for the next frame. Here it asks at once,
-//! unless `host.application_ns` and `host.application_jitter_ns` say otherwise. This module moves both and reports mean and
-//! deviation of each figure. Nothing is fitted.
+//! The host of a real viewer ran a loop under Unix that read input, changed its model, and asked for the next frame.
+//! The model's host asks for the next frame at once unless `host.application_ns` and `host.application_jitter_ns` are
+//! set. This module varies both parameters and reports the mean and deviation of each figure. Nothing is fitted.
 //!
-//! The ranges of the two parameters end where a trivial scene still runs at the printed 30 frames/s. Of the fly-throughs no rate is
-//! printed, so their application may have taken longer: here up to 40 ms, spread by up to the 30 ms in which a Unix host polls its
-//! serial lines (TR94). Both ends are assumed.
+//! The ranges of the two parameters end where a trivial scene still runs at the printed 30 frames/s. No rate is
+//! printed for the fly-throughs, so their application may have taken longer. Here the mean reaches 40 ms, with a
+//! spread of up to the 30 ms in which a Unix host polls its serial lines (TR94). Both ends are assumed.
 
 use crate::figures::{Bench, FIGURES};
 use crate::parallel;
 use pxpl5_run::{ExperimentError, Level};
 use serde::Serialize;
 
-/// Paths of the two parameters.
+/// Parameter path of the application's mean time.
 const MEAN: &str = "host.application_ns";
+/// Parameter path of the jitter of the application's time.
 const JITTER: &str = "host.application_jitter_ns";
 
-/// Means that are tried, milliseconds. Assumed: from nothing to a loop of 25 frames a second.
+/// Means that are simulated, in milliseconds. Assumed: from no application to a loop of 25 frames a second.
 const MEANS_MS: [u64; 5] = [0, 10, 20, 30, 40];
 
-/// Jitters that are tried beside a mean that is at least as long, milliseconds. Assumed: up to the period of a poll (TR94).
+/// Jitters that are simulated, in milliseconds, for every mean that is at least as long. Assumed: up to the polling
+/// period (TR94).
 const JITTERS_MS: [u64; 4] = [0, 10, 20, 30];
 
-/// The fly-throughs of TR94.
+/// Figure numbers of the fly-throughs in TR94.
 const FLY_THROUGHS: [&str; 3] = ["7", "7b", "7c"];
 
-/// Mean and deviation of a latency.
+/// Mean and standard deviation of a latency.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
     /// Number of the figure, as in [`FIGURES`].
@@ -37,24 +39,26 @@ pub struct Spread {
     pub sd: f64,
 }
 
-/// The latencies of all fly-throughs with one time of the application.
+/// Latencies of all fly-throughs for one setting of the application's time.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ApplicationTime {
-    /// Mean time of the application for a frame, milliseconds.
+    /// Mean time of the application for a frame, in milliseconds.
     pub mean_ms: u64,
-    /// Half width of its even spread, milliseconds.
+    /// Half width of the uniform distribution around the mean, in milliseconds.
     pub jitter_ms: u64,
-    /// Figures 7, 7b and 7c.
+    /// Latencies of figures 7, 7b and 7c.
     pub figures: Vec<Spread>,
 }
 
-/// Moves the application's time, with the reading, seeds and frames of a bench, at the analytic level.
+/// Simulates the fly-throughs for all application times, with the interpretation, seeds and frames of a bench, at the
+/// analytic level.
 ///
 /// # Errors
 ///
-/// As [`Bench::measure`].
+/// Fails in the same cases as [`Bench::measure`].
 pub fn application_times(bench: &Bench) -> Result<Vec<ApplicationTime>, ExperimentError> {
     let times = MEANS_MS.iter().flat_map(|mean| JITTERS_MS.iter().map(|jitter| (*mean, *jitter)));
+    // A jitter beyond the mean would need negative times.
     let times: Vec<_> = times.filter(|(mean, jitter)| jitter <= mean).collect();
     parallel::map(&times, |(mean_ms, jitter_ms)| measure(bench, *mean_ms, *jitter_ms)).into_iter().collect()
 }
@@ -62,6 +66,7 @@ pub fn application_times(bench: &Bench) -> Result<Vec<ApplicationTime>, Experime
 fn measure(bench: &Bench, mean_ms: u64, jitter_ms: u64) -> Result<ApplicationTime, ExperimentError> {
     let changes = [(MEAN, mean_ms), (JITTER, jitter_ms)].map(|(path, ms)| (path.to_owned(), ms * 1_000_000));
     let changes = bench.changes.iter().cloned().chain(changes).collect();
+    // Only the two parameters differ from the given bench.
     let bench = Bench { level: Level::Analytic, changes, ..bench.clone() };
     let spread = |id: &'static str| {
         let measured = bench.measure(id)?;
@@ -72,7 +77,7 @@ fn measure(bench: &Bench, mean_ms: u64, jitter_ms: u64) -> Result<ApplicationTim
     Ok(ApplicationTime { mean_ms, jitter_ms, figures })
 }
 
-/// The printed mean and deviation of each fly-through.
+/// Returns the printed mean and deviation of each fly-through.
 #[must_use]
 pub fn published() -> Vec<Spread> {
     let of_fly_throughs = FIGURES.iter().filter(|figure| FLY_THROUGHS.contains(&figure.id));

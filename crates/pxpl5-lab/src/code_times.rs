@@ -1,26 +1,37 @@
-//! Times of primitives that follow from i860 code, for the timing table: what a pass over the application scenes takes on a board.
+//! Measures the times of primitives in executed i860 code, for the timing table.
+//!
+//! A pass over the application scenes is executed on a board, and its clocks are attributed to primitives:
 //!
 //! ```text
 //!   clocks of triangles in a pass = triangle * (triangles) + guard * (of these, cut by the clipper) + entry * (their entries of bins)
 //!   clocks of spheres             = sphere * (spheres) + entry * (their entries of bins)
 //! ```
 //!
-//! `guard` comes from triangles that cover the screen and reach beyond the guard band (`CLIPPED_M`), the others from the three application
-//! scenes: a share of each, seen along its own head motion; the first pass only fills the caches. `entry` is the slope over all passes by least squares,
-//! `triangle` the mean of the scenes' means. Each is found from what the others leave of the time, in turn until they stay. `sphere` is
-//! what entries leave of the spheres' time, the mean of the means of those of the three scenes that have spheres. Triangles are measured
-//! without the spheres of their scene, whose code takes the instruction cache.
+//! - `guard` comes from triangles that cover the screen and reach beyond the guard band (`CLIPPED_M`).
+//! - `triangle`, `entry` and `sphere` come from a share of each of the three application scenes, seen along the
+//!   scene's own head motion. The first pass only fills the caches.
+//! - `entry` is the slope over all passes by least squares.
+//! - `triangle` is the mean of the scenes' means. Triangles are measured without the spheres of their scene, whose
+//!   code would displace theirs from the instruction cache.
+//! - `sphere` is the time of spheres without their entries: the mean over the scenes that have spheres.
+//!
+//! Each of `guard`, `entry` and `triangle` depends on the other two, so they are computed in turn until they
+//! converge.
 //!
 //! ```text
 //!   beginning of a pass = pass + structure * (structures * eyes) + sphere view * (of these, with spheres)
 //! ```
 //!
-//! `structure` is what one more costs, in a list with some more that hold nothing, `sphere view` what a scene takes more than the same without
-//! spheres, and `pass` what is left: bins reset, and code that is not in the caches. Each is the mean of the scenes' means.
+//! - `structure` is the cost of one more empty structure in the display list.
+//! - `sphere view` is the extra cost of a scene compared with the same scene without spheres.
+//! - `pass` is the remainder: resetting bins, and code that is not in the caches.
 //!
-//! A message's time is the mean over all that a board receives and sends around these passes: under PPHIGS a slave's, with what
-//! each token costs whose bin it hands over, under Slats those of fields; of the three scenes the mean again. `token entry` is the slope of
-//! the time in which a bin is handed over, over the entries in it, by least squares over all bins.
+//! Each of the three is the mean of the scenes' means.
+//!
+//! The time of a message is the mean over all messages that a board receives and sends around these passes. Under
+//! PPHIGS the board is a slave, and each message includes the cost of the token whose bin the slave sends. Under
+//! Slats the messages are those of fields. The result is the mean over the three scenes. `token entry` is the slope
+//! of the time to send a bin over the number of entries in the bin, by least squares over all bins.
 
 mod messages;
 mod strips;
@@ -45,66 +56,69 @@ use std::sync::Arc;
 /// The application scenes of TR94.
 const SCENES: [&str; 3] = ["mig", "molecules", "head"];
 
-/// Of so many boards, the share of the first (the slaves of the small machine).
+/// Number of boards that share a scene: the slaves of the small machine. The first share is measured.
 const BOARDS: usize = 12;
 
-/// Views of each scene, and time between them.
+/// Number of views of each scene.
 const VIEWS: u64 = 4;
+/// Time between two views in picoseconds.
 const VIEW_PERIOD_PS: u64 = 500_000_000_000;
 
-/// Half of the side of the square that a triangle at a distance of 1 m covers where the clipper is measured, metres: its corners lie up to
-/// 4,477 pixels from the picture's. Assumed, anything beyond the guard band.
+/// Half the side of the square that a triangle covers at a distance of 1 m in the measurement of the clipper, in
+/// metres. Its corners lie up to 4,477 pixels from the picture's corners. Assumed: any size beyond the guard band.
 const CLIPPED_M: f32 = 2.0;
 
-/// Triangles that Slats transforms at a time (published TR94), and how many such clumps of a scene are measured.
+/// Number of triangles that Slats transforms at a time (published in TR94).
 const CLUMP: usize = 30;
+/// Number of clumps measured in each scene.
 const CLUMPS: usize = 20;
 
-/// Edits of a message by which their time is measured: several, of matrices that lie one behind the other.
+/// Number of additional edits in a message, from which the time of one edit follows. Their matrices are adjacent in
+/// memory.
 const EDITS: u32 = 16;
 
-/// Structures more by which the time of one is measured.
+/// Number of additional structures, from which the time of one structure follows.
 const MORE_STRUCTURES: usize = 8;
 
-/// A board's memory (published TR94).
+/// Memory of a graphics processor in bytes (published in TR94).
 const MEMORY: u64 = 8 << 20;
 
-/// Times of primitives in nanoseconds, as the code gives them.
+/// Times of primitives in nanoseconds, measured by executing code.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CodeTimes {
-    /// A triangle that is not cut: mean of the scenes' means.
+    /// Time of a triangle that is not clipped: mean of the scenes' means.
     pub triangle_ns: f64,
-    /// The least and the greatest scene's mean.
+    /// Smallest and largest of the scenes' means for a triangle.
     pub triangle_range_ns: [f64; 2],
-    /// A sphere: mean of the scenes' means.
+    /// Time of a sphere: mean of the scenes' means.
     pub sphere_ns: f64,
-    /// An entry in a bin.
+    /// Time of one entry in a bin.
     pub entry_ns: f64,
-    /// A triangle that the clipper cuts, besides: its cuts, and all pieces but one.
+    /// Additional time of a clipped triangle: its cuts, and all resulting pieces except one.
     pub guard_ns: f64,
-    /// The beginning of a pass, but for its structures: mean of the scenes' means.
+    /// Time to begin a pass, without its structures: mean of the scenes' means.
     pub pass_ns: f64,
-    /// A structure put in its place for an eye, among others: mean of the scenes' means.
+    /// Time to transform one more structure for an eye: mean of the scenes' means.
     pub structure_ns: f64,
-    /// What the spheres of a structure need of a view, besides: mean of those scenes' means.
+    /// Additional time of a view for a structure with spheres: mean over the scenes with spheres.
     pub sphere_view_ns: f64,
-    /// An edit among others.
+    /// Time of one more edit in a message.
     pub edit_ns: f64,
-    /// An entry of a bin that is handed over with its token.
+    /// Time of one bin entry that a slave sends when it has the token.
     pub token_entry_ns: f64,
-    /// A message, or a chain: mean of the scenes' means.
+    /// Time of a message, or of a chain of messages: mean of the scenes' means.
     pub message_ns: f64,
-    /// The least and the greatest scene's mean.
+    /// Smallest and largest of the scenes' means for a message.
     pub message_range_ns: [f64; 2],
 }
 
-/// Rounds after which the times stay as they are: each takes over a small part of the last one's error.
+/// Number of iterations of [`CodeTimes::improve`]. Each iteration keeps only a small part of the previous error.
 const ROUNDS: usize = 30;
 
-/// One pass: triangles that are not cut, triangles that are, their entries, nanoseconds.
+/// One pass: number of unclipped triangles, number of clipped triangles, number of bin entries, nanoseconds.
 type Sample = [f64; 4];
 
-/// The same of spheres: spheres, their entries, nanoseconds.
+/// One pass over spheres: number of spheres, number of bin entries, nanoseconds.
 type SphereSample = [f64; 3];
 
 fn picture(of: CodeUse) -> Picture {
@@ -116,7 +130,7 @@ fn picture(of: CodeUse) -> Picture {
     Picture { viewport, shading, binning, layout: Layout::rendering_control_phong(), pixels: false }
 }
 
-/// Returns the eyes of each pass over the display list, one pass after the other.
+/// Returns the eyes that each pass over the display list transforms, one list for each pass.
 const fn eyes_of_a_pass(of: CodeUse) -> &'static [&'static [usize]] {
     match of {
         CodeUse::Pphigs => &[&[0], &[1]],
@@ -131,14 +145,16 @@ fn parts(of: CodeUse, share: &Share) -> Vec<Share> {
     }
 }
 
-/// Measures the times of code in one use.
+/// Measures the times of a code version in one use.
 ///
 /// # Errors
 ///
-/// [`ExperimentError::Scene`] when a scene is not found or the code does not come to its end.
+/// Returns [`ExperimentError::Scene`] when a scene is not found or the code does not terminate.
 pub fn code_times(version: CodeVersion, of: CodeUse) -> Result<CodeTimes, ExperimentError> {
-    // An eye after the other: both in one pass always have the same parts of triangles that are cut, from which nothing follows.
+    // The clipper is measured one eye after the other. A pass for both eyes always clips the same fractions, which
+    // leaves the equations underdetermined.
     let cut = measured(of, Rig::of_list(version, "full-screen:30", 1, beyond_the_guard_band)?, false, sample)?;
+    // Triangles, spheres and the beginning of a pass are measured in separate runs.
     let scenes: Vec<Vec<Sample>> =
         SCENES.iter().map(|scene| samples(version, of, scene, BOARDS)).collect::<Result<_, _>>()?;
     let of_spheres: Vec<Vec<SphereSample>> =
@@ -149,6 +165,7 @@ pub fn code_times(version: CodeVersion, of: CodeUse) -> Result<CodeTimes, Experi
     let token_entry_ns = messages::token_entry_ns(&traffic);
     let messages: Vec<f64> = traffic.iter().map(|traffic| traffic.message_ns(token_entry_ns)).collect();
     let range = [0.0; 2];
+    // Times that other times influence start at zero.
     let mut times = CodeTimes {
         triangle_ns: 0.0,
         triangle_range_ns: range,
@@ -163,6 +180,7 @@ pub fn code_times(version: CodeVersion, of: CodeUse) -> Result<CodeTimes, Experi
         message_ns: mean(messages.iter().copied()),
         message_range_ns: extremes(&messages),
     };
+    // Triangle, entry and clipper times depend on each other, so they are computed in turn.
     for _ in 0..ROUNDS {
         times.improve(of, &cut, &scenes);
     }
@@ -171,14 +189,17 @@ pub fn code_times(version: CodeVersion, of: CodeUse) -> Result<CodeTimes, Experi
 }
 
 impl CodeTimes {
-    /// Finds each from what the others leave of the time.
+    /// Computes the times of entries, triangles and the clipper, each from the samples minus the other two.
     fn improve(&mut self, of: CodeUse, cut: &[Sample], scenes: &[Vec<Sample>]) {
+        // Clipped triangles are counted apart, so their time is subtracted here.
         let of_clipper = self.triangle_ns + self.guard_ns;
         let uncut = |sample: &Sample| [sample[0], sample[2], sample[3] - of_clipper * sample[1]];
+        // Only PPHIGS bins triangles by region; Slats sends every clump to all regions.
         if of == CodeUse::Pphigs {
             self.entry_ns = solve(scenes.iter().flatten().map(uncut).map(|[uncut, n, ns]| ([n, uncut], ns)));
         }
         let entry_ns = self.entry_ns;
+        // The mean of a scene weighs all of its triangles equally.
         let of_scene = |samples: &Vec<Sample>| {
             let rows = samples.iter().map(uncut);
             let [n, ns] = rows.fold([0.0; 2], |sum, [uncut, n, ns]| [sum[0] + uncut, sum[1] + ns - entry_ns * n]);
@@ -187,11 +208,12 @@ impl CodeTimes {
         let means: Vec<f64> = scenes.iter().map(of_scene).collect();
         self.triangle_ns = mean(means.iter().copied());
         self.triangle_range_ns = extremes(&means);
+        // The clipper's time is the rest of the run with clipped triangles.
         let without_entries = |[uncut, cut, n, ns]: &Sample| ([*cut, *uncut], ns - entry_ns * n);
         self.guard_ns = solve(cut.iter().map(without_entries)) - self.triangle_ns;
     }
 
-    /// What entries leave of the time of a sphere; scenes without spheres say nothing.
+    /// Returns the mean time of a sphere without its bin entries. Scenes without spheres are left out.
     fn sphere(&self, scenes: &[Vec<SphereSample>]) -> f64 {
         let sums = scenes.iter().map(|samples| {
             samples.iter().fold([0.0; 2], |[n, ns], [spheres, entries, of_spheres]| {
@@ -202,18 +224,18 @@ impl CodeTimes {
     }
 }
 
-/// 0 of nothing.
+/// Returns the mean, or 0 for no values.
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let [n, sum] = values.fold([0.0; 2], |[n, sum], value| [n + 1.0, sum + value]);
     sum / f64::max(n, 1.0)
 }
 
-/// The least and the greatest.
+/// Returns the minimum and the maximum.
 fn extremes(values: &[f64]) -> [f64; 2] {
     [values.iter().copied().fold(f64::INFINITY, f64::min), values.iter().copied().fold(0.0, f64::max)]
 }
 
-/// The factor of the first of two unknowns by least squares; where the second never occurs, of the first alone.
+/// Returns the first of two unknown factors by least squares. If the second never occurs, only the first is fitted.
 fn solve(rows: impl Iterator<Item = ([f64; 2], f64)>) -> f64 {
     let mut sums = [0.0; 5];
     for ([a, b], y) in rows {
@@ -221,11 +243,12 @@ fn solve(rows: impl Iterator<Item = ([f64; 2], f64)>) -> f64 {
             *sum += value;
         }
     }
+    // Solve the normal equations of two unknowns.
     let [aa, ab, bb, ay, by] = sums;
     if bb == 0.0 { ay / aa } else { (ay * bb - by * ab) / (aa * bb - ab * ab) }
 }
 
-/// A scene on a board, and its views.
+/// A scene on one board with its views.
 struct Rig {
     share: Share,
     views: Views,
@@ -241,7 +264,7 @@ impl Rig {
         Self::of_list(version, scene, boards, |list| list)
     }
 
-    /// The same without spheres.
+    /// Returns a rig with the scene's triangles and without its spheres.
     fn of_triangles(version: CodeVersion, scene: &str, boards: usize) -> Result<Self, ExperimentError> {
         Self::of_list(version, scene, boards, without_spheres)
     }
@@ -257,6 +280,7 @@ impl Rig {
         let hmd = Hmd::new(HmdConfig::unc()).map_err(|error| ExperimentError::Scene(error.to_string()))?;
         let (views, _) = views(&scene, 1, hmd, 2);
         let share = Share::new(list, 0, boards);
+        // The board holds its share of the display list in memory, as in a run.
         let mut processor = Processor::new(NodeId(1), MEMORY, version, MachineConfig::small_hmd().i860);
         share.install(&mut processor).map_err(fault)?;
         Ok(Self { share, views, processor })
@@ -271,13 +295,14 @@ fn samples(version: CodeVersion, of: CodeUse, scene: &str, boards: usize) -> Res
     measured(of, Rig::of_triangles(version, scene, boards)?, true, sample)
 }
 
-/// None of scenes without spheres.
+/// Returns the samples of a scene's spheres, or no samples if the scene has none.
 fn sphere_samples(version: CodeVersion, of: CodeUse, scene: &str) -> Result<Vec<SphereSample>, ExperimentError> {
     let rig = Rig::new(version, scene, BOARDS)?;
     if rig.share.counts().spheres == 0 { Ok(Vec::new()) } else { measured(of, rig, true, sphere_sample) }
 }
 
-/// All passes but the first. What goes through both eyes in one pass, where that is `together`, is one sample.
+/// Returns the samples of all passes except the first, which only fills the caches. If `together` is true, a pass for
+/// both eyes is one sample.
 fn measured<const N: usize>(
     of: CodeUse,
     mut rig: Rig,
@@ -286,11 +311,13 @@ fn measured<const N: usize>(
 ) -> Result<Vec<[f64; N]>, ExperimentError> {
     let mut samples = Vec::new();
     let parts = parts(of, &rig.share);
+    // Each view moves the head, so that other triangles are visible.
     for number in 0..VIEWS {
         let view = rig.view(number);
         for part in &parts {
             let passes = [0, 1].map(|eye| part.transform(&view, eye, picture(of)));
             let [left, right] = &passes;
+            // Slats transforms both eyes in one pass, whose parts are one sample.
             if together && let Some(made) = left.run_code_for_both(right, &mut rig.processor, 0).map_err(fault)? {
                 let [left, right] = [sample(left, &made[0]), sample(right, &made[1])];
                 samples.push(std::array::from_fn(|n| left[n] + right[n]));
@@ -302,12 +329,13 @@ fn measured<const N: usize>(
             }
         }
     }
+    // The first pass fills the caches.
     samples.remove(0);
     Ok(samples)
 }
 
-/// Triangles that cover the screen, each enlarged to a right angle at the lower left whose legs are four times so many metres long, and 0.5 m
-/// more for the eyes.
+/// Replaces every triangle by a larger right-angled one that reaches beyond the guard band. At the distance d both
+/// legs measure 4 ([`CLIPPED_M`] d + 0.5 m). The 0.5 m allow for the positions of the eyes.
 fn beyond_the_guard_band(mut list: DisplayList) -> DisplayList {
     for triangle in list.positions.chunks_exact_mut(3) {
         for (corner, [x, y]) in triangle.iter_mut().zip([[-1.0, -1.0], [3.0, -1.0], [-1.0, 3.0]]) {
@@ -324,7 +352,7 @@ fn without_spheres(mut list: DisplayList) -> DisplayList {
     list
 }
 
-/// The same with some structures more, which hold nothing.
+/// Returns the list without spheres and with [`MORE_STRUCTURES`] empty structures at its end.
 fn with_more_structures(list: DisplayList) -> DisplayList {
     let mut list = without_spheres(list);
     let end = list.triangles.len();
@@ -334,15 +362,17 @@ fn with_more_structures(list: DisplayList) -> DisplayList {
     list
 }
 
-/// Parts of the beginning of a pass over a scene.
+/// Times of the parts of the beginning of a pass.
 struct Begun {
     pass_ns: f64,
     structure_ns: f64,
-    /// None of scenes without spheres.
+    /// Additional time of a view for a structure with spheres. `None` for scenes without spheres.
     sphere_view_ns: Option<f64>,
 }
 
 fn begun(version: CodeVersion, of: CodeUse, scene: &str) -> Result<Begun, ExperimentError> {
+    // Measure the scene three times: whole, without spheres, and with more empty structures. The differences give the
+    // cost of each part.
     let rig = |part: fn(DisplayList) -> DisplayList| Rig::of_list(version, scene, BOARDS, part);
     let whole = rig(|list| list)?;
     let TransformCost { structures, sphere_views, .. } = TransformCost::beginning(&whole.share.list().structures);
@@ -358,7 +388,7 @@ fn begun(version: CodeVersion, of: CodeUse, scene: &str) -> Result<Begun, Experi
     })
 }
 
-/// Mean time in which a pass begins: of each eye, or of both where one follows the other.
+/// Returns the mean time to begin a pass, which covers one eye or both.
 fn beginning_ns(of: CodeUse, mut rig: Rig) -> Result<f64, ExperimentError> {
     let eyes = eyes_of_a_pass(of);
     let mut all_ns = 0.0;
@@ -366,7 +396,7 @@ fn beginning_ns(of: CodeUse, mut rig: Rig) -> Result<f64, ExperimentError> {
         let view = rig.view(number);
         for eyes in eyes {
             let beginning = rig.share.beginning(&view, eyes, picture(of));
-            // The triangles of the pass before have taken the caches.
+            // The triangles of the previous pass fill the caches, as in a real frame.
             eyes.iter().try_for_each(|eye| {
                 let pass = rig.share.transform(&view, *eye, picture(of));
                 pass.run_code(&mut rig.processor, *eye as u8).map(|_| ()).map_err(fault)
@@ -378,7 +408,7 @@ fn beginning_ns(of: CodeUse, mut rig: Rig) -> Result<f64, ExperimentError> {
     Ok(all_ns / (VIEWS * eyes.len() as u64) as f64)
 }
 
-/// Time of an edit: of one more in a message.
+/// Returns the time of one more edit in a message.
 fn edit_ns(version: CodeVersion) -> Result<f64, ExperimentError> {
     let mut processor = Processor::new(NodeId(1), MEMORY, version, MachineConfig::small_hmd().i860);
     let mut ns = |count: u32| {
@@ -386,6 +416,7 @@ fn edit_ns(version: CodeVersion) -> Result<f64, ExperimentError> {
         let view = FrameView { number: ViewNumber::FIRST, eyes: Vec::new(), edits };
         Editing(&view).by_code(&GpTiming::PAPERS, &mut processor).map(|span| span.0 as f64 / 1e3).map_err(fault)
     };
+    // The difference removes the constant cost of a message.
     let [one, more] = [ns(1)?, ns(1 + EDITS)?];
     Ok((more - one) / f64::from(EDITS))
 }

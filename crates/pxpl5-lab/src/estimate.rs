@@ -1,110 +1,135 @@
-//! What an experiment will take of this computer, from what it is: known before it starts. Budgets, sweeps and their jobs all ask here.
+//! Estimates of the memory and time of an experiment, computed from its settings before it starts. Budgets, sweeps
+//! and their jobs use these estimates.
 //!
-//! Memory, bytes:
-//! `BASE + GP gps + PRIMITIVE primitives + WAITING batch + kept`, where `kept = fields (FIELD + COPY copies)` of a run that keeps
-//! everything, and `fields STATISTICS + min(fields, WINDOW) BLOCK blocks` of one that keeps statistics and its last pictures; behind a tracker
-//! either has `min(fields, JUDGED) ERRORS` more. `batch` and `blocks` (copied in a field, at
-//! most what the ring takes) are those of frameless rendering. Measured: the peaks of 23 runs of all pipelines, rounded up (docs/hardening.md).
+//! Memory in bytes: `BASE + GP gps + PRIMITIVE primitives + WAITING batch + kept`
 //!
-//! Time, seconds on one core:
-//! `runs (FIELD_S fields + pictures eyes (PICTURE_S + GP_S gps) + BLOCK_S blocks fields) + LOAD_S eyes primitives + JUDGED_FIELD_S fields`,
-//! where `runs` is `RUNS_OF_HEAD` of a tracked head, else 1; `LOAD_S` counts where pictures come from a closed form, `BLOCK_S` where a pipeline draws
-//! blocks, and `JUDGED_FIELD_S` of a tracked head.
+//! - A run that keeps everything has `kept = fields (FIELD + COPY copies)`.
+//! - A run that keeps statistics and its last pictures has `kept = fields STATISTICS + min(fields, WINDOW) BLOCK
+//!   blocks`.
+//! - A tracked head adds `min(fields, JUDGED) ERRORS` to either.
+//! - `batch` and `blocks` belong to frameless rendering. `blocks` is the number copied in a field, limited by the
+//!   ring.
 //!
-//! The constants of time are fitted to 606 points of all pipelines (experiments/sweep-costs.toml and sweep-costs-heads.toml, release build) by logarithms, so
-//! that too much and too little count alike. How far single points are off stands in docs/sweeps.md, "What a point costs": what decides besides, above all
-//! how much of a scene is in view and how often a view returns, no closed form knows. An estimate is for telling minutes from weeks; what a run
-//! really takes is looked at while it runs.
+//! The constants of memory are measured: the peaks of 23 runs of all pipelines, rounded up (docs/hardening.md).
+//!
+//! Time in seconds on one core: `runs (FIELD_S fields + pictures eyes (PICTURE_S + GP_S gps) + BLOCK_S blocks fields)
+//! + LOAD_S eyes primitives + JUDGED_FIELD_S fields`
+//!
+//! - `runs` is `RUNS_OF_HEAD` for a tracked head, otherwise 1.
+//! - `LOAD_S` counts only for pictures that a closed form computes.
+//! - `BLOCK_S` counts only for pipelines that draw blocks.
+//! - `JUDGED_FIELD_S` counts only for a tracked head.
+//!
+//! The constants of time are fitted to 606 points of all pipelines (experiments/sweep-costs.toml and
+//! sweep-costs-heads.toml, release build). The fit minimizes logarithms, so that estimates that are too high and too
+//! low count alike. docs/sweeps.md, "What a point costs", lists the errors of single points. The cost also depends on
+//! the visible part of a scene and on repeated views, which no closed form predicts. An estimate distinguishes
+//! minutes from weeks; a running experiment is monitored as well.
 
 use crate::Plan;
 use pxpl5_run::{KeyValue, Level, Pixels};
 use pxpl5_scene::Scene;
 
-/// What decides on memory and time of an experiment.
+/// Sizes that determine the memory and time of an experiment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Work {
-    /// Periods of the display.
+    /// Number of display periods.
     pub fields: u64,
-    /// Graphics processors.
+    /// Number of graphics processors.
     pub gps: u64,
-    /// Triangles and spheres.
+    /// Number of triangles and spheres.
     pub primitives: u64,
-    /// Pictures that are drawn at a time, one for each eye.
+    /// Number of pictures drawn at a time, one for each eye.
     pub eyes: u64,
-    /// Pictures of an eye in a field: at most 1.
+    /// Number of pictures of an eye in a field, at most 1.
     pub pictures_a_field: f64,
-    /// True if pictures come from a closed form, for which all primitives are transformed first.
+    /// True if a closed form computes the pictures, for which all primitives are transformed first.
     pub is_by_form: bool,
-    /// Blocks drawn with one view; 0 where a pipeline has none.
+    /// Number of blocks drawn with one view, or 0 for a pipeline without blocks.
     pub batch: u64,
-    /// Width of a block, pixels; 0 where a pipeline has none.
+    /// Width of a block in pixels, or 0 for a pipeline without blocks.
     pub block: u64,
-    /// True if processors execute instructions.
+    /// True if the processors execute instructions.
     pub is_cycle_level: bool,
-    /// True if all observations are kept.
+    /// True if the run keeps all observations.
     pub keeps_everything: bool,
-    /// True if a tracker follows a head.
+    /// True if the experiment has a tracked head.
     pub is_tracked: bool,
-    /// True if all pixels are computed while the run goes on.
+    /// True if all pixels are computed during the run.
     pub computes_all_pixels: bool,
 }
 
-/// What something is expected to take.
+/// Estimated cost of a computation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// Bytes of memory at the peak.
+    /// Peak memory in bytes.
     pub bytes: f64,
-    /// Seconds on a computer that does other work too.
+    /// Seconds on a computer that is busy with other work.
     pub seconds: f64,
 }
 
-/// Bytes of the command, of a small machine, and of pictures that are computed in advance.
+/// Bytes of the process and a small machine.
 const BASE: f64 = 15e6;
+/// Bytes of pictures computed in advance.
 const PICTURES: f64 = 10e6;
-/// Bytes of a graphics processor, of a primitive with its place in all lists, and of a block that waits to be drawn.
+/// Bytes of a graphics processor.
 const GP: f64 = 60e3;
+/// Bytes of a primitive with its entries in all lists.
 const PRIMITIVE: f64 = 200.0;
+/// Bytes of a block that waits to be drawn.
 const WAITING: f64 = 5.5e3;
-/// Bytes that a field leaves: where everything is kept, a field and each of its blocks; where statistics are kept.
+/// Bytes kept for a field in a run that keeps everything.
 const FIELD: f64 = 4e3;
+/// Bytes kept for each block of a field in a run that keeps everything.
 const COPY: f64 = 350.0;
+/// Bytes kept for a field in a run that keeps statistics.
 const STATISTICS: f64 = 10.0;
+/// Bytes kept for each block of a field in a run that keeps statistics.
 const BLOCK: f64 = 100.0;
+/// Number of fields whose blocks are kept in a run that keeps statistics.
 const WINDOW: f64 = 240.0;
-/// Bytes that the pixel errors of a field take, and fields of which they are kept one by one.
+/// Bytes of the pixel errors of a field.
 const ERRORS: f64 = 1e3;
+/// Number of fields whose pixel errors are kept one by one.
 const JUDGED: f64 = 20_971.0;
 
-/// Seconds of a field, with its retrace and the head's samples.
+/// Seconds for a field, including its retrace and the samples of the head.
 const FIELD_S: f64 = 3.5e-4;
-/// Seconds of a picture of one eye: its regions, and the messages of each processor for them.
+/// Seconds for the regions of one eye's picture.
 const PICTURE_S: f64 = 1.8e-4;
+/// Seconds for the messages of one processor for one eye's picture.
 const GP_S: f64 = 1.3e-5;
-/// Seconds of a block of frameless rendering.
+/// Seconds for a block of frameless rendering.
 const BLOCK_S: f64 = 5.6e-6;
-/// Seconds of a primitive of an eye: transformed when its view is first drawn.
+/// Seconds for a primitive and an eye, which is transformed when its view is first drawn.
 const LOAD_S: f64 = 2.8e-5;
-/// Seconds of a primitive of a picture as code of the i860. Assumed, from the speeds of the README.
+/// Seconds for a primitive of a picture as i860 code. Assumed, from the speeds in the README.
 const PRIMITIVE_AS_CODE_S: f64 = 2.7e-5;
-/// A tracked head: the run is repeated to know when views are seen, and errors are judged in every field.
+/// Number of runs with a tracked head: a dry run first measures the times at which views are seen.
 const RUNS_OF_HEAD: f64 = 2.0;
+/// Seconds to evaluate the errors of a field.
 const JUDGED_FIELD_S: f64 = 6e-4;
-/// How much longer it takes on a computer that does other work too. Assumed; the four runs of the test, on two busy cores, took 1.3 to 12 times
-/// as long.
+/// Slowdown factor on a computer that is busy with other work. Assumed. The four runs of the test below, on two busy
+/// cores, took 1.3 to 12 times as long as the estimate on an idle core.
 const BUSY: f64 = 2.5;
 
-/// A field of NTSC, a word on the ring and the transformation of a primitive on a graphics processor, seconds; words that go along with a block;
-/// processors that fill the ring with blocks. Of other displays and machines the same: an estimate needs no more.
+/// Seconds of an NTSC field. Estimates use this value for every display.
 const NTSC_FIELD_S: f64 = 16.683_333e-3;
+/// Seconds of a word on the ring. Estimates use this value for every machine.
 const WORD_S: f64 = 50e-9;
+/// Seconds to transform a primitive on a graphics processor. Estimates use this value for every machine.
 const TRANSFORM_S: f64 = 21.7e-6;
+/// Number of words sent with each block besides its pixels.
 const BLOCK_WORDS: f64 = 16.0;
+/// Number of processors that saturate the ring with blocks.
 const BLOCK_GPS: f64 = 20.0;
-/// The shortest time between two blocks, seconds: processors send messages for each. Derived: half of 12 us, of two at a time.
+/// Minimum time between two blocks in seconds, limited by the messages of the processors. Derived: half of 12 us,
+/// because two blocks are sent at a time.
 const LEAST_BLOCK_S: f64 = 6e-6;
 
 impl Estimate {
-    /// Of what follows each other on so many threads: the sum of the times, the largest memory on each.
+    /// Returns the estimate of many runs on a number of threads: the sum of the times divided by the threads, and the
+    /// largest memory once for each thread.
     #[must_use]
     pub fn of_all(all: impl IntoIterator<Item = Self>, threads: usize) -> Self {
         let threads = threads.max(1) as f64;
@@ -116,10 +141,12 @@ impl Estimate {
 }
 
 impl Work {
-    /// Of a checked experiment with its scene: a picture in every field, or as many as the processors can transform.
+    /// Returns the work of a checked experiment with its scene. The number of pictures a field is 1, or less if the
+    /// processors cannot transform all primitives in a field.
     #[must_use]
     pub fn of(plan: &Plan, scene: &Scene, keeps_everything: bool) -> Self {
         let settings = plan.pipeline.settings();
+        // Settings that a pipeline does not have count as 0.
         let whole = |key: &str| match settings.iter().find(|(name, _)| *name == key) {
             Some((_, KeyValue::Whole(value))) => *value,
             _ => 0,
@@ -138,23 +165,24 @@ impl Work {
             is_tracked: plan.head.is_some(),
             computes_all_pixels: plan.pixels == Pixels::All,
         };
+        // A pipeline shows at most one picture in a field, and fewer if TRANSFORM takes longer.
         work.pictures_a_field = (1.0 / work.fields_of_transform()).min(1.0);
         work
     }
 
-    /// Fields of NTSC that the processors take to transform all primitives for all eyes.
+    /// Returns the number of NTSC fields that the processors take to transform all primitives for all eyes.
     #[must_use]
     pub fn fields_of_transform(&self) -> f64 {
         let primitives = (self.primitives * self.eyes).max(1) as f64;
         TRANSFORM_S * primitives / (NTSC_FIELD_S * self.gps.max(1) as f64)
     }
 
-    /// Blocks of a field at most: what the ring takes, and what processors send messages for.
+    /// Returns the maximum number of blocks in a field, limited by the ring and by the messages of processors.
     fn most_blocks(&self) -> f64 {
         if self.block == 0 { 0.0 } else { NTSC_FIELD_S / self.block_s().max(LEAST_BLOCK_S) }
     }
 
-    /// Blocks of a field that these processors send.
+    /// Returns the number of blocks in a field that this number of processors can send.
     fn blocks(&self) -> f64 {
         if self.block == 0 { 0.0 } else { NTSC_FIELD_S / self.block_s() * (self.gps as f64 / BLOCK_GPS).min(1.0) }
     }
@@ -163,16 +191,17 @@ impl Work {
         WORD_S * ((self.block * self.block) as f64 + BLOCK_WORDS)
     }
 
-    /// What it takes, by the formulas above.
+    /// Estimates memory and time by the formulas in the module's documentation.
     #[must_use]
     pub fn estimate(&self) -> Estimate {
         Estimate { bytes: self.bytes(), seconds: BUSY * self.core_seconds() }
     }
 
-    /// Bytes of memory at the peak.
+    /// Estimates the peak memory in bytes.
     #[must_use]
     pub fn bytes(&self) -> f64 {
         let fields = self.fields as f64;
+        // Observations dominate long runs; lists dominate large scenes.
         let kept = if self.keeps_everything {
             fields * (FIELD + COPY * self.most_blocks())
         } else {
@@ -184,12 +213,13 @@ impl Work {
         BASE + pictures + GP * self.gps as f64 + lists + kept + errors
     }
 
-    /// Seconds on one core that does nothing else.
+    /// Estimates the seconds on one idle core.
     #[must_use]
     pub fn core_seconds(&self) -> f64 {
         let (fields, eyes, primitives) = (self.fields as f64, self.eyes as f64, self.primitives as f64);
         let as_code = if self.is_cycle_level { PRIMITIVE_AS_CODE_S * primitives } else { 0.0 };
         let picture = eyes * (PICTURE_S + GP_S * self.gps as f64 + as_code);
+        // Fields, pictures and blocks each add their own cost.
         let run = fields * FIELD_S + fields * self.pictures_a_field * picture + fields * self.blocks() * BLOCK_S;
         let load = if self.is_by_form { LOAD_S * eyes * primitives } else { 0.0 };
         let (runs, judged) = if self.is_tracked { (RUNS_OF_HEAD, fields * JUDGED_FIELD_S) } else { (1.0, 0.0) };
@@ -216,7 +246,7 @@ mod tests {
         computes_all_pixels: false,
     };
 
-    /// Of runs under `/usr/bin/time`: what it was, and MB that the process had at its peak.
+    /// Measured runs under `/usr/bin/time`: the work and the peak memory in MB.
     const MEASURED: [(Work, f64); 12] = [
         (SMALL, 13.8),
         (Work { fields: 12_000, keeps_everything: true, ..SMALL }, 61.4),
@@ -247,7 +277,8 @@ mod tests {
         }
     }
 
-    /// Bounds of the same runs on two cores that others used too: the least is a tenth of what they took, the most what they took.
+    /// Time bounds of the same runs on two busy cores. An estimate must lie between a tenth of the measured time and
+    /// twice that time.
     #[test]
     fn time_is_estimated_between_a_tenth_and_the_double_of_a_busy_computer() {
         for (work, seconds) in [

@@ -1,4 +1,4 @@
-//! Growth: host time and simulated latency as scenes and machines get larger.
+//! Growth of host time and simulated latency with the size of scenes and machines.
 
 use crate::limit::test_scene;
 use crate::{Workstation, parallel};
@@ -10,44 +10,45 @@ use serde::Serialize;
 use std::fmt::Write as _;
 use std::sync::Arc;
 
-/// One run. All zero behind the boards when no frame was shown.
+/// Result of one run. All numbers after the boards are zero if no frame was shown.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Point {
-    /// Triangles and spheres of the scene.
+    /// Number of triangles and spheres in the scene.
     pub primitives: usize,
-    /// Graphics processors of the machine, the master among them.
+    /// Number of graphics processors, including the master.
     pub n_gps: usize,
-    /// Renderers of the machine, of 128 x 128 pixels each.
+    /// Number of renderers, each of 128 x 128 pixels.
     pub n_renderers: usize,
-    /// Stereo frames that were shown, complete, before the run ended.
+    /// Number of complete stereo frames shown during the run.
     pub frames: usize,
-    /// Host time of a frame, milliseconds, without pixels: the fastest of three runs.
+    /// Host time per frame in milliseconds, without pixels: the fastest of three runs.
     pub host_ms: f64,
     /// Mean latency in fields.
     pub latency_fields: f64,
-    /// Frames per second of simulated time; 0 of fewer than two.
+    /// Frames per second of simulated time, or 0 for fewer than two frames.
     pub updates_hz: f64,
 }
 
-/// Triangles, on 50 GPs and 5 renderers.
+/// Numbers of triangles for 50 GPs and 5 renderers.
 const TRIANGLES: [u32; 7] = [12, 100, 1_000, 10_000, 100_000, 300_000, 1_000_000];
 
-/// Triangles for the machines: a scene of 1994, and as many as the built-in head has.
+/// Numbers of triangles for the series of machines: a scene of 1994, and the size of the built-in head.
 const SCENES: [u32; 2] = [10_000, 59_592];
 
-/// GPs and renderers for each of them.
+/// Numbers of GPs and renderers, simulated with each of the [`SCENES`].
 const MACHINES: [(usize, usize); 9] = [(2, 5), (4, 5), (13, 5), (24, 5), (50, 5), (13, 1), (13, 2), (13, 10), (13, 20)];
 
-/// Memory of a GP here: a million triangles do not fit into the 8 MB of 50 real ones.
+/// Memory of a GP in bytes. A million triangles do not fit into the 8 MB of 50 real GPs.
 const MEMORY_BYTES: u64 = 1 << 30;
 
-/// Time of a triangle on its GP and, in 1.35 regions, on a renderer: what a run must leave room for.
+/// Time of a triangle on its GP and, in 1.35 regions, on a renderer, in nanoseconds. The length of a run follows from
+/// these times.
 const TRIANGLE_NS: (u64, u64) = (24_000, 9_200);
 
-/// Frames that a run must leave room for.
+/// Number of frames for which a run must be long enough.
 const FRAMES: u64 = 30;
 
-/// Fields of a machine's display in which [`FRAMES`] stereo frames are shown.
+/// Returns the number of display periods in which [`FRAMES`] stereo frames are shown.
 fn fields(config: &MachineConfig, triangles: u64) -> Result<u64, ExperimentError> {
     let slaves = config.n_gps as u64 - 1;
     let renderers = config.n_renderers as u64;
@@ -56,7 +57,7 @@ fn fields(config: &MachineConfig, triangles: u64) -> Result<u64, ExperimentError
     Ok(50 + FRAMES * frame_ns / period_ns)
 }
 
-/// The fastest of three runs, which differ in nothing else.
+/// Runs the same experiment three times and returns the fastest run.
 fn run(triangles: u32, n_gps: usize, n_renderers: usize) -> Result<Point, ExperimentError> {
     let mut fastest = run_once(triangles, n_gps, n_renderers)?;
     for _ in 1..3 {
@@ -67,6 +68,7 @@ fn run(triangles: u32, n_gps: usize, n_renderers: usize) -> Result<Point, Experi
 
 fn run_once(triangles: u32, n_gps: usize, n_renderers: usize) -> Result<Point, ExperimentError> {
     let mut config = MachineConfig { n_gps, n_renderers, ..MachineConfig::preset("large")? };
+    // The memory of a real board would limit the scenes.
     config.gp.memory_bytes = MEMORY_BYTES;
     config.gp.bin_bytes = MEMORY_BYTES;
     let fields = fields(&config, u64::from(triangles))?;
@@ -74,6 +76,7 @@ fn run_once(triangles: u32, n_gps: usize, n_renderers: usize) -> Result<Point, E
     let experiment = Experiment::new(config, RenderingControl::stereo(), scene).fields(fields).pixels(Pixels::Off);
     let run = experiment.host(Workstation::new()).run();
     let primitives = triangles as usize;
+    // A machine that shows no frame in time still has a row.
     let outcome = match run {
         Err(ExperimentError::TooShort { .. }) => {
             return Ok(Point { primitives, n_gps, n_renderers, ..Point::default() });
@@ -93,49 +96,50 @@ fn run_once(triangles: u32, n_gps: usize, n_renderers: usize) -> Result<Point, E
     })
 }
 
-/// Scenes from 12 to a million triangles on 50 GPs and 5 renderers.
+/// Runs scenes from 12 to a million triangles on 50 GPs and 5 renderers.
 ///
 /// # Errors
 ///
-/// The first [`ExperimentError`].
+/// Returns the first [`ExperimentError`].
 pub fn by_triangles() -> Result<Vec<Point>, ExperimentError> {
     TRIANGLES.into_iter().map(|triangles| run(triangles, 50, 5)).collect()
 }
 
-/// 10,000 and 59,592 triangles on machines of 2 to 50 GPs and 1 to 20 renderers.
+/// Runs 10,000 and 59,592 triangles on machines of 2 to 50 GPs and 1 to 20 renderers.
 ///
 /// # Errors
 ///
-/// The first [`ExperimentError`].
+/// Returns the first [`ExperimentError`].
 pub fn by_machine() -> Result<Vec<Point>, ExperimentError> {
     let all = SCENES.into_iter().flat_map(|scene| MACHINES.map(|machine| (scene, machine)));
     all.map(|(triangles, (n_gps, n_renderers))| run(triangles, n_gps, n_renderers)).collect()
 }
 
-/// An application scene on a preset: which machine the papers used is not known.
+/// Result of an application scene on a preset. The papers do not say which machine they used.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Application {
     /// Name of the built-in scene.
     pub scene: &'static str,
-    /// Name of the preset of the machine.
+    /// Name of the machine's preset.
     pub machine: &'static str,
-    /// Latency in fields: mean and standard deviation over frames of all seeds.
+    /// Mean and standard deviation of the latency in fields, over the frames of all seeds.
     pub latency_fields: [f64; 2],
     /// Frames per second of simulated time.
     pub updates_hz: f64,
-    /// Frames of all seeds together, after the warm-up.
+    /// Number of frames of all seeds after the warm-up.
     pub frames: usize,
 }
 
-/// Seeds of head motion for the application scenes, and fields of each run: 300 frames and the warm-up at 30 Hz.
+/// Number of seeds of head motion for the application scenes.
 const SEEDS: u64 = 30;
+/// Number of fields of a run of an application scene: 300 frames at 30 Hz, and the warm-up.
 const FIELDS: u64 = 616;
 
-/// `mig`, `molecules` and `head` on `small-hmd`, `medium` and `large`.
+/// Runs `mig`, `molecules` and `head` on `small-hmd`, `medium` and `large`.
 ///
 /// # Errors
 ///
-/// The first [`ExperimentError`].
+/// Returns the first [`ExperimentError`].
 pub fn applications() -> Result<Vec<Application>, ExperimentError> {
     let mut all = Vec::new();
     for scene in ["mig", "molecules", "head"] {
@@ -153,6 +157,7 @@ fn application(scene: &'static str, machine: &'static str) -> Result<Application
     let seeds: Vec<u64> = (1..=SEEDS).collect();
     let mut latencies = Vec::new();
     let mut hz = 0.0;
+    // Pool the latencies of all seeds, and average their rates.
     for outcome in parallel::map(&seeds, |seed| run_seed(&experiment, *seed)) {
         let (of_seed, updates_hz) = outcome.map_err(ExperimentError::Stopped)?;
         latencies.extend(of_seed);
@@ -163,7 +168,7 @@ fn application(scene: &'static str, machine: &'static str) -> Result<Application
     Ok(Application { scene, machine, latency_fields: [fields.mean, fields.sd], updates_hz: hz, frames })
 }
 
-/// Latencies in fields, and frames a second, with one seed of head motion.
+/// Returns the latencies in fields and the frames per second for one seed of head motion.
 fn run_seed(experiment: &Experiment, seed: u64) -> Result<(Vec<f64>, f64), String> {
     let outcome = experiment.clone().seed(seed).run().map_err(|error| error.to_string())?;
     let pictures = outcome.complete_pictures();
@@ -171,7 +176,7 @@ fn run_seed(experiment: &Experiment, seed: u64) -> Result<(Vec<f64>, f64), Strin
     Ok((latencies.collect(), outcome.report().updates_hz.unwrap_or_default()))
 }
 
-/// Slope of a straight line through the logarithms.
+/// Returns the exponent of a power law: the slope of the straight line through the logarithms of the points.
 #[must_use]
 pub fn exponent(points: &[(f64, f64)]) -> f64 {
     let logs: Vec<_> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
@@ -182,7 +187,7 @@ pub fn exponent(points: &[(f64, f64)]) -> f64 {
     products / logs.iter().map(|p| (p.0 - mean_x) * (p.0 - mean_x)).sum::<f64>()
 }
 
-/// docs/scaling.md: tables, exponents and a chart.
+/// Returns docs/scaling.md: tables, exponents and a chart.
 #[must_use]
 pub fn markdown(triangles: &[Point], machines: &[Point], applications: &[Application]) -> String {
     let mut text = format!(
@@ -197,6 +202,7 @@ pub fn markdown(triangles: &[Point], machines: &[Point], applications: &[Applica
         power(triangles, 100_000, |p| p.host_ms),
         power(triangles, 100_000, |p| p.latency_fields),
     );
+    // First the growth with triangles, then the growth with boards.
     table(&mut text, triangles);
     text.push_str("\n```text\n");
     chart(&mut text, triangles);
@@ -216,6 +222,7 @@ pub fn markdown(triangles: &[Point], machines: &[Point], applications: &[Applica
          motion, 616 fields\neach (300 frames at 30 Hz); the published Mig is 4.61 fields (sd 0.589).\n\n\
          | scene | machine | latency, fields | sd | frames/s | frames |\n|---|---|---|---|---|---|\n",
     );
+    // The papers' scenes on three possible machines.
     for a in applications {
         let [mean, sd] = a.latency_fields;
         let _ = writeln!(
@@ -227,19 +234,19 @@ pub fn markdown(triangles: &[Point], machines: &[Point], applications: &[Applica
     text
 }
 
-/// Exponent of a quantity in the number of primitives, from so many on.
+/// Returns the exponent of a quantity over the number of primitives, from `from` primitives on.
 fn power(points: &[Point], from: usize, of: impl Fn(&Point) -> f64) -> f64 {
     let large = points.iter().filter(|p| p.primitives >= from && p.frames > 0);
     exponent(&large.map(|p| (p.primitives as f64, of(p))).collect::<Vec<_>>())
 }
 
-/// Host time of a frame on a machine over that of 13 GPs and 5 renderers, per cent.
+/// Returns the additional host time of a frame on a machine, compared with 13 GPs and 5 renderers, in percent.
 fn more_host_time(points: &[Point], primitives: usize, machine: (usize, usize)) -> Option<f64> {
     let other_ms = host_ms(points, primitives, machine)?;
     Some((other_ms / host_ms(points, primitives, (13, 5))? - 1.0) * 100.0)
 }
 
-/// Host time of a frame on a machine of so many GPs and renderers; `None` where no frame was shown.
+/// Returns the host time of a frame on a machine in milliseconds, or `None` if no frame was shown.
 fn host_ms(points: &[Point], primitives: usize, (n_gps, n_renderers): (usize, usize)) -> Option<f64> {
     let mut shown = points.iter().filter(|p| p.frames > 0);
     let point = shown.find(|p| (p.primitives, p.n_gps, p.n_renderers) == (primitives, n_gps, n_renderers))?;
@@ -262,7 +269,8 @@ fn table(text: &mut String, points: &[Point]) {
     }
 }
 
-/// Host time against triangles, both logarithmic: a row a size, a column a tenth of a decade.
+/// Writes a chart of host time over triangles, both logarithmic. Each row is one size, and each column a tenth of a
+/// decade.
 fn chart(text: &mut String, points: &[Point]) {
     let least = points.iter().filter(|p| p.frames > 0).map(|p| p.host_ms).fold(f64::INFINITY, f64::min).log10().floor();
     for p in points.iter().filter(|p| p.frames > 0) {

@@ -14,91 +14,93 @@ use tracking::motion::{
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
 
-/// Fastest pan, degrees per second: well above the peak of a head, 370.
+/// Fastest pan in degrees per second, well above the peak rate of a head, 370.
 const FASTEST_PAN: f64 = 10_000.0;
 
-/// Why a motion, tracker or predictor cannot be had.
+/// Error of a motion, tracker or predictor that cannot be built.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum MotionError {
-    /// The name is none of those known.
+    /// An unknown name.
     #[error("there is no {what} `{found}`; expected {expected}")]
     Unknown {
-        /// What was to be named.
+        /// Kind of the named thing: motion, tracker or predictor.
         what: &'static str,
-        /// The name.
+        /// The unknown name.
         found: String,
-        /// The names that are known.
+        /// Names that are known.
         expected: &'static str,
     },
-    /// A number after the colon is none, or out of range.
+    /// Text after the colon that is not a number, or is out of range.
     #[error("expected {expected}, found `{found}`")]
     Number {
-        /// The text.
+        /// The invalid text.
         found: String,
-        /// What was expected.
+        /// Expected form and range, in words.
         expected: &'static str,
     },
-    /// A walk through a scene that has no path.
+    /// A walk through a scene without a path.
     #[error(
         "`{found}` walks along the scene's path, and this scene has none; expected a scene with a path, such as gallery"
     )]
     NoPath {
-        /// The motion.
+        /// Name of the motion.
         found: String,
     },
-    /// A recording cannot be opened.
+    /// A recording that cannot be opened.
     #[error("{path} cannot be opened: {error}")]
     Open {
-        /// The file.
+        /// Path of the recording.
         path: String,
-        /// Why.
+        /// Error of the operating system.
         error: io::Error,
     },
-    /// A recording cannot be replayed.
+    /// A recording that cannot be replayed.
     #[error("{path}: {error}")]
     Load {
-        /// The file.
+        /// Path of the recording.
         path: String,
-        /// Why.
+        /// Error of the recording's reader.
         error: RecordingError,
     },
 }
 
-/// Every motion that [`motion`] knows, as help and errors say it.
+/// Names of all motions that [`motion`] accepts, for help texts and errors.
 pub const MOTIONS: &str = "still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED, walk:M_PER_S (or \
                            walk:M_PER_S:SEED) along the scene's path, or a recording (FILE.csv, FILE.txt or FILE.tum)";
 
-/// Fastest slide, metres per second, and highest frequency of a sine, Hz.
+/// Fastest slide in metres per second.
 const FASTEST_SLIDE: f64 = 100.0;
+/// Highest frequency of a sine in Hz.
 const HIGHEST_HZ: f64 = 100.0;
 
-/// How the file of a recording is read, and what comes after its end.
+/// Options of a recording: the format of its file, and the behaviour at its end.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Replay {
-    /// Columns and axes, where the file does not say them itself.
+    /// Columns and axes of the file, unless its header states them.
     pub format: RecordingFormat,
-    /// What comes after the last sample.
+    /// Behaviour after the last sample.
     pub end: End,
 }
 
-/// Whether the name of a motion is that of a walk along the scene's path.
+/// Returns true if the name of a motion is a walk along the scene's path.
 #[must_use]
 pub fn is_walk(name: &str) -> bool {
     name.split(':').next() == Some("walk")
 }
 
-/// `walk:M_PER_S` along a closed path, looking ahead, or `walk:M_PER_S:SEED`, looking around as `synthetic:SEED` turns; an empty path
-/// is none.
+/// Builds a walk along a closed path from its name. `walk:M_PER_S` looks ahead. `walk:M_PER_S:SEED` looks around like
+/// `synthetic:SEED`.
 ///
 /// # Errors
 ///
-/// [`MotionError`] for a scene without a path, and for what is no speed or seed.
+/// Returns [`MotionError`] for an empty path, and for an invalid speed or seed.
 pub fn walk(text: &str, path: &[Vec3]) -> Result<Walk, MotionError> {
     let expected =
         "a walk of -100 to 100 metres per second, such as walk:1, and a seed to look around by, such as walk:1:7";
     let wrong = || MotionError::Number { found: text.to_owned(), expected };
     let numbers = text.strip_prefix("walk:").ok_or_else(wrong)?;
+    // The speed comes before the optional seed.
     let speed = numbers.split(':').next().and_then(|speed| within(speed, FASTEST_SLIDE)).ok_or_else(wrong)?;
     let seed = match numbers.split_once(':') {
         Some((_, seed)) => Some(seed.parse().map_err(|_| wrong())?),
@@ -106,6 +108,7 @@ pub fn walk(text: &str, path: &[Vec3]) -> Result<Walk, MotionError> {
     };
     let no_path = |_| MotionError::NoPath { found: text.to_owned() };
     let corners: Vec<DVec3> = path.iter().map(|corner| corner.as_dvec3()).collect();
+    // An empty path is the error of a scene without a path.
     let ahead = Walk::new(&corners, speed).map_err(no_path)?;
     Ok(match seed {
         Some(seed) => ahead.looking_around(seed),
@@ -113,30 +116,32 @@ pub fn walk(text: &str, path: &[Vec3]) -> Result<Walk, MotionError> {
     })
 }
 
-/// Whether the name of a motion is the path of a recording.
+/// Returns true if the name of a motion is the path of a recording.
 #[must_use]
 pub fn is_recording(name: &str) -> bool {
     let name = name.to_ascii_lowercase();
     [".csv", ".txt", ".tum"].iter().any(|end| name.ends_with(end))
 }
 
-/// `still`, `pan:DEG_PER_S`, `slide:M_PER_S` (to the right), `sine:DEG:HZ` (of the yaw), `pendulum`, `synthetic:SEED`, or the path
-/// of a recording that ends in `.csv`, `.txt` or `.tum` ([`Recording::read`]). Walks need a scene: [`walk`].
+/// Builds a motion from its name: `still`, `pan:DEG_PER_S`, `slide:M_PER_S` (to the right), `sine:DEG:HZ` (of the
+/// yaw), `pendulum`, `synthetic:SEED`, or the path of a recording. A recording's path ends in `.csv`, `.txt` or
+/// `.tum` ([`Recording::read`]). Walks need a scene: [`walk`].
 ///
 /// # Errors
 ///
-/// [`MotionError`] says what was expected and what was found.
+/// Returns [`MotionError`] with the expected form and the text found.
 pub fn motion(text: &str) -> Result<Arc<dyn Motion + Send + Sync>, MotionError> {
     replayed(text, &Replay::default())
 }
 
-/// The same, with how a recording is to be read and what comes after it.
+/// Builds a motion from its name, with the options of a recording.
 ///
 /// # Errors
 ///
-/// As [`motion`].
+/// Fails in the same cases as [`motion`].
 pub fn replayed(text: &str, replay: &Replay) -> Result<Arc<dyn Motion + Send + Sync>, MotionError> {
     let number = |found: &str, expected| MotionError::Number { found: found.to_owned(), expected };
+    // Each motion has a name, and most have parameters after a colon.
     Ok(match text.split_once(':').unwrap_or((text, "")) {
         ("still", "") => Arc::new(Still(Pose::IDENTITY)),
         ("pendulum", "") => Arc::new(Pendulum::rig()),
@@ -169,7 +174,7 @@ pub fn replayed(text: &str, replay: &Replay) -> Result<Arc<dyn Motion + Send + S
     })
 }
 
-/// A number of at most this size, either sign.
+/// Parses a number whose absolute value is at most `most`.
 fn within(text: &str, most: f64) -> Option<f64> {
     text.parse().ok().filter(|number: &f64| number.abs() <= most)
 }
@@ -180,29 +185,30 @@ fn recording(path: &Path, replay: &Replay) -> Result<Recording, MotionError> {
     recording_of(file, &name(), replay)
 }
 
-/// The recording that somebody can read; `name` stands for it in errors.
+/// Reads a recording from its contents. Error messages refer to the recording as `name`.
 pub(crate) fn recording_of(contents: impl Read, name: &str, replay: &Replay) -> Result<Recording, MotionError> {
     let recording = Recording::read_as(contents, &replay.format);
     Ok(recording.map_err(|error| MotionError::Load { path: name.to_owned(), error })?.ending(replay.end))
 }
 
-/// Every tracker that [`tracker`] knows, as help and errors say it.
+/// Names of all trackers that [`tracker`] accepts, for help texts and errors.
 pub const TRACKERS: &str = "optical, fastrak, fastrak-polled, flock, flock-patched, 3space, 3space-patched or ideal";
 
-/// A tracker of [`TRACKERS`].
+/// Returns the tracker with one of the names in [`TRACKERS`].
 ///
 /// # Errors
 ///
-/// [`MotionError::Unknown`] lists the names.
+/// Returns [`MotionError::Unknown`] with the list of names.
 pub fn tracker(name: &str) -> Result<TrackerConfig, MotionError> {
     Ok(tracker_by(&Tables::PAPERS, name)?.0)
 }
 
-/// A tracker of [`TRACKERS`] with the numbers of these tables, and the name of the table that is its own.
+/// Returns the tracker with one of the names in [`TRACKERS`], with the numbers of `tables`, and the name of the
+/// tracker's own table.
 ///
 /// # Errors
 ///
-/// As [`tracker`].
+/// Fails in the same cases as [`tracker`].
 pub fn tracker_by(tables: &Tables, name: &str) -> Result<(TrackerConfig, &'static str), MotionError> {
     Ok(match name {
         "optical" => (TrackerConfig::optical_ceiling_by(tables), "optical"),
@@ -217,14 +223,14 @@ pub fn tracker_by(tables: &Tables, name: &str) -> Result<(TrackerConfig, &'stati
     })
 }
 
-/// Every predictor that [`predictor`] knows, as help and errors say it.
+/// Names of all predictors that [`predictor`] accepts, for help texts and errors.
 pub const PREDICTORS: &str = "none, velocity, acceleration or kalman";
 
-/// A predictor of [`PREDICTORS`].
+/// Returns the predictor with one of the names in [`PREDICTORS`].
 ///
 /// # Errors
 ///
-/// [`MotionError::Unknown`] lists the names.
+/// Returns [`MotionError::Unknown`] with the list of names.
 pub fn predictor(name: &str) -> Result<PredictorKind, MotionError> {
     Ok(match name {
         "none" => PredictorKind::None,

@@ -1,4 +1,4 @@
-//! The computer that experiments run on: its clock, and threads that compute pixels apart from simulated time.
+//! The computer on which experiments run: its clock, and threads that compute pixels outside simulated time.
 
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 use pxpl5_machine::{PixelWorker, SameThread};
@@ -8,24 +8,24 @@ use std::sync::{Arc, LazyLock};
 use std::thread::JoinHandle;
 use std::time::Instant;
 
-/// This computer: a clock, and worker threads for pixels.
+/// This computer, which provides a clock and worker threads for pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Workstation {
     threads: usize,
 }
 
 impl Workstation {
-    /// Regions that may wait for a worker thread; more would only hold memory. Where so many wait, the thread that simulates computes the
-    /// next one itself.
+    /// Maximum number of regions that wait for a worker thread. More would only use memory. If the queue is full, the
+    /// simulating thread computes the next region itself.
     pub const WAITING_REGIONS: usize = 256;
 
-    /// With a worker thread for each core.
+    /// Creates a host with one worker thread for each core.
     #[must_use]
     pub fn new() -> Self {
         Self::with_threads(std::thread::available_parallelism().map_or(1, usize::from))
     }
 
-    /// With so many worker threads; 0: the thread that simulates computes the pixels.
+    /// Creates a host with a number of worker threads. With 0 threads the simulating thread computes the pixels.
     #[must_use]
     pub const fn with_threads(threads: usize) -> Self {
         Self { threads }
@@ -38,7 +38,7 @@ impl Default for Workstation {
     }
 }
 
-/// The moment from which seconds are counted.
+/// Instant from which seconds are counted.
 static BEGIN: LazyLock<Instant> = LazyLock::new(Instant::now);
 
 impl Host for Workstation {
@@ -54,13 +54,13 @@ impl Host for Workstation {
     }
 }
 
-/// A pool of threads that compute pixels, which the simulating thread joins when it has nothing else to do.
+/// A pool of threads that compute pixels. At the end of a run the simulating thread helps to empty the queue.
 #[derive(Debug)]
 struct PixelThreads {
     regions: Sender<Arc<dyn PixelSource>>,
     waiting: Receiver<Arc<dyn PixelSource>>,
     threads: Vec<JoinHandle<u64>>,
-    /// Regions that the simulating thread computed.
+    /// Number of regions that the simulating thread computed.
     own: u64,
 }
 
@@ -72,12 +72,12 @@ impl PixelThreads {
     }
 }
 
-/// A thread that computes regions until there will be no more, and counts them.
+/// Starts a thread that computes regions until the queue closes. The thread returns their number.
 fn start_thread(waiting: Receiver<Arc<dyn PixelSource>>) -> JoinHandle<u64> {
     std::thread::spawn(move || compute_all(&waiting))
 }
 
-/// Computes regions until there will be no more; how many.
+/// Computes regions until the queue closes, and returns their number.
 fn compute_all(waiting: &Receiver<Arc<dyn PixelSource>>) -> u64 {
     waiting.iter().fold(0, |regions, region| {
         let _ = region.pixels();
@@ -87,7 +87,8 @@ fn compute_all(waiting: &Receiver<Arc<dyn PixelSource>>) -> u64 {
 
 impl PixelWorker for PixelThreads {
     fn compute(&mut self, region: &Arc<dyn PixelSource>) {
-        // Nobody waits for room: where no more regions may wait, there is work for this thread.
+        // The simulating thread never waits for space in the queue. If the queue is full, this thread computes the
+        // region itself.
         if let Err(TrySendError::Full(region)) = self.regions.try_send(Arc::clone(region)) {
             let _ = region.pixels();
             self.own += 1;
@@ -96,9 +97,10 @@ impl PixelWorker for PixelThreads {
 
     /// # Panics
     ///
-    /// When a worker panicked: a bug of ours.
+    /// Panics when a worker has panicked, which is a bug.
     fn finish(self: Box<Self>) -> u64 {
         let Self { regions, waiting, threads, own } = *self;
+        // Closing the queue ends the workers once it is empty.
         drop(regions);
         let own = own + compute_all(&waiting);
         threads.into_iter().map(|thread| thread.join().expect("a pixel worker panicked")).sum::<u64>() + own

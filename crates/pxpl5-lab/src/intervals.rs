@@ -1,17 +1,19 @@
-//! Intervals instead of points: what the figures do when parameters that no paper prints move within their ranges.
+//! Intervals of the figures while parameters that no paper prints vary within their ranges.
 //!
-//! Three designs, all at the analytic level, which follows the transaction level closely enough for differences:
+//! The intervals come from three designs at the analytic level, which follows the transaction level closely enough
+//! for differences:
 //!
-//! - *one at a time*: each parameter at the low and at the high end of its range, all others at their presets;
-//! - *readings*: each question that the papers leave open answered otherwise ([`Reading::neighbours`]), one at a time;
-//! - *joint*: [`SAMPLES`] machines with every parameter drawn uniformly from its range, from a fixed seed.
+//! - *one at a time*: each parameter at the low and at the high end of its range, all others at their presets
+//! - *readings*: each open question of the papers answered otherwise ([`Reading::neighbours`]), one at a time
+//! - *joint*: [`SAMPLES`] machines with every parameter drawn uniformly from its range, from a fixed seed
 //!
-//! Parameters that were fitted to a figure stay what they are, except the two times per triangle of Slats, which move
-//! within the range that gives the figure exactly. So the interval of a fitted figure says how much it would be off
-//! if nothing were fitted anew.
+//! Parameters that were fitted to a figure keep their values, except the two times per triangle of Slats. These two
+//! vary within the range that reproduces the figure exactly. The interval of a fitted figure therefore states its
+//! error without a new fit.
 //!
-//! Figures that need events are moved by fewer: the depth of the FIFO and the channels of a sender, of which no source says anything;
-//! that of the pendulum rig by the photodiode's place and the readings too.
+//! Figures that need events are varied by fewer parameters: the depth of the FIFO and the channels of a sender, for
+//! which no source exists. The figure of the pendulum rig is also varied by the photodiode's position and by the
+//! interpretations.
 
 use crate::figures::{Bench, FIGURES, FigureRow, PHOTODIODE_LINE, Reading, WITHOUT_CLOSED_FORM};
 use parameters::Standing;
@@ -20,84 +22,84 @@ use pxpl5_run::Level;
 use pxpl5_sim::mix;
 use serde::Serialize;
 
-/// Machines of the joint sample.
+/// Number of machines in the joint sample.
 pub const SAMPLES: u64 = 500;
 
 /// Seed of the joint sample.
 const SEED: u64 = 0x5EED_0F05;
 
-/// Seeds and frames of the Mig in every sample.
+/// Number of seeds and number of frames of the Mig in every sample.
 const MIG: (u64, u64) = (6, 150);
 
-/// A parameter that may be moved.
+/// A parameter that varies within its range.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Variation {
-    /// Its path; those of one preset begin with the preset's name and a colon.
+    /// Path of the parameter. A parameter of a single preset has the preset's name and a colon as a prefix.
     pub path: String,
-    /// Its value in the preset.
+    /// Value of the parameter in the preset.
     pub value: u64,
-    /// Smallest and largest value that the sources allow.
+    /// Minimum and maximum that the sources allow.
     pub range: (u64, u64),
-    /// How well the value is known: derived or assumed, never published.
+    /// Provenance of the value: derived or assumed, never published.
     pub standing: Standing,
 }
 
-/// What one parameter does to one figure.
+/// Effect of one parameter on one figure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Effect {
     /// Path of the parameter, as in [`Variation::path`].
     pub path: String,
-    /// The figure with the parameter at the low and at the high end of its range.
+    /// Value of the figure with the parameter at the low and at the high end of its range.
     pub ends: [f64; 2],
-    /// Relative change of the figure over relative change of the parameter, from end to end.
+    /// Relative change of the figure divided by the relative change of the parameter, from end to end.
     pub elasticity: f64,
 }
 
-/// What the parameters' ranges imply for a figure.
+/// Interval of a figure that follows from the ranges of all parameters.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Interval {
     /// Number of the figure, as in [`FIGURES`].
     pub id: &'static str,
-    /// At the presets, at the analytic level; of what has no closed form, with events.
+    /// Value for the presets at the analytic level. Figures without a closed form are simulated with events.
     pub nominal: f64,
-    /// Least and greatest over the ends of every range, one parameter at a time.
+    /// Minimum and maximum over both ends of every range, one parameter at a time.
     pub one_at_a_time: [f64; 2],
-    /// Least and greatest over the readings that answer one question differently.
+    /// Minimum and maximum over the interpretations that answer one question differently.
     pub readings: [f64; 2],
-    /// The readings among them that move the figure, the strongest first, with its value.
+    /// Interpretations that change the figure, strongest first, with its value.
     pub rules: Vec<(String, f64)>,
-    /// Least and greatest over the joint sample.
+    /// Minimum and maximum over the joint sample.
     pub joint: [f64; 2],
     /// 5th and 95th percentile of the joint sample.
     pub likely: [f64; 2],
-    /// Parameters that move the figure, the strongest first.
+    /// Parameters that change the figure, strongest first.
     pub effects: Vec<Effect>,
 }
 
 impl Interval {
-    /// All designs together, as they were computed: at the analytic level, whatever another level says.
+    /// Returns the bounds over all designs, as computed at the analytic level.
     #[must_use]
     pub const fn bounds(&self) -> [f64; 2] {
         let [low, high] = self.of_parameters();
         [low.min(self.readings[0]), high.max(self.readings[1])]
     }
 
-    /// What parameters do, without the readings.
+    /// Returns the bounds over all parameters, without the interpretations.
     #[must_use]
     pub const fn of_parameters(&self) -> [f64; 2] {
         [self.one_at_a_time[0].min(self.joint[0]), self.one_at_a_time[1].max(self.joint[1])]
     }
 }
 
-/// Ranges of the times per triangle within which figures 12 and 14 come out exactly.
+/// Ranges of the times per triangle within which figures 12 and 14 are reproduced exactly.
 const FITTED: [(&str, u64, (u64, u64)); 2] =
     [("slats:gp.triangle_ns", 30_000, (29_800, 30_100)), ("slats-1995:gp.triangle_ns", 55_800, (55_400, 56_300))];
 
-/// All parameters that are derived or assumed, have a range, and can move a figure at the analytic level.
+/// Returns all parameters that are derived or assumed, have a range, and can change a figure at the analytic level.
 ///
-/// The numbers of the i860 cannot: both designs are closed forms of the timing tables, in which no code runs. An interval
-/// that listed them would say of every figure that they do not matter, which at the cycle level is wrong; what they do there
-/// is contained here in the range of `gp.triangle_ns`, which the code's clocks stand for.
+/// Parameters of the i860 are left out, because the analytic level uses closed forms of the timing tables, in which
+/// no code runs. An interval over them would wrongly suggest that they never matter. At the cycle level they do
+/// matter. Here the range of `gp.triangle_ns` stands for their effect.
 #[must_use]
 pub fn variations() -> Vec<Variation> {
     let parameters = MachineConfig::small_hmd().parameters().into_iter().filter(|p| !p.path.starts_with("i860."));
@@ -115,13 +117,13 @@ pub fn variations() -> Vec<Variation> {
     of_machine.chain(fitted).collect()
 }
 
-/// A figure that a combination of parameters leaves without a value counts as not moved.
+/// Measures all figures with some changed parameters. A figure is `None` if the experiment has no value.
 fn measure(bench: &Bench, changes: Vec<(String, u64)>) -> Vec<Option<f64>> {
     let bench = Bench { changes, ..bench.clone() };
     FIGURES.iter().map(|figure| value_of(&bench, figure.id)).collect()
 }
 
-/// A figure's value; `None` for one without a closed form, and where the experiment gives none.
+/// Returns the value of a figure, or `None` if the figure has no closed form or no finite value.
 fn value_of(bench: &Bench, id: &str) -> Option<f64> {
     if WITHOUT_CLOSED_FORM.contains(&id) {
         return None;
@@ -129,18 +131,22 @@ fn value_of(bench: &Bench, id: &str) -> Option<f64> {
     Some(bench.measure(id).ok()?.value).filter(|value| value.is_finite())
 }
 
-/// Intervals of all figures, around what a bench has at the analytic level.
+/// Computes the intervals of all figures around the values of a bench at the analytic level.
 #[must_use]
 pub fn intervals(bench: &Bench) -> Vec<Interval> {
     let bench = Bench { level: Level::Analytic, ..bench.clone() }.with_mig(MIG.0, MIG.1);
     let variations = variations();
     let nominal = measure(&bench, Vec::new());
     let ends: Vec<_> = variations.iter().flat_map(|v| [(v, v.range.0), (v, v.range.1)]).collect();
+    // One at a time: both ends of every range.
     let at_ends = crate::parallel::map(&ends, |(v, value)| measure(&bench, vec![(v.path.clone(), *value)]));
     let samples: Vec<u64> = (0..SAMPLES).collect();
+    // Joint: machines with all parameters drawn at random.
     let joint = crate::parallel::map(&samples, |sample| measure(&bench, draw(&variations, *sample)));
     let neighbours = bench.reading.neighbours();
+    // Interpretations: one question answered otherwise.
     let read = crate::parallel::map(&neighbours, |reading| measure(&bench.with(*reading), Vec::new()));
+    // Collect the designs for each figure. A missing value counts as the value for the presets.
     let mut intervals = Vec::new();
     for (index, figure) in FIGURES.iter().enumerate().filter(|(_, figure)| !WITHOUT_CLOSED_FORM.contains(&figure.id)) {
         let nominal = nominal[index].unwrap_or(f64::NAN);
@@ -156,13 +162,13 @@ pub fn intervals(bench: &Bench) -> Vec<Interval> {
     intervals
 }
 
-/// Figures of a tracker and a pipeline together: their runs have events at every level.
+/// Figures of a tracker combined with a pipeline. Their experiments are simulated with events at every level.
 const WITH_A_TRACKER: [&str; 2] = ["19", "19b"];
 
-/// Parameters of the machine without a source, which figures that need events are moved by too.
+/// Parameters of the machine without a source, by which figures that need events are varied.
 const OF_EVENTS: [&str; 2] = ["renderer.fifo_words", "ring.source_channels"];
 
-/// The interval of a figure that needs events: [`OF_EVENTS`] at both ends of their ranges, one at a time.
+/// Computes the interval of a figure that needs events: [`OF_EVENTS`] at both ends of their ranges, one at a time.
 fn with_events(bench: &Bench, id: &'static str) -> Option<Interval> {
     let variations: Vec<_> = variations().into_iter().filter(|v| OF_EVENTS.contains(&v.path.as_str())).collect();
     let nominal = bench.measure(id).ok()?.value;
@@ -170,7 +176,8 @@ fn with_events(bench: &Bench, id: &'static str) -> Option<Interval> {
     Some(interval(id, nominal, &ends, vec![nominal], &variations))
 }
 
-/// A figure at both ends of each range, one at a time; an end that leaves it without a value counts as not moved.
+/// Returns a figure at both ends of each range, one parameter at a time. A setting for which the experiment has no
+/// value counts as the nominal value.
 fn ends_with_events(bench: &Bench, id: &str, variations: &[Variation], nominal: f64) -> Vec<f64> {
     let ends: Vec<_> = variations.iter().flat_map(|v| [(v, v.range.0), (v, v.range.1)]).collect();
     crate::parallel::map(&ends, |(v, value)| {
@@ -179,10 +186,11 @@ fn ends_with_events(bench: &Bench, id: &str, variations: &[Variation], nominal: 
     })
 }
 
-/// The figure that is measured from outside.
+/// Number of the figure that the pendulum rig measures.
 const OF_RIG: &str = "17";
 
-/// What the photodiode's place on the screen and other readings do to the figure that it sees, with events.
+/// Computes the interval of the rig's figure with events: effects of the photodiode's position, machine parameters
+/// and interpretations.
 fn of_rig(bench: &Bench) -> Option<Interval> {
     let value = |bench: Bench| Some(bench.measure(OF_RIG).ok()?.value);
     let of_machine = variations().into_iter().filter(|v| OF_EVENTS.contains(&v.path.as_str()));
@@ -197,14 +205,14 @@ fn of_rig(bench: &Bench) -> Option<Interval> {
     Some(interval)
 }
 
-/// The line of the screen under the photodiode: assumed.
+/// Returns the photodiode's line on the screen as a variation. Its value is assumed.
 pub(crate) fn photodiode_line() -> Option<Variation> {
     let line = crate::tracking_parameters().into_iter().find(|parameter| parameter.path == PHOTODIODE_LINE)?;
     let (value, range) = (line.value.whole()?, line.info.whole_range()?);
     Some(Variation { path: line.path, value, range, standing: line.info.standing })
 }
 
-/// What both designs say of one figure: its values at the ends of every range in turn, and in the joint sample.
+/// Combines the designs for one figure: its values at the ends of every range in turn, and in the joint sample.
 fn interval(id: &'static str, nominal: f64, ends: &[f64], mut joint: Vec<f64>, variations: &[Variation]) -> Interval {
     joint.sort_by(f64::total_cmp);
     Interval {
@@ -220,9 +228,10 @@ fn interval(id: &'static str, nominal: f64, ends: &[f64], mut joint: Vec<f64>, v
 }
 
 impl Interval {
-    /// Puts in what other readings give.
+    /// Adds the values under other interpretations.
     fn add_readings(&mut self, usual: &Reading, values: impl Iterator<Item = (Reading, f64)>) {
         let reach = |value: f64| (value / self.nominal - 1.0).abs();
+        // Interpretations without a visible effect are left out.
         let moving = values.filter(|(_, value)| reach(*value) > VISIBLE);
         let mut rules: Vec<_> = moving.map(|(reading, value)| (reading.difference(usual), value)).collect();
         rules.sort_by(|a, b| reach(b.1).total_cmp(&reach(a.1)));
@@ -231,13 +240,14 @@ impl Interval {
     }
 }
 
-/// The value below which a share of sorted values lies, 0 to 1; the nearest one of them.
+/// Returns the nearest value to the quantile `share`, 0 to 1, of sorted values.
 fn percentile(sorted: &[f64], share: f64) -> f64 {
     sorted[((sorted.len() - 1) as f64 * share).round() as usize]
 }
 
 fn draw(variations: &[Variation], sample: u64) -> Vec<(String, u64)> {
     let drawn = (0..).zip(variations).map(|(index, v)| {
+        // The hash depends on the sample and the parameter only, so samples are reproducible.
         let hash = mix(SEED ^ mix(sample * 1_000 + index));
         (v.path.clone(), v.range.0 + hash % (v.range.1 - v.range.0 + 1))
     });
@@ -266,13 +276,14 @@ fn effect(v: &Variation, ends: [f64; 2], nominal: f64) -> Effect {
 }
 
 impl Effect {
-    /// Greatest relative change of a figure, against its value at the presets.
+    /// Returns the largest relative change of a figure, compared with its value for the presets.
     fn reach(&self, nominal: f64) -> f64 {
         bounds(self.ends.iter().map(|end| (end / nominal - 1.0).abs()))[1]
     }
 }
 
-/// Puts the intervals into the rows, as they were computed; a figure without a closed form has no value at the analytic level.
+/// Copies the intervals into the rows, as computed. A figure without a closed form has no value at the analytic
+/// level.
 pub fn fill(rows: &mut [FigureRow], intervals: &[Interval]) {
     for row in rows {
         let interval = intervals.iter().find(|interval| interval.id == row.id);
@@ -287,7 +298,8 @@ mod tests {
     use super::*;
     use crate::figures::{Figure, FigureValue};
 
-    /// Figure 2, published as 31.2 ms: at the analytic level 20 to 22 ms, 21 ms with the presets' numbers.
+    /// Row of figure 2, published as 31.2 ms. The analytic level gives 20 to 22 ms, and 21 ms with the presets'
+    /// numbers.
     fn row_of_figure_2(simulated: f64) -> FigureRow {
         let figure: &Figure = FIGURES.iter().find(|figure| figure.id == "2").expect("listed");
         let interval = Interval {
@@ -316,7 +328,7 @@ mod tests {
 
     #[test]
     fn a_figure_is_out_of_reach_beyond_the_interval_widened_by_the_distance_of_the_levels() {
-        // 31.2 ms less the last printed digit, 0.312, is 8.888 above the upper bound of 22 ms.
+        // 31.2 ms minus the last printed digit, 0.312, is 8.888 above the upper bound of 22 ms.
         for (distance, out_of_reach) in [(0.0, true), (8.8, true), (-8.8, true), (8.9, false), (-8.9, false)] {
             let row = row_of_figure_2(21.0 + distance);
             assert_eq!(row.is_out_of_reach(), out_of_reach, "levels {distance} ms apart");
@@ -332,7 +344,8 @@ mod tests {
         assert!(!rows[0].is_out_of_reach());
     }
 
-    /// A field is scanned line by line: 63.56 us between two of them, 239 from the first to the last.
+    /// The beam scans a field line by line. Two lines are 63.56 us apart, and 239 line times separate the first line
+    /// from the last.
     #[test]
     fn the_figure_of_the_rig_moves_with_the_photodiode_as_the_beam_does() {
         let interval = of_rig(&Bench::new(Level::Analytic)).expect("it is measured");

@@ -1,22 +1,23 @@
-//! Questions over many experiments. The only crate with files and threads: it runs on a [`Workstation`].
+//! Tools that answer questions over many experiments. This crate alone uses files and threads of the host: it runs on
+//! a [`Workstation`].
 //!
 //! | question | module |
 //! |---|---|
-//! | what do the published figures come out as, and how sure is that | [`figures`], [`intervals`], [`pipeline_figures`] |
-//! | which reading of the papers explains them | [`readings`] |
-//! | what the host's application, of which nothing is printed, does to them | [`application_time`] |
-//! | how do the levels of modelling differ | [`levels`] |
-//! | what times of primitives follow from code | [`code_times`] |
-//! | how many triangles, how fast does cost grow | [`limit`], [`growth`] |
-//! | which way to fight latency wins | [`compare`] |
-//! | what latency does one measure from outside | [`rig`] |
-//! | what does an experiment take of this computer | [`estimate`] |
-//! | the same at many points | [`sweep`] |
-//! | which files of a folder belong together | [`manifest`] |
-//! | an experiment as text, and continued | [`ExperimentFile`], [`Plan`], [`Snapshot`] |
+//! | values of the published figures in the model, and their intervals | [`figures`], [`intervals`], [`pipeline_figures`] |
+//! | the interpretation of the papers that explains the figures | [`readings`] |
+//! | effect of the host application's time, which no paper prints | [`application_time`] |
+//! | differences between the levels of modelling | [`levels`] |
+//! | times of primitives in executed code | [`code_times`] |
+//! | largest number of triangles drawn in time, growth of the cost | [`limit`], [`growth`] |
+//! | comparison of all low-latency methods | [`compare`] |
+//! | latency measured from outside | [`rig`] |
+//! | memory and time of an experiment on this computer | [`estimate`] |
+//! | experiments at many points of a parameter space | [`sweep`] |
+//! | the files of a folder that belong to one run | [`manifest`] |
+//! | an experiment as text, and its continuation | [`ExperimentFile`], [`Plan`], [`Snapshot`] |
 //!
-//! [`registry`] lists the pipelines and displays of the papers with their closed forms; an experiment file may be read with
-//! another one.
+//! [`registry`] lists the built-in pipelines and displays with their closed forms. An experiment file may use another
+//! registry.
 
 #![warn(missing_docs)]
 
@@ -53,7 +54,7 @@ pub use suitability::{Suitability, suitability};
 use pxpl5_run::Registry;
 use std::sync::{Arc, LazyLock};
 
-/// The pipelines and displays of the papers, with the closed forms of those that have one.
+/// Returns the built-in pipelines and displays, with the closed forms of the pipelines that have one.
 #[must_use]
 pub fn registry() -> Arc<Registry> {
     static OF_PAPERS: LazyLock<Arc<Registry>> = LazyLock::new(|| {

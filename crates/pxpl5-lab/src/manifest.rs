@@ -1,7 +1,7 @@
-//! The manifest of an output folder: which files the command wrote that wrote there last.
+//! The manifest of an output folder, which lists the files of the last command that wrote there.
 //!
-//! A folder may hold files of several runs, and files of its user. The manifest tells them apart: a reader trusts only
-//! what is listed and unchanged, and the next run takes away what it does not write again.
+//! A folder may hold files of several runs and files of the user. The manifest distinguishes them. Readers trust only
+//! files that are listed and unchanged. The next run removes the listed files that it does not write again.
 
 use pxpl5_run::Fingerprint;
 use serde::{Deserialize, Serialize};
@@ -10,15 +10,15 @@ use std::io;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// Name of the manifest in its folder.
+/// Name of the manifest file in its folder.
 pub const MANIFEST_FILE: &str = "manifest.json";
 
-/// A file of a folder, and how its contents are told from others.
+/// A listed file, with a hash that identifies its contents.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ManifestEntry {
     /// Name of the file, without a folder.
     pub name: String,
-    /// [`Fingerprint`] of its contents; `None` of a file that grows, such as the rows of a sweep.
+    /// [`Fingerprint`] of the contents. `None` for a file that grows, such as the rows of a sweep.
     pub contents: Option<String>,
 }
 
@@ -29,37 +29,37 @@ pub struct Manifest {
     version: String,
     command: String,
     files: Vec<ManifestEntry>,
-    /// Files of the manifest before, which are taken away once this one stands: after a kill they may still be there.
+    /// Files of the previous manifest that are removed after this one is written. After a crash they may still exist.
     #[serde(default)]
     replaced: Vec<ManifestEntry>,
 }
 
-/// Why a file of a folder cannot be used.
+/// Error of a manifest or of a listed file.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ManifestError {
-    /// The manifest cannot be read.
+    /// A manifest that cannot be read.
     #[error("{path}: cannot be read: {reason}")]
     Io {
         /// Path of the manifest.
         path: String,
-        /// The reason that the operating system gives.
+        /// Reason that the operating system gives.
         reason: String,
     },
-    /// The file of that name is no manifest.
+    /// A file with the manifest's name that is not a manifest.
     #[error("{path}: expected a manifest of pxpl5 (schema {}), found {found}; choose another folder", Manifest::SCHEMA)]
     NoManifest {
         /// Path of the file.
         path: String,
-        /// The first thing that is wrong with it.
+        /// First error in the file.
         found: String,
     },
-    /// A listed file is gone, or has other contents.
+    /// A listed file that is missing, or has other contents.
     #[error("{path}: expected the file that {MANIFEST_FILE} lists, found {found}")]
     Changed {
         /// Path of the file.
         path: String,
-        /// What is there instead.
+        /// Description of what was found instead.
         found: &'static str,
     },
 }
@@ -69,20 +69,20 @@ impl ManifestEntry {
         Self { name: name.to_owned(), contents: Some(Fingerprint::of(bytes).to_string()) }
     }
 
-    /// Returns true if the contents are those of the entry.
+    /// Returns true if the contents match the entry.
     fn is_of(&self, bytes: &[u8]) -> bool {
         self.contents.as_ref().is_none_or(|contents| *contents == Fingerprint::of(bytes).to_string())
     }
 }
 
 impl Manifest {
-    /// Name and version of the layout.
+    /// Name and version of the JSON layout.
     pub const SCHEMA: &'static str = "pxpl5-manifest/1";
 
-    /// The word for sweeps, whose rows are the work of hours.
+    /// Command name of sweeps. Their rows may be the work of hours, so other commands never replace them.
     pub const SWEEP: &'static str = "sweep";
 
-    /// An empty manifest of a command.
+    /// Creates an empty manifest for a command.
     #[must_use]
     pub fn new(command: &str) -> Self {
         Self {
@@ -94,22 +94,22 @@ impl Manifest {
         }
     }
 
-    /// Reads the manifest of a folder; `None` where there is none.
+    /// Reads the manifest of a folder. Returns `None` if the folder has none.
     ///
     /// # Errors
     ///
-    /// [`ManifestError`] when there is a file of its name that is no manifest, or cannot be read.
+    /// Returns [`ManifestError`] if the manifest's file exists but is not a manifest, or cannot be read.
     pub fn read(folder: &Path) -> Result<Option<Self>, ManifestError> {
         let path = folder.join(MANIFEST_FILE);
         let found = path.display().to_string();
         let no_manifest = |what: String| ManifestError::NoManifest { path: found.clone(), found: what };
         match path.metadata() {
-            // Where there is no folder there is no manifest either.
+            // A missing folder has no manifest either.
             Err(error) if [io::ErrorKind::NotFound, io::ErrorKind::NotADirectory].contains(&error.kind()) => {
                 return Ok(None);
             }
             Err(error) => return Err(ManifestError::Io { path: found, reason: error.to_string() }),
-            // A pipe would be waited for.
+            // Reading a pipe would block.
             Ok(there) if !there.is_file() => return Err(no_manifest("something else than a file".to_owned())),
             Ok(_) => {}
         }
@@ -120,20 +120,20 @@ impl Manifest {
             return Err(no_manifest(format!("schema {}", manifest.schema)));
         }
         let all = manifest.files.iter().chain(&manifest.replaced);
-        // A name that leads out of the folder could take away files of others.
+        // A name that leads out of the folder could cause the removal of unrelated files.
         match all.map(|entry| &entry.name).find(|name| !is_plain(name)) {
             Some(name) => Err(no_manifest(format!("the file name {name:?}"))),
             None => Ok(Some(manifest)),
         }
     }
 
-    /// The command that wrote the files.
+    /// Returns the command that wrote the files.
     #[must_use]
     pub fn command(&self) -> &str {
         &self.command
     }
 
-    /// Names of the files, in the order in which they were written.
+    /// Returns the names of the files in the order in which they were written.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.files.iter().map(|entry| entry.name.as_str())
     }
@@ -144,7 +144,7 @@ impl Manifest {
         self.names().any(|listed| listed == name)
     }
 
-    /// Lists a file with its contents.
+    /// Lists a file with a hash of its contents.
     pub fn add(&mut self, name: &str, bytes: &[u8]) {
         self.put(ManifestEntry::of(name, bytes));
     }
@@ -154,7 +154,7 @@ impl Manifest {
         self.put(ManifestEntry { name: name.to_owned(), contents: None });
     }
 
-    /// Lists what another manifest lists.
+    /// Lists all files of another manifest.
     pub fn add_all(&mut self, other: &Self) {
         other.files.iter().for_each(|entry| self.put(entry.clone()));
     }
@@ -166,11 +166,11 @@ impl Manifest {
         }
     }
 
-    /// Reads a listed file; `None` of one that is not listed.
+    /// Reads a listed file. Returns `None` if the file is not listed.
     ///
     /// # Errors
     ///
-    /// [`ManifestError::Changed`] when it is gone, or has other contents than were written.
+    /// Returns [`ManifestError::Changed`] if the file is missing or its contents have changed.
     pub fn read_file(&self, folder: &Path, name: &str) -> Result<Option<Vec<u8>>, ManifestError> {
         let Some(entry) = self.files.iter().find(|entry| entry.name == name) else { return Ok(None) };
         let path = folder.join(name);
@@ -182,31 +182,32 @@ impl Manifest {
         if entry.is_of(&bytes) { Ok(Some(bytes)) } else { Err(changed("other contents")) }
     }
 
-    /// Takes the place of the manifest before. Returns the files that are to be taken away: those that are not written
-    /// again, and that nobody has changed since.
+    /// Replaces the previous manifest. Returns the files to remove: files that are not written again and are
+    /// unchanged since they were written.
     #[must_use]
     pub fn replace(&mut self, before: &Self, folder: &Path) -> Vec<PathBuf> {
         let gone = before.files.iter().chain(&before.replaced).filter(|entry| !self.lists(&entry.name));
+        // Files that the user has changed are kept.
         let gone: Vec<ManifestEntry> = gone.filter(|entry| is_unchanged(folder, entry)).cloned().collect();
         self.replaced = gone;
         self.replaced.iter().map(|entry| folder.join(&entry.name)).collect()
     }
 
-    /// The manifest as it is written.
+    /// Returns the text of the manifest file.
     #[must_use]
     pub fn to_text(&self) -> String {
-        // Texts and lists of texts can be written.
+        // Serialization of text and lists of text cannot fail.
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }
 }
 
-/// Returns true if the name leads to a file of the folder itself, other than the manifest.
+/// Returns true if the name is a plain file name in the folder, other than the manifest's.
 fn is_plain(name: &str) -> bool {
     let is_one_part = Path::new(name).file_name().is_some_and(|part| part == name);
     is_one_part && !name.contains(['/', '\\']) && name != MANIFEST_FILE
 }
 
-/// Returns true if a regular file with the contents of the entry is there. Of a file that grows this is not known.
+/// Returns true if the entry names a regular file with unchanged contents. Returns false for files that grow.
 fn is_unchanged(folder: &Path, entry: &ManifestEntry) -> bool {
     let path = folder.join(&entry.name);
     let is_file = path.symlink_metadata().is_ok_and(|found| found.is_file());
@@ -256,7 +257,7 @@ mod tests {
         let mut next = Manifest::new("run");
         next.add("kept", b"new");
         assert_eq!(next.replace(&before, &folder), [folder.join("gone")]);
-        // A run that was killed before it took the file away leaves that to the one behind it.
+        // A run that ended before it removed a file leaves the removal to the next run.
         let mut third = Manifest::new("run");
         assert_eq!(third.replace(&next, &folder), [folder.join("gone")], "`kept` has the old contents");
         fs::remove_dir_all(folder).expect("ours");

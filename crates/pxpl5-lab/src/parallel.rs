@@ -1,4 +1,5 @@
-//! Independent runs on all of the host's threads, with results in the order of the inputs. Runs may have runs inside them.
+//! Parallel execution of independent runs on all threads of the host. Results keep the order of the inputs. Runs may
+//! be nested.
 
 use rayon::prelude::*;
 
@@ -6,12 +7,12 @@ use rayon::prelude::*;
 ///
 /// # Panics
 ///
-/// When `run` does.
+/// Panics when `run` panics.
 pub(crate) fn map<I: Sync, O: Send>(items: &[I], run: impl Fn(&I) -> O + Sync) -> Vec<O> {
     items.par_iter().with_max_len(1).map(&run).collect()
 }
 
-/// Does both, at the same time if a thread is free.
+/// Executes both closures, in parallel if a thread is free.
 pub(crate) fn both<A: Send, B: Send>(one: impl FnOnce() -> A + Send, other: impl FnOnce() -> B + Send) -> (A, B) {
     rayon::join(one, other)
 }

@@ -1,30 +1,31 @@
-//! The papers' pipeline figures, re-drawn from simulation.
+//! The papers' pipeline figures, redrawn from simulations.
 
 use crate::experiment_file::{ExperimentFile, FileError};
 use pxpl5_run::{ExperimentError, Outcome};
 use thiserror::Error;
 
-/// A pipeline figure of a paper and the experiment that it is re-drawn from.
+/// A pipeline figure of a paper, with the experiment that redraws it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PipelineFigure {
-    /// Name of its file, without the ending.
+    /// Name of the figure's file, without the extension.
     pub name: &'static str,
-    /// Where it was published.
+    /// Paper and figure number.
     pub source: &'static str,
-    /// What it shows: the pipeline, and what to look at.
+    /// Caption: the pipeline, and the effect to look for.
     pub shows: &'static str,
-    /// The experiment, as text of an experiment file.
+    /// Text of the experiment file.
     pub experiment: &'static str,
-    /// The number of fields drawn, where it is not left to the picture.
+    /// Number of fields drawn. `None` leaves the choice to the drawing.
     pub fields: Option<u64>,
 }
 
-/// The figures. Scenes are chosen so that the stages have the published relations; the papers name none. For figure
-/// 4 the number of triangles and their time on a GP are, too: TRANSFORM, RENDER and COPY then take 15.6 ms each, as in row 5 of
-/// ACCURACY.md.
+/// The pipeline figures. The papers name no scenes, so the scenes are chosen to give the stages the published
+/// relations. Figure 4 also needs a chosen number of triangles and time per triangle. TRANSFORM, RENDER and COPY then
+/// take 15.6 ms each, as in row 5 of ACCURACY.md.
 ///
-/// Figures 3 and 4 are TR94's theory, so they are drawn by the rules of its text as rows 3 and 5 of ACCURACY.md are: a renderer whose
-/// region is finished goes on with the next (`finished = "store"`). By the default, which fits what TR94 measured, renderers wait.
+/// Figures 3 and 4 show TR94's theory. Like rows 3 and 5 of ACCURACY.md they follow the rules of its text: a renderer
+/// with a finished region continues with the next one (`finished = "store"`). By default renderers wait, which fits
+/// TR94's measurements.
 pub const PIPELINE_FIGURES: [PipelineFigure; 6] = [
     PipelineFigure {
         name: "tr94-1-rendering-control-mono",
@@ -71,30 +72,30 @@ pub const PIPELINE_FIGURES: [PipelineFigure; 6] = [
     },
 ];
 
-/// Why a figure could not be drawn.
+/// Error of a pipeline figure.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum PipelineFigureError {
-    /// Its experiment is wrong.
+    /// An invalid experiment.
     #[error(transparent)]
     File(#[from] FileError),
-    /// Its experiment gave no result.
+    /// An experiment without a result.
     #[error(transparent)]
     Experiment(#[from] ExperimentError),
 }
 
 impl PipelineFigure {
-    /// Runs its experiment.
+    /// Runs the figure's experiment.
     ///
     /// # Errors
     ///
-    /// [`PipelineFigureError`].
+    /// Returns [`PipelineFigureError`].
     pub fn run(&self) -> Result<Outcome, PipelineFigureError> {
         let plan = ExperimentFile::parse(self.experiment, self.name)?.resolve()?;
         Ok(plan.experiment(plan.load_scene()?).run()?)
     }
 
-    /// What stands above the drawing.
+    /// Returns the title above the drawing.
     #[must_use]
     pub fn title(&self) -> String {
         format!("{} ({})", self.shows, self.source)

@@ -1,13 +1,15 @@
-//! The pendulum rig in front of the emulated machine: latency measured from outside, beside the system's own time stamps.
+//! The pendulum rig in front of the emulated machine, which measures latency from outside and compares the result
+//! with the system's own time stamps.
 //!
-//! As in I3D95, the host starts a frame when it sees the pendulum's low point, frames alternate dark and light, and a D/A line
-//! goes up or down when the program starts such a frame. So frames come on demand, the pipeline is not full, and no wait for the
-//! stages of an earlier frame is in the latency. The host drives the line: SEND and EDIT belong to the rendering part. Firmware
-//! that starts frames by itself, such as Slats, switches it when it takes the pose of a frame.
+//! As in I3D95, the host starts a frame when it sees the pendulum's low point. Frames alternate between dark and
+//! light, and a D/A line changes when the program starts a frame. Frames therefore come on demand, the pipeline is
+//! not full, and the latency contains no wait for stages of an earlier frame. Under Rendering Control the host drives
+//! the line, so SEND and EDIT belong to the rendering part. Firmware that starts frames itself, such as Slats,
+//! switches the line when it samples the pose of a frame.
 //!
-//! Nothing that the oscilloscope shows comes from what the pipeline says of its pictures: the low points are the pendulum's, the
-//! light is that of the pixels that the display scans at the photodiode's place, and the D/A line is switched by the board
-//! that starts the frame. What the pipeline says is the other side.
+//! The oscilloscope's traces do not use the pipeline's own records of its pictures. The low points come from the
+//! pendulum. The light comes from the pixels that the display scans at the photodiode. The D/A line comes from the
+//! board that starts the frame. The pipeline's records give the inside measurement.
 
 use crate::Workstation;
 use core::f64::consts::FRAC_PI_2;
@@ -29,67 +31,68 @@ use tracking::time::nearest_ps;
 use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
 use tracking::{Pose, rotation};
 
-/// A measurement that is to be done.
+/// A measurement to be made with the pendulum rig.
 #[derive(Clone, Debug)]
 pub struct Rig {
-    /// Pendulum, detection and photodiodes.
+    /// Pendulum, detection of the low point, and photodiodes.
     pub rig: PendulumRig,
-    /// The tracker on the bob.
+    /// Tracker on the bob.
     pub tracker: TrackerConfig,
     /// Seed of the tracker's noise.
     pub seed: u64,
-    /// Low points to be measured, at least 2.
+    /// Number of low points to measure, at least 2.
     pub passes: usize,
 }
 
-/// Why a measurement failed.
+/// Error of a measurement.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RigRunError {
-    /// The tracker's settings are impossible.
+    /// Invalid settings of the tracker.
     #[error(transparent)]
     Tracker(#[from] HeadError),
-    /// The pipeline cannot run there.
+    /// A pipeline that cannot run on the machine.
     #[error(transparent)]
     Run(#[from] ExperimentError),
-    /// The rig saw no low point or no light.
+    /// No low point, or no light under a photodiode.
     #[error(transparent)]
     Rig(#[from] RigError),
-    /// A frame that a low point asked for was not shown complete.
+    /// A requested frame that was not shown completely.
     #[error(
         "of {expected} frames that low points asked for the pipeline says only of {found} when they were shown complete"
     )]
     NotShown {
-        /// Frames asked for.
+        /// Number of frames that low points requested.
         expected: usize,
-        /// Those shown complete, as the pipeline says.
+        /// Number of frames shown completely, by the pipeline's records.
         found: usize,
     },
-    /// Light under the photodiode means nothing for the pipeline.
+    /// A pipeline whose frames cannot be identified by light under the photodiode.
     #[error("expected a pipeline whose frames a photodiode can tell apart, found {pipeline}: {reason}; {definition}")]
     NoFrames {
         /// Name of the pipeline.
         pipeline: &'static str,
-        /// Why a step from dark to light is no frame.
+        /// Reason why a step from dark to light is not a frame.
         reason: &'static str,
-        /// The pipeline's own words on when a picture is due.
+        /// The pipeline's own definition of when a picture is due.
         definition: &'static str,
     },
-    /// The photodiode lies below the screen.
+    /// A line of the photodiode that lies below the screen.
     #[error("photodiode: expected one of the {lines} lines that are lit in a period, from 0; found {found}")]
     Photodiode {
-        /// Lines of the screen.
+        /// Number of lines of the screen.
         lines: u32,
-        /// The photodiode's.
+        /// Line of the photodiode.
         found: u32,
     },
 }
 
-/// The bob's low points fall anywhere in a field: enough that the mean wait for a retrace is known to a fifth of a field.
+/// Default number of low points. They fall anywhere in a field, and this number determines the mean wait for a
+/// retrace to a fifth of a field.
 pub const PASSES: usize = 24;
 
 impl Rig {
-    /// The rig as assumed, with a tracker.
+    /// Creates a rig with a tracker and the assumed pendulum, detection and photodiodes.
     #[must_use]
     pub fn assumed(tracker: TrackerConfig) -> Self {
         Self { rig: PendulumRig::assumed(), tracker, seed: 1, passes: PASSES }
@@ -99,12 +102,14 @@ impl Rig {
     ///
     /// # Errors
     ///
-    /// [`RigRunError`] when the pipeline cannot run there, or does not show what it is asked for.
+    /// Returns [`RigRunError`] if the pipeline cannot run on the machine, or does not show the requested frames.
     pub fn measure(&self, machine: &MachineConfig, pipeline: Arc<dyn Pipeline>) -> Result<Measurement, RigRunError> {
         let tracker = TrackerModel::new(self.tracker.clone())?;
         check_frames(machine, pipeline.as_ref())?;
+        // The pendulum determines when frames start.
         let sightings = self.rig.sightings(&tracker, self.seed, self.passes.max(2))?;
         let experiment = self.experiment(machine, pipeline, &sightings)?;
+        // Watch the screen during the run, then read the pipeline's records for the inside measurement.
         let mut photodiode = Photodiode::new(self.rig.photodiode_line);
         let outcome = photodiode.watch(&experiment)?;
         let frames = frames_asked_for(&outcome, &sightings)?;
@@ -117,18 +122,21 @@ impl Rig {
             started_ps: frame.sampled_at.unwrap_or(frame.transform_at).0,
             shown_ps: frame.shown_at.0,
         });
+        // Compare the oscilloscope's times with the pipeline's time stamps.
         let measured = self.rig.compare(&tracker, photodiode.place_ps, &oscilloscope, inside.collect())?;
         let counted = frames.iter().map(|frame| behind_the_retrace(outcome.record(), frame.shown_at)).max();
         Ok(measured.counted_in_the_scan(counted.unwrap_or_default()))
     }
 
-    /// The experiment: a head that turns away or back at every sighting, until the last frame must have been shown.
+    /// Returns the experiment. At every sighting the reported head turns away from the lamp or back. The experiment
+    /// ends after the last frame must have been shown.
     fn experiment(
         &self,
         machine: &MachineConfig,
         pipeline: Arc<dyn Pipeline>,
         sightings: &[Sighting],
     ) -> Result<Experiment, RigRunError> {
+        // Even sightings make a light frame, odd ones a dark frame.
         let reports = (0..).zip(sightings).map(|(number, sighting)| TrackerReport {
             solution: number,
             measured_ps: sighting.measured_ps,
@@ -144,13 +152,14 @@ impl Rig {
             .pixels(Pixels::Lazy)
             .host(Workstation::with_threads(1));
         let last_ps = sightings.last().map_or(0, |last| last.arrives_ps);
+        // The run ends half a period of the pendulum after the last sighting.
         let end = Time(last_ps + nearest_ps(self.rig.pendulum.period_s() / 2.0));
         let fields = experiment.build()?.record().display().period_at(end).0 + 1;
         Ok(experiment.fields(fields))
     }
 }
 
-/// Refuses pipelines whose light under a photodiode does not tell when a frame is shown.
+/// Refuses pipelines whose light under a photodiode does not show when a frame appears.
 fn check_frames(machine: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), RigRunError> {
     let refused = |reason| {
         let definition = pipeline.due_definition();
@@ -167,18 +176,18 @@ fn check_frames(machine: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), 
     Ok(())
 }
 
-/// How long after the retrace that begins its period an instant is, picoseconds.
+/// Returns the time in picoseconds between the retrace that begins a period and an instant within the period.
 fn behind_the_retrace(record: &Record, instant: Time) -> u64 {
     instant.since(record.tick(record.display().period_at(instant))).0
 }
 
-/// The pose in which the lamp is behind the viewer's shoulder: dark frames.
+/// Returns the pose with the lamp behind the viewer's shoulder, which makes dark frames.
 fn away() -> Pose {
     Pose { position: DVec3::ZERO, orientation: rotation::about_y(FRAC_PI_2) }
 }
 
-/// A white wall straight ahead (along -z) that fills the view, and nothing elsewhere; its own viewer looks away from it. Two
-/// triangles: the minimal data set.
+/// Returns a scene with a white wall straight ahead (along -z) that fills the view. The scene's own viewer looks away
+/// from the wall. Its two triangles are the minimal data set.
 fn lamp() -> Scene {
     const CORNERS: [[f32; 2]; 4] = [[-1.6, -1.6], [1.6, -1.6], [1.6, 1.6], [-1.6, 1.6]];
     let vertex = |[x, y]: [f32; 2]| Vertex { position: Vec3::new(x, y, -2.0), normal: Vec3::Z, colour: [255; 3] };
@@ -206,18 +215,18 @@ fn lamp() -> Scene {
     .expect("a quadrangle is a scene")
 }
 
-/// The photodiode on the screen, in the middle of a line: what it sees each time that the beam passes it.
+/// The photodiode on the screen, in the middle of a line, with a sample for each pass of the beam.
 struct Photodiode {
     line: u32,
-    /// From the tick of a period to the beam's passing it, the longest.
+    /// Longest time from the tick of a period to the beam's pass over the photodiode, in picoseconds.
     place_ps: u64,
-    /// When the beam passed, and whether it was light.
+    /// Time of each pass of the beam in picoseconds, and true if the pixel was light.
     samples: Vec<(u64, bool)>,
-    /// Messages that the ring had carried by the end of each period, and whether it knew of none on its way.
+    /// Number of messages that the ring had carried by the end of each period, and true if no message was on its way.
     ring: Vec<(u64, bool)>,
 }
 
-/// Mean of red, green and blue above which it is light: half of a white wall's.
+/// Minimum mean of red, green and blue for a light pixel: half the value of a white wall.
 const LIGHT: u32 = 128;
 
 impl Photodiode {
@@ -225,12 +234,13 @@ impl Photodiode {
         Self { line, place_ps: 0, samples: Vec::new(), ring: Vec::new() }
     }
 
-    /// Runs an experiment before its eye. A run in which fewer pictures are shown than pipelines need to fill is long enough here.
+    /// Runs an experiment and samples the photodiode. A run is long enough here even if it shows fewer pictures than
+    /// a pipeline needs to fill.
     fn watch(&mut self, experiment: &Experiment) -> Result<Outcome, RigRunError> {
         self.check(experiment.build()?.record().display())?;
         let every: Vec<PeriodNumber> = PeriodNumber(2).until(PeriodNumber(experiment.length())).collect();
         let result = experiment.run_stopping(&every, |period, machine| {
-            // The stop is before the retrace that ends the period before this one.
+            // The stop comes before the retrace that ends the previous period.
             if let Some(over) = period.before(2) {
                 self.look(over, machine);
             }
@@ -249,7 +259,7 @@ impl Photodiode {
         if found < lines { Ok(()) } else { Err(RigRunError::Photodiode { lines, found }) }
     }
 
-    /// Looks at a period that is over.
+    /// Samples the photodiode in a finished period.
     fn look(&mut self, period: PeriodNumber, machine: &mut Machine) {
         let record = machine.record();
         let display = record.display();
@@ -260,12 +270,14 @@ impl Photodiode {
         let Some(at) = display.lights(0, x, y, period) else { return };
         self.place_ps = self.place_ps.max(at.since(display.tick(period)).0);
         self.ring.push((record.ring().stats().messages, record.ring().is_idle()));
+        // A picture is read only if it can have changed.
         let is_light = self.unchanged().unwrap_or_else(|| brightness(display, x, y, period) >= LIGHT);
         self.samples.push((at.0, is_light));
     }
 
-    /// What it saw two periods ago, when the same line was lit, if no message has been on the ring since that period began: with an
-    /// idle machine the screen stands still. (The ring is read a period later than the screen.)
+    /// Returns the sample of two periods ago, when the same line was lit, if no message has been on the ring since
+    /// that period began. The screen of an idle machine does not change. (The ring is read one period later than the
+    /// screen.)
     fn unchanged(&self) -> Option<bool> {
         let [.., before, _, _, _, now] = self.ring[..] else { return None };
         let (_, was_light) = *self.samples.get(self.samples.len().checked_sub(2)?)?;
@@ -273,18 +285,19 @@ impl Photodiode {
     }
 }
 
-/// Mean of red, green and blue of a pixel as it was when it lit in a period; dark where nothing was shown.
+/// Returns the mean of red, green and blue of a pixel at its light in a period, or 0 if no picture was shown.
 fn brightness(display: &dyn Display, x: u32, y: u32, period: PeriodNumber) -> u32 {
     let seen = display.seen(0, period);
     seen.map_or(0, |picture| picture.get_pixel(x, y).0.iter().map(|value| u32::from(*value)).sum::<u32>() / 3)
 }
 
-/// The first complete picture of each sighting, as the pipeline says.
+/// Returns the first complete picture of each sighting, by the pipeline's records.
 fn frames_asked_for(outcome: &Outcome, sightings: &[Sighting]) -> Result<Vec<PictureTimes>, RigRunError> {
     let sampled = outcome.head().map(|head| head.sampled()).unwrap_or_default();
     let arrived_at: BTreeMap<ViewNumber, Time> =
         sampled.iter().filter_map(|s| Some((s.number, s.arrived_at?))).collect();
     let mut first: BTreeMap<u64, PictureTimes> = BTreeMap::new();
+    // The first complete picture of a sighting counts.
     for times in outcome.pictures().iter().filter(|times| times.is_shown()) {
         if let Some(arrived) = arrived_at.get(&times.view) {
             first.entry(arrived.0).or_insert(*times);
@@ -295,8 +308,8 @@ fn frames_asked_for(outcome: &Outcome, sightings: &[Sighting]) -> Result<Vec<Pic
     if found.len() == expected { Ok(found) } else { Err(RigRunError::NotShown { expected, found: found.len() }) }
 }
 
-/// When a program started a frame, by taking the pose for it: it switches the D/A line. Under Rendering Control this is the host, which
-/// begins SEND; under Slats the graphics processor, which begins a field.
+/// Returns the time at which a program sampled the pose for a frame and switched the D/A line. Under Rendering
+/// Control the host does so when SEND begins. Under Slats the graphics processor does so when a field begins.
 fn started(record: &Record, frame: &PictureTimes) -> Time {
     let marks = record.observation().marks.iter();
     let begun = marks

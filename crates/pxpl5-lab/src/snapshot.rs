@@ -1,13 +1,13 @@
-//! Save and restore at a frame boundary.
+//! Saving and restoring a run at the boundary of a field.
 //!
-//! A snapshot is a **replay snapshot**: it does not hold the state of the boards, because the programs that run on them
-//! are suspended `async` functions, whose insides cannot be written down. It holds what determines that state - the
-//! experiment, the identity of the scene, the field - and the trace hash and number of events by which the state is
-//! known again. To restore, the run is repeated without computing pixels up to that field, compared, and continued. So
-//! a restored run is the same run to the last bit, which is proved each time, and restoring takes the host as long as
-//! simulating did (thousands of fields a second for small scenes).
+//! A snapshot is a **replay snapshot**. It does not hold the state of the boards, because their programs are
+//! suspended `async` functions, whose state cannot be serialized. It holds the data that determine this state: the
+//! experiment, the identity of the scene, and the field. It also holds the trace hash and the number of events, which
+//! identify the state. To restore a snapshot, the run is repeated up to its field without computing pixels, compared,
+//! and continued. A restored run is therefore identical to the original run, which every restoration checks.
+//! Restoring takes as long as the simulation did (thousands of fields a second for small scenes).
 //!
-//! The file is JSON, with a version and a checksum; a damaged or foreign file is refused with the reason.
+//! The file is JSON with a version and a checksum. Damaged and foreign files are refused with the reason.
 
 use crate::experiment_file::{ExperimentFile, FileError, Plan};
 use pxpl5_machine::Machine;
@@ -19,99 +19,99 @@ use serde_json::Value;
 use std::sync::Arc;
 use thiserror::Error;
 
-/// What is needed to repeat a run up to a field and to know that it is the same.
+/// The data that repeat a run up to a field and verify the repeated run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Snapshot {
-    /// Name and version of the layout.
+    /// Name and version of the JSON layout.
     pub schema: String,
-    /// Version of the program that wrote it.
+    /// Version of the program that wrote the snapshot.
     pub version: String,
-    /// Preset of the machine.
+    /// Name of the machine's preset.
     pub machine: String,
-    /// Name of everything on which the trace of the whole run depends.
+    /// Hash of all settings on which the trace of the whole run depends.
     pub config_hash: String,
     /// Name of the level of modelling: `transaction` or `cycle`.
     pub level: String,
     /// Seed of the head motion.
     pub seed: u64,
-    /// The field whose first retrace is the moment of the snapshot; nothing of that field has happened.
+    /// Field whose first retrace is the instant of the snapshot. No event of this field has happened.
     pub field: PeriodNumber,
-    /// That moment in picoseconds.
+    /// Instant of the snapshot in picoseconds.
     pub time_ps: u64,
-    /// Hash of everything that happened before.
+    /// Trace hash of all events before the snapshot.
     pub trace_hash: String,
-    /// Number of events that happened before that moment.
+    /// Number of events before the snapshot.
     pub events: u64,
     /// Fingerprint of the scene's contents.
     pub scene_hash: String,
-    /// The experiment as the text of an experiment file.
+    /// Text of the experiment file.
     pub experiment: String,
 }
 
-/// Why a snapshot cannot be used.
+/// Error of a snapshot that cannot be used.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SnapshotError {
-    /// It is something else.
+    /// A file that is not a snapshot.
     #[error("{file}: this is no snapshot: {reason}")]
     Foreign {
-        /// Name of the file, as it was given.
+        /// Name of the file, as the user gave it.
         file: String,
-        /// What is wrong with its text.
+        /// Error in the text of the file.
         reason: String,
     },
-    /// Its layout is of another version.
+    /// A snapshot whose layout has another version.
     #[error("{file}: expected a snapshot of layout {expected}, found {found}; use the version of pxpl5 that wrote it")]
     Version {
-        /// Name of the file, as it was given.
+        /// Name of the file, as the user gave it.
         file: String,
-        /// The layout that is read.
+        /// Layout that this version reads.
         expected: &'static str,
-        /// The layout that the file names.
+        /// Layout that the file names.
         found: String,
     },
-    /// It was changed after it was written.
+    /// A snapshot that was changed after it was written.
     #[error("{file}: the snapshot is damaged: its checksum should be {expected}, found {found}")]
     Damaged {
-        /// Name of the file, as it was given.
+        /// Name of the file, as the user gave it.
         file: String,
-        /// The checksum that the contents have.
+        /// Checksum computed from the contents.
         expected: String,
-        /// The checksum that stands in the file.
+        /// Checksum in the file.
         found: String,
     },
-    /// The experiment in it is not understood.
+    /// A snapshot whose experiment this version cannot read.
     #[error("{file}: {error}")]
     Experiment {
-        /// Name of the file, as it was given.
+        /// Name of the file, as the user gave it.
         file: String,
-        /// What is wrong with the experiment in it.
+        /// Error of the experiment file.
         error: Box<FileError>,
     },
-    /// The run is not the one that was saved.
+    /// A repeated run that differs from the saved run.
     #[error(
         "{file}: the run is not the one that was saved (by version {version}): {what} was {expected}, now it is {found}"
     )]
     Differs {
-        /// Name of the file, as it was given.
+        /// Name of the file, as the user gave it.
         file: String,
-        /// The version that saved it.
+        /// Version of the program that saved the snapshot.
         version: String,
-        /// What differs first: a fingerprint, a hash, a number.
+        /// First value that differs: a fingerprint, a hash or a number.
         what: &'static str,
-        /// Its value when the snapshot was saved.
+        /// Value when the snapshot was saved.
         expected: String,
-        /// Its value in the run that was repeated.
+        /// Value in the repeated run.
         found: String,
     },
 }
 
 impl Snapshot {
-    /// Name and version of the layout.
+    /// Name and version of the JSON layout.
     pub const SCHEMA: &'static str = "pxpl5-snapshot/1";
 
-    /// Of a machine that stands at the first retrace of a field.
+    /// Creates a snapshot of a machine that has reached the first retrace of a field.
     #[must_use]
     pub fn of_machine(
         plan: &Plan,
@@ -136,7 +136,7 @@ impl Snapshot {
         }
     }
 
-    /// The text of its file.
+    /// Returns the text of the snapshot's file.
     #[must_use]
     pub fn to_text(&self) -> String {
         let sealed = Sealed { snapshot: self.clone(), checksum: self.checksum() };
@@ -145,15 +145,16 @@ impl Snapshot {
         text
     }
 
-    /// Reads the text of a file; `file` stands for it in errors.
+    /// Reads the text of a snapshot's file. Error messages refer to the file as `file`.
     ///
     /// # Errors
     ///
-    /// [`SnapshotError`] for anything that was not written by [`Self::to_text`].
+    /// Returns [`SnapshotError`] for any text that [`Self::to_text`] did not write.
     pub fn read(text: &str, file: &str) -> Result<Self, SnapshotError> {
         let value: Value =
             serde_json::from_str(text).map_err(|error| foreign(file, format!("not whole JSON: {error}")))?;
         let found = value.get("schema").and_then(Value::as_str).unwrap_or("none");
+        // A foreign file and another version get different errors.
         if !found.starts_with("pxpl5-snapshot/") {
             return Err(foreign(file, format!("expected schema {}, found {found}", Self::SCHEMA)));
         }
@@ -163,6 +164,7 @@ impl Snapshot {
             return Err(SnapshotError::Version { file, expected: Self::SCHEMA, found });
         }
         let sealed: Sealed = serde_json::from_value(value).map_err(|error| foreign(file, error.to_string()))?;
+        // The checksum detects every later change.
         let expected = sealed.snapshot.checksum();
         if sealed.checksum != expected {
             return Err(SnapshotError::Damaged { file: file.to_owned(), expected, found: sealed.checksum });
@@ -174,20 +176,20 @@ impl Snapshot {
         Fingerprint::of(serde_json::to_string(self).unwrap_or_default().as_bytes()).to_string()
     }
 
-    /// The experiment that was saved.
+    /// Returns the saved experiment.
     ///
     /// # Errors
     ///
-    /// [`SnapshotError::Experiment`] when this version does not understand it.
+    /// Returns [`SnapshotError::Experiment`] if this version cannot read the experiment.
     pub fn experiment(&self, file: &str) -> Result<ExperimentFile, SnapshotError> {
         self.experiment_with(crate::registry(), file)
     }
 
-    /// The experiment that was saved, with the pipelines and displays of a registry.
+    /// Returns the saved experiment, with the pipelines and displays of a registry.
     ///
     /// # Errors
     ///
-    /// As [`Self::experiment`].
+    /// Fails in the same cases as [`Self::experiment`].
     pub fn experiment_with(&self, registry: Arc<Registry>, file: &str) -> Result<ExperimentFile, SnapshotError> {
         let text = format!("{file}: experiment");
         ExperimentFile::with(registry)
@@ -195,20 +197,20 @@ impl Snapshot {
             .map_err(|error| SnapshotError::Experiment { file: file.to_owned(), error: Box::new(error) })
     }
 
-    /// Compares the scene with the one that was saved.
+    /// Compares the scene with the saved one.
     ///
     /// # Errors
     ///
-    /// [`SnapshotError::Differs`].
+    /// Returns [`SnapshotError::Differs`] if the scenes differ.
     pub fn check_scene(&self, scene: &Scene, file: &str) -> Result<(), SnapshotError> {
         self.same("the scene's fingerprint", &self.scene_hash, Fingerprint::of_scene(scene).to_string(), file)
     }
 
-    /// Compares a machine, repeated up to the field, with the one that was saved.
+    /// Compares a machine, after the repeated run has reached the field, with the saved one.
     ///
     /// # Errors
     ///
-    /// [`SnapshotError::Differs`].
+    /// Returns [`SnapshotError::Differs`] if the machines differ.
     pub fn check_machine(&self, machine: &Machine, file: &str) -> Result<(), SnapshotError> {
         self.same("the trace hash", &self.trace_hash, machine.record().trace_hash().to_string(), file)?;
         self.same("the number of events", &self.events.to_string(), machine.events().to_string(), file)
@@ -229,7 +231,7 @@ fn foreign(file: &str, reason: String) -> SnapshotError {
     SnapshotError::Foreign { file: file.to_owned(), reason }
 }
 
-/// As it is written.
+/// A snapshot with its checksum, as written to the file.
 #[derive(Serialize, Deserialize)]
 struct Sealed {
     #[serde(flatten)]
@@ -243,7 +245,7 @@ mod tests {
     use pxpl5_measure::Measured;
     use pxpl5_run::Pixels;
 
-    /// The run, its snapshot at field 9, and its trace hash at the end.
+    /// Returns the plan, its snapshot at field 9, and its trace hash at the end.
     fn saved() -> (Plan, Snapshot, String) {
         let text = "pipeline = \"rendering-control\"\nscene = \"mig\"\ntriangles = 40\nfields = 24\nseed = 5\n";
         let plan = ExperimentFile::parse(text, "test").and_then(|file| file.resolve()).expect("an experiment");

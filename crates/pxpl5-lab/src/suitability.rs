@@ -1,4 +1,4 @@
-//! Which pipelines a machine can run.
+//! Tests of the pipelines that a machine can run.
 
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, ExperimentError, Pause, PipelineEntry, PipelineSettings, Pixels, Registry};
@@ -7,20 +7,20 @@ use pxpl5_sim::Time;
 use serde::Serialize;
 use std::sync::Arc;
 
-/// Whether a pipeline runs on a machine.
+/// Result of the test of one pipeline on a machine.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Suitability {
-    /// Name of the pipeline that was tried.
+    /// Name of the tested pipeline.
     pub pipeline: &'static str,
-    /// What the machine lacks; nothing where the pipeline runs.
+    /// Reason why the machine cannot run the pipeline. `None` if the pipeline runs.
     pub lacks: Option<String>,
 }
 
-/// Tries every pipeline of a registry on a machine with one triangle: it is loaded, and all its programs begin.
+/// Tests every pipeline of a registry on a machine: a scene of one triangle is loaded, and all programs start.
 ///
 /// # Panics
 ///
-/// Never: the scene is built in.
+/// Never panics, because the scene is built in.
 #[must_use]
 pub fn suitability(registry: &Registry, config: &MachineConfig) -> Vec<Suitability> {
     let scene = Arc::new(builtin("full-screen:1").expect("built in"));
@@ -31,7 +31,8 @@ pub fn suitability(registry: &Registry, config: &MachineConfig) -> Vec<Suitabili
     registry.pipelines().iter().map(tried).collect()
 }
 
-/// Programs reserve their memory before they first wait, so what a machine lacks shows within this time of its start.
+/// Time from the start by which a missing resource has caused an error. Programs reserve their memory before they
+/// first wait.
 const BEGIN: Time = Time(1_000_000);
 
 fn begins(
@@ -43,7 +44,7 @@ fn begins(
     let experiment = on_machine(registry, entry, config, scene);
     let mut stepper = experiment.stepper()?;
     match stepper.run_to(BEGIN) {
-        // The rest of the field says why in the words of a whole run.
+        // Finishing the run gives the same error message as a whole run.
         Pause::Failed(_) => stepper.finish().map(|_| ()),
         _ => Ok(()),
     }
@@ -73,7 +74,8 @@ mod tests {
         }
     }
 
-    /// A whole field finds nothing else: on machines that have all, that lack boards, and whose memory is too small for the programs.
+    /// A whole field finds no further reasons. The machines have all resources, or lack boards, or have too little
+    /// memory for the programs.
     #[test]
     fn the_begin_of_a_run_says_what_a_whole_field_says() {
         let small = |n_gps, n_renderers, memory_bytes| {
@@ -95,7 +97,7 @@ mod tests {
         for machine in machines {
             for (entry, begun) in registry.pipelines().iter().zip(suitability(&registry, &machine)) {
                 let of_field = match on_machine(&registry, entry, &machine, &scene).run() {
-                    // One field shows no picture behind the warm-up, whatever the machine.
+                    // One field shows no picture after the warm-up on any machine.
                     Ok(_) | Err(ExperimentError::TooShort { .. }) => None,
                     Err(error) => Some(error.to_string()),
                 };
@@ -108,7 +110,7 @@ mod tests {
 
     #[test]
     fn a_machine_says_what_it_lacks() {
-        // Rendering Control has a master and at least one slave; Slats binds 20 regions, four to a renderer.
+        // Rendering Control needs a master and at least one slave. Slats binds 20 regions, four to a renderer.
         let few = MachineConfig { n_gps: 1, n_renderers: 4, ..MachineConfig::small_hmd() };
         let lacking = lacking(&few);
         assert!(lacking.contains(&"rendering-control") && lacking.contains(&"slats"), "{lacking:?}");

@@ -1,4 +1,4 @@
-//! The timing table's constants that follow from code, held to the code.
+//! Tests that the timing table's constants equal the times of the executed code.
 
 use pxpl5_gp::{CodeVersion, GpTiming};
 use pxpl5_lab::code_times::{CodeTimes, code_times};
@@ -12,7 +12,7 @@ fn table(times: CodeTimes) -> Vec<u64> {
     all.map(|ns| ns.round() as u64).collect()
 }
 
-/// The constants change when the code or the i860 changes; the message says what they become.
+/// The constants change with the code and the i860 model. The failure message states the new values.
 #[test]
 fn the_table_of_the_code_is_what_the_code_takes() {
     let papers = GpTiming::PAPERS;

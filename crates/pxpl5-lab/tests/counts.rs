@@ -1,11 +1,12 @@
-//! What is counted, of every pipeline: each picture due ends in one way, rates are the load's and not the run's, and a pipeline
-//! that breaks at a load stays broken above it.
+//! Tests of counts for every pipeline. Each due picture ends in exactly one way, and rates depend on the load and not
+//! on the length of the run. A pipeline that fails at a load fails at every higher load.
 
 use pxpl5_lab::{ExperimentFile, registry};
 use pxpl5_measure::{ErrorCauses, Measured, Report, Showing};
 use pxpl5_run::{DuePictures, ExperimentError, Outcome, WARM_UP_PERIODS};
 
-/// A pipeline with so many triangles of the whole screen. Strips of eight lines where there are strips: an eighth of the events.
+/// Runs a pipeline with a number of triangles that cover the screen. Strips have eight lines, which needs an eighth
+/// of the events.
 fn run(pipeline: &str, triangles: u32, fields: u64) -> Result<Outcome, ExperimentError> {
     let strips = if pipeline.starts_with("jitp") { "strip_rows = 8\n" } else { "" };
     let text = format!(
@@ -15,7 +16,7 @@ fn run(pipeline: &str, triangles: u32, fields: u64) -> Result<Outcome, Experimen
     plan.experiment(plan.load_scene().expect("built in")).run()
 }
 
-/// What was due of a run, too short or not.
+/// Returns the counts of due pictures of a run, even if the run is too short.
 fn due(pipeline: &str, triangles: u32, fields: u64) -> Option<DuePictures> {
     match run(pipeline, triangles, fields) {
         Ok(outcome) => outcome.due(),
@@ -28,12 +29,13 @@ fn pipelines() -> Vec<&'static str> {
     registry().pipelines().iter().map(|entry| entry.name).collect()
 }
 
-/// From light to far beyond what any pipeline of the papers draws in time.
+/// Numbers of triangles from a light load to far more than any pipeline of the papers draws in time.
 const LOADS: [u32; 9] = [1, 4, 16, 64, 110, 150, 400, 1_000, 3_000];
 
-/// Slats sends clumps of 30: a clump that is nearly empty costs as many messages as a full one, so a few triangles more may be
-/// one field less late. Of the loads here none is so near its limit; what is left is that of two runs whose windows begin in
-/// different periods, one picture each.
+/// Allowed difference of the shares of late pictures between two loads. Slats sends clumps of 30 triangles, and a
+/// nearly empty clump costs as many messages as a full one. A few triangles more may therefore be late in one field
+/// less. None of the loads is close to such a limit. The tolerance is one picture for each run, because the windows
+/// of two runs may begin in different periods.
 fn tolerance(a: &DuePictures, b: &DuePictures) -> f64 {
     1.0 / a.due as f64 + 1.0 / b.due as f64
 }
@@ -114,7 +116,7 @@ fn where_nothing_was_complete_in_time_there_is_no_latency_no_update_and_no_error
             assert_eq!(report.pointer(path), Some(&0.into()), "{pipeline}: {path}");
         }
         assert!(report["too_heavy"]["advice"].is_string() && report["ends_complete"] == false, "{pipeline}");
-        // Of the aircraft no line comes at all; regions of Slats come late.
+        // With the aircraft, no line of just-in-time pixels arrives in time, and regions of Slats arrive late.
         let unjudged = ["incomplete", "empty"].map(|key| report["head"]["error"][key].as_u64().expect("a number"));
         assert!(unjudged.iter().sum::<u64>() > 0, "{pipeline}");
     }
@@ -127,8 +129,8 @@ fn a_pipeline_without_a_closed_form_says_how_its_limit_is_found() {
     assert!(heavy.advice.contains("pxpl5 limit --pipeline jitp-field"), "{heavy}");
 }
 
-/// Three processors cannot draw 500 triangles in a field; the picture of start-up stays on the screen, and is not evaluated however long the
-/// run is.
+/// Three processors cannot draw 500 triangles in a field. The picture of the start stays on the screen and is not
+/// evaluated, for any length of the run.
 #[test]
 fn a_picture_of_start_up_that_stays_on_the_screen_has_no_error() {
     for fields in [30, 120] {
@@ -148,7 +150,7 @@ fn a_picture_of_start_up_that_stays_on_the_screen_has_no_error() {
     }
 }
 
-/// The only complete fields are those of start-up.
+/// The only complete fields are those of the start.
 #[test]
 fn a_run_all_of_whose_due_pictures_failed_has_no_latency() {
     let text =

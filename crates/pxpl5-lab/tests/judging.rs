@@ -1,4 +1,5 @@
-//! Pixel errors are judged where the content lies, at the moment when it lights, objects that move included.
+//! Tests that pixel errors are evaluated at the depth of the content and at the instant of its light, for moving
+//! objects too.
 
 use glam::{DVec2, Vec3};
 use pxpl5_machine::MachineConfig;
@@ -13,7 +14,7 @@ use tracking::motion::{End, Motion, Recording, Slide, Still};
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
 
-/// Focal length of 640 pixels over 60 degrees.
+/// Focal length in pixels for 640 pixels over 60 degrees.
 const FOCAL_PX: f64 = 554.256_258_422_040_8;
 /// A field that is well past the start.
 const FIELD: PeriodNumber = PeriodNumber(40);
@@ -27,7 +28,7 @@ fn run(scene: Scene, head: Head) -> Result<Outcome, ExperimentError> {
     experiment.head(head).fields(FIELD.0 + 2).pixels(Pixels::Off).run()
 }
 
-/// The view whose picture a field shows, and when a pixel of it lights.
+/// Returns the view whose picture a field shows, and the time at which a pixel of the picture lights.
 fn view_of_field(outcome: &Outcome, (x, y): (u32, u32)) -> (Sampled, Time) {
     let display = outcome.record().display();
     let in_field = outcome.pictures().iter().find(|times| display.period_at(times.shown_at) == FIELD);
@@ -46,7 +47,7 @@ fn offset_px(outcome: &Outcome, (x, y): (u32, u32)) -> DVec2 {
 fn a_translation_is_off_by_focal_length_times_way_over_distance() {
     const SPEED: f64 = 0.5;
     let room = || pxpl5_scene::builtin("room").expect("built in");
-    // The wall ahead is 2 m away; else what was said.
+    // The wall ahead is 2 m away. `head.judge_at` overrides this distance.
     for (judged_at, distance_m) in [(None, 2.0), (Some(5.0), 5.0), (Some(0.5), 0.5)] {
         let head = head(Slide::right_at(SPEED));
         let head = judged_at.map_or_else(|| head.clone(), |metres| head.clone().judged_at(metres).expect("in range"));
@@ -62,7 +63,7 @@ fn a_translation_is_off_by_focal_length_times_way_over_distance() {
     }
 }
 
-/// A wheel of 2 m before the viewer that swings about the axis of view.
+/// Returns a scene with a wheel 2 m in front of the viewer, which swings about the axis of view.
 fn wheel(hinge: Hinge) -> Scene {
     let corner = |x: f32, y: f32| Vertex { position: Vec3::new(x, y, -2.0), normal: Vec3::Z, colour: [255; 3] };
     let motion = HeadMotion::new(HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z }, Sway::none());
@@ -89,7 +90,7 @@ fn wheel(hinge: Hinge) -> Scene {
 
 #[test]
 fn an_object_that_turns_under_a_still_head_is_off_by_the_chord_of_its_turn() {
-    // At the field that is judged the swing is near its middle, where it turns fastest: 30 degrees x 2 pi x 0.5 Hz.
+    // At the evaluated field the swing is near its middle, where its rate is highest: 30 degrees x 2 pi x 0.5 Hz.
     let hinge = Hinge {
         point: Vec3::ZERO,
         axis: Vec3::Z,
@@ -134,7 +135,7 @@ fn a_recording_that_is_shorter_than_the_run_is_refused_and_held_on_request() {
         looped.experiment().config_hash(),
         "what comes after the end belongs to the experiment"
     );
-    // Held, the head stands still at the end of the run; in a loop it goes on.
+    // With `hold`, the head stands still at the end of the run. With `loop`, the head moves on.
     assert!(held.report().head.expect("a head").error.by_field.last().expect("judged").mean_px < 1e-9);
     assert!(looped.report().head.expect("a head").error.by_field.last().expect("judged").mean_px > 0.1);
 }

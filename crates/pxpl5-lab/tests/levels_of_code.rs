@@ -1,13 +1,14 @@
-//! With the times of the code in its table, the transaction level says what the cycle level does.
+//! Tests that the transaction level agrees with the cycle level if its table holds the times of executed code.
 
 use pxpl5_lab::figures::Bench;
 use pxpl5_lab::levels::deviation_percent;
 use pxpl5_run::Level;
 
-/// The figures that the times of primitives move, application scenes with culled structures and limits of Slats among them.
+/// Figures that depend on the times of primitives, including application scenes with culled structures and limits of
+/// Slats.
 const MOVED: [&str; 6] = ["4", "7", "7b", "12", "14", "15"];
 
-/// At most so far apart, percent: the goal of the table.
+/// Maximum difference between the levels in percent: the goal of the table.
 const MOST_PERCENT: f64 = 5.0;
 
 #[test]

@@ -1,6 +1,7 @@
-//! Limits by simulation, and what the analytic level says of them on machines that nobody built.
+//! Tests of limits found by simulation, and of the analytic level's predictions for random machines.
 //!
-//! Each case follows from a number, so that a failure names it; `PXPL5_FUZZ=10` tries ten times as many, `PXPL5_FUZZ_FROM` begins elsewhere.
+//! Each case follows from a number, so that a failure names it. `PXPL5_FUZZ=10` runs ten times as many cases, and
+//! `PXPL5_FUZZ_FROM` starts at another number.
 
 use pxpl5_lab::ExperimentFile;
 use pxpl5_lab::levels::summarise;
@@ -8,7 +9,7 @@ use pxpl5_lab::limit::{LimitQuery, test_scene};
 use pxpl5_run::{Experiment, Level, TestScene};
 use std::sync::Arc;
 
-/// SplitMix64: a stream of numbers that follows from its begin.
+/// SplitMix64, a pseudo-random number generator.
 struct Dice(u64);
 
 impl Dice {
@@ -42,7 +43,7 @@ fn query(settings: &[String], scene: TestScene) -> LimitQuery {
     query
 }
 
-/// A machine with Slats whose numbers lie in the ranges of their sources.
+/// Returns the settings of a Slats machine with random parameters within the ranges of their sources.
 fn machine(round: u64) -> (Vec<String>, TestScene) {
     let mut dice = Dice(round << 8 | 7);
     let mut settings = vec!["pipeline=slats".to_owned(), "scene=mig".to_owned()];
@@ -53,7 +54,8 @@ fn machine(round: u64) -> (Vec<String>, TestScene) {
     settings.push(format!("binning={}", dice.of(&["all", "touched"])));
     settings.push(format!("code={}", dice.of(&["1994", "1995", "optimised"])));
     settings.push(format!("machine.ring.source_channels={}", dice.between(1, 2)));
-    // Of eight channels split copies need two while messages go out: beyond that the analytic level refuses.
+    // Split copies need two of the eight channels while messages go out. The analytic level refuses machines without
+    // two free channels.
     let most_channels = if copy == "split" { 6 } else { 7 };
     settings.push(format!("machine.ring.fifo_channels={}", dice.between(5, most_channels)));
     settings.push(format!("machine.renderer.fifo_words={}", dice.between(400, 512)));
@@ -61,13 +63,13 @@ fn machine(round: u64) -> (Vec<String>, TestScene) {
     (settings, dice.of(&TestScene::ALL))
 }
 
-/// Greatest differences that the analytic level's documents promise: in triangles, percent or a few; and where time hardly grows with
-/// triangles, in milliseconds of a field, 1 % of it.
+/// Largest differences that the documents of the analytic level allow: in percent or a few triangles. If time hardly
+/// grows with the number of triangles, the bound is in milliseconds: 1 % of a field.
 const BOUND_PERCENT: f64 = 5.0;
 const BOUND_TRIANGLES: u32 = 3;
 const BOUND_MS: f64 = 0.167;
 
-/// When the copies of a field begin at the analytic level, milliseconds behind its retrace.
+/// Returns the time at which the copies of a field begin at the analytic level, in milliseconds after the retrace.
 fn copies_begin_ms(query: &LimitQuery, triangles: u32) -> f64 {
     let scene = test_scene(query.criterion.scene, triangles);
     let experiment = Experiment::with(query.config.clone(), Arc::clone(&query.pipeline), Arc::new(scene));
@@ -86,7 +88,7 @@ fn the_analytic_limit_of_slats_is_the_simulated_one_within_its_bound() {
         let analytic = LimitQuery { level: Level::Analytic, ..simulated.clone() };
         let [found, expected] = [&analytic, &simulated].map(|query| query.search().expect("it runs").triangles);
         let percent = 100.0 * (f64::from(found) / f64::from(expected.max(1)) - 1.0);
-        // Between the two limits the analytic level must be at the brink all the time.
+        // Between the two limits the analytic level must stay within the bound of missing the goal.
         let [at_found, at_expected] = [found + 1, expected + 1].map(|size| copies_begin_ms(&analytic, size));
         let apart_ms = (at_found - at_expected).abs();
         let told =
@@ -109,7 +111,7 @@ fn what_the_analytic_level_does_not_model_is_refused() {
             .reached(30)
             .map_err(|error| error.to_string())
     };
-    // One GP sends on two channels, whatever renderers could take.
+    // One GP sends on two channels, even if renderers could receive on more.
     assert_eq!([of(1, 7), of(25, 6)], [Ok(true), Ok(true)]);
     let error = of(25, 7).expect_err("seven and two are more than eight");
     assert!(error.contains("ring.channels: expected at least 9, found 8"), "{error}");
@@ -124,7 +126,8 @@ fn boards(gps: u32, renderers: u32) -> Vec<String> {
     ]
 }
 
-/// 34 GPs share six channels to 20 renderers: the analytic level said 1,299 where 850 are drawn.
+/// 34 GPs share six channels to 20 renderers. An earlier version of the analytic level gave 1,299 triangles, but 850
+/// are drawn.
 #[test]
 fn many_senders_are_limited_by_the_channels_that_they_share() {
     let simulated = query(&boards(34, 20), TestScene::Typical);
@@ -134,8 +137,8 @@ fn many_senders_are_limited_by_the_channels_that_they_share() {
     assert!((analytic / simulated - 1.0).abs() < BOUND_PERCENT / 100.0, "{analytic} for {simulated}");
 }
 
-/// On 13 GPs and 20 renderers 795 triangles are in time and 796 are not. (807 were an island until bottom regions waited for an
-/// acknowledgement of the top ones; src/limit/search.rs has the property tests of islands.)
+/// On 13 GPs and 20 renderers 795 triangles are in time and 796 are not. (807 were an island until bottom regions
+/// waited for an acknowledgement of the top regions. src/limit/search.rs has the property tests of islands.)
 #[test]
 fn the_answer_is_the_size_below_the_first_miss() {
     let query = query(&boards(13, 20), TestScene::Typical);
@@ -145,7 +148,7 @@ fn the_answer_is_the_size_below_the_first_miss() {
     assert_eq!((found.triangles, found.first_miss, found.island), (795, Some(796), None));
 }
 
-/// Every size up to the answer is tried; the search must have found the least that misses.
+/// The test tries every size up to the result. The search must have found the smallest size that misses.
 #[test]
 fn the_first_miss_is_the_least_size_that_misses() {
     for (gps, renderers, copy) in [(1, 5, "split"), (3, 9, "whole")] {

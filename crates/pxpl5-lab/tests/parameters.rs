@@ -1,4 +1,4 @@
-//! Every number that is listed can be set: by its path, within its limits, and to an effect.
+//! Tests that every listed parameter can be set by its path, within its limits, and has an effect.
 
 use parameters::Value;
 use pxpl5_lab::{ExperimentFile, Plan, tracking_parameters};
@@ -46,7 +46,7 @@ fn every_number_of_the_machine_set_to_its_own_value_is_the_same_machine() {
 fn every_number_of_an_experiment_set_to_its_own_value_is_the_same_experiment() {
     for tracker in TRACKERS {
         let tracker = format!("head.tracker={tracker}");
-        // A number of the filter that is set is given, and not tuned.
+        // A parameter of the filter that is set is used as given and is not tuned.
         let head = ["head.motion=pan:40", &tracker, "head.filter=given"];
         let plain = plan(&head);
         for Parameter { path, value, .. } in plain.parameters().into_iter().filter(|parameter| !parameter.read_only) {
@@ -79,7 +79,7 @@ fn every_table_of_the_i860_is_listed_and_its_last_part_is_the_numbers_name() {
     assert!(error.contains("did you mean `i860.dram.page_bytes`"), "{error}");
 }
 
-/// The trace of a run at the cycle level, and what all its TRANSFORMs took together, ms.
+/// Returns the trace hash of a run at the cycle level, and the sum of all its TRANSFORM times in ms.
 fn traced(settings: &[&str]) -> (String, f64) {
     let plan = plan(&[&["level=cycle"], settings].concat());
     let experiment = plan.experiment(plan.load_scene().expect("built in")).pixels(Pixels::Off);
@@ -90,8 +90,8 @@ fn traced(settings: &[&str]) -> (String, f64) {
     (outcome.report().trace_hash, total_ms)
 }
 
-/// The memory's clocks hold up the code that reads it: with every access ten times as slow, TRANSFORM is slower, and nothing
-/// that does not run code is asked for them.
+/// Slower memory slows the code that reads it. With ten times the time for every access, TRANSFORM is slower. Runs
+/// without executed code do not depend on these parameters.
 #[test]
 fn a_slower_memory_makes_a_run_of_code_slower() {
     let (hash_of_papers, papers_ms) = traced(&[]);
@@ -104,7 +104,7 @@ fn a_slower_memory_makes_a_run_of_code_slower() {
     assert_eq!(plan(&slow).machine.overrides().len(), 2);
 }
 
-/// The clocks are those of the configuration whether blocks of code are remembered or counted each time.
+/// The configured clocks apply both to remembered blocks of code and to blocks that are counted each time.
 #[test]
 fn what_is_memoised_has_the_clocks_of_the_same_memory() {
     let plan = plan(&["level=cycle", "i860.dram.first_hit=80", "i860.freezes.load_use=3"]);
@@ -113,8 +113,8 @@ fn what_is_memoised_has_the_clocks_of_the_same_memory() {
     assert_eq!(experiment.run().expect("it is small").report().trace_hash, counted.report().trace_hash);
 }
 
-/// Mean time from head to light in ms: an optical tracker that reports a thousand times a second, so that the age of a report
-/// when the host looks at it is that of the tracker to a millisecond.
+/// Returns the mean time from head to light in ms. The optical tracker reports a thousand times a second, so the age
+/// of a report at the host equals the tracker's latency to a millisecond.
 fn head_to_light_ms(latency_ms: u64) -> f64 {
     let latency = format!("tracking.optical.latency={latency_ms}");
     let plan = plan(&["head.motion=pan:40", "head.predict=none", "tracking.optical.rate=1000", "fields=60", &latency]);
@@ -128,7 +128,7 @@ fn a_tracker_that_is_later_makes_head_to_light_longer_by_as_much() {
     assert!((longer - 30.0).abs() < 1.0, "{longer} ms for 30 ms");
 }
 
-/// Mean time from head to the arrival of a report, ms.
+/// Returns the mean time from the head's pose to the arrival of its report, in ms.
 fn tracking_ms(settings: &[&str]) -> f64 {
     let head = ["head.motion=pan:40", "head.predict=none", "fields=240"];
     let plan = plan(&[&head[..], settings].concat());
@@ -136,7 +136,8 @@ fn tracking_ms(settings: &[&str]) -> f64 {
     outcome.report().head.expect("a head").end_to_end.tracking_ms
 }
 
-/// Reports wait half of a poll in the mean; the newest of those that one poll finds waits for less.
+/// Reports wait for half a polling period on average. The newest of several reports that one poll finds waits for
+/// less.
 #[test]
 fn the_kernels_poll_delays_the_fastrak_too() {
     let patched = tracking_ms(&["head.tracker=fastrak"]);

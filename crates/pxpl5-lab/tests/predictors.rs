@@ -1,4 +1,5 @@
-//! Every predictor on one experiment, tuned for its pipeline: none is made worse by noise than no prediction on a still head.
+//! Tests every predictor on one experiment, tuned for its pipeline. For a still head, no predictor increases the
+//! error due to noise beyond the error without prediction.
 
 use pxpl5_lab::compare::{Predictors, predictors};
 use pxpl5_lab::{ExperimentFile, registry};
@@ -52,8 +53,8 @@ fn on_a_still_head_a_tuned_filter_costs_nothing_against_no_prediction() {
         shown(name, &all);
         let none = mean(&all, PredictorKind::None);
         let kalman = mean(&all, PredictorKind::Kalman);
-        // Each picture shows one report, and reports come 60 times a second: so many independent errors of no prediction, whose
-        // lengths deviate by at most their mean.
+        // Each picture shows one report, and 60 independent reports come each second. The lengths of their errors
+        // without prediction deviate by at most their mean.
         let independent =
             all.of(PredictorKind::None).and_then(|one| one.error.as_ref()).expect("judged").by_field.len() / 2;
         let tolerance = 3.0 / (independent as f64).sqrt();
@@ -71,12 +72,13 @@ fn the_report_says_for_what_a_filter_was_tuned_and_the_interval_is_the_pipelines
     let training = head.training.expect("tuned");
     let interval_ms = training.interval_ps as f64 * 1e-9;
     println!("interval {interval_ms} ms, budget {:?}", head.end_to_end);
-    // A frame is seen for two fields and drawn for the middle of both: half a field after the light of its picture's middle.
+    // A frame is seen for two fields and drawn for the middle of both: half a field after the light of its picture's
+    // middle.
     let expected_ms = head.end_to_end.total_ms + 1001.0 / 60.0 / 2.0;
     assert!((interval_ms - expected_ms).abs() <= 1.0, "{interval_ms} {expected_ms}");
     assert_ne!(training.seed, 1, "not on the noise that is judged");
     assert_eq!(head.prediction.kind, PredictorKind::Kalman);
-    // What was asked for is what names the experiment; what ran has a name of its own.
+    // The requested predictor determines the experiment's hash. The tuned predictor has a hash of its own.
     let asked = outcome.experiment().tracked_head().expect("asked for").fingerprint().to_string();
     assert_ne!(head.fingerprint, asked);
 }
@@ -99,6 +101,6 @@ fn numbers_that_are_given_are_not_tuned() {
     assert_eq!(ran("head.filter = \"given\"\n").training, None);
     assert!(ran("head.filter = \"tuned\"\n").training.is_some());
     assert!(ran("").training.is_some());
-    // What a run writes says both: the numbers that it began with, and that they are tuned.
+    // The output of a run states both the initial parameters and that they were tuned.
     assert!(ran("head.filter = \"tuned\"\ntracking.filter.position_jerk = 1.0\n").training.is_some());
 }

@@ -1,4 +1,5 @@
-//! Pictures due: they are counted in the display's own periods, in a stated window, and a run that shows nothing says so.
+//! Tests of due pictures. They are counted in the display's own periods and in a stated window. A run that shows no
+//! picture reports so.
 
 use pxpl5_lab::{ExperimentFile, registry};
 use pxpl5_machine::MachineConfig;
@@ -19,7 +20,7 @@ fn with_frame_lines(lines: u64) -> Report {
 
 #[test]
 fn on_a_display_of_625_or_1051_lines_rendering_control_misses_no_retrace_either() {
-    // A field of 625 lines takes 19.9 ms, one of 1051 lines 33.4 ms; COPY of both eyes takes 31.2 ms on each.
+    // A field of 625 lines takes 19.9 ms, and one of 1051 lines 33.4 ms. COPY of both eyes takes 31.2 ms on each.
     for (lines, fields_of_two_copies) in [(525, 2), (625, 2), (1_051, 1)] {
         let due = with_frame_lines(lines).due.expect("frames are due");
         assert_eq!(due.periods_a_picture, fields_of_two_copies, "{lines} lines");
@@ -28,8 +29,8 @@ fn on_a_display_of_625_or_1051_lines_rendering_control_misses_no_retrace_either(
     }
 }
 
-/// A machine on which a triangle of the whole screen takes two fields of each renderer, so that a frame of 12 triangles
-/// and two eyes takes about 200: 20 regions over 5 renderers, each 12 times.
+/// Returns a machine on which a triangle that covers the screen takes two fields of each renderer. A frame of 12
+/// triangles for two eyes takes about 200 fields: 20 regions over 5 renderers, each 12 times.
 fn slow() -> MachineConfig {
     let mut config = MachineConfig::small_hmd();
     let clocks = config.renderer.clock_hz / 30;
@@ -62,10 +63,10 @@ fn a_run_in_which_nothing_was_shown_keeps_what_it_saw_and_says_how_long_it_must_
     );
     let report = outcome.report();
     assert_eq!((report.shown, report.updates_hz), (0, None));
-    // The first 8 of 60 fields are the warm-up; two fields a frame.
+    // The first 8 of 60 fields are the warm-up. A frame takes two fields.
     let due = report.due.expect("frames are due");
     assert_eq!((due.due, due.missed, report.missed_retraces), (26, 26, Some(26)));
-    // The closed form follows the events closely: with a fifth more there is something to see.
+    // The closed form follows the simulation closely. A run that is a fifth longer shows pictures.
     plan.fields = needed + needed / 5;
     let longer = plan.experiment(scene).run().expect("long enough");
     assert!(longer.shown() > WARM_UP_PICTURES as u64);
@@ -89,7 +90,7 @@ fn a_frame_that_takes_two_hundred_fields_is_one_picture_of_a_hundred_that_are_du
     assert_eq!((report.pictures, report.latency_ms.statistics.n), (1, 1));
     assert!(report.latency_ms.statistics.sd.is_nan(), "one picture has no deviation");
     let due = report.due.expect("frames are due");
-    // The window ends at the last field, and begins with the first frame or behind it; each frame is one picture.
+    // The window ends at the last field and begins with the first frame or after it. Each frame is one picture.
     let shown = outcome.pictures().iter().map(|times| outcome.record().display().period_at(times.shown_at));
     let in_window = shown.filter(|field| (due.first_period..=due.last_period).contains(field)).count() as u64;
     assert_eq!((due.shown, due.missed), (in_window, due.due - in_window));

@@ -1,4 +1,5 @@
-//! The rig in front of the machine: outside and inside agree, and each finds what is wrong with the other.
+//! Tests of the rig in front of the machine. Outside and inside measurements agree, and each reveals a fault of the
+//! other.
 
 use pphigs::FrameView;
 use pxpl5_lab::rig::{Rig, RigRunError};
@@ -52,7 +53,8 @@ fn outside_and_inside_agree_within_a_report_and_the_photodiodes_place() {
     }
 }
 
-/// A display that turns with the head shows the turn and no frame; under frameless rendering one block lights and no frame.
+/// A display that follows the head's rotation shows the rotation before any frame. Under frameless rendering the
+/// light comes from one block, not from a frame.
 #[test]
 fn pipelines_without_frames_are_refused_with_the_reason() {
     for (pipeline, reason) in [
@@ -71,12 +73,12 @@ fn pipelines_without_frames_are_refused_with_the_reason() {
 
 #[test]
 fn from_outside_a_field_of_slats_takes_a_field_and_the_photodiodes_place() {
-    // One processor, which begins TRANSFORM with the retrace; several would be told first.
+    // One processor begins TRANSFORM at the retrace. Several processors would need a message first.
     let measured = rig(TrackerConfig::fastrak(), 6).measure(&MachineConfig::slats(), named("slats"));
     let measured = measured.expect("two triangles");
     let line_ms = 4.004 / 63.0;
-    // One field of 262.5 lines; line 120 lies 142 lines behind the retrace, half a line more in odd fields, and the middle of a line
-    // 460 of 780 pixel periods behind its start.
+    // One field has 262.5 lines. Line 120 is 142 lines after the retrace, half a line more in odd fields. The middle
+    // of a line is 460 of 780 pixel periods after its start.
     let least = (262.5 + 142.0 + 460.0 / 780.0) * line_ms;
     let found = measured.outside.rendering;
     assert!(
@@ -86,7 +88,7 @@ fn from_outside_a_field_of_slats_takes_a_field_and_the_photodiodes_place() {
     assert!(ms(found.greatest_s) < least + line_ms / 2.0 + 1e-3, "{found:?}");
 }
 
-/// Rendering Control with a fault.
+/// Rendering Control with an injected fault.
 #[derive(Debug)]
 struct Faulty {
     inner: RenderingControl,
@@ -95,13 +97,13 @@ struct Faulty {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fault {
-    /// The time stamps of pictures are a field early: inside is wrong.
+    /// The time stamps of pictures are a field too early, so the inside measurement is wrong.
     EarlyStamps,
-    /// Frames show the pose of the frame before: light comes a frame late, whatever the time stamps say.
+    /// Frames show the pose of the previous frame, so light comes a frame late while the time stamps stay the same.
     StaleViews,
 }
 
-/// Views that are one behind.
+/// Returns views that lag one view behind.
 fn stale(views: &Views) -> Views {
     let views = Arc::clone(views);
     let last: Mutex<Option<FrameView>> = Mutex::new(None);
@@ -150,7 +152,7 @@ fn an_error_of_one_side_is_found_by_the_other() {
     };
     let early = with(Fault::EarlyStamps).expect("light comes");
     assert!(!early.agrees(), "{early:?}");
-    // The last frame's light never comes: either that is said, or the latencies do not agree.
+    // The light of the last frame never appears. The rig either reports so, or the latencies disagree.
     match with(Fault::StaleViews) {
         Ok(stale) => assert!(!stale.agrees(), "{stale:?}"),
         Err(error) => assert!(matches!(error, RigRunError::Rig(_)), "{error}"),

@@ -1,4 +1,4 @@
-//! `pxpl5 arp compare`: all policies and warps beside each other.
+//! The command `pxpl5 arp compare`, which compares all policies and warps on one walk.
 
 use super::run::widths;
 use super::settings::WalkArgs;
@@ -23,7 +23,7 @@ kept.")]
 pub(super) struct CompareArgs {
     #[command(flatten)]
     walk: WalkArgs,
-    /// Write into this folder: comparison.json and rows.csv.
+    /// Write comparison.json and rows.csv into this folder.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print JSON: an object whose `rows` lists the variants.
@@ -35,6 +35,7 @@ pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
     let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "arp compare")).transpose()?;
     let (scene, plan) = args.walk.gather()?;
     args.walk.admit(&plan, &scene, variant_count())?;
+    // Walk once for each variant, then write files before anything is printed.
     let bar = progress(variant_count(), "walks", args.walk.quiet);
     let comparison = compare(&scene, &plan, |done, of| advance(&bar, done, of));
     bar.finish_and_clear();
@@ -50,6 +51,7 @@ pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
         (false, true) => {}
         (false, false) => print(&text(&comparison))?,
     }
+    // A variant that cannot be walked is named, and the command fails after all others were walked.
     for (variant, reason) in &comparison.failed {
         complain(&format!("pxpl5: {variant}: {reason}\n"));
     }
@@ -59,7 +61,7 @@ pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
     }
 }
 
-/// Columns of tables, and what stands in them.
+/// Name of a table column and the function that formats its cell of a row.
 type Column = (&'static str, fn(&ComparedRow) -> String);
 
 const COLUMNS: [Column; 10] = [
@@ -80,6 +82,7 @@ fn text(comparison: &ArpComparison) -> String {
         format!("{}: {} at {} m/s\n\n", comparison.scene, count_of(comparison.frames, "frame"), comparison.m_per_s);
     let heads = COLUMNS.map(|(name, _)| name.to_owned());
     let rows = comparison.rows.iter().map(|row| COLUMNS.map(|(_, cell)| cell(row)));
+    // Each column is as wide as its longest cell, including its head.
     let lines: Vec<[String; COLUMNS.len()]> = std::iter::once(heads).chain(rows).collect();
     let widest: Vec<usize> =
         (0..COLUMNS.len()).map(|i| lines.iter().map(|line| line[i].len()).max().unwrap_or(0)).collect();

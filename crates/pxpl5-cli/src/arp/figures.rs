@@ -1,4 +1,4 @@
-//! `pxpl5 arp figures`.
+//! The command `pxpl5 arp figures`, which compares the papers' figures with an ideal renderer.
 
 use super::settings::put;
 use crate::error::CliError;
@@ -10,7 +10,7 @@ use pxpl5::arp::{figures, pictures};
 use serde_json::json;
 use std::path::PathBuf;
 
-/// Measure the papers' figures with an ideal renderer, and draw their pictures.
+/// Compare the papers' figures with an ideal renderer, and draw their pictures.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 arp figures
@@ -25,7 +25,7 @@ pub(super) struct FiguresArgs {
     /// Write the document of all figures to this file.
     #[arg(long, value_name = "FILE", conflicts_with = "check")]
     write: Option<PathBuf>,
-    /// Compare the document with this file.
+    /// Fail if this file differs from the document of all figures.
     #[arg(long, value_name = "FILE")]
     check: Option<PathBuf>,
     /// Write all pictures into this folder.
@@ -37,6 +37,7 @@ pub(super) struct FiguresArgs {
 }
 
 pub(super) fn run(args: FiguresArgs) -> Result<(), CliError> {
+    // Open all outputs before the walks, so that a bad path fails at once.
     let document = args.write.as_deref().map(|path| OutputFile::open(path, "--write")).transpose()?;
     let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "arp figures")).transpose()?;
     let bar = progress(2, "walks and pictures", args.quiet);
@@ -50,6 +51,7 @@ pub(super) fn run(args: FiguresArgs) -> Result<(), CliError> {
         folder.commit()?;
     }
     bar.finish_and_clear();
+    // `--check` fails when the document in the repository is not what the figures give.
     if let Some(path) = &args.check {
         fresh(path, &markdown, "arp figures")?;
     }

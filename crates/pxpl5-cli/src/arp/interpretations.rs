@@ -1,11 +1,13 @@
-//! `pxpl5 arp interpretations`.
+//! The command `pxpl5 arp interpretations`, which ranks the interpretations of table 1 of the priority rendering
+//! paper.
 
 use crate::error::CliError;
 use crate::terminal::{advance, print, progress};
 use clap::Args;
 use pxpl5::arp::figures::{Interpretations, interpretations_text};
 
-/// Rank what the paper leaves open about table 1 (rings, distances, cascade, hall, path), each rate left out in turn.
+/// Rank the interpretations of what the paper leaves open about table 1 (rings, distances, cascade, hall, path), each
+/// rate left out in turn.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 arp interpretations

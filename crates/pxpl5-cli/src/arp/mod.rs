@@ -1,4 +1,4 @@
-//! `pxpl5 arp`: a walk behind a display that turns with the head.
+//! The command `pxpl5 arp`: experiments on address recalculation with a walk through a scene.
 
 mod compare;
 mod figures;
@@ -11,7 +11,8 @@ use crate::error::CliError;
 use clap::{Args, Subcommand};
 use pxpl5::arp::ExperimentError;
 
-/// Walk through a scene behind a display that turns with the head (address recalculation, priority rendering, region warping).
+/// Walk through a scene with a display that follows the head's rotation (address recalculation, priority rendering,
+/// region warping).
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 arp run --scene gallery --warp linear --out out/walk
@@ -29,15 +30,15 @@ pub(crate) struct ArpArgs {
 
 #[derive(Subcommand, Debug)]
 enum ArpCommand {
-    /// Walk once and print what was drawn, how often, and how far cuts gape.
+    /// Walk once and print draws, update rates and the width of the gaps at cuts.
     Run(run::RunArgs),
     /// Compare all policies and warps on one walk.
     Compare(compare::CompareArgs),
-    /// Measure the papers' figures and draw their pictures.
+    /// Compare the papers' figures with an ideal renderer, and draw their pictures.
     Figures(figures::FiguresArgs),
-    /// Rank what the paper leaves open about table 1, each rate left out in turn.
+    /// Rank the interpretations of what the paper leaves open about table 1, each rate left out in turn.
     Interpretations(interpretations::InterpretationsArgs),
-    /// Print the face and the texels that a pixel is for an orientation of the head.
+    /// Print the face and the texels that a pixel shows at an orientation of the head.
     Texel(texel::TexelArgs),
 }
 

@@ -1,4 +1,4 @@
-//! `pxpl5 arp run`.
+//! The command `pxpl5 arp run`, which simulates one walk.
 
 use super::settings::{WalkArgs, put};
 use crate::error::CliError;
@@ -11,7 +11,7 @@ use pxpl5::arp::{MemoryReport, Percentiles, Report, WalkOutcome};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Walk once and print what was drawn, how often, and how far cuts gape.
+/// Walk once and print draws, update rates and the width of the gaps at cuts.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 arp run --scene gallery --out out/walk --json
@@ -23,9 +23,9 @@ use std::path::{Path, PathBuf};
 pub(super) struct RunArgs {
     #[command(flatten)]
     walk: WalkArgs,
-    /// Write into this folder: report.json, frames.csv, faces of all memories, what the eye sees through its lens and (up to 170
-    /// degrees) without one, which memory
-    /// won, errors, cells from above, cuts as wires, updates, and the walk torn, warped and without cuts.
+    /// Write into this folder: report.json, frames.csv, and pictures. The pictures show the faces of all memories and
+    /// the eye's view through its lens and (up to 170 degrees) without a lens. Other pictures show the memory chosen
+    /// at each pixel, errors, cells from above, cuts as wires, updates, and the walk torn, warped and without cuts.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print the report as one JSON object.
@@ -34,6 +34,7 @@ pub(super) struct RunArgs {
 }
 
 pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
+    // Open the output first, so that a bad path fails before the walk.
     let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "arp run")).transpose()?;
     let (scene, plan) = args.walk.gather()?;
     args.walk.admit(&plan, &scene, 1)?;
@@ -45,6 +46,7 @@ pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
     if let Some(mut folder) = folder {
         folder.put("report.json", json.as_bytes())?;
         folder.put("frames.csv", frames_csv(&outcome).as_bytes())?;
+        // The pictures need the scene at all poses, so they are drawn only for an output folder.
         let walk = &plan.walk;
         let pictures = of_walk(outcome.world.clone(), &outcome.path, &outcome.settings, walk.m_per_s, walk.frames)?;
         put(&mut folder, &pictures, &origin(&outcome))?;
@@ -69,7 +71,8 @@ fn origin(outcome: &WalkOutcome) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// A line for each frame: where the eye was, and of each memory whether it was due, shown and missed.
+/// Returns frames.csv: for each frame the position of the eye, and for each memory whether an update was due, shown
+/// or missed.
 fn frames_csv(outcome: &WalkOutcome) -> String {
     let memories = outcome.tally.memories.len();
     let columns = (0..memories).map(|k| format!(",due_{k},shown_{k},missed_{k}")).collect::<String>();
@@ -77,6 +80,7 @@ fn frames_csv(outcome: &WalkOutcome) -> String {
     for (number, frame) in outcome.tally.outcomes.iter().enumerate() {
         let [x, y, z] = frame.eye.to_array();
         let _ = write!(text, "{number},{x},{y},{z},{}", u8::from(frame.deals_anew));
+        // Three columns for each memory: update due, picture shown, update missed.
         for k in 0..memories {
             let [due, shown, missed] = [&frame.due, &frame.swapped, &frame.missed].map(|list| u8::from(list[k]));
             let _ = write!(text, ",{due},{shown},{missed}");
@@ -104,8 +108,10 @@ fn text(outcome: &WalkOutcome, out: Option<&Path>) -> String {
         "missed",
         "eye age, mm"
     );
+    // One line for each memory.
     report.memories.iter().enumerate().for_each(|(k, memory)| line(&mut text, k, memory));
     let priority = &report.priority;
+    // Totals over all memories.
     let rows = [
         ("segments drawn a second", format!("{:.0} ({:.1} % saved)", priority.draws_per_s, priority.saved_percent)),
         ("triangles drawn a second", format!("{:.0}", outcome.triangles_per_s())),
@@ -129,7 +135,7 @@ fn text(outcome: &WalkOutcome, out: Option<&Path>) -> String {
     text
 }
 
-/// The mean latency of a step in what each memory shows.
+/// Returns the mean latency from a step of the head to the light of each memory's picture, in ms.
 fn steps(report: &Report) -> String {
     let totals = report.memories.iter().map(|memory| memory.translation_latency_ms.total);
     let totals: Vec<String> = totals.map(|total| or_none(total.map(|ms| format!("{ms:.1}")))).collect();
@@ -149,7 +155,8 @@ fn or_none(text: Option<String>) -> String {
     text.unwrap_or_else(|| "-".to_owned())
 }
 
-/// Half of all, nineteen of twenty, the widest; what is below a millionth is rounding.
+/// Formats the median, the 95th percentile and the maximum of widths. Widths below 1e-6 are rounding errors and
+/// appear as 0.
 pub(super) fn widths(widths: Option<Percentiles>) -> String {
     let number = |width: f64| if width < 1e-6 { "0".to_owned() } else { format!("{width:.2}") };
     or_none(widths.map(|Percentiles { p50, p95, max }| [p50, p95, max].map(number).join(", ")))

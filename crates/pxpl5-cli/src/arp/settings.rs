@@ -1,4 +1,4 @@
-//! Options that say what a walk is; each stands for a path of `--set`.
+//! Options of `pxpl5 arp` that describe a walk. Each option is short for a path of `--set`.
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
@@ -20,36 +20,37 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The scene and the settings that differ from the usual ones.
+/// The scene of a walk, and the settings that differ from their defaults.
 #[derive(Args, Debug)]
 pub(super) struct WalkArgs {
-    /// A TOML file of settings by path, with `scene`; options go before it.
+    /// A TOML file of settings by path, with `scene`; options override the file.
     #[arg(value_name = "FILE")]
     file: Option<PathBuf>,
     /// A built-in scene with a path (gallery, gallery:full); default gallery.
     #[arg(long, value_name = "NAME|FILE")]
     scene: Option<String>,
-    /// Who decides what is drawn when: full, objects or cells; default cells.
+    /// Policy that decides what is drawn when: full, objects or cells; default cells.
     #[arg(long, value_name = "POLICY")]
     policy: Option<String>,
-    /// Whether objects are cut at the borders of cells: on or off; default on with cells, off with objects.
+    /// Cut objects at the borders of cells: on or off; default on with cells, off with objects.
     #[arg(long, value_name = "ON|OFF")]
     segment: Option<String>,
-    /// How vertices near cuts are moved: none, linear, smoothstep or step; default linear.
+    /// Falloff of the movement of vertices near cuts: none, linear, smoothstep or step; default linear.
     #[arg(long, value_name = "FALLOFF")]
     warp: Option<String>,
-    /// Before what the orientation is latched: field, line or pixel; default field.
+    /// Unit of scan-out before which the orientation is latched: field, line or pixel; default field.
     #[arg(long, value_name = "LATCH")]
     latch: Option<String>,
-    /// What lies before the eye: flat, radial:K1, radial:K1:K2, equidistant, or table:FILE with a vector for each pixel; default flat.
+    /// Lens before the eye: flat, radial:K1, radial:K1:K2, equidistant, or table:FILE with a vector for each pixel;
+    /// default flat.
     #[arg(long, value_name = "LENS", allow_hyphen_values = true)]
     lens: Option<String>,
-    /// Who draws faces: ideal, or so many triangles a second; default ideal.
+    /// Renderer of the faces: ideal, or a number of triangles a second; default ideal.
     #[arg(long, value_name = "SOURCE")]
     source: Option<String>,
-    /// Set any number or choice by its path, such as priority.theta_deg=0.1, priority.cell_m=8, priority.ring_growth=1,
-    /// priority.threshold=2px, priority.cascade=off, arp.face_texels=1024, walk.route=straight, walk.hall_scale=0.5 or walk.frames=3600;
-    /// may be repeated.
+    /// Set any number or choice by its path, such as priority.theta_deg=0.1, priority.cell_m=8,
+    /// priority.ring_growth=1, priority.threshold=2px, priority.cascade=off, arp.face_texels=1024,
+    /// walk.route=straight, walk.hall_scale=0.5 or walk.frames=3600; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     sets: Vec<String>,
     #[command(flatten)]
@@ -59,22 +60,24 @@ pub(super) struct WalkArgs {
     pub(super) quiet: bool,
 }
 
-/// Path of the lens, whose table may be a file.
+/// Path of the lens setting. Its value may name a file with a lens table.
 const LENS: &str = "arp.lens";
 
-/// Paths, values, and where each was given.
+/// Settings as tuples of path, value, and the file or option that gave the value.
 type Said = Vec<(String, String, String)>;
 
 impl WalkArgs {
-    /// The scene and its plan; numbers that no source allows are warned of.
+    /// Returns the scene and the plan of the walk, and prints a warning for every number outside its documented
+    /// range.
     ///
     /// # Errors
     ///
-    /// Which file, option or setting is wrong, what was expected and what was found.
+    /// Returns an error that names the wrong file, option or setting, the expected value and the value found.
     pub(super) fn gather(&self) -> Result<(Arc<Scene>, Plan), CliError> {
         let (scene, said) = self.said()?;
         let mut plan = Plan::usual();
         let mut table = None;
+        // A lens table is read last, because its size depends on the picture that the other settings choose.
         for (path, value, place) in &said {
             match value.strip_prefix("table:").filter(|_| path == LENS) {
                 Some(file) => table = Some(file),
@@ -85,6 +88,7 @@ impl WalkArgs {
             let lens = read_lens(Path::new(file), &plan)?;
             plan = plan.behind(lens, file);
         }
+        // Check all settings together before the scene is loaded.
         plan.settings()?;
         warn(&warnings(&plan), self.quiet);
         let scene = load(self.scene.as_deref().unwrap_or(&scene))?;
@@ -92,22 +96,22 @@ impl WalkArgs {
         Ok((scene, plan))
     }
 
-    /// Refuses so many walks before the first, if they would take too much.
+    /// Refuses to start `walks` walks if their estimated time or memory exceeds the budget.
     ///
     /// # Errors
     ///
-    /// The estimate, and what to do about it.
+    /// Returns the estimate and advice on how to reduce the work.
     pub(super) fn admit(&self, plan: &Plan, scene: &Scene, walks: u64) -> Result<(), CliError> {
         let one = WalkWork::of(plan, scene).estimate();
         let all = Estimate { seconds: walks as f64 * one.seconds, ..one };
         self.budget.admit_estimate(all, "walk fewer frames (--set walk.frames)")
     }
 
-    /// The display of a walk with a lens and some numbers.
+    /// Returns the display of a walk with the given lens and settings.
     ///
     /// # Errors
     ///
-    /// As [`WalkArgs::gather`].
+    /// Fails in the same cases as [`WalkArgs::gather`].
     pub(super) fn of_display(lens: Option<&String>, sets: &[String]) -> Result<ArpConfig, CliError> {
         let mut plan = Plan::usual();
         lens.map(|lens| plan.set(LENS, lens, "--lens")).transpose()?;
@@ -117,7 +121,7 @@ impl WalkArgs {
         Ok(plan.settings()?.display)
     }
 
-    /// The file's scene, and all settings: the file's, then those of options, then those of `--set`.
+    /// Returns the scene's name and all settings in the order in which they apply: file, options, `--set`.
     fn said(&self) -> Result<(String, Said), CliError> {
         let mut said = Said::new();
         let mut scene = "gallery".to_owned();
@@ -127,6 +131,7 @@ impl WalkArgs {
                 std::fs::read(path).map_err(|error| CliError::failure(format!("{place}: cannot be read: {error}")))?;
             let text = text_of(&bytes).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
             let file = toml::from_str(text).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
+            // Settings of the file come first, so that later ones override them.
             for (path, value) in leaves(file) {
                 match path.as_str() {
                     "scene" => scene = plain(&value),
@@ -134,6 +139,7 @@ impl WalkArgs {
                 }
             }
         }
+        // Each option is short for one path.
         let options = [
             ("policy", "--policy", &self.policy),
             ("segment", "--segment", &self.segment),
@@ -145,6 +151,7 @@ impl WalkArgs {
         for (path, option, text) in options {
             said.extend(text.iter().map(|text| (path.to_owned(), text.clone(), option.to_owned())));
         }
+        // `--set` comes last and overrides everything else.
         for assignment in &self.sets {
             let (path, value) = assignment
                 .split_once('=')
@@ -180,11 +187,11 @@ fn load(name: &str) -> Result<Arc<Scene>, CliError> {
     Ok(choice.load()?)
 }
 
-/// Writes pictures into a folder, each with where it comes from.
+/// Writes pictures into a folder, with the data of their origin in each PNG.
 ///
 /// # Errors
 ///
-/// When one cannot be encoded or written.
+/// Fails when a picture cannot be encoded or written.
 pub(super) fn put(
     folder: &mut OutputFolder,
     pictures: &[Picture],

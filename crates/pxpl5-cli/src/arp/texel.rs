@@ -1,4 +1,4 @@
-//! `pxpl5 arp texel`.
+//! The command `pxpl5 arp texel`, which prints the texels that one pixel shows.
 
 use super::settings::WalkArgs;
 use crate::error::CliError;
@@ -9,7 +9,7 @@ use pxpl5::arp::address_recalculation::{ArpConfig, Footprint, Orientation, Texel
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 
-/// Print the face and the texels that a pixel is for an orientation of the head.
+/// Print the face and the texels that a pixel shows at an orientation of the head.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 arp texel 0 0 --yaw 30
@@ -19,18 +19,18 @@ Angles are degrees: yaw to the left about the upright axis, then pitch up, then 
 pub(super) struct TexelArgs {
     /// Column of the pixel from the left.
     x: u32,
-    /// Line of the pixel from the top, of the whole frame.
+    /// Line of the pixel from the top, counted in the whole frame.
     y: u32,
-    /// How far the head is turned to the left.
+    /// Rotation of the head to the left.
     #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_negative_numbers = true)]
     yaw: f64,
-    /// How far the head is turned up.
+    /// Rotation of the head upward.
     #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_negative_numbers = true)]
     pitch: f64,
-    /// How far the head is tilted to the left.
+    /// Tilt of the head to the left.
     #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_negative_numbers = true)]
     roll: f64,
-    /// What lies before the eye: flat, radial:K1, radial:K1:K2, or equidistant; default flat.
+    /// Lens before the eye: flat, radial:K1, radial:K1:K2, or equidistant; default flat.
     #[arg(long, value_name = "LENS", allow_hyphen_values = true)]
     lens: Option<String>,
     /// Set a number of the display by its path, such as arp.face_texels=256; may be repeated.
@@ -57,13 +57,14 @@ pub(super) fn run(args: TexelArgs) -> Result<(), CliError> {
     print(&text(&args, &display, &footprint))
 }
 
-/// Yaw about y, then pitch about x, then roll about z: x, y, z, w.
+/// Returns the quaternion (x, y, z, w) of yaw about y, then pitch about x, then roll about z.
 fn quaternion(degrees: [f64; 3]) -> [f64; 4] {
     let [(sy, cy), (sp, cp), (sr, cr)] = degrees.map(|angle| (angle.to_radians() / 2.0).sin_cos());
     [cy * sp * cr + sy * cp * sr, sy * cp * cr - cy * sp * sr, cy * cp * sr - sy * sp * cr, cy * cp * cr + sy * sp * sr]
 }
 
-/// The texels with their weights, in parts of one; the weight of the texel beyond a corner is that of a mean of the others.
+/// Returns the four texels of a footprint with weights that sum to 1. At a cube corner the fourth texel does not
+/// exist (`None`); its weight belongs to the mean of the other three.
 fn texels(display: &ArpConfig, footprint: &Footprint) -> [(Option<TexelAddress>, f64); 4] {
     let weights = footprint.weights(display.timing.weight_bits);
     let one = f64::from(1_u32 << (2 * display.timing.weight_bits));
@@ -71,6 +72,7 @@ fn texels(display: &ArpConfig, footprint: &Footprint) -> [(Option<TexelAddress>,
 }
 
 fn record(args: &TexelArgs, display: &ArpConfig, footprint: &Footprint) -> Value {
+    // A missing texel beyond a cube corner has a weight but no address.
     let texels = texels(display, footprint).map(|(texel, weight)| match texel {
         Some(texel) => json!({
             "face": format!("{:?}", texel.face),

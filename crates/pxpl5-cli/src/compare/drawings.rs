@@ -1,4 +1,4 @@
-//! The files of a comparison: tables for other programs, and drawings of what was run.
+//! The files of a comparison: CSV tables and SVG charts.
 
 use pxpl5::Cause;
 use pxpl5::compare::{Comparison, ComparisonRow};
@@ -7,7 +7,7 @@ use pxpl5::views::charts::{ChartAxes, Curve, MarkedPoint, curve_chart, point_cha
 use pxpl5::views::results::csv_table;
 use serde_json::Value;
 
-/// Names and contents.
+/// Returns the names and contents of all files.
 pub(super) fn files(comparison: &Comparison) -> [(&'static str, String); 6] {
     [
         ("rows.csv", rows_csv(comparison)),
@@ -19,7 +19,7 @@ pub(super) fn files(comparison: &Comparison) -> [(&'static str, String); 6] {
     ]
 }
 
-/// The rows of which something was judged.
+/// Returns the rows whose pictures were evaluated.
 fn judged(comparison: &Comparison) -> impl Iterator<Item = &ComparisonRow> {
     comparison.pipelines.iter().filter(|row| row.is_judged())
 }
@@ -63,7 +63,7 @@ fn over_prediction(comparison: &Comparison) -> String {
 }
 
 fn points(comparison: &Comparison, axes: &ChartAxes, across: impl Fn(&ComparisonRow) -> f64) -> String {
-    // What has no latency, such as the reference, has no place in such a drawing.
+    // Rows without a latency, such as the reference, are not drawn.
     let placed = judged(comparison).filter(|row| across(row).is_finite());
     let points = placed.map(|row| {
         let error = &row.error.mean_px;
@@ -77,7 +77,7 @@ fn axes(comparison: &Comparison, title: &str, across: &str, up: &str) -> ChartAx
     ChartAxes { title, across: across.to_owned(), up: up.to_owned() }
 }
 
-/// Columns of the table of rows, and what stands in them.
+/// Name of a table column and the function that formats its cell of a row.
 type Column = (&'static str, fn(&ComparisonRow) -> String);
 
 const COLUMNS: [Column; 24] = [
@@ -107,10 +107,11 @@ const COLUMNS: [Column; 24] = [
     ("failure", |row| row.failure.clone().unwrap_or_default()),
 ];
 
-/// A row for each pipeline, under the names that the numbers have in comparison.json; its predictors and the causes of its error are
-/// the last columns. What was not judged is empty.
+/// Returns rows.csv, with one line for each pipeline and the column names of comparison.json. The last columns hold
+/// the error under each predictor and by each cause. Cells without an evaluation are empty.
 fn rows_csv(comparison: &Comparison) -> String {
     let causes: Vec<Option<Cause>> = Cause::ALL.into_iter().map(Some).chain([None]).collect();
+    // Names of columns equal the JSON paths of the same numbers.
     let of_predictors =
         PredictorKind::ALL.map(|kind| format!("predictors.{}.mean_px", written(serde_json::to_value(kind))));
     let of_causes = causes.iter().map(|cause| {
@@ -118,6 +119,7 @@ fn rows_csv(comparison: &Comparison) -> String {
         format!("causes.{cause}.px.mean")
     });
     let columns = COLUMNS.iter().map(|(name, _)| (*name).to_owned()).chain(of_predictors).chain(of_causes);
+    // Numbers that a row lacks become empty cells.
     let rows = comparison.pipelines.iter().map(|row| {
         let predictor =
             |kind: PredictorKind| row.predictors.iter().find(|mean| mean.kind == kind).map(|mean| mean.mean_px);
@@ -130,12 +132,12 @@ fn rows_csv(comparison: &Comparison) -> String {
     csv_table(columns.collect::<Vec<String>>(), rows)
 }
 
-/// A name as JSON has it.
+/// Returns a name in the spelling of the JSON output.
 fn written(name: serde_json::Result<Value>) -> String {
     name.ok().and_then(|name| name.as_str().map(str::to_owned)).unwrap_or_default()
 }
 
-/// A row for each field of each pipeline, of the first seed.
+/// Returns errors.csv, with one line for each field of each pipeline in the first seed.
 fn errors_csv(comparison: &Comparison) -> String {
     let rows = judged(comparison).flat_map(|row| {
         row.by_field.iter().map(|field| {
@@ -151,12 +153,12 @@ fn errors_csv(comparison: &Comparison) -> String {
     csv_table(["pipeline", "field", "time_s", "error_px_mean", "error_px_centre"], rows)
 }
 
-/// What was not counted is empty.
+/// Formats a count, or returns an empty cell for `None`.
 fn count(value: Option<impl ToString>) -> String {
     value.map_or_else(String::new, |value| value.to_string())
 }
 
-/// What is no number is empty.
+/// Formats a number, or returns an empty cell for NaN and infinity.
 fn number(value: f64) -> String {
     if value.is_finite() { value.to_string() } else { String::new() }
 }

@@ -1,4 +1,4 @@
-//! The pictures of all pipelines beside each other.
+//! The page gallery.html, which shows the pictures of all pipelines side by side.
 
 use crate::error::CliError;
 use crate::numbers::count_of;
@@ -9,13 +9,14 @@ use pxpl5::compare::{Comparison, ComparisonRow, LastPicture};
 use pxpl5::views::page::{PagePicture, PageTable, html_of_tables};
 use pxpl5::views::png_bytes;
 
-/// Writes a picture for each row, those that should be there, and a page of all of them.
+/// Writes a picture for each row, the ideal pictures, and a page of all pictures.
 ///
 /// # Errors
 ///
-/// When a file cannot be written.
+/// Fails when a file cannot be written.
 pub(super) fn put(folder: &mut OutputFolder, comparison: &Comparison) -> Result<(), CliError> {
     let mut gallery = Gallery { folder, comparison, pictures: Vec::new(), ideals: Vec::new() };
+    // The ideal picture precedes the first picture with the same shading.
     for row in &comparison.pipelines {
         if let Some(last) = &row.picture {
             gallery.ideal(row, last)?;
@@ -32,12 +33,12 @@ pub(super) fn put(folder: &mut OutputFolder, comparison: &Comparison) -> Result<
     folder.put("gallery.html", html_of_tables(&[page]).as_bytes())
 }
 
-/// A page as it is filled.
+/// The gallery page under construction.
 struct Gallery<'a> {
     folder: &'a mut OutputFolder,
     comparison: &'a Comparison,
     pictures: Vec<PagePicture>,
-    /// Pictures as they should be that are on the page: pipelines of the same shading share one.
+    /// Ideal pictures that are already on the page. Pipelines with the same shading share one picture.
     ideals: Vec<&'a RgbImage>,
 }
 
@@ -72,7 +73,7 @@ impl<'a> Gallery<'a> {
     }
 }
 
-/// Whose picture it is, how old, and how wrong.
+/// Returns the caption of a picture: the pipeline, its latency from head to light, and its error in pixels.
 fn caption(row: &ComparisonRow, last: &LastPicture) -> String {
     let mut caption = row.pipeline.clone();
     if !last.is_complete {
@@ -88,7 +89,7 @@ fn caption(row: &ComparisonRow, last: &LastPicture) -> String {
     caption
 }
 
-/// The run, and the rows without a picture.
+/// Returns lines that describe the run, and a line for each row without a picture.
 fn about(comparison: &Comparison) -> Vec<String> {
     let Comparison { triangles, machine, fields, seeds, pipelines, .. } = comparison;
     let seed = seeds.first().copied().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! `pxpl5 compare`: every way to fight latency side by side.
+//! The command `pxpl5 compare`, which compares the low-latency methods of all pipelines.
 
 mod drawings;
 mod gallery;
@@ -17,7 +17,7 @@ use pxpl5::views::png_bytes;
 use pxpl5::{ExperimentFile, MachineConfig};
 use std::path::PathBuf;
 
-/// What is compared.
+/// Arguments of `pxpl5 compare`.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 compare --head pan:200 --scene mig --tracker fastrak
@@ -31,26 +31,27 @@ values of their papers; to run one of them alone, with its own keys and pictures
 pub(crate) struct CompareArgs {
     #[command(flatten)]
     settings: SettingArgs,
-    /// Rows that are run; all where none is named.
+    /// Rows to run; all rows if none is named.
     #[arg(long, value_name = "ROW,...", value_delimiter = ',')]
     only: Vec<String>,
-    /// Seeds of tracker, host and synthetic motion: so many runs of each pipeline, from --seed on. The interval of a mean needs two
-    /// or more.
+    /// Number of seeds of tracker, host and synthetic motion, from --seed on. Each pipeline runs once for each seed.
+    /// The confidence interval of a mean needs at least two seeds.
     #[arg(long, default_value_t = LEAST_SEEDS as u64, value_name = "N", value_parser = whole::<u64>(1, 1_000))]
     seeds: u64,
-    /// Do not search for the most triangles that each pipeline can draw in time.
+    /// Do not search for the largest number of triangles that each pipeline can draw in time.
     #[arg(long, alias = "no-triangles")]
     no_limits: bool,
-    /// Write into this folder: comparison.json, rows.csv, errors.csv, the drawings (error over time, its distribution, against latency
-    /// and against prediction interval), gallery.html with the picture of every pipeline, and the pictures of a vertical edge.
+    /// Write into this folder: comparison.json, rows.csv, errors.csv, the drawings (error over time, its
+    /// distribution, against latency and against prediction interval), gallery.html with the picture of every
+    /// pipeline, and the pictures of a vertical edge.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Speed of the pan of the pictures, degrees per second.
+    /// Speed of the pan in the edge pictures, degrees per second.
     #[arg(long, default_value_t = 200.0, value_name = "DEG_PER_S", allow_negative_numbers = true, value_parser = pan)]
     edge_pan: f64,
     #[command(flatten)]
     budget: BudgetArgs,
-    /// Print JSON: an object whose `pipelines` lists a row each.
+    /// Print JSON: an object whose `pipelines` lists one row for each pipeline.
     #[arg(long)]
     json: bool,
     /// Print nothing but errors (and the object of --json).
@@ -58,14 +59,14 @@ pub(crate) struct CompareArgs {
     quiet: bool,
 }
 
-/// What is compared where nothing is said: a key of the experiment file and its value.
+/// Default settings of a comparison, as keys and values of an experiment file.
 const DEFAULTS: [(&str, &str); 4] =
     [("scene", "room"), ("machine.preset", "small-hmd"), ("head.motion", "synthetic"), ("head.tracker", "optical")];
 
-/// Fields of each run where nothing is said: five seconds.
+/// Default number of fields of each run: five seconds.
 const FIELDS: i64 = 300;
 
-/// Fastest pan of the pictures, degrees a second.
+/// Maximum speed of the pan in the edge pictures, in degrees per second.
 const FASTEST: f64 = 10_000.0;
 
 fn pan(text: &str) -> Result<f64, String> {
@@ -73,12 +74,13 @@ fn pan(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|rate: &f64| rate.abs() <= FASTEST).ok_or(expected)
 }
 
-/// Runs the comparison.
+/// Runs the command `pxpl5 compare`.
 ///
 /// # Errors
 ///
-/// What is wrong with an option, or why a file cannot be written.
+/// Fails when an option is invalid or a file cannot be written.
 pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
+    // Create the folder and resolve every setting first, so that mistakes are reported before hours of runs.
     let mut folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "compare")).transpose()?;
     let shared = with_defaults(args.settings.gather()?)?;
     let first = shared.seed()?;
@@ -92,6 +94,7 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     });
     bar.finish_and_clear();
     let comparison = comparison?;
+    // Write all files, then publish the folder in one step.
     let json = serde_json::to_string_pretty(&comparison).map_err(CliError::failure)? + "\n";
     if let Some(folder) = &mut folder {
         folder.put("comparison.json", json.as_bytes())?;
@@ -112,7 +115,7 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
 fn admit(budget: BudgetArgs, query: &CompareQuery, quiet: bool) -> Result<(), CliError> {
     let mut runs = Vec::new();
     for (row, plan) in query.plans()?.into_iter().enumerate() {
-        // All rows have the same scene: its warnings are told once.
+        // All rows have the same scene, so its warnings are printed once.
         let scene = scenes::load(&plan, quiet || row > 0)?;
         let work = Work::of(&plan, &scene, true);
         runs.extend(query.seeds.iter().map(|_| work));
@@ -120,7 +123,7 @@ fn admit(budget: BudgetArgs, query: &CompareQuery, quiet: bool) -> Result<(), Cl
     budget.admit_all(runs, std::thread::available_parallelism().map_or(1, usize::from))
 }
 
-/// The settings of all rows; what is not said has the defaults.
+/// Returns the settings shared by all rows, with defaults for absent keys.
 fn with_defaults(mut file: ExperimentFile) -> Result<ExperimentFile, CliError> {
     if let Some(place) = file.place_of("pipeline") {
         return Err(CliError::usage(format!(
@@ -152,7 +155,8 @@ fn edges(query: &CompareQuery, deg_per_s: f64, folder: &mut OutputFolder) -> Res
     Ok(())
 }
 
-/// The machine of the edge's pictures: the comparison's, as the pipeline that draws them has it.
+/// Returns the machine of the edge pictures: the machine of the comparison as the pipeline `jitp-field` configures
+/// it.
 fn machine(query: &CompareQuery) -> Result<MachineConfig, CliError> {
     let mut file = query.shared.clone();
     file.set("pipeline", "jitp-field", "compare")?;

@@ -1,11 +1,11 @@
-//! The table on the terminal.
+//! The table that `pxpl5 compare` prints on the terminal.
 
 use crate::numbers::count_of;
 use pxpl5::Cause;
 use pxpl5::compare::{Comparison, ComparisonRow, MeanInterval};
 use std::fmt::Write as _;
 
-/// Columns: name, unit, width.
+/// Name, unit and width in characters of each column.
 const COLUMNS: [(&str, &str, usize); 14] = [
     ("to light", "ms", 9),
     ("sd", "ms", 6),
@@ -23,10 +23,10 @@ const COLUMNS: [(&str, &str, usize); 14] = [
     ("triangles", "possible", 10),
 ];
 
-/// Width of the names.
+/// Width of the column of pipeline names, in characters.
 const NAME: usize = 24;
 
-/// The comparison for people.
+/// Returns the comparison as text for the terminal.
 pub(super) fn text(comparison: &Comparison) -> String {
     let mut text = heading(comparison);
     let _ = writeln!(text, "\n{}", header());
@@ -63,11 +63,13 @@ fn header() -> String {
 }
 
 fn line(row: &ComparisonRow) -> String {
+    // A failed row shows its reason instead of numbers.
     if let Some(failure) = &row.failure {
         return format!("{:<NAME$} {failure}\n", row.pipeline);
     }
     let missed =
         row.not_shown.zip(row.due).map_or_else(|| "-".to_owned(), |(missed, due)| format!("{missed} of {due}"));
+    // The cells follow the order of `COLUMNS`.
     let values = [
         number(row.head_to_light_ms.mean, 2),
         number(row.head_to_light_ms.sd, 2),
@@ -88,13 +90,14 @@ fn line(row: &ComparisonRow) -> String {
     format!("{:<NAME$}{cells}\n", row.pipeline)
 }
 
-/// The error by cause.
+/// Returns the table of the error by cause.
 fn causes(comparison: &Comparison) -> String {
     let mut text = format!("\n{:<NAME$}", "error by cause, px");
     for cause in Cause::ALL {
         let _ = write!(text, " {:>11}", cause.name());
     }
     let _ = writeln!(text, " {:>11} {:>11}", "interaction", "all");
+    // Rows without an evaluation have no causes.
     for row in comparison.pipelines.iter().filter(|row| !row.causes.is_empty()) {
         let _ = write!(text, "{:<NAME$}", row.pipeline);
         row.causes.iter().for_each(|share| {

@@ -1,43 +1,44 @@
-//! Commands of the debugger, read from a line.
+//! Parser of the debugger's command lines.
 
 use super::condition::Condition;
 use super::words::{board, number, time};
 use pxpl5::{Board, PeriodNumber, Time};
 
-/// What a line asks for.
+/// A parsed command of the debugger.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Command {
-    /// Nothing: an empty line, or a comment.
+    /// An empty line or a comment.
     Nothing,
     RunToEnd,
     RunTo(Time),
     RunToField(PeriodNumber),
     RunUntil(Condition),
-    /// To the next event of a board.
+    /// Runs to the next event of a board.
     Next(Board),
     Step(u64, StepOf),
     Show(Pane),
-    /// What one board does.
+    /// Shows the state of one board.
     ShowBoard(Board),
-    /// Stops where code comes to a place; lists the places without one.
+    /// Sets a breakpoint at a label or address, or lists all breakpoints if none is given.
     Break(Option<String>),
     Delete(String),
     Registers(Board),
     Disassemble(Board, Option<String>, u64),
     Memory(Board, String, u64),
-    /// The bits of a pixel: renderer, column, row.
+    /// Shows the bits of a pixel, given by renderer, column and row.
     Pixel(u64, u64, u64),
-    /// Which pixels of a renderer are enabled.
+    /// Shows a map of the enabled pixels of a renderer.
     Enabled(u64),
-    /// What stands before a viewer of a surface, into a file if one is named.
+    /// Shows or saves the picture that the beam has drawn on a surface, given by the surface's label and an optional
+    /// file.
     Seen(String, Option<String>),
-    /// What should stand there.
+    /// Shows or saves the ideal picture of a surface, given by the surface's label and an optional file.
     Ideal(String, Option<String>),
     Help,
     Quit,
 }
 
-/// What a step is.
+/// The unit of a `step` command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum StepOf {
     Event,
@@ -45,7 +46,7 @@ pub(super) enum StepOf {
     Field,
 }
 
-/// A part of what is shown.
+/// A pane of the debugger's screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pane {
     Time,
@@ -56,7 +57,7 @@ pub(super) enum Pane {
 }
 
 impl Pane {
-    /// All of them with their names, in the order of the screen.
+    /// All panes with their names, in screen order.
     pub(super) const ALL: [(&'static str, Self); 5] = [
         ("time", Self::Time),
         ("boards", Self::Boards),
@@ -66,7 +67,7 @@ impl Pane {
     ];
 }
 
-/// Every command with what it does; the guide's table is the same.
+/// Forms and explanations of all commands. A test compares them with the table in the guide.
 pub(super) const HELP: [(&str, &str); 19] = [
     ("run", "to the end, or until code comes to a breakpoint"),
     ("run to TIME", "12.5ms, 300us, 40ns, or +1ms from now"),
@@ -89,20 +90,21 @@ pub(super) const HELP: [(&str, &str); 19] = [
     ("quit", "leave"),
 ];
 
-/// The commands of a text: lines, divided by semicolons.
+/// Splits a text at line ends and semicolons into commands, without comments and empty commands.
 pub(super) fn split(text: &str) -> Vec<String> {
     let commands = text.lines().flat_map(|line| line.split('#').next().unwrap_or_default().split(';'));
     commands.map(|command| command.trim().to_owned()).filter(|command| !command.is_empty()).collect()
 }
 
-/// Reads a command; times with `+` count from `now`.
+/// Parses a command. A time with a leading `+` is relative to `now`.
 ///
 /// # Errors
 ///
-/// What was expected, and what was found.
+/// Returns the expected form and the text found.
 pub(super) fn parse(text: &str, now: Time) -> Result<Command, String> {
     let words: Vec<&str> = text.split_whitespace().collect();
     let Some((name, rest)) = words.split_first() else { return Ok(Command::Nothing) };
+    // Forms with fixed words come before forms that parse the remaining words.
     match (*name, rest) {
         ("run", []) => Ok(Command::RunToEnd),
         ("run", ["to", "field", field]) => Ok(Command::RunToField(PeriodNumber(number("run to field", field)?))),
@@ -132,10 +134,12 @@ pub(super) fn parse(text: &str, now: Time) -> Result<Command, String> {
     }
 }
 
-/// What is wrong with words that are no command.
+/// Returns the error message for a line that is no command: the forms of the command `name`, or all command names if
+/// `name` is unknown.
 fn unknown(name: &str, text: &str) -> String {
     let forms: Vec<&str> =
         HELP.iter().map(|(form, _)| *form).filter(|form| form.split(' ').next() == Some(name)).collect();
+    // An unknown name gets the list of all commands.
     if forms.is_empty() {
         let mut names: Vec<&str> = HELP.iter().filter_map(|(form, _)| form.split(' ').next()).collect();
         names.dedup();
@@ -144,7 +148,7 @@ fn unknown(name: &str, text: &str) -> String {
     format!("expected {}, found `{text}`", forms.join(" or "))
 }
 
-/// A board with nothing behind it.
+/// Returns the parsed board if no words are left after its name.
 fn whole((board, rest): (Board, &[&str])) -> Result<Board, String> {
     match rest {
         [] => Ok(board),
@@ -153,7 +157,7 @@ fn whole((board, rest): (Board, &[&str])) -> Result<Board, String> {
 }
 
 fn pane_of(name: &str) -> Option<Pane> {
-    // The ring as a board has nothing that its pane does not show.
+    // The pane shows everything that the ring has as a board, so "show ring" names the pane.
     Pane::ALL.iter().find(|(known, _)| *known == name).map(|(_, pane)| *pane)
 }
 
@@ -171,6 +175,7 @@ fn step(words: &[&str]) -> Result<Command, String> {
         [count, kind] => (number("step", count)?, *kind),
         _ => return Err(format!("step: expected [N] [event|line|field], found `{}`", words.join(" "))),
     };
+    // Plural forms are accepted: `step 2 lines`.
     let kind = match kind.trim_end_matches('s') {
         "event" => StepOf::Event,
         "line" => StepOf::Line,
@@ -180,8 +185,9 @@ fn step(words: &[&str]) -> Result<Command, String> {
     Ok(Command::Step(count, kind))
 }
 
-/// Instructions and words that are shown unless said, and at most.
+/// Default number of instructions or words shown.
 const SHOWN: u64 = 16;
+/// Maximum number of instructions or words shown.
 const MOST: u64 = 4_096;
 
 fn count(words: &[&str]) -> Result<u64, String> {

@@ -1,26 +1,26 @@
-//! Conditions to run to.
+//! Conditions for the command `run until` of the debugger.
 
 use super::words::{board, number};
 use pxpl5::{Board, Stepper};
 
-/// What must hold for the run to stop.
+/// A condition that stops a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Condition {
-    /// A surface, or a display memory, has swapped.
+    /// A surface or a display memory has swapped since the run was resumed.
     Swap,
-    /// A region has arrived at a display.
+    /// A region has arrived at a display since the run was resumed.
     Region,
-    /// The words that wait in a renderer's FIFO.
+    /// Comparison with the number of words in a renderer's input FIFO.
     Fifo(usize, Comparison),
-    /// Messages that wait in the inbox of the host or a graphics processor.
+    /// Comparison with the number of messages in the inbox of the host or a graphics processor.
     Inbox(Board, Comparison),
-    /// Occupied channels of the ring.
+    /// Comparison with the number of occupied ring channels.
     Channels(Comparison),
-    /// A program of a board waits for something whose name begins so.
+    /// A program on a board waits for an event whose name starts with this text.
     Waits(Board, String),
 }
 
-/// A number and how it is compared.
+/// A relation and the number to compare with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Comparison {
     relation: Relation,
@@ -36,7 +36,7 @@ enum Relation {
     More,
 }
 
-/// What had happened when the run was told to go on.
+/// Counts of swaps and arrivals at the instant when the run was resumed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Before {
     swaps: usize,
@@ -51,10 +51,13 @@ impl Before {
 }
 
 impl Condition {
+    /// Parses a condition from words.
+    ///
     /// # Errors
     ///
-    /// What was expected, and what was found.
+    /// Returns the expected form and the text found.
     pub(super) fn parse(words: &[&str]) -> Result<Self, String> {
+        // The first word selects the kind of condition.
         match words {
             ["swap"] => Ok(Self::Swap),
             ["region"] => Ok(Self::Region),
@@ -77,9 +80,10 @@ impl Condition {
         }
     }
 
-    /// What is wrong with it on a machine, if anything.
+    /// Returns an error if the condition names a board that the machine does not have.
     pub(super) fn check(&self, stepper: &Stepper) -> Result<(), String> {
         let renderers = stepper.record().renderers().len();
+        // Only conditions with a board can be wrong for a machine.
         match self {
             Self::Fifo(renderer, _) if *renderer >= renderers => {
                 Err(format!("renderer: expected 0 to {}, found {renderer}", renderers - 1))
@@ -91,9 +95,10 @@ impl Condition {
         }
     }
 
-    /// Whether it holds now.
+    /// Returns true if the condition holds now.
     pub(super) fn holds(&self, stepper: &Stepper, before: Before) -> bool {
         let observation = stepper.record().observation();
+        // Swaps and arrivals count from the instant when the run was resumed.
         match self {
             Self::Swap => observation.swaps.len() > before.swaps,
             Self::Region => observation.arrivals.len() > before.arrivals,

@@ -1,4 +1,4 @@
-//! `pxpl5 debug`: an experiment that goes on when it is told to, and shows what its boards do.
+//! The command `pxpl5 debug`, an interactive debugger that stops a run and shows the state of all boards.
 
 mod command;
 mod condition;
@@ -24,7 +24,7 @@ use session::Session;
 use std::fmt::Display;
 use std::path::PathBuf;
 
-/// Run one experiment in pieces and look at its boards between them.
+/// Run one experiment step by step and inspect its boards.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 debug --pipeline slats --scene mig --triangles 100
@@ -35,10 +35,10 @@ docs/guide/debugger.md explains the commands.")]
 pub(crate) struct DebugArgs {
     #[command(flatten)]
     settings: SettingArgs,
-    /// Do these commands, divided by semicolons, print what they say, and end.
+    /// Execute these commands, divided by semicolons, print their output, and end.
     #[arg(long = "do", value_name = "COMMANDS")]
     commands: Option<String>,
-    /// The same with the commands of a file, one a line.
+    /// Execute the commands of a file, one command a line, print their output, and end.
     #[arg(long, value_name = "FILE", conflicts_with = "commands")]
     do_file: Option<PathBuf>,
     #[command(flatten)]
@@ -63,7 +63,7 @@ pub(crate) fn run(args: DebugArgs) -> Result<(), CliError> {
     }
 }
 
-/// The commands to be done, if any are given.
+/// Returns the commands of `--do` or `--do-file`, or `None` for an interactive session.
 fn script(commands: Option<String>, file: Option<PathBuf>) -> Result<Option<Vec<String>>, CliError> {
     let text = match file {
         None => commands,
@@ -76,7 +76,7 @@ fn script(commands: Option<String>, file: Option<PathBuf>) -> Result<Option<Vec<
     Ok(text.map(|text| split(&text)))
 }
 
-/// Does commands one after the other; the first that is not understood ends it.
+/// Executes commands in order and stops at the first error.
 fn scripted(mut session: Session, commands: &[String]) -> Result<(), CliError> {
     for command in commands {
         print(&format!("> {command}\n"))?;

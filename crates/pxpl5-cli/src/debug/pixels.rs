@@ -1,4 +1,4 @@
-//! Pixels: in a renderer's array, and before an eye.
+//! Debugger views of pixels, in a renderer's array and on a display surface.
 
 use super::words::below;
 use image::RgbImage;
@@ -7,7 +7,7 @@ use pxpl5::run::bit_of;
 use pxpl5::{Stepper, SurfaceId};
 use std::fmt::Write as _;
 
-/// Columns and rows of an array.
+/// Columns and rows of a pixel array.
 const SIDE: u64 = 128;
 
 fn array(stepper: &Stepper, renderer: u64) -> Result<(impl PixelArray, usize), String> {
@@ -16,7 +16,7 @@ fn array(stepper: &Stepper, renderer: u64) -> Result<(impl PixelArray, usize), S
     found.ok_or_else(|| format!("renderer {number} has executed no commands that change pixels (or --pixels off)"))
 }
 
-/// The fields of a pixel's memory.
+/// Returns the fields of a pixel's memory as text.
 pub(super) fn pixel(stepper: &Stepper, renderer: u64, x: u64, y: u64) -> Result<String, String> {
     let x = below("column", &x.to_string(), SIDE)?;
     let y = below("row", &y.to_string(), SIDE)?;
@@ -31,15 +31,17 @@ pub(super) fn pixel(stepper: &Stepper, renderer: u64, x: u64, y: u64) -> Result<
     Ok(text)
 }
 
-/// Pixels that a character of the map stands for, across and down.
+/// Width and height in pixels of the block that one character of the map represents.
 const BLOCK: (u64, u64) = (2, 4);
 
-/// Which pixels are enabled: `#` all of a block, `+` some, `.` none.
+/// Returns a map of enabled pixels: `#` for a block that is fully enabled, `+` for a partly enabled block, `.` for a
+/// disabled block.
 pub(super) fn enabled(stepper: &Stepper, renderer: u64) -> Result<String, String> {
     let (array, number) = array(stepper, renderer)?;
     let plane = array.enable();
     let count: u32 = plane.iter().map(|word| word.count_ones()).sum();
     let mut text = format!("renderer {number}: {count} of {} pixels enabled\n", SIDE * SIDE);
+    // Each character stands for a block of 2 x 4 pixels.
     for row in 0..SIDE / BLOCK.1 {
         let line = (0..SIDE / BLOCK.0).map(|column| {
             let pixels = (0..BLOCK.0 * BLOCK.1).map(|n| (BLOCK.0 * column + n % BLOCK.0, BLOCK.1 * row + n / BLOCK.0));
@@ -65,14 +67,14 @@ fn surface(stepper: &Stepper, label: &str) -> Result<SurfaceId, String> {
     })
 }
 
-/// What the beam has drawn so far.
+/// Describes the picture that the beam has drawn so far, and saves the picture if a file is given.
 pub(super) fn seen(stepper: &Stepper, label: &str, file: Option<&str>) -> Result<String, String> {
     let id = surface(stepper, label)?;
     let picture = stepper.seen(id).ok_or_else(|| format!("nothing can be said of {label}"))?;
     picture_said(&picture, label, file)
 }
 
-/// What should be seen now.
+/// Describes the ideal picture at the current time, and saves the picture if a file is given.
 pub(super) fn ideal(stepper: &Stepper, label: &str, file: Option<&str>) -> Result<String, String> {
     let id = surface(stepper, label)?;
     let ideal = stepper.ideal_picture(id).ok_or_else(|| format!("there is no ideal picture of {label}"))?;
@@ -81,6 +83,7 @@ pub(super) fn ideal(stepper: &Stepper, label: &str, file: Option<&str>) -> Resul
 
 fn picture_said(picture: &RgbImage, label: &str, file: Option<&str>) -> Result<String, String> {
     let (width, height) = picture.dimensions();
+    // The pixel at the top left serves as the background colour.
     let background = picture.get_pixel(0, 0);
     let drawn = picture.pixels().filter(|pixel| *pixel != background).count();
     let mut text = format!("{label}: {width} x {height} pixels, {drawn} other than that of the left top\n");

@@ -1,4 +1,4 @@
-//! The debugger on a terminal: panes of what there is to see, what commands said, and a line to type them.
+//! The debugger's terminal screen: panes of machine state, command output, and an input line.
 
 use super::command::Pane;
 use super::session::Session;
@@ -9,30 +9,31 @@ use ratatui::widgets::{Block, Paragraph};
 use std::io;
 use std::time::Duration;
 
-/// What somebody has typed and read.
+/// Input line, output log and history of the debugger's screen.
 #[derive(Default)]
 struct Talk {
-    /// What was said, oldest first.
+    /// Lines of output, oldest first.
     log: Vec<String>,
     line: String,
-    /// Lines that were done, and how far back somebody has gone in them.
+    /// Executed command lines, oldest first.
     history: Vec<String>,
+    /// Number of lines by which the user has moved back in the history.
     back: usize,
-    /// Lines by which the boards are scrolled.
+    /// Lines by which the pane of boards is scrolled.
     scroll: u16,
 }
 
-/// Columns from which on panes stand beside each other.
+/// Minimum terminal width, in columns, for panes side by side.
 const WIDE: u16 = 100;
 
-/// Lines of the log that are kept.
+/// Maximum number of log lines kept.
 const LOG: usize = 2_000;
 
-/// Shows a session until somebody quits.
+/// Runs the screen until the user quits.
 ///
 /// # Errors
 ///
-/// When the terminal cannot be used.
+/// Fails when the terminal cannot be used.
 pub(super) fn run(session: Session) -> io::Result<()> {
     let mut session = session.interrupted_by(key_waits);
     let mut terminal = ratatui::try_init()?;
@@ -40,7 +41,9 @@ pub(super) fn run(session: Session) -> io::Result<()> {
         log: vec!["help lists the commands; F7 steps an event, F8 a line, F9 a field".to_owned()],
         ..Talk::default()
     };
+    // The closure collects every terminal error, so that the terminal is restored before the error is returned.
     let result = (|| {
+        // Redraw after every event, even if no key was pressed.
         while !session.is_over() {
             terminal.draw(|frame| draw(frame, &session, &talk))?;
             if let Event::Key(key) = event::read()?
@@ -55,12 +58,13 @@ pub(super) fn run(session: Session) -> io::Result<()> {
     result
 }
 
-/// Whether a key was pressed while the machine ran: the run stands still then.
+/// Returns true if a key was pressed during a run. The session then interrupts the run.
 fn key_waits() -> bool {
     event::poll(Duration::ZERO).unwrap_or(false)
 }
 
 fn pressed(session: &mut Session, talk: &mut Talk, key: KeyEvent) {
+    // Letters edit the input line; function keys are short for steps.
     match key.code {
         KeyCode::Char('c' | 'd') if key.modifiers.contains(KeyModifiers::CONTROL) => say(session, talk, "quit"),
         KeyCode::Char(letter) => talk.line.push(letter),
@@ -83,7 +87,7 @@ fn pressed(session: &mut Session, talk: &mut Talk, key: KeyEvent) {
     }
 }
 
-/// A line from the history, so many back; none at 0.
+/// Puts the history line `back` lines before the newest into the input line, or clears the line if `back` is 0.
 fn recall(talk: &mut Talk, back: usize) {
     talk.back = back.min(talk.history.len());
     let place = talk.history.len() - talk.back;
@@ -94,6 +98,7 @@ fn say(session: &mut Session, talk: &mut Talk, line: &str) {
     talk.log.push(format!("> {line}"));
     let said = session.obey(line).unwrap_or_else(|error| error);
     talk.log.extend(said.lines().map(str::to_owned));
+    // Keep the log bounded by dropping its oldest lines.
     let gone = talk.log.len().saturating_sub(LOG);
     talk.log.drain(..gone);
 }
@@ -101,11 +106,13 @@ fn say(session: &mut Session, talk: &mut Talk, line: &str) {
 fn draw(frame: &mut Frame<'_>, session: &Session, talk: &Talk) {
     let rows = Layout::vertical([Constraint::Fill(3), Constraint::Fill(2), Constraint::Length(1)]);
     let [machine, log, line] = rows.areas(frame.area());
+    // Draw the five panes. Only the pane of boards scrolls.
     for ((title, pane), area) in Pane::ALL.iter().zip(panes(machine)) {
         let scroll = if *pane == Pane::Boards { talk.scroll } else { 0 };
         let text = Paragraph::new(session.pane(*pane)).scroll((scroll, 0)).block(Block::bordered().title(*title));
         frame.render_widget(text, area);
     }
+    // Show the newest log lines that fit, then the input line with its cursor.
     let shown = usize::from(log.height.saturating_sub(1));
     let last = talk.log[talk.log.len().saturating_sub(shown)..].join("\n");
     frame.render_widget(Paragraph::new(last).block(Block::new().title("commands")), log);
@@ -114,13 +121,14 @@ fn draw(frame: &mut Frame<'_>, session: &Session, talk: &Talk) {
     frame.set_cursor_position(Position::new(column.min(line.width.saturating_sub(1)), line.y));
 }
 
-/// Areas of the panes in their order: time, boards, waits, ring, timeline.
+/// Returns the areas of the panes in order: time, boards, waits, ring, timeline.
 fn panes(area: Rect) -> [Rect; 5] {
     if area.width < WIDE {
         let rows =
             [Constraint::Length(8), Constraint::Fill(2), Constraint::Fill(1), Constraint::Fill(1), Constraint::Fill(1)];
         return Layout::vertical(rows).areas(area);
     }
+    // A wide terminal has two columns.
     let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Fill(1)]).areas(area);
     let [time, boards] = Layout::vertical([Constraint::Length(8), Constraint::Fill(1)]).areas(left);
     let thirds = [Constraint::Fill(1), Constraint::Fill(1), Constraint::Fill(1)];

@@ -1,4 +1,4 @@
-//! A session: commands done to a run, and what they say.
+//! A debugger session, which applies commands to a run and returns their output.
 
 use super::command::{Command, HELP, Pane, StepOf, parse};
 use super::condition::{Before, Condition};
@@ -11,18 +11,18 @@ use pxpl5::{Board, Pause, Span, Stepper, Time};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-/// A run and what the one who debugs it has set.
+/// The run under the debugger and the user's breakpoints.
 pub(super) struct Session {
     stepper: Stepper,
     breakpoints: BTreeSet<u32>,
-    /// What code met at breakpoints when it last did.
+    /// Processors and addresses that hit a breakpoint at the most recent stop.
     hits: Vec<BreakpointHit>,
     is_over: bool,
-    /// Whether somebody wants a run to stand still before it has come where it was told to.
+    /// Callback that returns true when the user wants to interrupt the run.
     is_interrupted: fn() -> bool,
 }
 
-/// Events between two questions whether somebody interrupts.
+/// Number of events between two calls of the interrupt callback.
 const EVENTS_BETWEEN: u64 = 10_000;
 
 impl Session {
@@ -30,26 +30,29 @@ impl Session {
         Self { stepper, breakpoints: BTreeSet::new(), hits: Vec::new(), is_over: false, is_interrupted: || false }
     }
 
-    /// The same session, whose runs stand still when `is_interrupted` says so; it is asked once a field, and now and then between.
+    /// Returns the session with an interrupt callback. The run stops when `is_interrupted` returns true. The session
+    /// calls it once a field and every 10,000 events.
     #[cfg(feature = "screen")]
     pub(super) fn interrupted_by(self, is_interrupted: fn() -> bool) -> Self {
         Self { is_interrupted, ..self }
     }
 
-    /// Whether somebody has quit.
+    /// Returns true if the user has quit.
     pub(super) const fn is_over(&self) -> bool {
         self.is_over
     }
 
-    /// Does what a line says; what comes of it, as lines.
+    /// Executes a command line and returns its output as lines.
     ///
     /// # Errors
     ///
-    /// What was expected, and what was found; nothing has changed then.
+    /// Returns the expected form and the text found. The session is unchanged after an error.
     pub(super) fn obey(&mut self, line: &str) -> Result<String, String> {
+        // Only `run`, `next` and `step` change the machine.
         match parse(line, self.stepper.now())? {
             Command::Nothing => Ok(String::new()),
             Command::RunToEnd => {
+                // One picosecond beyond the last instant, so that the run also executes the events at its end.
                 let behind = self.stepper.end() + Span(1);
                 self.run_to(behind)
             }
@@ -77,7 +80,7 @@ impl Session {
         }
     }
 
-    /// A part of what there is to see.
+    /// Returns the text of one pane of the screen.
     pub(super) fn pane(&self, pane: Pane) -> String {
         match pane {
             Pane::Time => views::time(&self.stepper),
@@ -90,10 +93,12 @@ impl Session {
 
     fn run_to(&mut self, time: Time) -> Result<String, String> {
         let now = self.stepper.now();
+        // A run cannot go back in time.
         if time < now {
             return Err(format!("expected an instant not before now, {}, found {}", ms(now), ms(time)));
         }
         let is_interrupted = self.is_interrupted;
+        // Run field by field, so that the user can interrupt a long run.
         Ok(self.go(|stepper| {
             loop {
                 let next = stepper.record().tick(stepper.period().next());
@@ -131,6 +136,7 @@ impl Session {
                     StepOf::Line => stepper.step_line(),
                     StepOf::Field => stepper.step_period(),
                 };
+                // A breakpoint or the end stops the remaining steps.
                 if pause != Pause::Reached {
                     break;
                 }
@@ -139,7 +145,7 @@ impl Session {
         })
     }
 
-    /// Goes on, and says where it stands then.
+    /// Resumes the run with `piece` and returns the reason and place of the next stop.
     fn go(&mut self, piece: impl FnOnce(&mut Stepper) -> Pause) -> String {
         let mut text = match piece(&mut self.stepper) {
             Pause::Reached => String::new(),
@@ -154,7 +160,7 @@ impl Session {
         text
     }
 
-    /// What code met.
+    /// Describes the breakpoints of the last stop.
     fn met(&self) -> String {
         let mut text = String::new();
         for hit in &self.hits {
@@ -190,11 +196,14 @@ impl Session {
 
     fn registers(&self, board: Board) -> Result<String, String> {
         let processor = views::with_code(&self.stepper, board)?;
+        // A processor at a breakpoint has the registers of that instant. Other processors show the end of their last
+        // call.
         let hit = self.hits.iter().rev().find(|hit| self.stepper.record().ports().board(hit.gp) == board);
         let of_call = processor.with_processor(|processor| processor.state().clone());
         let state = hit.map(|hit| (*hit.state).clone()).or(of_call).ok_or("no processor")?;
         let whence = if hit.is_some() { "at the breakpoint" } else { "after the last call" };
         let mut text = format!("{board}, {whence}: pc {:#010x}, psr {:#010x}\n", state.pc, state.psr);
+        // Eight registers in a line.
         for (name, registers) in [("r", &state.r), ("f", &state.f)] {
             for (row, four) in registers.chunks(8).enumerate() {
                 let words: Vec<String> = four.iter().map(|word| format!("{word:08x}")).collect();
@@ -207,6 +216,7 @@ impl Session {
     fn disassemble(&self, board: Board, place: Option<&str>, count: u64) -> Result<String, String> {
         let processor = views::with_code(&self.stepper, board)?;
         let hit = self.hits.iter().rev().find(|hit| self.stepper.record().ports().board(hit.gp) == board);
+        // The listing starts at the given place, at the breakpoint, or at the base of the code.
         let begin = match (place, hit) {
             (Some(place), _) => views::place_in_code(&self.stepper, Some(board), place)?,
             (None, Some(hit)) => hit.address,
@@ -229,6 +239,7 @@ impl Session {
         let begin = views::place_in_code(&self.stepper, Some(board), place)?;
         let words = views::words(processor, begin, count)?;
         let mut text = String::new();
+        // Four words in a line.
         for (row, four) in words.chunks(4).enumerate() {
             let row_words: Vec<String> = four.iter().map(|word| format!("{word:08x}")).collect();
             let _ = writeln!(text, "{:#010x}  {}", begin + 16 * row as u32, row_words.join(" "));

@@ -1,4 +1,4 @@
-//! What there is to see of a run, as lines of text: of the screen's panes and of scripts alike.
+//! Text views of a run's state, used by the screen and by scripts.
 
 use super::words::address;
 use i860::Program;
@@ -8,18 +8,19 @@ use pxpl5::{Board, Stepper};
 use std::fmt::Write as _;
 use std::sync::Arc;
 
-/// Where the run stands, in a line, and what happened last where that was an event.
+/// Returns one line with the current time and field, and the last event if there is one.
 pub(super) fn place(stepper: &Stepper) -> String {
     let last = stepper.last().map_or_else(String::new, |last| format!(", {}: {}", last.board, last.what));
     format!("{}, field {}{last}\n", ms(stepper.now()), stepper.period())
 }
 
-/// Time, beam, what comes next, and the hash of the trace so far.
+/// Returns the time, the beam's line, the next event, and the hash of the trace so far.
 pub(super) fn time(stepper: &Stepper) -> String {
     let mut text = String::new();
     let fields = stepper.experiment().length();
     let beam = stepper.beam_line().map_or_else(String::new, |line| format!(", beam in line {line}"));
     let _ = writeln!(text, "now     {}, field {} of {fields}{}", ms(stepper.now()), stepper.period(), beam);
+    // Lines for a failure, the last event and the next event appear only if they exist.
     if let Some(error) = stepper.failure() {
         let _ = writeln!(text, "failed  {error}");
     }
@@ -34,17 +35,17 @@ pub(super) fn time(stepper: &Stepper) -> String {
     text
 }
 
-/// A line for each board.
+/// Returns one line for each board.
 pub(super) fn boards(stepper: &Stepper) -> String {
     let lines = stepper.boards().filter_map(|board| Some((board.to_string(), stepper.says(board)?)));
     lines.map(|(name, says)| format!("{name:<12} {says}\n")).collect()
 }
 
-/// What is said of one board.
+/// Returns the state of one board as text.
 ///
 /// # Errors
 ///
-/// For a board that the machine does not have.
+/// Fails if the machine does not have the board.
 pub(super) fn board(stepper: &Stepper, board: Board) -> Result<String, String> {
     check(stepper, board)?;
     let Some(says) = stepper.says(board) else { return Ok(ring(stepper)) };
@@ -52,17 +53,18 @@ pub(super) fn board(stepper: &Stepper, board: Board) -> Result<String, String> {
     Ok(format!("{board}  {says}\n{details}"))
 }
 
-/// Who waits for whom or what.
+/// Returns one line for each blocked board and the board or event that the board waits for.
 pub(super) fn waits(stepper: &Stepper) -> String {
     let blocked = stepper.machine().blocked();
     blocked.iter().map(|wait| format!("{:<12} waits for {}\n", wait.board, wait.waits_for)).collect()
 }
 
-/// A line for each channel, and what waits for one.
+/// Returns one line for each ring channel, and a line for each message that waits for a channel.
 pub(super) fn ring(stepper: &Stepper) -> String {
     let ports = stepper.record().ports();
     let on = stepper.channels();
     let mut text = String::new();
+    // One line for each channel: the message on the channel, or "-" if the channel is free.
     for channel in 0..stepper.record().config().ring.channels as usize {
         let Some(message) = on.iter().find(|message| message.channel == channel) else {
             let _ = writeln!(text, "{channel}  -");
@@ -76,6 +78,7 @@ pub(super) fn ring(stepper: &Stepper) -> String {
         let [from, to] = [message.source, message.destination].map(|node| ports.board(node));
         let _ = writeln!(text, "{channel}  {from} -> {to}, {} words, since {since}, {end}", message.words);
     }
+    // Messages that have no channel yet, with the reason.
     for message in stepper.record().ring().waiting() {
         let waits = message.blocked(|node| ports.board(node).to_string());
         let _ = writeln!(text, "   {} waits for {}", ports.board(message.source), waits.waits_for);
@@ -83,13 +86,14 @@ pub(super) fn ring(stepper: &Stepper) -> String {
     text
 }
 
-/// Stages that are shown.
+/// Maximum number of stages shown.
 const STAGES: usize = 12;
 
-/// The last stages of pictures that have begun, the newest first.
+/// Returns the most recent stages of pictures, newest first. Stages that have not begun are left out.
 pub(super) fn timeline(stepper: &Stepper) -> String {
     let record = stepper.record();
     let mut stages = record.stages();
+    // Leave out stages in the future, then show the most recent ones.
     stages.retain(|stage| stage.begin <= stepper.now());
     stages.sort_by_key(|stage| stage.begin);
     let first = stages.len().saturating_sub(STAGES);
@@ -108,11 +112,11 @@ pub(super) fn timeline(stepper: &Stepper) -> String {
     text
 }
 
-/// Whether a machine has a board.
+/// Checks that the machine has a board.
 ///
 /// # Errors
 ///
-/// Which ones it has.
+/// Returns the range of boards that the machine has.
 pub(super) fn check(stepper: &Stepper, board: Board) -> Result<(), String> {
     let record = stepper.record();
     let (what, number, count) = match board {
@@ -127,11 +131,11 @@ pub(super) fn check(stepper: &Stepper, board: Board) -> Result<(), String> {
     Err(format!("expected {what} 0 to {}, found {board}", count - 1))
 }
 
-/// A board whose time comes from code.
+/// Returns a processor board whose time comes from executed i860 code.
 ///
 /// # Errors
 ///
-/// When it has no code.
+/// Fails if the board runs no code (`--level cycle` is off).
 pub(super) fn with_code(stepper: &Stepper, board: Board) -> Result<&GpBoard, String> {
     check(stepper, board)?;
     let found = stepper.machine().board(board).filter(|gp| gp.with_processor(|_| ()).is_some());
@@ -142,26 +146,27 @@ fn program_of(board: &GpBoard) -> Option<Arc<Program>> {
     board.with_processor(|processor| processor.program().cloned()).flatten()
 }
 
-/// The programs that a board's memory holds, the one that ran last first.
+/// Returns the programs in a board's memory, the most recently executed first.
 fn programs_of(board: &GpBoard) -> Vec<Arc<Program>> {
     board.with_processor(|processor| processor.programs().cloned().collect()).unwrap_or_default()
 }
 
-/// Where the code of a board begins that it ran last.
+/// Returns the base address of the code that a board executed last.
 ///
 /// # Errors
 ///
-/// When it has run none.
+/// Fails if the board has run no code yet.
 pub(super) fn base_of_code(stepper: &Stepper, board: Board) -> Result<u32, String> {
     let program = program_of(with_code(stepper, board)?);
     program.map(|program| program.base).ok_or_else(|| format!("{board} has run no code yet"))
 }
 
-/// An address, or a label of the code of a board, or of the first that has such a label.
+/// Returns the address that `text` gives as a number or label. A label is looked up in the code of `board`, or in the
+/// code of all graphics processors if `board` is `None`.
 ///
 /// # Errors
 ///
-/// Which labels there are.
+/// Returns the known labels.
 pub(super) fn place_in_code(stepper: &Stepper, board: Option<Board>, text: &str) -> Result<u32, String> {
     let all = (0..stepper.record().ports().gps.len()).map(Board::Gp);
     let boards = board.map_or_else(|| all.collect(), |board| vec![board]);
@@ -169,9 +174,11 @@ pub(super) fn place_in_code(stepper: &Stepper, board: Option<Board>, text: &str)
     if with_code.is_empty() {
         return Err("expected a machine whose processors run code: --level cycle".to_owned());
     }
+    // Instructions are aligned to 4 bytes.
     if let Some(at) = address(text).map(|at| at & !3) {
         return Ok(at);
     }
+    // Any other text must be a label of loaded code.
     let programs: Vec<Arc<Program>> = with_code.iter().flat_map(|board| programs_of(board)).collect();
     let found = programs.iter().find_map(|program| program.symbol(text));
     found.ok_or_else(|| {
@@ -182,18 +189,18 @@ pub(super) fn place_in_code(stepper: &Stepper, board: Option<Board>, text: &str)
     })
 }
 
-/// The labels at an address of a board's code.
+/// Returns the labels at an address of a board's code.
 pub(super) fn labels(board: &GpBoard, at: u32) -> Vec<String> {
     let programs = programs_of(board);
     let labels = programs.iter().flat_map(|program| program.labels.clone());
     labels.filter(|(_, place)| *place == at).map(|(name, _)| name).collect()
 }
 
-/// Words of a board's memory.
+/// Returns `count` words of a board's memory from address `at`.
 ///
 /// # Errors
 ///
-/// When they are not all there.
+/// Fails if a word lies outside the memory.
 pub(super) fn words(board: &GpBoard, at: u32, count: u64) -> Result<Vec<u32>, String> {
     let read = board.with_processor(|processor| processor.read(at, count as usize));
     read.ok_or("no processor")?.map_err(|error| error.to_string())

@@ -1,16 +1,18 @@
-//! Words of commands: times, addresses, numbers. An error says what was expected and found.
+//! Parsers of times, addresses and numbers in debugger commands. An error states the expected form and the text
+//! found.
 
 use pxpl5::{Board, Span, Time};
 
-/// A time such as `12.5ms`, `300us`, `40ns` or `7ps`, or with `+` so much after `now`.
+/// Parses a time such as `12.5ms`, `300us`, `40ns` or `7ps`. With a leading `+` the time is relative to `now`.
 pub(super) fn time(text: &str, now: Time) -> Result<Time, String> {
     let refused = || format!("expected a time such as 12.5ms, 300us, 40ns or +1ms, found `{text}`");
     let (begin, length) = text.strip_prefix('+').map_or((Time::ZERO, text), |length| (now, length));
     span(length).map(|span| begin + span).ok_or_else(refused)
 }
 
-/// Decimal digits are counted in picoseconds, so that nothing is rounded.
+/// Parses a duration exactly, in picoseconds. Digits below one picosecond are refused, so nothing is rounded.
 fn span(text: &str) -> Option<Span> {
+    // Split the number from its unit.
     let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
     let (unit, places): (u64, usize) = match &text[digits.len()..] {
         "s" => (1_000_000_000_000, 12),
@@ -21,6 +23,7 @@ fn span(text: &str) -> Option<Span> {
         _ => return None,
     };
     let (whole, part) = digits.split_once('.').unwrap_or((digits, ""));
+    // Digits below one picosecond cannot be represented.
     if !part.bytes().all(|byte| byte.is_ascii_digit()) || part.len() > places {
         return None;
     }
@@ -29,7 +32,7 @@ fn span(text: &str) -> Option<Span> {
     whole.checked_mul(unit)?.checked_add(part).filter(|ps| *ps < u64::MAX / 4).map(Span)
 }
 
-/// A whole number, decimal or with `0x`.
+/// Parses a whole number, decimal or hexadecimal with `0x`.
 pub(super) fn number(what: &str, text: &str) -> Result<u64, String> {
     let parsed = match text.strip_prefix("0x") {
         Some(digits) => u64::from_str_radix(digits, 16),
@@ -38,7 +41,7 @@ pub(super) fn number(what: &str, text: &str) -> Result<u64, String> {
     parsed.map_err(|_| format!("{what}: expected a whole number, found `{text}`"))
 }
 
-/// A number below a bound.
+/// Parses a whole number below `bound`.
 pub(super) fn below(what: &str, text: &str, bound: u64) -> Result<u64, String> {
     let found = number(what, text)?;
     if found < bound {
@@ -47,8 +50,10 @@ pub(super) fn below(what: &str, text: &str, bound: u64) -> Result<u64, String> {
     Err(format!("{what}: expected 0 to {}, found {found}", bound.saturating_sub(1)))
 }
 
-/// A board's name at the begin of some words: the board and the words behind it. `gp 3` and `gp3` are the same.
+/// Parses the board's name at the beginning of `words`, and returns the board and the remaining words. `gp 3` and
+/// `gp3` name the same board.
 pub(super) fn board<'a>(words: &'a [&'a str]) -> Result<(Board, &'a [&'a str]), String> {
+    // Try two words such as `gp 3` first, then one word such as `gp3`.
     let two = words.get(..2).map(|two| two.concat()).and_then(|name| name.parse().ok());
     if let Some(board) = two.filter(|_| words[0].chars().all(|c| c.is_ascii_alphabetic())) {
         return Ok((board, &words[2..]));
@@ -59,7 +64,7 @@ pub(super) fn board<'a>(words: &'a [&'a str]) -> Result<(Board, &'a [&'a str]), 
     Ok((first.parse()?, rest))
 }
 
-/// An address: `0x` and hexadecimal digits.
+/// Parses an address of `0x` and hexadecimal digits.
 pub(super) fn address(text: &str) -> Option<u32> {
     u32::from_str_radix(text.strip_prefix("0x")?, 16).ok()
 }

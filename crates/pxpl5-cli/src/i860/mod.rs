@@ -1,4 +1,4 @@
-//! `pxpl5 i860`: assemble, disassemble, run with a cycle listing, and conformance vectors.
+//! The command `pxpl5 i860`: assembler, disassembler, execution with a cycle listing, and conformance vectors.
 
 mod names;
 mod run;
@@ -15,7 +15,7 @@ use std::fmt::Write as _;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// Work with programs of the graphics processor's CPU.
+/// Assemble, disassemble and run programs of the graphics processor's CPU.
 #[derive(Args, Debug)]
 pub(crate) struct I860Args {
     #[command(subcommand)]
@@ -45,7 +45,8 @@ enum Command {
         #[arg(long, default_value = "0x1000", value_parser = address)]
         base: u32,
     },
-    /// Assemble (FILE.s) or load (anything else) and run; tell clocks by address and by cause, registers and memory.
+    /// Assemble (FILE.s) or load (any other file) and run; print clocks by address and by cause, registers and
+    /// memory.
     ///
     /// A place is a label of the program, an address, or a label with an offset such as table+8.
     Run {
@@ -54,47 +55,48 @@ enum Command {
         /// Address of the first byte.
         #[arg(long, default_value = "0x1000", value_parser = address)]
         base: u32,
-        /// Where to begin: a label or an address; default: label `start`, or the first byte.
+        /// First instruction: a label or an address; default: label `start`, or the first byte.
         #[arg(long)]
         entry: Option<String>,
-        /// Where to stop: a label or an address; default: label `end`, or the end of the file.
+        /// Address at which the run stops: a label or an address; default: label `end`, or the end of the file.
         #[arg(long)]
         stop: Option<String>,
-        /// Most instructions to execute.
+        /// Maximum number of instructions to execute.
         #[arg(long, default_value_t = 10_000_000)]
         budget: u64,
         /// Bytes of memory from address 0, at most 1 GiB.
         #[arg(long, default_value = "0x800000", value_parser = memory)]
         memory: u32,
-        /// Show memory from a place on, PLACE or PLACE:WORDS; may be repeated; default: the words that the run changed.
+        /// Show memory from a place on, PLACE or PLACE:WORDS; may be repeated; default: the words that the run
+        /// changed.
         #[arg(long, value_name = "PLACE[:WORDS]")]
         show: Vec<String>,
         /// Print one JSON object.
         #[arg(long)]
         json: bool,
-        /// Leave out the listing by address.
+        /// Omit the listing by address.
         #[arg(long)]
         quiet: bool,
         #[command(flatten)]
         warnings: Warnings,
     },
-    /// Run a file of conformance vectors (JSON lines, perhaps gzip-compressed).
+    /// Run a file of conformance vectors (JSON lines, optionally gzip-compressed).
     Vectors {
-        /// FILE.jsonl or FILE.jsonl.gz.
+        /// File of vectors: FILE.jsonl or FILE.jsonl.gz.
         file: PathBuf,
-        /// Report as one JSON object.
+        /// Print the report as one JSON object.
         #[arg(long)]
         json: bool,
-        /// How many failures to show.
+        /// Maximum number of failures to show.
         #[arg(long, default_value_t = 10)]
         show: usize,
     },
 }
 
-/// Which warnings of the assembler are told.
+/// Options that disable warnings of the assembler.
 #[derive(Args, Debug, Default)]
 struct Warnings {
-    /// Turn a warning of the assembler off; may be repeated or a list with commas.
+    /// Disable a warning of the assembler; may be repeated or a list with commas.
     #[arg(long, value_name = "RULE", value_delimiter = ',', value_parser = ["all", "alignment", "multiply-source", "lost-result"])]
     allow: Vec<String>,
 }
@@ -108,10 +110,11 @@ impl Warnings {
     }
 }
 
-/// Runs the command.
+/// Runs the command `pxpl5 i860`.
 ///
 /// # Errors
-/// What to tell the user before a non-zero exit.
+///
+/// Returns the message to print before a non-zero exit.
 pub(crate) fn run(args: I860Args) -> Result<(), CliError> {
     match args.command {
         Command::Asm { file, base, output, warnings } => asm(&file, base, output.as_deref(), &warnings),
@@ -121,6 +124,7 @@ pub(crate) fn run(args: I860Args) -> Result<(), CliError> {
             warnings.tell(&program);
             let options = RunOptions { entry, stop, budget, memory, show, json, quiet };
             let (report, result) = execute(&program, &options).map_err(CliError::failure)?;
+            // The report is printed even if the program did not reach its end.
             print(&report)?;
             result.map_err(CliError::failure)
         }
@@ -132,7 +136,7 @@ pub(crate) fn run(args: I860Args) -> Result<(), CliError> {
     }
 }
 
-/// A size of memory: of twice as much the run would make copies.
+/// Parses a memory size of at most 1 GiB. The limit bounds the second copy of the memory that a run keeps.
 fn memory(text: &str) -> Result<u32, String> {
     let most = 1 << 30;
     Some(address(text)?)
@@ -149,7 +153,7 @@ fn text_of(file: &Path, bytes: Vec<u8>) -> Result<String, String> {
     Ok(text.to_owned())
 }
 
-/// A program and its source, whose comments may be in any encoding.
+/// Returns an assembled program and its source. Comments in the source may have any text encoding.
 fn assembled(file: &Path, base: u32) -> Result<(Program, String), String> {
     let source = String::from_utf8_lossy(&read(file)?).into_owned();
     let program = assemble(&file.display().to_string(), base, &source).map_err(|e| e.to_string())?;
@@ -169,7 +173,7 @@ fn words_of(bytes: &[u8]) -> Vec<u32> {
     bytes.chunks(4).map(word_of).collect()
 }
 
-/// A word of up to four bytes, the lowest first; missing ones are 0.
+/// Returns a little-endian word of up to four bytes. Missing bytes are 0.
 fn word_of(bytes: &[u8]) -> u32 {
     (0..4).map(|n| u32::from(bytes.get(n).copied().unwrap_or(0)) << (8 * n)).sum()
 }
@@ -190,7 +194,7 @@ fn load(file: &Path, base: u32) -> Result<Program, String> {
     Ok(Program::of_bytes(base, read(file)?))
 }
 
-/// Runs a file of vectors; gives the report and the number that failed.
+/// Runs a file of vectors, and returns the report and the number of failed vectors.
 fn check_vectors(file: &Path, json: bool, show: usize) -> Result<(String, usize), String> {
     let text = text_of(file, unpacked(file, read(file)?, MOST_VECTOR_BYTES)?)?;
     let list = vectors::parse(&text).map_err(|e| format!("{}: {e}", file.display()))?;
@@ -199,16 +203,21 @@ fn check_vectors(file: &Path, json: bool, show: usize) -> Result<(String, usize)
     Ok((report, summary.failed()))
 }
 
-/// Most bytes of a file of vectors, unpacked: assumed, some ten times the published set. A few kilobytes of gzip can stand for
-/// gigabytes.
+/// Maximum unpacked size of a file of vectors, in bytes. Assumed: about ten times the published set. The limit guards
+/// against gzip bombs.
 const MOST_VECTOR_BYTES: u64 = 256 << 20;
 
-/// The file's contents, at most so many bytes of them where they are packed; gzip is known by its first two bytes.
+/// Returns the contents of a file, unpacked if the first two bytes are the gzip signature.
+///
+/// # Errors
+///
+/// Fails if the unpacked data exceed `most` bytes.
 fn unpacked(file: &Path, bytes: Vec<u8>, most: u64) -> Result<Vec<u8>, String> {
     if !bytes.starts_with(&[0x1F, 0x8B]) {
         return Ok(bytes);
     }
     let mut plain = Vec::new();
+    // Read one byte more than allowed, so that an excess is noticed.
     let mut limited = MultiGzDecoder::new(bytes.as_slice()).take(most + 1);
     limited.read_to_end(&mut plain).map_err(|e| format!("{}: gzip: {e}", file.display()))?;
     if plain.len() as u64 > most {
@@ -321,7 +330,7 @@ mod tests {
         RunOptions { entry: None, stop: None, budget: 100, memory: 0x2000, show: Vec::new(), json: false, quiet: false }
     }
 
-    /// Stores 7 behind the code, at a label of its own.
+    /// A program that stores 7 at a label behind its code.
     const STORE: &str = "start: mov 7, r5\nmov table, r6\nst.l r5, 4(r6)\nend: nop\ntable: .long 1, 2, 3";
 
     #[test]
@@ -351,7 +360,7 @@ mod tests {
         assert_eq!(run["labels"]["start"], "00001000");
     }
 
-    /// 1 + 4 + 9 + 16 = 30.
+    /// Expects 1 + 4 + 9 + 16 = 30.
     #[test]
     fn the_program_of_the_guide_runs_and_gives_what_it_says() {
         let page = include_str!("../../../../docs/guide/assembler.md");

@@ -1,8 +1,8 @@
-//! Addresses and labels as text.
+//! Conversion of addresses and labels from and to text.
 
 use ::i860::Program;
 
-/// A number of 32 bits, decimal or with 0x.
+/// Parses a 32-bit number, decimal or hexadecimal with `0x`.
 pub(super) fn address(text: &str) -> Result<u32, String> {
     let lower = text.to_ascii_lowercase();
     let parsed = match lower.strip_prefix("0x") {
@@ -12,7 +12,7 @@ pub(super) fn address(text: &str) -> Result<u32, String> {
     parsed.map_err(|_| format!("expected a 32-bit address such as 0x1000, found `{text}`"))
 }
 
-/// A line for each label of an address.
+/// Returns one line for each label at an address.
 pub(super) fn labels_at(program: &Program, pc: u32) -> String {
     program.labels.iter().filter(|(_, at)| *at == pc).map(|(name, _)| format!("{name}:\n")).collect()
 }

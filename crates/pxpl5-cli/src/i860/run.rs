@@ -1,11 +1,11 @@
-//! `pxpl5 i860 run`: a program executed, and what it left in registers and memory.
+//! The command `pxpl5 i860 run`, which executes a program and prints clocks, registers and memory.
 
 use super::names::{address, labels_at};
 use ::i860::{AddressProfile, Config, Cpu, Program, Ram, RunEnd, disassemble};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 
-/// What is run, and what is told of it.
+/// Options of one execution and its report.
 pub(super) struct RunOptions {
     pub(super) entry: Option<String>,
     pub(super) stop: Option<String>,
@@ -16,43 +16,47 @@ pub(super) struct RunOptions {
     pub(super) quiet: bool,
 }
 
-/// Words of memory that are told unless some are asked for: the first that the run changed.
+/// Default number of changed memory words that the report lists.
 const CHANGED_SHOWN: usize = 64;
 
-/// Words from an address on.
+/// Consecutive memory words and the address of the first.
 struct Span {
     address: u32,
     words: Vec<u32>,
 }
 
-/// A finished run.
+/// A finished execution and the data of its report.
 struct Run<'a> {
     program: &'a Program,
     cpu: Cpu,
     outcome: RunEnd,
     stop: u32,
     memory: Vec<Span>,
-    /// Changed words that are not told.
+    /// Number of changed words that the report leaves out.
     changed_besides: usize,
 }
 
-/// Runs a program; gives what is told, and whether the run came to its stop.
+/// Runs a program, and returns the report and the result of the execution. The inner result is an error if the
+/// program did not reach its stop address.
 ///
 /// # Errors
 ///
-/// For a program that does not fit its memory, and for what is neither a label nor an address.
+/// Fails if the program does not fit in memory, or if an option is neither a label nor an address.
 pub(super) fn execute(program: &Program, options: &RunOptions) -> Result<(String, Result<(), String>), String> {
     let mut ram = Ram::new(0, options.memory as usize);
     let size = program.bytes.len();
     ram.load(program.base, &program.bytes)
         .map_err(|_| format!("{size} bytes at {:#x} do not fit {:#x} bytes of memory", program.base, options.memory))?;
     let end = program.base.wrapping_add(size as u32);
+    // Resolve all places before the run, so that a wrong label is reported at once.
     let stop = place(program, options.stop.as_deref(), "end", end)?;
     let mut cpu = Cpu::at(Config::cycle(), place(program, options.entry.as_deref(), "start", program.base)?);
     let wanted = options.show.iter().map(|text| span(program, text)).collect::<Result<Vec<_>, _>>()?;
     let before = ram.clone();
+    // Count the clocks of each instruction address.
     cpu.watch(Some(AddressProfile::new(program.base, size.div_ceil(4))));
     let outcome = cpu.run(&mut ram, Some(stop), options.budget);
+    // Without --show, the report lists the words that the run changed.
     let (memory, changed_besides) = match wanted.is_empty() {
         true => changed(&before, &ram),
         false => (wanted.into_iter().map(|wanted| read(&ram, wanted)).collect::<Result<_, _>>()?, 0),
@@ -62,7 +66,7 @@ pub(super) fn execute(program: &Program, options: &RunOptions) -> Result<(String
     Ok((text, run.result()))
 }
 
-/// An option's label or address, else a default label, else a default address.
+/// Returns the address of `option`, or of the default label, or `otherwise` if the program lacks the label.
 fn place(program: &Program, option: Option<&str>, label: &str, otherwise: u32) -> Result<u32, String> {
     match option {
         None => Ok(program.symbol(label).unwrap_or(otherwise)),
@@ -70,7 +74,7 @@ fn place(program: &Program, option: Option<&str>, label: &str, otherwise: u32) -
     }
 }
 
-/// A label, an address, or a label with an offset in bytes, such as `table+8`.
+/// Parses a label, an address, or a label with an offset in bytes, such as `table+8`.
 fn known(program: &Program, text: &str) -> Result<u32, String> {
     if let Some(at) = program.symbol(text) {
         return Ok(at);
@@ -87,7 +91,7 @@ fn known(program: &Program, text: &str) -> Result<u32, String> {
     })
 }
 
-/// `PLACE` or `PLACE:WORDS`.
+/// Parses `PLACE` or `PLACE:WORDS`.
 fn span(program: &Program, text: &str) -> Result<(u32, usize), String> {
     let Some((at, words)) = text.rsplit_once(':') else { return Ok((known(program, text)?, 1)) };
     let count = words.parse().ok().filter(|count| (1..=65_536).contains(count));
@@ -101,12 +105,13 @@ fn read(ram: &Ram, (address, count): (u32, usize)) -> Result<Span, String> {
     Ok(Span { address, words })
 }
 
-/// The first words that differ, joined where they follow each other, and how many more there are.
+/// Returns the first changed words, joined into spans, and the number of changed words beyond the limit.
 fn changed(before: &Ram, after: &Ram) -> (Vec<Span>, usize) {
     let words = |ram: &'_ Ram| -> Vec<u32> {
         ram.bytes().chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
     };
     let all = words(before).into_iter().zip(words(after)).enumerate();
+    // Compare whole words and join neighbours into spans.
     let different: Vec<(u32, u32)> =
         all.filter(|(_, (old, new))| old != new).map(|(n, (_, new))| (4 * n as u32, new)).collect();
     let mut spans: Vec<Span> = Vec::new();
@@ -135,7 +140,7 @@ impl Run<'_> {
         }
     }
 
-    /// An address with the label before it, if there is one.
+    /// Formats an address, with the nearest label before the address if one exists.
     fn named(&self, address: u32) -> String {
         label_of(self.program, address)
             .map_or_else(|| format!("{address:#x}"), |label| format!("{address:#x} ({label})"))
@@ -150,7 +155,7 @@ impl Run<'_> {
         text
     }
 
-    /// Clocks between each label and the next.
+    /// Returns the clocks between each label and the next.
     fn clocks_by_label(&self) -> Vec<(&str, u64)> {
         let labels: Vec<(&str, u32)> = self.program.labels.iter().map(|(name, at)| (name.as_str(), *at)).collect();
         let by_label = self.cpu.watched().map(|watched| watched.by_label(&labels)).unwrap_or_default();
@@ -200,6 +205,7 @@ impl Run<'_> {
         let profile = self.cpu.profile();
         let hex = |word: &u32| format!("{word:08x}");
         let words = |words: &[u32]| words.iter().map(hex).collect::<Vec<_>>();
+        // Words of 32 bits are written as hexadecimal text.
         let memory = self.memory.iter().map(|span| {
             json!({
                 "address": hex(&span.address),
@@ -234,7 +240,7 @@ impl Run<'_> {
     }
 }
 
-/// The nearest label at or before an address of the program, with the distance in bytes.
+/// Returns the nearest label at or before an address of the program, with the distance in bytes.
 fn label_of(program: &Program, address: u32) -> Option<String> {
     let end = program.base.wrapping_add(program.bytes.len() as u32);
     if !(program.base..=end).contains(&address) {

@@ -1,4 +1,4 @@
-//! Files that appear together: the one place through which the command writes.
+//! Files that appear together. All files that the command writes pass through this module.
 
 use super::target::{Place, Target};
 use crate::error::CliError;
@@ -8,61 +8,64 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Outputs that are ready, but have not yet been given their names.
+/// Outputs that are complete but do not have their final names yet.
 #[derive(Debug)]
 pub(super) struct Batch {
-    /// How an error names what cannot be written.
+    /// Description of the output for error messages.
     place: Place,
     files: Vec<Staged>,
-    /// Files of the run before that go when all others have their names.
+    /// Files of the previous run to delete after all new files have their names.
     gone: Vec<PathBuf>,
-    /// What goes into devices, pipes and standard output, which cannot be taken back: written last.
+    /// Data for devices, pipes and standard output. A write to them cannot be undone, so it comes last.
     streams: Vec<(Target, Vec<u8>)>,
 }
 
-/// A file that is whole under a temporary name.
+/// A complete file under a temporary name.
 #[derive(Debug)]
 struct Staged {
     temporary: PathBuf,
     name: PathBuf,
-    /// Held open and locked, so that another process can tell it from what a dead one left; none where it could not be made.
+    /// Locked handle of the file, by which other processes see that its writer is alive. `None` if no handle exists.
     lock: Option<File>,
 }
 
-/// A name that has its file, or none any more, and what had that name before.
+/// A name that `commit` has changed, with the path that keeps its previous contents.
 struct Placed {
     name: PathBuf,
     before: Option<PathBuf>,
 }
 
-/// What begins every temporary name.
+/// Prefix of every temporary name.
 const TEMPORARY: &str = ".pxpl5-";
 
-/// A name beside a file that no other output of any process has.
+/// Returns a name in the folder of `path` that no other output of any process has.
 fn beside(path: &Path, end: &str) -> PathBuf {
     static NEXT: AtomicU64 = AtomicU64::new(0);
     let number = NEXT.fetch_add(1, Ordering::Relaxed);
     path.with_file_name(format!("{TEMPORARY}{}-{number}.{end}", std::process::id()))
 }
 
-/// Returns true for names as [`beside`] makes them.
+/// Returns true for names of the form that [`beside`] returns.
 fn is_temporary(name: &OsStr) -> bool {
     let parts = name.to_str().and_then(|name| name.strip_prefix(TEMPORARY)?.rsplit_once('.'));
     let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    // Both numbers must be decimal, so that files of other programs are never removed.
     parts.is_some_and(|(numbers, end)| {
         let both = numbers.split_once('-');
         ["tmp", "old"].contains(&end) && both.is_some_and(|(process, number)| is_number(process) && is_number(number))
     })
 }
 
-/// Removes what processes that are dead have left under temporary names: nobody holds its lock. The caller holds the
-/// folder's lock, so that no file is between its birth and its lock, and no process is replacing files.
+/// Removes temporary files of processes that ended without removing them. A file is left over if no process holds its
+/// lock. The caller must hold the folder's lock, so that no process is between creating and locking a file, or
+/// replacing files.
 pub(super) fn remove_left_over(folder: &Path) {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     for entry in entries.filter(|entry| is_temporary(&entry.file_name())) {
         let path = entry.path();
         let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
         let opened = is_file.then(|| File::open(&path).ok()).flatten();
+        // A lock that can be taken shows that the writer has ended.
         if opened.is_some_and(|file| file.try_lock().is_ok()) {
             let _ = fs::remove_file(path);
         }
@@ -74,11 +77,11 @@ impl Batch {
         Self { place, files: Vec::new(), gone: Vec::new(), streams: Vec::new() }
     }
 
-    /// Writes a file under a temporary name, or keeps what goes elsewhere.
+    /// Writes a file under a temporary name, or keeps the data of another target until [`Batch::commit`].
     ///
     /// # Errors
     ///
-    /// When the file cannot be written.
+    /// Fails when the file cannot be written.
     pub(super) fn put(&mut self, target: &Target, bytes: &[u8]) -> io::Result<()> {
         if let Target::File(name) = target {
             return self.stage(name, bytes);
@@ -87,11 +90,11 @@ impl Batch {
         Ok(())
     }
 
-    /// Tries whether a folder can be written.
+    /// Checks that a folder is writable by writing a temporary file.
     ///
     /// # Errors
     ///
-    /// When it cannot.
+    /// Fails when the folder is not writable.
     pub(super) fn try_in(&mut self, folder: &Path) -> io::Result<()> {
         self.stage(&folder.join("tried"), b"")?;
         self.discard();
@@ -101,38 +104,40 @@ impl Batch {
     fn stage(&mut self, name: &Path, bytes: &[u8]) -> io::Result<()> {
         let temporary = beside(name, "tmp");
         let mut file = OpenOptions::new().write(true).create_new(true).open(&temporary)?;
-        // A file system without locks: what a dead process leaves there stays.
+        // Without file locks, temporary files of ended processes stay in the folder.
         let _ = file.try_lock();
         let written = file.write_all(bytes);
         self.files.push(Staged { temporary, name: name.to_path_buf(), lock: Some(file) });
         written
     }
 
-    /// The file that was put last is given its name first.
+    /// Moves the file that was put last to the front, so that it is renamed first.
     pub(super) fn last_first(&mut self) {
         let last = self.files.pop();
         self.files.splice(..0, last);
     }
 
-    /// Takes a file away when all others have their names.
+    /// Schedules a file for removal after all new files have their names.
     pub(super) fn take_away(&mut self, path: PathBuf) {
         self.gone.push(path);
     }
 
-    /// Gives all files their names, then writes the rest. When something fails every name has what it had before.
+    /// Renames all files to their final names, then writes the streams. After a failure every name has its previous
+    /// contents.
     ///
     /// # Errors
     ///
-    /// When a name cannot be given or a device, pipe or standard output cannot be written.
+    /// Fails when a file cannot be renamed, or a device, pipe or standard output cannot be written.
     pub(super) fn commit(&mut self) -> Result<(), CliError> {
         let mut placed = Vec::new();
         let result = self.place_all(&mut placed).and_then(|()| self.write_streams());
+        // In reverse order, delete the previous contents of each name after success and restore them after a failure.
         for Placed { name, before } in placed.into_iter().rev() {
             match (before, result.is_ok()) {
                 (Some(before), true) => drop(fs::remove_file(before)),
                 (Some(before), false) => {
                     let _ = fs::rename(&before, name);
-                    // Where the name still is this very file, renaming does nothing.
+                    // Renaming does nothing if both names already lead to the same file.
                     let _ = fs::remove_file(before);
                 }
                 (None, true) => {}
@@ -144,11 +149,13 @@ impl Batch {
     }
 
     fn place_all(&mut self, placed: &mut Vec<Placed>) -> Result<(), CliError> {
+        // Keep the previous contents of each name before the rename, so that a failure can restore them.
         for Staged { temporary, name, .. } in &self.files {
             let before = kept(name, temporary).map_err(|error| self.place.refused(name, &error))?;
             placed.push(Placed { name: name.clone(), before });
             fs::rename(temporary, name).map_err(|error| self.place.refused(name, &error))?;
         }
+        // Files of the previous run are renamed first, and deleted only after everything succeeded.
         for name in &self.gone {
             let old = beside(name, "old");
             fs::rename(name, &old).map_err(|error| self.place.refused(name, &error))?;
@@ -167,26 +174,26 @@ impl Batch {
         })
     }
 
-    /// Removes what has no name yet.
+    /// Removes all files without a final name, and forgets the streams.
     pub(super) fn discard(&mut self) {
         self.streams.clear();
         self.gone.clear();
         for Staged { temporary, lock, .. } in self.files.drain(..) {
-            // Some systems remove no file that is open.
+            // Some systems cannot remove a file that is open.
             drop(lock);
             let _ = fs::remove_file(temporary);
         }
     }
 }
 
-/// What was not committed leaves no trace.
+/// Removes temporary files, so that an uncommitted batch leaves no trace.
 impl Drop for Batch {
     fn drop(&mut self) {
         self.discard();
     }
 }
 
-/// Keeps what has a name now under another one too; what comes in its place gets its permissions.
+/// Keeps the current contents of `name` under a second name, and copies their permissions to the file `next`.
 fn kept(name: &Path, next: &Path) -> io::Result<Option<PathBuf>> {
     match name.symlink_metadata() {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
@@ -195,7 +202,7 @@ fn kept(name: &Path, next: &Path) -> io::Result<Option<PathBuf>> {
         Ok(found) => fs::set_permissions(next, found.permissions())?,
     }
     let old = beside(name, "old");
-    // Where there are no hard links, the name is empty for a moment.
+    // On file systems without hard links, `name` does not exist for a moment.
     fs::hard_link(name, &old).or_else(|_| fs::rename(name, &old))?;
     Ok(Some(old))
 }

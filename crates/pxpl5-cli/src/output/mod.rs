@@ -1,4 +1,4 @@
-//! Result files: all of them appear, whole, or none.
+//! Result files that appear all together and complete, or not at all.
 
 mod batch;
 mod target;
@@ -17,75 +17,79 @@ use std::io;
 use std::path::{Path, PathBuf};
 use target::{Place, Target};
 
-/// A folder that can be written, and the files that are going to be in it.
+/// A writable folder and the files that [`OutputFolder::commit`] will place there.
 #[derive(Debug)]
 pub(crate) struct OutputFolder {
     path: PathBuf,
     place: Place,
-    /// Folders that were made for it, outermost first.
+    /// Folders created on the way to this folder, outermost first.
     made: Vec<PathBuf>,
     batch: Batch,
     listing: Listing,
 }
 
-/// How often a folder is made that another process removes.
+/// Maximum number of attempts to create a folder that other processes keep removing.
 const MOST_TRIES: u32 = 100;
 
-/// What the manifest of a folder says of the files that are written.
+/// The way in which the folder's manifest lists the written files.
 #[derive(Debug)]
 enum Listing {
-    /// Nothing: the folder is not theirs.
+    /// The manifest does not list the files, because they do not belong to its run.
     None,
-    /// They are all of one run, which takes the place of the run before.
+    /// The files form one run, which replaces the previous run in the folder.
     Own(Manifest),
-    /// They are made of what the folder holds: its manifest lists them too, if it has one.
+    /// The files derive from the results in the folder. The folder's manifest, if present, lists them too.
     Added(Manifest),
 }
 
 impl OutputFolder {
-    /// Returns a folder for all files of one run. They take the place of the files of the run before, as a whole.
+    /// Returns a folder for all files of one run. The files of the previous run are replaced as a whole.
     ///
     /// # Errors
     ///
-    /// When it is not a folder, or cannot be made or written; when it holds a sweep, whose rows are the work of hours.
+    /// Fails when the path is not a folder, or cannot be created or written. Fails when the folder holds a sweep,
+    /// whose rows may be the work of hours.
     pub(crate) fn of_run(path: &Path, command: &str) -> Result<Self, CliError> {
         before(path)?;
         Self::begin(path, Place::folder("--out"), Listing::Own(Manifest::new(command)))
     }
 
-    /// Returns a folder for files that belong to nothing else there.
+    /// Returns a folder for files that no manifest lists.
     ///
     /// # Errors
     ///
-    /// When it is not a folder, or cannot be made or written.
+    /// Fails when the path is not a folder, or cannot be created or written.
     pub(crate) fn open(path: &Path, option: &'static str) -> Result<Self, CliError> {
         Self::begin(path, Place::folder(option), Listing::None)
     }
 
-    /// Returns a folder for files that are made of what `results` holds, which may be the same folder.
+    /// Returns a folder for files that derive from the folder `results`. Both may be the same folder.
     ///
     /// # Errors
     ///
-    /// As [`Self::open`].
+    /// Fails in the same cases as [`Self::open`].
     pub(crate) fn beside(path: &Path, option: &'static str, results: &Path) -> Result<Self, CliError> {
         Self::begin(path, Place::folder(option), added_to(path, results))
     }
 
-    /// Tries to write, before hours are spent on what could not be kept. What had to be made for that goes again, so that a
-    /// run that is ended in any way leaves no empty folder.
+    /// Checks that the folder is writable before hours of simulation. The folders created for this check are removed
+    /// again, so that an interrupted run leaves no empty folder.
     fn begin(path: &Path, place: Place, listing: Listing) -> Result<Self, CliError> {
         let batch = Batch::new(place.clone());
         let mut folder = Self { path: path.to_path_buf(), place, made: Vec::new(), batch, listing };
+        // A temporary file shows whether the folder is writable.
         folder.in_folder(|batch| batch.try_in(path))?;
         if let Some(_lock) = folder.lock() {
             batch::remove_left_over(path);
         }
+        // The folder is created again when files are written.
         folder.unmake();
         Ok(folder)
     }
 
-    /// Does something in the folder that no other process may disturb.
+    /// Executes `what` in the folder while no other process can remove or change it.
     fn in_folder(&mut self, mut what: impl FnMut(&mut Batch) -> io::Result<()>) -> Result<(), CliError> {
+        // Another process may remove the folder between its creation and the write.
         let mut tries = 0;
         loop {
             self.make()?;
@@ -94,7 +98,7 @@ impl OutputFolder {
             drop(lock);
             tries += 1;
             match done {
-                // Another process has made the folder too, and removes it again while it is empty.
+                // Another process that has created the folder may remove it while it is empty.
                 Err(error) if error.kind() == io::ErrorKind::NotFound && tries < MOST_TRIES => {}
                 Err(error) => return Err(self.place.refused(&self.path, &error)),
                 Ok(()) => return Ok(()),
@@ -106,7 +110,7 @@ impl OutputFolder {
         &self.path
     }
 
-    /// Makes the folder and those around it that are missing.
+    /// Creates the folder and its missing parents.
     fn make(&mut self) -> Result<(), CliError> {
         let missing = self.path.ancestors().take_while(|part| !part.as_os_str().is_empty() && !part.exists());
         let mut made: Vec<PathBuf> = missing.map(Path::to_path_buf).collect();
@@ -115,26 +119,27 @@ impl OutputFolder {
         fs::create_dir_all(&self.path).map_err(|error| self.place.refused(&self.path, &error))
     }
 
-    /// Removes the folders that were made, if they are still empty.
+    /// Removes the created folders that are still empty.
     fn unmake(&mut self) {
         for folder in self.made.drain(..).rev() {
             let _ = fs::remove_dir(folder);
         }
     }
 
-    /// Keeps other processes from writing here; none on a file system without locks: better no protection than no results.
+    /// Locks the folder against other processes. Returns `None` on a file system without locks, where writing without
+    /// protection is better than no results.
     fn lock(&self) -> Option<File> {
         let folder = File::open(&self.path).ok()?;
         folder.lock().ok()?;
         Some(folder)
     }
 
-    /// Writes a file under a temporary name; a device, a pipe or a link of that name is written through when all files
-    /// are given their names.
+    /// Writes a file under a temporary name. If `name` is a device, a pipe or a link to one, [`OutputFolder::commit`]
+    /// writes into the device.
     ///
     /// # Errors
     ///
-    /// When it cannot be written, or is a folder.
+    /// Fails when the file cannot be written, or is a folder.
     pub(crate) fn put(&mut self, name: &str, bytes: &[u8]) -> Result<(), CliError> {
         let target = Target::of(&self.path.join(name), &self.place)?;
         if let (Listing::Own(manifest) | Listing::Added(manifest), Target::File(_)) = (&mut self.listing, &target) {
@@ -147,11 +152,11 @@ impl OutputFolder {
         self.in_folder(|batch| batch.put(target, bytes))
     }
 
-    /// Gives all files their names, or none. Of several processes that write into one folder, one after the other does.
+    /// Renames all files to their final names, or none. Processes that commit to the same folder take turns.
     ///
     /// # Errors
     ///
-    /// When a file of that name is in the way and cannot be replaced; every name has then what it had before.
+    /// Fails when an existing file cannot be replaced. Every name then has its previous contents.
     pub(crate) fn commit(mut self) -> Result<(), CliError> {
         self.make()?;
         let _lock = self.lock();
@@ -161,8 +166,10 @@ impl OutputFolder {
         Ok(())
     }
 
-    /// The manifest comes before all other files: after a kill between them, contents tell which are of this run.
+    /// Adds the manifest as the first file to be renamed. After a crash between two renames, the hashes in the
+    /// manifest show which files belong to the new run.
     fn put_manifest(&mut self) -> Result<(), CliError> {
+        // A new run replaces the previous manifest; derived files extend it.
         let manifest = match &mut self.listing {
             Listing::None => return Ok(()),
             Listing::Own(manifest) => {
@@ -181,12 +188,17 @@ impl OutputFolder {
         let target = Target::of(&self.path.join(MANIFEST_FILE), &self.place)?;
         let put = self.batch.put(&target, manifest.to_text().as_bytes());
         put.map_err(|error| self.place.refused(&self.path, &error))?;
+        // The manifest must get its name before all other files.
         self.batch.last_first();
         Ok(())
     }
 }
 
-/// The manifest of the run whose place is taken, if there is one.
+/// Returns the manifest of the run that will be replaced, or `None`.
+///
+/// # Errors
+///
+/// Fails if the folder holds a sweep.
 fn before(folder: &Path) -> Result<Option<Manifest>, CliError> {
     let before = Manifest::read(folder)?;
     if before.as_ref().is_some_and(|before| before.command() == Manifest::SWEEP) || folder.join(ROWS_FILE).exists() {
@@ -196,7 +208,8 @@ fn before(folder: &Path) -> Result<Option<Manifest>, CliError> {
     Ok(before)
 }
 
-/// Files that are written into the folder that they are made of are listed there.
+/// Returns the listing of derived files. They are listed only when they are written into the folder that they derive
+/// from.
 fn added_to(folder: &Path, results: &Path) -> Listing {
     let whole = |path: &Path| path.canonicalize().ok();
     match (whole(folder), whole(results)) {
@@ -205,7 +218,7 @@ fn added_to(folder: &Path, results: &Path) -> Listing {
     }
 }
 
-/// What was not committed leaves no trace: files are removed, and so are folders made for them, if still empty.
+/// Removes the temporary files of an uncommitted folder, and the folders created for them that are still empty.
 impl Drop for OutputFolder {
     fn drop(&mut self) {
         self.batch.discard();
@@ -213,31 +226,31 @@ impl Drop for OutputFolder {
     }
 }
 
-/// One file that is going to be written: whole or not at all, and through whatever is no regular file.
+/// A single output file, written completely or not at all. A path that leads to a device or pipe is written through.
 #[derive(Debug)]
 pub(crate) struct OutputFile {
     target: Target,
-    /// For what is there already and is no file.
+    /// Batch for a target that exists and is not a regular file.
     batch: Batch,
-    /// The folder that it will be in; none for what is there already and is no file.
+    /// Folder of a regular file. `None` for a target that exists and is not a regular file.
     folder: Option<OutputFolder>,
 }
 
 impl OutputFile {
-    /// Looks where the path leads that an option gives, and tries to write there if that can be done without a trace.
+    /// Resolves the path of an option, and checks that the path is writable where a check leaves no trace.
     ///
     /// # Errors
     ///
-    /// When the path is a folder, does not end in a name, or its folder cannot be made or written.
+    /// Fails when the path is a folder, does not end in a name, or its folder cannot be created or written.
     pub(crate) fn open(path: &Path, option: &'static str) -> Result<Self, CliError> {
         Self::begin(path, option, None)
     }
 
-    /// The same of a file that is made of what a folder holds, in which it may be written.
+    /// Resolves the path of a file that derives from the folder `results`. The file may be inside that folder.
     ///
     /// # Errors
     ///
-    /// As [`Self::open`].
+    /// Fails in the same cases as [`Self::open`].
     pub(crate) fn of_results(path: &Path, option: &'static str, results: &Path) -> Result<Self, CliError> {
         Self::begin(path, option, Some(results))
     }
@@ -260,19 +273,19 @@ impl OutputFile {
         Ok(Self { target, batch: Batch::new(place), folder })
     }
 
-    /// Whether it goes to standard output, where nothing else should go then.
+    /// Returns true if the output goes to standard output. Commands then print nothing else.
     pub(crate) fn is_standard_output(&self) -> bool {
         self.target == Target::StandardOutput
     }
 
-    /// Writes all of it: the file gets its name when it is whole.
+    /// Writes the file and gives it its final name once its contents are complete.
     ///
     /// # Errors
     ///
-    /// When that cannot be done; a regular file is then as it was.
+    /// Fails when the output cannot be written. A regular file then keeps its previous contents.
     pub(crate) fn write(mut self, bytes: &[u8]) -> Result<(), CliError> {
         let Some(mut folder) = self.folder.take() else {
-            // A stream is written when all is committed.
+            // A stream is written by `commit`.
             let _ = self.batch.put(&self.target, bytes);
             return self.batch.commit();
         };
@@ -284,31 +297,32 @@ impl OutputFile {
     }
 }
 
-/// The folder of a file; the one that the process is in, of a bare name.
+/// Returns the folder of a file. A bare name is in the current folder.
 fn folder_of(file: &Path) -> &Path {
     file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// A timeline as SVG, with its origin as a comment behind the XML declaration, if it has one.
+/// Returns a timeline as SVG. The run's origin is a comment behind the XML declaration, if there is one.
 pub(crate) fn timeline(outcome: &Outcome, report: &Report) -> String {
     let svg = pxpl5::timeline::svg(outcome, &TimelineOptions::default());
     let origin: String = origin_lines(report, "").chars().filter(|c| *c == '\n' || !is_forbidden(*c)).collect();
-    // Two hyphens would end the comment.
+    // XML comments must not contain two hyphens in a row.
     let comment = format!("<!--\n{}-->\n", origin.replace("--", "- -"));
+    // The comment goes behind the XML declaration, which must be the first line.
     let at = if svg.starts_with("<?xml") { svg.find('\n').map_or(0, |end| end + 1) } else { 0 };
     format!("{}{comment}{}", &svg[..at], &svg[at..])
 }
 
-/// Returns true for characters that no XML document may hold, or only as references.
+/// Returns true for characters that XML forbids, or allows only as references.
 fn is_forbidden(c: char) -> bool {
     c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}')
 }
 
-/// A picture as PNG, with its origin, and whether it is complete, as text chunks.
+/// Returns a picture as PNG. Text chunks hold the run's origin and whether the picture is complete.
 ///
 /// # Errors
 ///
-/// When the encoder refuses it.
+/// Fails when the encoder fails.
 pub(crate) fn png(picture: &RgbImage, report: &Report) -> Result<Vec<u8>, CliError> {
     let mut chunks = origin(report);
     chunks.push(("complete", report.ends_complete.to_string()));

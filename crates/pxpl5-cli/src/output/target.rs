@@ -1,30 +1,30 @@
-//! Where the path of an output leads.
+//! Resolution of output paths through links to files, devices and standard output.
 
 use crate::error::CliError;
 use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// What a path to write to leads to, behind all links.
+/// The target of an output path after all links are resolved.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Target {
-    /// A regular file, or none yet: it is replaced at once, by renaming.
+    /// A regular file, or a path without a file. Writing replaces the file by one rename.
     File(PathBuf),
-    /// A device, a pipe or a socket: it is written into and stays what it is.
+    /// A device, a pipe or a socket. Data are written into the target.
     Through(PathBuf),
-    /// This process's standard output by another name, such as /dev/stdout.
+    /// Standard output of this process under a file name such as /dev/stdout.
     StandardOutput,
 }
 
-/// Links that lead on from each other; more are a circle.
+/// Maximum number of links followed. A longer chain is treated as a circle.
 const MOST_LINKS: usize = 40;
 
 impl Target {
-    /// Follows a path.
+    /// Resolves a path.
     ///
     /// # Errors
     ///
-    /// When it leads to a folder, or cannot be followed.
+    /// Fails when the path leads to a folder, or a link cannot be followed.
     pub(super) fn of(path: &Path, place: &Place) -> Result<Self, CliError> {
         match path.metadata() {
             Ok(found) if found.is_dir() => Err(place.refused(path, &"it is a folder")),
@@ -37,18 +37,18 @@ impl Target {
     }
 }
 
-/// The file that a path stands for, whether there is one or not: a link is not replaced, but what it names.
+/// Returns the file that a path leads to behind all links. The file need not exist. Writing there keeps the links.
 fn behind_links(path: &Path, place: &Place) -> Result<PathBuf, CliError> {
     let mut path = path.to_path_buf();
     for _ in 0..MOST_LINKS {
-        // What is no link ends the way; so does what is not there.
+        // The chain ends at a path that is not a link or does not exist.
         let Ok(next) = path.read_link() else { return Ok(path) };
         path = path.parent().unwrap_or(Path::new("")).join(next);
     }
     Err(place.refused(&path, &"its links lead in a circle"))
 }
 
-/// Whether standard output is this very file, pipe or device.
+/// Returns true if `found` is the same file, pipe or device as standard output.
 #[cfg(unix)]
 fn is_standard_output(found: &std::fs::Metadata) -> bool {
     use std::os::unix::fs::MetadataExt;
@@ -61,12 +61,12 @@ fn is_standard_output(_: &std::fs::Metadata) -> bool {
     false
 }
 
-/// How an error names an output: as its user did.
+/// Description of an output in error messages, in the words of its option.
 #[derive(Clone, Debug)]
 pub(super) struct Place {
-    /// The option that says where the output goes.
+    /// Option that gives the path.
     option: &'static str,
-    /// The file that the option names; none where it names a folder, whose files are named one by one.
+    /// The file that the option names, or `None` if the option names a folder.
     file: Option<PathBuf>,
 }
 
@@ -79,7 +79,7 @@ impl Place {
         Self { option, file: Some(path.to_path_buf()) }
     }
 
-    /// Why a path cannot be written, and what to do about it.
+    /// Returns the error for a path that cannot be written, with advice to choose another path.
     pub(super) fn refused(&self, path: &Path, reason: &dyn Display) -> CliError {
         let path = self.file.as_deref().unwrap_or(path).display();
         CliError::failure(format!("{path} cannot be written: {reason}; choose another place with {}", self.option))

@@ -1,4 +1,4 @@
-//! The formats of figures: SVG as it is drawn; PDF and PNG are made from the SVG by the feature `print`.
+//! File formats of figures: SVG, and with the feature `print` also PDF and PNG.
 
 #[cfg(feature = "print")]
 mod print;
@@ -6,7 +6,7 @@ mod print;
 use crate::error::CliError;
 use std::path::Path;
 
-/// The format of a file.
+/// File format of a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
     Svg,
@@ -17,13 +17,14 @@ pub(super) enum Format {
 }
 
 impl Format {
-    /// Returns the format that the ending of a file's name stands for.
+    /// Returns the format for the extension of a file name.
     ///
     /// # Errors
     ///
-    /// For an unknown ending, and for PNG and PDF in a command without the feature `print`.
+    /// Fails for an unknown extension, and for PNG and PDF without the feature `print`.
     pub(super) fn of(path: &Path) -> Result<Self, CliError> {
         let ending = path.extension().map(|end| end.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+        // PNG and PDF need the feature `print`.
         match ending.as_str() {
             "svg" => Ok(Self::Svg),
             #[cfg(feature = "print")]
@@ -44,11 +45,11 @@ impl Format {
     }
 }
 
-/// Returns the bytes of a figure.
+/// Returns the bytes of a figure in a format.
 ///
 /// # Errors
 ///
-/// If the drawing cannot be converted.
+/// Fails if the drawing cannot be converted.
 pub(super) fn bytes(svg: &str, format: Format) -> Result<Vec<u8>, CliError> {
     match format {
         Format::Svg => Ok(svg.as_bytes().to_vec()),

@@ -1,4 +1,4 @@
-//! `pxpl5 plot`: a figure of a sweep or a comparison, as it goes into a paper.
+//! The command `pxpl5 plot`, which plots a sweep or a comparison for publication.
 
 mod drawing;
 mod formats;
@@ -16,10 +16,10 @@ use question::{Group, Question};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
-/// Draw what a sweep or a comparison found, with intervals, and write the numbers beside it.
+/// Plot the results of a sweep or a comparison with intervals, and write the numbers to a second file.
 ///
-/// Three files: the figure; FIG.csv with mean, standard deviation, n and the 95 % interval of the mean (Student's t) of every place; FIG.json
-/// with where they come from.
+/// Three files: the figure; FIG.csv with mean, standard deviation, n and the 95 % interval of the mean (Student's t)
+/// of every point; FIG.json with the origin of the numbers.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 plot out/slats --x triangles --y missed_retraces --by copy --where code=1994 --out fig.svg
@@ -29,43 +29,43 @@ use std::path::{Path, PathBuf};
 What varies and is named by neither --x, --by nor --band is an error. What was not judged is no 0: such rows are counted in the column
 `missing`, and a place without any number is not drawn.")]
 pub(crate) struct PlotArgs {
-    /// What `pxpl5 sweep --out` or `pxpl5 compare --out` wrote: the folder, or its rows.jsonl or comparison.json.
+    /// Results of `pxpl5 sweep --out` or `pxpl5 compare --out`: the folder, or its rows.jsonl or comparison.json.
     #[arg(value_name = "DIR|FILE")]
     results: PathBuf,
-    /// The column to the right, a number or a name.
+    /// Column on the x axis, a number or a name.
     #[arg(long, value_name = "COLUMN")]
     x: String,
-    /// The column upwards, a number.
+    /// Column on the y axis, a number.
     #[arg(long, value_name = "COLUMN")]
     y: String,
-    /// A curve for each value, or combination of values, of these columns.
+    /// Draw one curve for each value, or combination of values, of these columns.
     #[arg(long, value_name = "COLUMN,...", value_delimiter = ',')]
     by: Vec<String>,
-    /// The mean is taken over these columns, and its interval is drawn as a band.
+    /// Take the mean over these columns and draw its interval as a band.
     #[arg(long, value_name = "COLUMN,...", value_delimiter = ',', default_value = "seed")]
     band: Vec<String>,
-    /// Only rows with this value; may be repeated.
+    /// Use only rows with this value; may be repeated.
     #[arg(long = "where", value_name = "COLUMN=VALUE", value_parser = pair)]
     only: Vec<(String, String)>,
-    /// The figure: .svg; with the feature `print` also .png (300 dots per inch) and .pdf.
+    /// File of the figure: .svg; with the feature `print` also .png (300 dots per inch) and .pdf.
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
-    /// Width of the figure, millimetres: 84 is a column of most journals, 174 two of them.
+    /// Width of the figure in millimetres: 84 is one column of most journals, 174 two columns.
     #[arg(long, value_name = "MM", default_value_t = 84.0, value_parser = width)]
     width: f64,
-    /// How the axis to the right goes.
+    /// Scale of the x axis.
     #[arg(long, value_name = "SCALE", value_enum, default_value_t = ScaleName::Even)]
     x_scale: ScaleName,
-    /// How the axis upwards goes.
+    /// Scale of the y axis.
     #[arg(long, value_name = "SCALE", value_enum, default_value_t = ScaleName::Even)]
     y_scale: ScaleName,
-    /// What stands at the axis to the right; default: the column's name.
+    /// Label of the x axis; default: the column's name.
     #[arg(long, value_name = "TEXT")]
     x_label: Option<String>,
-    /// What stands at the axis upwards; default: the column's name.
+    /// Label of the y axis; default: the column's name.
     #[arg(long, value_name = "TEXT")]
     y_label: Option<String>,
-    /// What stands above; default: nothing.
+    /// Title above the figure; default: none.
     #[arg(long, value_name = "TEXT", default_value = "")]
     title: String,
     /// Print nothing but errors.
@@ -73,14 +73,14 @@ pub(crate) struct PlotArgs {
     quiet: bool,
 }
 
-/// How an axis goes.
+/// Scale of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum ScaleName {
-    /// Evenly, from the least number to the greatest.
+    /// Linear, from the smallest number to the largest.
     Even,
-    /// Evenly, from 0.
+    /// Linear, from 0.
     Zero,
-    /// In powers of ten; what is not above 0 is left out.
+    /// Logarithmic, in powers of ten; numbers that are not above 0 are left out.
     Log,
 }
 
@@ -94,7 +94,7 @@ impl ScaleName {
     }
 }
 
-/// Least and greatest width, millimetres.
+/// Minimum and maximum width of a figure in millimetres.
 const WIDTHS_MM: (f64, f64) = (40.0, 400.0);
 
 fn width(text: &str) -> Result<f64, String> {
@@ -108,17 +108,18 @@ fn pair(text: &str) -> Result<(String, String), String> {
     Ok((name.to_owned(), value.to_owned()))
 }
 
-/// Draws and writes.
+/// Runs the command `pxpl5 plot`.
 ///
 /// # Errors
 ///
-/// When there are no rows, a name is none of theirs, nothing could be drawn, or a file cannot be written.
+/// Fails when there are no rows, no row has a named column, nothing could be drawn, or a file cannot be written.
 pub(crate) fn run(args: PlotArgs) -> Result<(), CliError> {
     let format = Format::of(&args.out)?;
     let folder = rows::folder_of(&args.results);
     let results = rows::of(folder)?.ok_or_else(|| no_rows(folder))?;
     let question = with_new_names(args.question(results.kind), &results, args.quiet);
     let groups = question.groups(&results)?;
+    // Failed points have no number. Nothing is drawn if no point has one.
     let missing: usize = groups.iter().map(|group| group.missing).sum();
     if groups.iter().all(|group| group.n == 0) {
         let y = &args.y;
@@ -127,9 +128,11 @@ pub(crate) fn run(args: PlotArgs) -> Result<(), CliError> {
             count_of(missing, "row")
         )));
     }
+    // The SVG is drawn first; other formats are converted from it.
     let svg = drawing::chart(&args, &groups).svg();
     let figure = formats::bytes(&svg, format)?;
     write(&args, &results, (&figure, &csv(&question, &groups)))?;
+    // Rows without a number are reported, because the means leave them out.
     if missing > 0 {
         let (have, are) = if missing == 1 { ("has", "is") } else { ("have", "are") };
         let rows = count_of(missing, "row");
@@ -142,7 +145,7 @@ pub(crate) fn run(args: PlotArgs) -> Result<(), CliError> {
     print(&format!("{} drawn in {}; the numbers are beside it.\n", are(places as u64, "place"), args.out.display()))
 }
 
-/// The question with the names of today in place of those that columns of comparisons once had; says so.
+/// Replaces old column names of comparisons by their current names, and prints a warning for each.
 fn with_new_names(mut question: Question, results: &ResultRows, quiet: bool) -> Question {
     if results.kind != RowsKind::Comparison {
         return question;
@@ -177,8 +180,9 @@ impl PlotArgs {
     }
 }
 
-/// The three files, or none.
+/// Writes all three files, or none.
 fn write(args: &PlotArgs, results: &ResultRows, (figure, csv): (&[u8], &str)) -> Result<(), CliError> {
+    // The three files differ only in their extension.
     let name = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned());
     let parent = args.out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let (Some(figure_name), Some(csv_name), Some(json_name)) =
@@ -186,6 +190,7 @@ fn write(args: &PlotArgs, results: &ResultRows, (figure, csv): (&[u8], &str)) ->
     else {
         return Err(CliError::usage(format!("{} is no file name", args.out.display())));
     };
+    // FIG.json repeats the question and the settings of the results, so that the figure can be reproduced.
     let only: Vec<String> = args.only.iter().map(|(name, value)| format!("{name}={value}")).collect();
     let origin = json!({
         "schema": "pxpl5-plot/1",
@@ -203,7 +208,7 @@ fn write(args: &PlotArgs, results: &ResultRows, (figure, csv): (&[u8], &str)) ->
     folder.commit()
 }
 
-/// The groups as a table that opens everywhere: names first, what is no number is empty.
+/// Returns the groups as CSV: names first, then numbers. A missing number is an empty cell.
 fn csv(question: &Question, groups: &[Group]) -> String {
     let columns = ["mean", "sd", "n", "low", "high", "missing"].map(str::to_owned);
     let names = question.by.iter().cloned().chain([question.x.clone()]).chain(columns);

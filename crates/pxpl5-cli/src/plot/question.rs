@@ -1,4 +1,4 @@
-//! What a plot is asked for, and groups of rows that answer it.
+//! The columns that a plot asks for, and the groups of rows that become its points.
 
 use crate::error::CliError;
 use crate::rows::{ResultRows, Row, RowsKind, value};
@@ -8,45 +8,45 @@ use pxpl5::compare::MeanInterval;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Columns and what they are for.
+/// Column names of a plot, by role.
 #[derive(Clone, Debug)]
 pub(super) struct Question {
-    /// What goes to the right.
+    /// Column on the x axis.
     pub(super) x: String,
-    /// What goes up.
+    /// Column on the y axis.
     pub(super) y: String,
-    /// A curve for each combination of these.
+    /// Columns whose combinations of values each give a curve.
     pub(super) by: Vec<String>,
-    /// Over these is the mean taken.
+    /// Columns over which the mean is taken.
     pub(super) band: Vec<String>,
-    /// Rows that count: names and the texts of values.
+    /// Filters as pairs of a column and the text of its value.
     pub(super) only: Vec<(String, String)>,
 }
 
-/// The rows of one place of one curve.
+/// The rows of one point of one curve.
 #[derive(Clone, Debug)]
 pub(super) struct Group {
-    /// Values of the question's `by`, as texts.
+    /// Values of the columns `Question::by`, as text.
     pub(super) by: Vec<String>,
     pub(super) x: Value,
-    /// Rows with a number.
+    /// Number of rows with a number in the y column.
     pub(super) n: usize,
-    /// Rows without: they failed, or nothing was judged.
+    /// Number of rows without a number: the run failed, or nothing was evaluated.
     pub(super) missing: usize,
-    /// No numbers where n is 0.
+    /// Mean of the numbers. NaN if `n` is 0.
     pub(super) mean: f64,
-    /// No number where n is less than 2, or the rows do not tell it.
+    /// Standard deviation. NaN if `n` is below 2, or if the rows lack a standard deviation.
     pub(super) sd: f64,
-    /// 95 % interval of the mean; no numbers as `sd`.
+    /// 95 % interval of the mean, with NaN in the same cases as `sd`.
     pub(super) interval: (f64, f64),
 }
 
 impl Question {
-    /// The groups, in the order in which rows bring them.
+    /// Returns the groups in the order in which they first occur in the rows.
     ///
     /// # Errors
     ///
-    /// A name that no row has, or something else that varies within a group.
+    /// Fails if no row has a named column, or if another setting varies within a group.
     pub(super) fn groups(&self, results: &ResultRows) -> Result<Vec<Group>, CliError> {
         self.check_names(results)?;
         let counted: Vec<&Row> = results.rows.iter().filter(|row| self.counts(row)).collect();
@@ -55,6 +55,7 @@ impl Question {
         }
         let mut places: BTreeMap<(Vec<String>, String), usize> = BTreeMap::new();
         let mut found: Vec<(Vec<String>, Value, Vec<&Row>)> = Vec::new();
+        // Rows with the same curve and the same x value share a group.
         for row in counted {
             let by: Vec<String> = self.by.iter().map(|name| value(row, name).map_or_else(String::new, text)).collect();
             let x = value(row, &self.x).cloned().unwrap_or(Value::Null);
@@ -75,6 +76,7 @@ impl Question {
         let known: BTreeSet<&str> = results.rows.iter().flatten().map(|(key, _)| key.as_str()).collect();
         let only = self.only.iter().map(|(name, _)| name);
         for name in [&self.x, &self.y].into_iter().chain(&self.by).chain(only) {
+            // A misspelled column gets the most similar name as advice.
             if !known.contains(name.as_str()) {
                 let near = nearest(name, known.iter().copied()).unwrap_or("nothing");
                 let all = known.iter().copied().collect::<Vec<_>>().join(", ");
@@ -87,6 +89,7 @@ impl Question {
     fn group(&self, results: &ResultRows, by: Vec<String>, x: Value, rows: &[&Row]) -> Result<Group, CliError> {
         let numbers: Vec<f64> = rows.iter().filter_map(|row| value(row, &self.y).and_then(Value::as_f64)).collect();
         let missing = rows.len() - numbers.len();
+        // A row of a comparison already is a mean over seeds.
         if results.kind == RowsKind::Comparison {
             return Ok(self.of_row(by, x, rows[0], missing));
         }
@@ -97,7 +100,7 @@ impl Question {
         Ok(Group { by, x, n: numbers.len(), missing, mean: of_all.mean, sd, interval })
     }
 
-    /// A row of a comparison is a mean over seeds already, with its interval beside it.
+    /// Returns the group of a comparison's row, which is already a mean over seeds with an interval.
     fn of_row(&self, by: Vec<String>, x: Value, row: &Row, missing: usize) -> Group {
         let number = |name: &str| value(row, name).and_then(Value::as_f64);
         let mean = number(&self.y).unwrap_or(f64::NAN);
@@ -107,7 +110,7 @@ impl Question {
         Group { by, x, n, missing, mean, sd: beside("sd").unwrap_or(f64::NAN), interval }
     }
 
-    /// Whatever varies among the points of a group must be what the mean is taken over.
+    /// Fails if a swept setting varies within a group and is not one of the columns of the mean.
     fn check_others(&self, results: &ResultRows, rows: &[&Row]) -> Result<(), CliError> {
         let axes = results.about.get("axes").and_then(Value::as_array).into_iter().flatten();
         let paths = axes.filter_map(|axis| axis["paths"].as_array()).flatten().filter_map(Value::as_str);
@@ -126,7 +129,7 @@ impl Question {
     }
 }
 
-/// A value as it is written in a name.
+/// Returns a value as text without quotes.
 pub(super) fn text(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),

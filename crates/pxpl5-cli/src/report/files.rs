@@ -1,4 +1,4 @@
-//! The files of a results folder that are of its run: those that its manifest lists.
+//! Access to the files of a results folder that belong to its run, as listed in its manifest.
 
 use crate::error::CliError;
 use crate::terminal::complain;
@@ -6,11 +6,11 @@ use pxpl5::lab::manifest::{MANIFEST_FILE, Manifest};
 use std::fs;
 use std::path::Path;
 
-/// A results folder, of which only the listed files are read.
+/// A results folder, restricted to the files that its manifest lists.
 pub(super) struct Files<'a> {
     folder: &'a Path,
     manifest: Option<Manifest>,
-    /// Says what is left out.
+    /// Suppresses warnings about files that are left out.
     quiet: bool,
 }
 
@@ -19,7 +19,7 @@ impl<'a> Files<'a> {
     ///
     /// # Errors
     ///
-    /// When the file of its name is no manifest.
+    /// Fails when the manifest file exists but is not a valid manifest.
     pub(super) fn of(folder: &'a Path, quiet: bool) -> Result<Self, CliError> {
         Ok(Self { folder, manifest: Manifest::read(folder)?, quiet })
     }
@@ -28,11 +28,12 @@ impl<'a> Files<'a> {
         self.folder
     }
 
-    /// The file that says what the others are of. Without a manifest it stands alone: nobody knows of which run the others are.
+    /// Reads the main results file, which describes all others. Without a manifest only this file is used, because
+    /// other files may belong to another run.
     ///
     /// # Errors
     ///
-    /// When it cannot be read, or is not the one that the manifest lists.
+    /// Fails when the file cannot be read, or differs from the one that the manifest lists.
     pub(super) fn first(&self, name: &str) -> Result<Vec<u8>, String> {
         let Some(manifest) = &self.manifest else {
             let bytes = fs::read(self.folder.join(name)).map_err(|error| error.to_string())?;
@@ -45,7 +46,7 @@ impl<'a> Files<'a> {
         })
     }
 
-    /// Says that files are left out where no manifest lists them.
+    /// Prints a warning that files are left out if the folder has no manifest.
     pub(super) fn warn_if_unlisted(&self) {
         if self.manifest.is_none() {
             self.warn(&format!(
@@ -56,12 +57,13 @@ impl<'a> Files<'a> {
         }
     }
 
-    /// Names of the listed files.
+    /// Returns the names of the listed files.
     pub(super) fn names(&self) -> impl Iterator<Item = &str> {
         self.manifest.iter().flat_map(Manifest::names)
     }
 
-    /// A listed file; `None` of one that is not listed, or is not as it was written, which is said.
+    /// Returns the contents of a listed file. Returns `None` if the file is not listed, and `None` with a warning if
+    /// the file has changed.
     pub(super) fn read(&self, name: &str) -> Option<Vec<u8>> {
         match self.manifest.as_ref()?.read_file(self.folder, name) {
             Ok(bytes) => bytes,

@@ -1,4 +1,4 @@
-//! What a results folder holds that `pxpl5 run` or `pxpl5 demo` wrote.
+//! Reader of results folders written by `pxpl5 run` or `pxpl5 demo`.
 
 use super::files::Files;
 use crate::error::CliError;
@@ -7,11 +7,11 @@ use pxpl5::views::page::{PagePicture, PageRun, latencies_ms};
 use serde_json::Value;
 use std::path::Path;
 
-/// The experiments of a folder; files other than `report.json` may be missing.
+/// Returns the experiments of a folder. All files except `report.json` are optional.
 ///
 /// # Errors
 ///
-/// When `report.json` is missing, is no report, or is not what its manifest lists.
+/// Fails when `report.json` is missing, is not a report, or differs from its manifest.
 pub(super) fn runs(files: &Files<'_>) -> Result<Vec<PageRun>, CliError> {
     let path = files.folder().join(REPORT);
     let bytes = files.first(REPORT).map_err(|error| no_report(&path, &error))?;
@@ -53,7 +53,7 @@ fn run(files: &Files<'_>, name: &str, prefix: &str, report: &Value, published: &
     }
 }
 
-/// The last pictures of all surfaces.
+/// Returns the last picture of every surface.
 fn pictures_of(files: &Files<'_>, prefix: &str) -> Vec<PagePicture> {
     let names = files.names().filter_map(|name| Some((name, name.strip_prefix(prefix)?.strip_suffix(".png")?)));
     let pictures = names.filter_map(|(name, surface)| {

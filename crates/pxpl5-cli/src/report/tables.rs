@@ -1,4 +1,4 @@
-//! Folders of sweeps and comparisons, as tables.
+//! Tables of sweeps and comparisons for a report page.
 
 use super::files::Files;
 use crate::error::CliError;
@@ -7,14 +7,14 @@ use pxpl5::sweep::ROWS_FILE;
 use pxpl5::views::page::{PagePicture, PageTable};
 use serde_json::Value;
 
-/// Rows of a sweep that a page holds: more are for a table program.
+/// Maximum number of sweep rows on a page. Larger tables need a spreadsheet.
 const MOST_ROWS: usize = 5_000;
 
-/// The tables of a folder; nothing where it holds neither a sweep nor a comparison.
+/// Returns the tables of a folder, or `None` if the folder holds neither a sweep nor a comparison.
 ///
 /// # Errors
 ///
-/// When its file cannot be read, or is none of these.
+/// Fails when the results file cannot be read or has another format.
 pub(super) fn of(files: &Files<'_>) -> Result<Option<Vec<PageTable>>, CliError> {
     let Some(results) = rows::of(files.folder())? else { return Ok(None) };
     let table = match results.kind {
@@ -24,7 +24,7 @@ pub(super) fn of(files: &Files<'_>) -> Result<Option<Vec<PageTable>>, CliError> 
     Ok(Some(vec![with_pictures(table, files)]))
 }
 
-/// A row for each point.
+/// Returns the table of a sweep, with one row for each point.
 fn sweep(results: &ResultRows) -> PageTable {
     let told = results.rows.len().min(MOST_ROWS);
     let flat: Vec<Vec<(String, String)>> = results.rows[..told].iter().map(cells).collect();
@@ -38,7 +38,7 @@ fn sweep(results: &ResultRows) -> PageTable {
     tabular(title, about, &flat)
 }
 
-/// A row for each pipeline, a column for each value; what is a text about the row stands behind the numbers.
+/// Returns the table of a comparison, with one row for each pipeline. Columns of text follow the columns of numbers.
 fn comparison(results: &ResultRows) -> PageTable {
     let flat: Vec<Vec<(String, String)>> = results.rows.iter().map(numbers_first).collect();
     let around =
@@ -57,7 +57,7 @@ fn numbers_first(row: &Row) -> Vec<(String, String)> {
     numbers.into_iter().chain(texts).collect()
 }
 
-/// Columns in the order in which rows bring them.
+/// Returns a table of rows, with columns in the order of their first occurrence.
 fn tabular(name: &str, about: Vec<String>, rows: &[Vec<(String, String)>]) -> PageTable {
     let mut columns: Vec<String> = Vec::new();
     for (key, _) in rows.iter().flatten() {
@@ -73,7 +73,7 @@ fn cell(row: &[(String, String)], column: &str) -> String {
     row.iter().find(|(key, _)| key == column).map_or_else(|| "-".to_owned(), |(_, text)| text.clone())
 }
 
-/// What was not judged is "-", never 0; a number is rounded to what can be read.
+/// Formats a value for a cell: "-" for null, and floating-point numbers with at most four decimals.
 fn shown(value: &Value) -> String {
     match value {
         Value::Null => "-".to_owned(),
@@ -91,7 +91,7 @@ fn pairs(settings: &Value) -> String {
     all.map(|(key, value)| format!("{key} = {}", shown(value))).collect::<Vec<_>>().join(", ")
 }
 
-/// The charts and pictures that the folder lists, by name.
+/// Adds the charts and pictures that the manifest lists, sorted by name.
 fn with_pictures(table: PageTable, files: &Files<'_>) -> PageTable {
     files.warn_if_unlisted();
     let mut names: Vec<&str> = files.names().collect();

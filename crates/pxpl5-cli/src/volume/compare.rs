@@ -1,4 +1,4 @@
-//! `pxpl5 volume compare`: all clips and projections beside each other.
+//! The command `pxpl5 volume compare`, which compares all clips and projections of a volume.
 
 use super::settings::VolumeSettingArgs;
 use crate::error::CliError;
@@ -13,7 +13,8 @@ use pxpl5::volume::compare::{VariantRow, Viewpoint, VolumeComparison, compare, v
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// Compare all clips and projections: brightness over radius, dead zone, connected share, fragments, passes, volumes a second.
+/// Compare all clips and projections: brightness over radius, dead zone, connected share, fragments, passes, volumes
+/// a second.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 volume compare --scene mig
@@ -23,13 +24,13 @@ The options of clip, projection, samples and coverage say nothing here but their
 pub(super) struct CompareArgs {
     #[command(flatten)]
     volume: VolumeSettingArgs,
-    /// Write into this folder: comparison.json, rows.csv, brightness.svg, and what an eye sees of every variant.
+    /// Write into this folder: comparison.json, rows.csv, brightness.svg, and an eye's view of every variant.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Width and height of each picture, pixels.
     #[arg(long, value_name = "PX", default_value_t = 256, value_parser = whole::<u32>(1, 4096))]
     size: u32,
-    /// Print JSON: an object whose `variants` lists a row each.
+    /// Print JSON: an object whose `variants` lists one row for each variant.
     #[arg(long)]
     json: bool,
 }
@@ -40,6 +41,7 @@ pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
     let settings = options.gather()?;
     let scene = args.volume.load_scene()?;
     options.admit(&settings, &scene, variant_count() as usize)?;
+    // Pictures are rendered only for an output folder.
     let viewpoint = folder.is_some().then_some(Viewpoint { azimuth_deg: 40.0, elevation_deg: 25.0, side: args.size });
     let bar = progress(variant_count(), "volumes", options.quiet);
     let comparison = compare(&settings, &scene, viewpoint, &options.threads(), |done, of| advance(&bar, done, of));
@@ -53,6 +55,7 @@ pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
         pictures(folder, &comparison)?;
     }
     folder.map(OutputFolder::commit).transpose()?;
+    // Files and JSON hold all numbers; the terminal shows a table.
     match (args.json, options.quiet) {
         (true, _) => print(&json),
         (false, true) => Ok(()),
@@ -72,7 +75,7 @@ fn pictures(folder: &mut OutputFolder, comparison: &VolumeComparison) -> Result<
     Ok(())
 }
 
-/// Columns of tables, and what stands in them.
+/// Name of a table column and the function that formats its cell of a row.
 type Column = (&'static str, fn(&VariantRow) -> String);
 
 const COLUMNS: [Column; 16] = [
@@ -94,7 +97,8 @@ const COLUMNS: [Column; 16] = [
     ("volumes_hz_overlapped", |row| format!("{:.2}", row.volumes_hz_overlapped)),
 ];
 
-/// The mean of the rings that the exact clip shows something in.
+/// Returns the mean ratio to the exact clip over some rings. Rings in which the exact clip shows nothing are left
+/// out.
 fn over_exact(row: &VariantRow, rings: std::ops::Range<usize>) -> String {
     let rings = row.brightness_over_exact.get(rings).unwrap_or_default();
     let known: Vec<f64> = rings.iter().flatten().copied().collect();
@@ -111,6 +115,7 @@ fn text(comparison: &VolumeComparison) -> String {
         format!("{} ({}), seed {}\n\n", comparison.scene, count_of(comparison.triangles, "primitive"), comparison.seed);
     let rows: Vec<[String; COLUMNS.len()]> =
         comparison.variants.iter().map(|row| COLUMNS.map(|(_, cell)| cell(row))).collect();
+    // Each column is as wide as its longest cell or head.
     let widths: Vec<usize> = (0..COLUMNS.len())
         .map(|i| rows.iter().map(|row| row[i].len()).chain(HEADS.iter().map(|head| head[i].len())).max().unwrap_or(0))
         .collect();
@@ -128,7 +133,7 @@ fn text(comparison: &VolumeComparison) -> String {
     text
 }
 
-/// Two lines over the columns.
+/// Two header lines of the table.
 const HEADS: [[&str; COLUMNS.len()]; 2] = [
     [
         "clip",
@@ -176,7 +181,7 @@ fn laid_out<'a>(cells: impl Iterator<Item = &'a str>, widths: &[usize]) -> Strin
     padded.collect::<String>().trim_end().to_owned()
 }
 
-/// Lit pixels a pixel of radius, for the clips along the normal.
+/// Returns a chart of lit pixels per pixel of radius, for the clips projected along the normal.
 fn brightness(comparison: &VolumeComparison) -> String {
     let axes = ChartAxes {
         title: format!("Lit pixels over radius: {}, along the normal", comparison.scene),
@@ -184,6 +189,7 @@ fn brightness(comparison: &VolumeComparison) -> String {
         up: "lit pixels of all slices, a pixel of radius".to_owned(),
     };
     let ring = f64::from(comparison.ring_px);
+    // Only variants that differ in the clip are comparable in one chart.
     let plain = comparison.variants.iter().filter(|row| row.projection == "orthographic" && row.samples == 1);
     let curves = plain.filter(|row| row.coverage == "sampled").map(|row| {
         let points = row.brightness_by_radius.iter().enumerate();

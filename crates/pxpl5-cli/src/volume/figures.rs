@@ -1,4 +1,4 @@
-//! `pxpl5 volume figures`.
+//! The command `pxpl5 volume figures`, which compares the figures of the SpatialGL paper with the model.
 
 use super::settings::load;
 use crate::error::CliError;
@@ -14,7 +14,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Measure the figures of the SpatialGL paper beside the model's, and draw its drawings anew.
+/// Compare the figures of the SpatialGL paper with the model, and redraw its drawings.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 volume figures
@@ -26,7 +26,7 @@ pub(super) struct FiguresArgs {
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
-    /// Write the document of all figures to this file.
+    /// Fail if this file differs from the document of all figures.
     #[arg(long, value_name = "FILE", conflicts_with = "check")]
     write: Option<PathBuf>,
     /// Compare the document with this file.
@@ -40,12 +40,13 @@ pub(super) struct FiguresArgs {
     quiet: bool,
 }
 
-/// Scenes on which rows are measured.
+/// Scenes on which the rows are measured.
 const SCENES: [&str; 3] = ["mig", "head", "molecules"];
 
 pub(super) fn run(args: FiguresArgs) -> Result<(), CliError> {
     let document = args.write.as_deref().map(|path| OutputFile::open(path, "--write")).transpose()?;
     let mut folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "volume figures")).transpose()?;
+    // Rows are measured on all scenes; drawings use the first one.
     let scenes = SCENES.iter().map(|name| load(name, None)).collect::<Result<Vec<_>, _>>()?;
     let bar = progress(0, "scenes", args.quiet);
     let figures = all(&scenes, &Threads::all(), |done, of| advance(&bar, done, of));
@@ -87,6 +88,7 @@ fn text(figures: &Figures) -> String {
     );
     figures.figures.iter().for_each(|row| line(&mut text, row));
     text.push_str("\nStated without numbers:\n");
+    // Statements without a number are checked for their shape.
     for shown in &figures.shown {
         let mark = if shown.holds { "shown" } else { "NOT SHOWN" };
         let _ = writeln!(text, "  {mark:<9} {}: {}", shown.statement, shown.evidence);
@@ -114,7 +116,7 @@ fn line(text: &mut String, row: &FigureRow) {
     );
 }
 
-/// Whole numbers whole, others with ten significant digits at most.
+/// Formats a whole number without decimals, and other numbers with seven decimals.
 fn compact(value: f64) -> String {
     if value.fract() == 0.0 { format!("{value:.0}") } else { format!("{value:.7}") }
 }

@@ -1,4 +1,4 @@
-//! `pxpl5 volume view --head`.
+//! The command `pxpl5 volume view --head`, which compares a volume with a head-mounted display for a moving head.
 
 use super::settings::{VolumeSettingArgs, origin};
 use crate::error::CliError;
@@ -13,25 +13,25 @@ use pxpl5::views::results::csv_table;
 use pxpl5::volume::heads::{HeadBefore, HeadQuestion, HeadSample, HeadStudy};
 use std::path::Path;
 
-/// A user who moves around the volume.
+/// Options of a viewer whose head moves around the volume.
 #[derive(Args, Debug)]
 pub(super) struct HeadArgs {
-    /// Look along a motion of a head, beside a head-mounted display: still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum,
-    /// synthetic:SEED or a recording (FILE.csv, FILE.txt or FILE.tum).
+    /// View along a motion of a head, and compare with a head-mounted display: still, pan:DEG_PER_S, slide:M_PER_S,
+    /// sine:DEG:HZ, pendulum, synthetic:SEED or a recording (FILE.csv, FILE.txt or FILE.tum).
     #[arg(long, value_name = "MOTION", conflicts_with_all = ["azimuth", "elevation", "distance", "cut", "lambert", "undithered", "exposure"])]
     pub(super) head: Option<String>,
-    /// Latency of the head-mounted display, ms; default: that of the volume by the model of its time.
+    /// Latency of the head-mounted display, ms; default: the volume's own latency by the model of its time.
     #[arg(long, value_name = "MS", requires = "head", allow_negative_numbers = true)]
     latency: Option<f64>,
-    /// Length of what is looked at, seconds.
+    /// Length of the motion, seconds.
     #[arg(long, value_name = "S", requires = "head", default_value_t = 2.0, allow_negative_numbers = true)]
     seconds: f64,
-    /// Pictures of the film; errors are taken at eight times as many instants.
+    /// Number of pictures of the film; errors are evaluated at eight times as many instants.
     #[arg(long, value_name = "N", requires = "head", default_value_t = 24, value_parser = whole::<u32>(2, 2000))]
     frames: u32,
 }
 
-/// Instants at which errors are taken, for one picture of the film.
+/// Number of instants at which errors are evaluated, for each picture of the film.
 const INSTANTS_PER_FRAME: u32 = 8;
 
 pub(super) fn run(
@@ -41,6 +41,7 @@ pub(super) fn run(
     side: u32,
     out: &Path,
 ) -> Result<(), CliError> {
+    // The renderer accepts only pictures whose width is a multiple of 8.
     if !side.is_multiple_of(8) {
         return Err(CliError::usage(format!("--size: expected a multiple of 8 with --head, found {side}")));
     }
@@ -54,9 +55,11 @@ pub(super) fn run(
         HeadQuestion { latency_ms: args.latency, seconds: args.seconds, instants: args.frames * INSTANTS_PER_FRAME };
     let study = before.study(&question)?;
     let json = serde_json::to_string_pretty(&study).map_err(CliError::failure)? + "\n";
+    // Write the report and the errors, then render the film with the exposure of its first picture.
     folder.put("report.json", json.as_bytes())?;
     folder.put("errors.csv", errors_csv(&study).as_bytes())?;
     folder.put("errors.svg", errors_svg(&study, name).as_bytes())?;
+    // All pictures have one exposure, so that the film does not flicker.
     let instants = before.film_instants(&question, args.frames)?;
     let exposure = before.exposure(instants[0], side, &threads)?;
     let mut bytes = Vec::new();
@@ -76,7 +79,7 @@ pub(super) fn run(
     if options.settings.quiet { Ok(()) } else { print(&text(&study, name, out)) }
 }
 
-/// Columns of errors.csv, and what stands in them.
+/// Name of a column of errors.csv and the function that returns its value of a sample.
 type Column = (&'static str, fn(&HeadSample) -> Option<f64>);
 
 const COLUMNS: [Column; 12] = [
@@ -100,7 +103,8 @@ fn errors_csv(study: &HeadStudy) -> String {
     csv_table(COLUMNS.map(|(name, _)| name), rows)
 }
 
-/// Angles over time: one figure that compares latency with voxels and dither.
+/// Returns a chart of angles over time, which compares the error of latency with the sizes of voxels and dither
+/// cells.
 fn errors_svg(study: &HeadStudy, motion: &str) -> String {
     let axes = ChartAxes {
         title: format!(

@@ -1,4 +1,4 @@
-//! `pxpl5 volume view` and `pxpl5 volume film`.
+//! The commands `pxpl5 volume view` and `pxpl5 volume film`, which render a volume as an eye sees it.
 
 use super::heads::{self, HeadArgs};
 use super::settings::{VolumeSettingArgs, origin};
@@ -13,7 +13,7 @@ use pxpl5::volume::VolumeSettings;
 use pxpl5::volume::pictures::Look;
 use std::path::PathBuf;
 
-/// From where a volume is seen.
+/// Options of the eye that sees a volume.
 #[derive(Args, Debug)]
 struct EyeArgs {
     /// Angle around the axis from +z to +x, degrees.
@@ -22,21 +22,21 @@ struct EyeArgs {
     /// Angle above the horizon, degrees.
     #[arg(long, value_name = "DEG", default_value_t = 25.0, allow_negative_numbers = true)]
     elevation: f64,
-    /// Distance of the eye from the middle of the display, in its radii.
+    /// Distance of the eye from the middle of the display, in radii of the display.
     #[arg(long, value_name = "RADII", default_value_t = 4.0, allow_negative_numbers = true)]
     distance: f64,
     /// Width and height of the picture, pixels.
     #[arg(long, value_name = "PX", default_value_t = 512, value_parser = whole::<u32>(1, 8192))]
     size: u32,
-    /// Leave out what lies between two angles around the axis from +x to +z, degrees: a cutaway.
+    /// Omit the part of the volume between two angles around the axis from +x to +z, degrees: a cutaway.
     #[arg(long, value_name = "FROM:TO", allow_hyphen_values = true, value_parser = cut)]
     cut: Option<[f64; 2]>,
-    /// Show each pixel as bright as the screen is turned towards the eye.
+    /// Dim each pixel by the angle between the screen and the eye.
     #[arg(long)]
     lambert: bool,
 }
 
-/// Draw what an eye sees of one turn: the sum of all lit pixels of all slices.
+/// Render an eye's view of one turn: the sum of all lit pixels of all slices.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 volume view --scene head --azimuth 40 --elevation 25 --out view.png
@@ -54,7 +54,7 @@ pub(super) struct ViewArgs {
     /// Show the colours before halftoning.
     #[arg(long)]
     undithered: bool,
-    /// Steps of 255 for one lit pixel of one slice; default: so that 98 % of the picture stays below white.
+    /// Brightness of one lit pixel of one slice, in steps of 255; default: 98 % of the picture stays below white.
     #[arg(long, value_name = "STEPS", allow_negative_numbers = true)]
     exposure: Option<f64>,
     #[command(flatten)]
@@ -64,7 +64,7 @@ pub(super) struct ViewArgs {
     out: PathBuf,
 }
 
-/// Write a turn around the volume as an animated PNG, of one exposure.
+/// Write a turn around the volume as an animated PNG with one exposure.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 volume film --scene mig --frames 60 --size 256 --out turn.png
@@ -75,10 +75,10 @@ pub(super) struct FilmArgs {
     volume: VolumeSettingArgs,
     #[command(flatten)]
     eye: EyeArgs,
-    /// Pictures of a turn.
+    /// Number of pictures of the turn.
     #[arg(long, value_name = "N", default_value_t = 72, value_parser = whole::<u32>(1, 10_000))]
     frames: u32,
-    /// Pictures a second.
+    /// Number of pictures a second.
     #[arg(long, value_name = "HZ", default_value_t = 24, value_parser = whole::<u16>(1, 1000))]
     rate: u16,
     /// The file to write (PNG).
@@ -86,7 +86,7 @@ pub(super) struct FilmArgs {
     out: PathBuf,
 }
 
-/// Two angles with a colon between them.
+/// Parses two angles separated by a colon.
 fn cut(text: &str) -> Result<[f64; 2], String> {
     let angles = text.split_once(':').and_then(|(from, to)| Some([from.parse().ok()?, to.parse().ok()?]));
     let finite = angles.filter(|angles: &[f64; 2]| angles.iter().all(|angle| angle.is_finite()));
@@ -94,7 +94,7 @@ fn cut(text: &str) -> Result<[f64; 2], String> {
 }
 
 impl EyeArgs {
-    /// The eye, once it is known that it can see anything.
+    /// Returns the eye's settings after checking that the eye can see the volume.
     fn look(&self, settings: &VolumeSettings) -> Result<Look, CliError> {
         let mut look = Look::around(settings, self.azimuth, self.elevation, self.size);
         look.camera.distance = self.distance * settings.radius();
@@ -106,6 +106,7 @@ impl EyeArgs {
 }
 
 pub(super) fn view(args: ViewArgs) -> Result<(), CliError> {
+    // With --head the command writes a folder instead of a picture.
     if let Some(motion) = &args.head.head {
         return heads::run(motion, &args.head, &args.volume, args.eye.size, &args.out);
     }
@@ -131,6 +132,7 @@ pub(super) fn film(args: FilmArgs) -> Result<(), CliError> {
     let threads = args.volume.settings.threads();
     let mut bytes = Vec::new();
     let size = (args.eye.size, args.eye.size);
+    // Pictures are encoded one by one, so that only one is in memory.
     let mut animation =
         Animation::begin(&mut bytes, size, args.frames, (1, args.rate), &origin(&volume)).map_err(CliError::failure)?;
     let bar = progress(u64::from(args.frames), "pictures", args.volume.settings.quiet);

@@ -1,4 +1,4 @@
-//! `pxpl5 volume`: a scene as slices of a spinning volumetric display.
+//! The command `pxpl5 volume`, which draws a scene as slices of a spinning volumetric display.
 
 mod compare;
 mod figures;
@@ -31,21 +31,21 @@ pub(crate) struct VolumeArgs {
 
 #[derive(Subcommand, Debug)]
 enum VolumeCommand {
-    /// Draw a volume and print what was counted.
+    /// Draw a volume and print its counts.
     Run(run::RunArgs),
     /// Draw all slices as thumbnails on one sheet.
     Sheet(slices::SheetArgs),
     /// Draw one slice, before and after halftoning.
     Slice(slices::SliceArgs),
-    /// Draw what an eye sees of one turn.
+    /// Render an eye's view of one turn.
     View(look::ViewArgs),
     /// Write a turn around the volume as an animated PNG.
     Film(look::FilmArgs),
     /// Compare all clips and projections.
     Compare(compare::CompareArgs),
-    /// Draw a volume at every point of a space of settings.
+    /// Draw a volume at every point of a parameter space.
     Sweep(sweep::SweepArgs),
-    /// Measure the paper's figures and draw its drawings anew.
+    /// Compare the paper's figures with the model and redraw its drawings.
     Figures(figures::FiguresArgs),
 }
 

@@ -1,4 +1,4 @@
-//! `pxpl5 volume run`.
+//! The command `pxpl5 volume run`, which draws one volume and reports its counts.
 
 use super::settings::{VolumeSettingArgs, png};
 use crate::error::CliError;
@@ -12,7 +12,7 @@ use pxpl5::volume::{PixelPlanesReport, Volume, VolumeReport};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// Draw a volume and print what was counted.
+/// Draw a volume and print its counts.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 volume run --scene mig --clip hyperbolic:0.25 --projection jittered --seed 1 --out out/volume --json
@@ -23,8 +23,8 @@ use std::path::PathBuf;
 pub(super) struct RunArgs {
     #[command(flatten)]
     volume: VolumeSettingArgs,
-    /// Write into this folder: report.json, slices.csv, the sheet of all slices, slice 0 before and after halftoning, the tiles of all
-    /// batches, and what an eye sees.
+    /// Write into this folder: report.json, slices.csv, the sheet of all slices, slice 0 before and after halftoning,
+    /// the tiles of all batches, and an eye's view.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print the report as one JSON object.
@@ -33,6 +33,7 @@ pub(super) struct RunArgs {
 }
 
 pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
+    // Open the output first, so that a bad path fails before the volume is drawn.
     let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "volume run")).transpose()?;
     let volume = args.volume.draw(&args.volume.settings.gather()?)?;
     let report = volume.report();
@@ -43,6 +44,7 @@ pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
         folder.put("slices.csv", slices_csv(&volume).as_bytes())?;
         folder.put("sheet.png", &png(&sheet(&volume), &volume)?)?;
         folder.put("slice-0.png", &png(&before_and_after(&volume, 0), &volume)?)?;
+        // A volume without tiles has no map of tiles.
         if let Some(map) = tile_map(&volume) {
             folder.put("tiles.png", &png(&map, &volume)?)?;
         }
@@ -57,7 +59,7 @@ pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
     }
 }
 
-/// What renderers did and which part of the machine limits.
+/// Returns the work of the renderers and the part of the machine that limits the rate of volumes.
 fn bounds(planes: &PixelPlanesReport) -> String {
     let work = &planes.counts.work;
     let mut text = format!(
@@ -76,6 +78,7 @@ fn bounds(planes: &PixelPlanesReport) -> String {
         "processors, ms",
         "volumes/s"
     );
+    // Closed-form bounds for several sizes of the machine.
     for row in &planes.bounds {
         let [renderers, ring, port, processors] = row.ms;
         let _ = writeln!(
@@ -87,6 +90,7 @@ fn bounds(planes: &PixelPlanesReport) -> String {
     if planes.simulated.is_empty() {
         return text;
     }
+    // The bounds ignore waiting; the simulation event by event shows how close the machine comes.
     let _ = writeln!(
         text,
         "\nOne volume event by event\n{:>10} {:>11} {:>13} {:>12} {:>11} {:>16} {:>17} {:>16}",
@@ -118,7 +122,7 @@ fn bounds(planes: &PixelPlanesReport) -> String {
 
 fn slices_csv(volume: &Volume) -> String {
     let columns = ["slice", "draws", "fragments_generated", "fragments_accepted", "fragments_added"];
-    // Renderers of Pixel-Planes 5 count no fragments.
+    // Renderers of Pixel-Planes 5 do not count fragments.
     let counts = volume.bounds.is_none();
     let rows = volume.frame.stats.slices.iter().enumerate().map(|(slice, stats)| {
         let fragments =
@@ -129,7 +133,7 @@ fn slices_csv(volume: &Volume) -> String {
     csv_table(columns, rows)
 }
 
-/// What is not known of a volume that no GPU drew.
+/// Text for quantities that exist only if a GPU drew the volume.
 const NOT_COUNTED: &str = "- (no GPU drew it)";
 
 fn fragments(report: &VolumeReport) -> String {
@@ -171,6 +175,7 @@ fn text(report: &VolumeReport, out: Option<&std::path::Path>) -> String {
     );
     let draws = 100.0 * report.draws as f64 / report.draws_unbinned.max(1) as f64;
     let megabytes = |bytes: u64| format!("{:.1} MB", bytes as f64 / 1e6);
+    // Counts of the drawing, then the model of its time.
     let rows = [
         (
             "slices drawn",
@@ -199,6 +204,7 @@ fn text(report: &VolumeReport, out: Option<&std::path::Path>) -> String {
     for (name, value) in rows {
         let _ = writeln!(text, "{name:<20} {value}");
     }
+    // Only volumes drawn by Pixel-Planes 5 have bounds.
     if let Some(planes) = &report.pixel_planes {
         text.push_str(&bounds(planes));
     }

@@ -1,4 +1,4 @@
-//! Options that say what a volume is; each stands for a path of `--set`.
+//! Options that describe a volume. Each option is short for a path of `--set`.
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
@@ -17,11 +17,11 @@ use pxpl5::{MotionChoice, Parameter, SceneChoice};
 use std::num::NonZero;
 use std::sync::Arc;
 
-/// The scene, the settings that differ from the paper's, and who draws.
+/// The scene of a volume, and the settings that differ from the paper's.
 #[derive(Args, Debug)]
 pub(super) struct VolumeSettingArgs {
-    /// A built-in scene (see `pxpl5 scenes`) or a model file: .ply, .obj, .pdb. It is centred on the axis, its farthest corner at 0.9
-    /// of the display's radius.
+    /// A built-in scene (see `pxpl5 scenes`) or a model file: .ply, .obj, .pdb. The scene is centred on the axis,
+    /// its farthest corner at 0.9 of the display's radius.
     #[arg(long, value_name = "NAME|FILE", default_value = "mig")]
     scene: String,
     /// Decimate the scene to at most N primitives, keeping its shape.
@@ -31,36 +31,37 @@ pub(super) struct VolumeSettingArgs {
     pub(super) settings: SettingOptions,
 }
 
-/// The settings alone, for commands that choose their scenes themselves.
+/// The settings of a volume without a scene, for commands that choose their own scenes.
 #[derive(Args, Debug)]
 pub(super) struct SettingOptions {
-    /// How the scene is clipped to a slice: prism, user-planes, exact, tapered:PX, parallel:PX or hyperbolic:PX2; default
-    /// hyperbolic:0.25.
+    /// Method of clipping the scene to a slice: prism, user-planes, exact, tapered:PX, parallel:PX or hyperbolic:PX2;
+    /// default hyperbolic:0.25.
     #[arg(long, value_name = "CLIP")]
     clip: Option<String>,
-    /// orthographic, perspective or jittered; default jittered.
+    /// Projection onto a slice: orthographic, perspective or jittered; default jittered.
     #[arg(long, value_name = "PROJECTION")]
     projection: Option<String>,
-    /// Names the sequence of the jitter; default 1.
+    /// Seed of the jitter; default 1.
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     seed: Option<String>,
-    /// Samples of each pixel: 1, 4 or 16; default 1.
+    /// Number of samples of each pixel: 1, 4 or 16; default 1.
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     samples: Option<String>,
-    /// What of a primitive is drawn: sampled or connected (beyond the paper); default sampled.
+    /// Part of a primitive that is drawn: sampled or connected (beyond the paper); default sampled.
     #[arg(long, value_name = "COVERAGE")]
     coverage: Option<String>,
-    /// Which slices are drawn: each, or mirror (half of them, beyond the paper); default each.
+    /// Slices that are drawn: each, or mirror (half of them, beyond the paper); default each.
     #[arg(long, value_name = "STROBES")]
     strobes: Option<String>,
-    /// Who draws: host, or pixel-planes (beyond the paper; hyperbolic clip and orthographic projection alone); default host.
+    /// Renderer of the volume: host, or pixel-planes (beyond the paper; hyperbolic clip and orthographic projection
+    /// alone); default host.
     #[arg(long, value_name = "RENDERER")]
     on: Option<String>,
-    /// Set any number or choice by its path, such as display.slices=200, clip.bias_px2=1, tile.size=16 or gpu.readback_mb_s=400;
-    /// docs/volumetric.md lists all numbers; may be repeated.
+    /// Set any number or choice by its path, such as display.slices=200, clip.bias_px2=1, tile.size=16 or
+    /// gpu.readback_mb_s=400; docs/volumetric.md lists all numbers; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     sets: Vec<String>,
-    /// Worker threads; default: one a core.
+    /// Number of worker threads; default: one for each core.
     #[arg(long, value_name = "N", value_parser = whole::<u64>(1, 1024))]
     threads: Option<u64>,
     #[command(flatten)]
@@ -70,15 +71,15 @@ pub(super) struct SettingOptions {
     pub(super) quiet: bool,
 }
 
-/// What makes a volume smaller.
+/// Advice to reduce the cost of a volume.
 pub(super) const SMALLER: &str = "draw fewer or smaller slices (--set display.slices, display.width, display.height)";
 
 impl SettingOptions {
-    /// Refuses so many volumes before the first is drawn, if they would take too much.
+    /// Refuses to draw `volumes` volumes if their estimated time or memory exceeds the budget.
     ///
     /// # Errors
     ///
-    /// The estimate, and what to do about it.
+    /// Returns the estimate and advice on how to reduce the work.
     pub(super) fn admit(&self, settings: &VolumeSettings, scene: &Scene, volumes: usize) -> Result<(), CliError> {
         let threads = self.threads();
         let one = VolumeWork::of(settings, scene, threads.0.get()).estimate();
@@ -86,11 +87,12 @@ impl SettingOptions {
         self.budget.admit_estimate(Estimate { seconds, ..one }, SMALLER)
     }
 
-    /// The paper's settings with the options applied, `--set` last; numbers that no source allows are warned of.
+    /// Returns the paper's settings with the options applied, `--set` last. Prints a warning for every number outside
+    /// its documented range.
     ///
     /// # Errors
     ///
-    /// Which option is wrong, what was expected and what was found.
+    /// Returns an error that names the wrong option, the expected value and the value found.
     pub(super) fn gather(&self) -> Result<VolumeSettings, CliError> {
         let mut settings = VolumeSettings::paper();
         let options = [
@@ -102,13 +104,14 @@ impl SettingOptions {
             ("draw.strobes", "--strobes", &self.strobes),
             ("on", "--on", &self.on),
         ];
+        // Options override the paper's settings, and `--set` overrides options.
         for (path, option, text) in options {
             text.as_ref().map(|text| settings.set(path, text, option)).transpose()?;
         }
         for assignment in &self.sets {
             settings.assign(assignment, "--set")?;
         }
-        // What does not fit together is said before anything is drawn.
+        // Settings that contradict each other are refused before any drawing.
         settings.swept_display()?;
         settings.volume_config()?;
         if settings.renderer == RendererKind::PixelPlanes {
@@ -118,7 +121,7 @@ impl SettingOptions {
         Ok(settings)
     }
 
-    /// The threads that draw.
+    /// Returns the number of threads that draw.
     pub(super) fn threads(&self) -> Threads {
         let asked = self.threads.and_then(|threads| NonZero::new(threads as usize));
         asked.map_or_else(Threads::all, Threads)
@@ -133,22 +136,22 @@ fn warnings(settings: &VolumeSettings) -> Vec<String> {
 }
 
 impl VolumeSettingArgs {
-    /// The scene, loaded and decimated.
+    /// Returns the loaded and decimated scene.
     ///
     /// # Errors
     ///
-    /// When there is no such scene, or its file cannot be used.
+    /// Fails when the scene does not exist or its file cannot be used.
     pub(super) fn load_scene(&self) -> Result<Arc<Scene>, CliError> {
         let scene = load(&self.scene, self.triangles)?;
         scenes::tell(&scene, self.settings.quiet);
         Ok(scene)
     }
 
-    /// Draws the volume under a progress bar.
+    /// Draws the volume with a progress bar.
     ///
     /// # Errors
     ///
-    /// What is wrong with a setting or the scene.
+    /// Fails when a setting or the scene is invalid.
     pub(super) fn draw(&self, settings: &VolumeSettings) -> Result<Volume, CliError> {
         let scene = self.load_scene()?;
         self.settings.admit(settings, &scene, 1)?;
@@ -161,7 +164,7 @@ impl VolumeSettingArgs {
     }
 }
 
-/// A scene by name or file, as every command has it.
+/// Loads a scene by name or file, fitted into the display.
 pub(super) fn load(name: &str, triangles: Option<u64>) -> Result<Arc<Scene>, CliError> {
     let choice = SceneChoice {
         name: name.to_owned(),
@@ -174,12 +177,12 @@ pub(super) fn load(name: &str, triangles: Option<u64>) -> Result<Arc<Scene>, Cli
     Ok(choice.load()?)
 }
 
-/// A picture as PNG with where it comes from.
+/// Returns a picture as PNG with the data of its origin.
 pub(super) fn png(picture: &RgbImage, volume: &Volume) -> Result<Vec<u8>, CliError> {
     png_bytes(picture, &origin(volume)).map_err(CliError::failure)
 }
 
-/// What every picture of a volume says of itself.
+/// Returns the text chunks that state the origin of every picture of a volume.
 pub(super) fn origin(volume: &Volume) -> Vec<(&'static str, String)> {
     let settings = &volume.settings;
     let overrides: Vec<String> = settings.overrides().iter().map(|set| format!("{}={}", set.path, set.value)).collect();

@@ -1,4 +1,4 @@
-//! `pxpl5 volume sheet` and `pxpl5 volume slice`.
+//! The commands `pxpl5 volume sheet` and `pxpl5 volume slice`, which draw slices as flat pictures.
 
 use super::settings::{VolumeSettingArgs, png};
 use crate::error::CliError;
@@ -25,18 +25,18 @@ pub(super) struct SheetArgs {
     out: PathBuf,
 }
 
-/// Draw one slice: before halftoning on the left, as the projector shows it on the right.
+/// Draw one slice: before halftoning on the left, after halftoning on the right.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 volume slice 50 --scene head --out slice.png
   pxpl5 volume slice 50 --scene head --show tiles --out tiles.png")]
 pub(super) struct SliceArgs {
-    /// Its number in the turn, from 0.
+    /// Number of the slice in the turn, from 0.
     #[arg(value_name = "K")]
     slice: u32,
     #[command(flatten)]
     volume: VolumeSettingArgs,
-    /// What of it is shown.
+    /// Part of the slice that is shown.
     #[arg(long, value_enum, default_value_t = Part::Both)]
     show: Part,
     /// The file to write (PNG).
@@ -48,11 +48,11 @@ pub(super) struct SliceArgs {
 enum Part {
     /// Before and after halftoning, side by side.
     Both,
-    /// With all 256 levels, before halftoning.
+    /// Before halftoning, with all 256 levels.
     Before,
-    /// As the projector shows it, after halftoning.
+    /// After halftoning, as the projector shows the slice.
     After,
-    /// Its tiles, and which of them hold something.
+    /// The tiles of the slice, with occupied tiles marked.
     Tiles,
 }
 
@@ -66,7 +66,7 @@ pub(super) fn sheet(args: SheetArgs) -> Result<(), CliError> {
 
 pub(super) fn slice(args: SliceArgs) -> Result<(), CliError> {
     let file = OutputFile::open(&args.out, "--out")?;
-    // Whether there is such a slice is known before it is drawn.
+    // The slice's number is checked before anything is drawn.
     let settings = args.volume.settings.gather()?;
     let slices = settings.display.slices;
     if u64::from(args.slice) >= slices {
@@ -84,7 +84,7 @@ pub(super) fn slice(args: SliceArgs) -> Result<(), CliError> {
     say(args.volume.settings.quiet, &args.out, &format!("slice {slice} of {}", volume.scene))
 }
 
-/// The volume's own tiles, or one tile of everything.
+/// Returns the volume's own tiling, or a single tile if the volume has none.
 fn tiling(volume: &Volume) -> Tiling {
     let size = volume.settings.tile.size as u32;
     Tiling { tile: (size > 0).then_some(size), batch: 1 }
@@ -95,7 +95,7 @@ pub(super) fn write(file: OutputFile, picture: &RgbImage, volume: &Volume) -> Re
     file.write(&png(picture, volume)?)
 }
 
-/// Says what was written.
+/// Prints the path and a description of the written file.
 pub(super) fn say(quiet: bool, path: &Path, what: &str) -> Result<(), CliError> {
     if quiet { Ok(()) } else { print(&format!("{}: {what}.\n", path.display())) }
 }

@@ -1,4 +1,4 @@
-//! The file of a sweep of volumes: settings that all points share, and the axes of those that change.
+//! The file of a sweep of volumes: settings that all points share, and the axes of the settings that change.
 
 use crate::error::CliError;
 use crate::leaves::{leaves, plain};
@@ -9,10 +9,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// Keys of the file that are no settings of a volume.
+/// Keys of the file that are not settings of a volume.
 const OWN: [&str; 5] = ["title", "scene", "triangles", "measure", "sweep"];
 
-/// What is measured where the file does not say it.
+/// Quantities measured by default.
 const MEASURED: [&str; 6] = [
     "fragments_accepted",
     "tile_occupancy_percent",
@@ -22,21 +22,21 @@ const MEASURED: [&str; 6] = [
     "volumes_hz_overlapped",
 ];
 
-/// A sweep of volumes as its file describes it.
+/// A sweep of volumes as described by its file.
 #[derive(Clone, Debug)]
 pub(super) struct VolumeSpace {
     pub(super) title: Option<String>,
-    /// Paths of the report that are measured.
+    /// Paths of the measured numbers in the report.
     pub(super) measure: Vec<String>,
-    /// Settings that all points share, with `scene` and `triangles`.
+    /// Settings that all points share, including `scene` and `triangles`.
     pub(super) settings: BTreeMap<String, Value>,
-    /// The last one changes fastest.
+    /// Axes of the sweep. The last axis changes fastest.
     pub(super) axes: Vec<Axis>,
     pub(super) points: u64,
 }
 
 impl VolumeSpace {
-    /// Reads a file; `sets` are settings of the command line, which take the place of the file's.
+    /// Reads a file. The settings `sets` of the command line override settings of the file.
     pub(super) fn load(path: &Path, sets: &[String]) -> Result<Self, CliError> {
         let place = path.display().to_string();
         let bytes =
@@ -54,25 +54,29 @@ impl VolumeSpace {
             _ => return Err(wrong(place, "sweep", "a table [sweep.grid] with lists or ranges of settings", "none")),
         };
         let mut settings: BTreeMap<String, Value> = leaves(file).into_iter().collect();
+        // Settings of the command line override the file.
         for assignment in sets {
             let (path, value) =
                 assignment.split_once('=').ok_or_else(|| wrong("--set", "PATH=VALUE", "an equals sign", assignment))?;
             settings.insert(path.trim().to_owned(), Value::from(value.trim()));
         }
         let axes = axes(sweep, place)?;
+        // Every path must exist before any volume is drawn.
         for path in settings.keys().chain(axes.iter().flat_map(|axis| &axis.paths)) {
             check_path(path, place)?;
         }
+        // Multiply with care: the product of long axes can overflow.
         let points = axes.iter().try_fold(1u64, |all, axis| all.checked_mul(axis.len()));
         let points = points.filter(|points| *points <= MAX_POINTS);
         let points = points.ok_or_else(|| wrong(place, "sweep", &format!("at most {MAX_POINTS} points"), "more"))?;
         Ok(Self { title, measure, settings, axes, points })
     }
 
-    /// The settings of a point that are not those of all.
+    /// Returns the settings that vary in the sweep, with their values at a point.
     pub(super) fn of_point(&self, point: u64) -> BTreeMap<String, Value> {
         let mut rest = point;
         let mut settings = BTreeMap::new();
+        // The number of the point has one mixed-radix digit for each axis, the last axis lowest.
         for axis in self.axes.iter().rev() {
             let step = axis.step(rest % axis.len());
             rest /= axis.len();
@@ -106,6 +110,7 @@ fn check_path(path: &str, place: &str) -> Result<(), CliError> {
 
 fn axes(mut sweep: Table, place: &str) -> Result<Vec<Axis>, CliError> {
     let mut axes = Vec::new();
+    // Each setting of the grid is an axis; all lists of `together` form one axis and must have equal lengths.
     for (path, value) in leaves(table(&mut sweep, "grid", place)?) {
         axes.push(Axis { values: vec![values(&path, &value, place)?], paths: vec![path] });
     }
@@ -159,7 +164,7 @@ fn table(sweep: &mut Table, key: &str, place: &str) -> Result<Table, CliError> {
     }
 }
 
-/// A list, or whole numbers from one to another.
+/// Parses a list, or a range of whole numbers.
 fn values(path: &str, value: &Value, place: &str) -> Result<Values, CliError> {
     match value {
         Value::Array(list) if !list.is_empty() => Ok(Values::Listed(list.clone())),
@@ -167,6 +172,7 @@ fn values(path: &str, value: &Value, place: &str) -> Result<Values, CliError> {
             let whole = |key: &str| range.get(key).and_then(Value::as_integer);
             let step = range.get("step").map_or(Some(1), Value::as_integer).filter(|step| *step > 0);
             let known = range.keys().all(|key| ["from", "to", "step"].contains(&key.as_str()));
+            // A range that ends before its beginning is refused.
             let length = whole("to").zip(whole("from")).and_then(|(to, from)| to.checked_sub(from));
             match (whole("from"), step, length.filter(|length| known && *length >= 0)) {
                 (Some(from), Some(step), Some(length)) => {

@@ -1,4 +1,5 @@
-//! `pxpl5 volume sweep`: the folder, its rows and how it goes on are those of `pxpl5 sweep`.
+//! The command `pxpl5 volume sweep`, which draws a volume at every point of a parameter space. Folder, rows and
+//! resumption are the same as in `pxpl5 sweep`.
 
 use super::settings::{SMALLER, load};
 use super::space::VolumeSpace;
@@ -22,10 +23,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Draw a volume at every point of a space of settings.
+/// Draw a volume at every point of a parameter space.
 ///
-/// Rows are appended to rows.jsonl as points are finished; a point that cannot be drawn has a row that says why, and only when none
-/// can the command fails.
+/// Each finished point appends a row to rows.jsonl. A point that cannot be drawn has a row with the reason; the
+/// command fails only if no point can be drawn.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 volume sweep experiments/volumes/sweep.toml --out out/volumes
@@ -38,16 +39,16 @@ pub(super) struct SweepArgs {
     /// File with a table `sweep`.
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Where rows.jsonl, times.jsonl and results.csv go.
+    /// Folder for rows.jsonl, times.jsonl and results.csv.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Keep the points that are finished, and draw the others.
+    /// Keep the finished points and draw the others.
     #[arg(long)]
     resume: bool,
-    /// Draw share I of N disjoint ones.
+    /// Draw share I of N disjoint shares.
     #[arg(long, value_name = "I/N", value_parser = shard, default_value = "1/1")]
     shard: Shard,
-    /// Worker threads of each volume; default: one a core. Volumes follow each other.
+    /// Number of worker threads of each volume; default: one for each core. Volumes are drawn one after the other.
     #[arg(long, value_name = "N", value_parser = whole::<u64>(1, 1024))]
     threads: Option<u64>,
     /// Set any key of the file for all points; may be repeated.
@@ -68,6 +69,7 @@ pub(super) fn run(args: SweepArgs) -> Result<(), CliError> {
     let ours: Vec<u64> = (0..space.points).filter(|point| args.shard.holds(*point)).collect();
     let bar = progress(ours.len() as u64, "volumes", args.quiet);
     let mut scenes = Scenes::default();
+    // Draw every point of this shard that has no row yet. Volumes use all threads, so they follow each other.
     for point in &ours {
         if !store.holds(*point) {
             let begun = Instant::now();
@@ -84,8 +86,9 @@ pub(super) fn run(args: SweepArgs) -> Result<(), CliError> {
     if failed >= total { Err(CliError::failure("no point could be drawn")) } else { Ok(()) }
 }
 
-/// The numbers that are measured, each of which the report must have.
+/// Returns the measured quantities with their definitions, and fails if the report lacks one of them.
 fn definitions(space: &VolumeSpace) -> Result<BTreeMap<String, String>, CliError> {
+    // A tiny volume without primitives yields a report with all names.
     let mut settings = VolumeSettings::paper();
     for (path, text) in [("display.slices", "4"), ("display.width", "8"), ("display.height", "8")] {
         settings.set(path, text, "a dark volume")?;
@@ -95,7 +98,7 @@ fn definitions(space: &VolumeSpace) -> Result<BTreeMap<String, String>, CliError
     let known = |name: &str| {
         let top = name.split('.').next().unwrap_or_default();
         let is_number = value_of(&report, name).is_some_and(|value| value.is_number() || value.is_null());
-        // What only some volumes have is null in a dark one.
+        // Quantities that only some volumes have are null in the report of an empty volume.
         let is_of_some = report.get(top).is_some_and(Value::is_null);
         name != "host_seconds" && (is_number || is_of_some)
     };
@@ -111,7 +114,7 @@ fn definitions(space: &VolumeSpace) -> Result<BTreeMap<String, String>, CliError
     Ok(space.measure.iter().map(|name| (name.clone(), "as in the report pxpl5-volume/1".to_owned())).collect())
 }
 
-/// What stands at a path of names with points between them.
+/// Returns the value at a path of names separated by dots.
 fn value_of<'a>(report: &'a Value, path: &str) -> Option<&'a Value> {
     path.split('.').try_fold(report, |value, name| value.get(name))
 }
@@ -128,8 +131,10 @@ fn header(space: &VolumeSpace, measure: BTreeMap<String, String>) -> Result<Head
             json!({ "paths": axis.paths, "steps": steps })
         })
         .collect();
+    // The hash also covers the contents of model files, so that a changed file is not resumed.
     let version = env!("CARGO_PKG_VERSION");
     let inputs: Vec<String> = scene_files(space).iter().map(|path| of_contents(path)).collect();
+    // The hash covers everything that determines the rows.
     let named = json!([version, settings, axes, measure, inputs]).to_string();
     let seed = space.settings.get("seed").and_then(toml::Value::as_integer).unwrap_or(1);
     serde_json::from_value(json!({
@@ -148,7 +153,7 @@ fn header(space: &VolumeSpace, measure: BTreeMap<String, String>) -> Result<Head
     .map_err(CliError::failure)
 }
 
-/// Model files that points name.
+/// Returns the paths of all model files that points name.
 fn scene_files(space: &VolumeSpace) -> Vec<PathBuf> {
     let of_axes = space.axes.iter().flat_map(|axis| {
         let at = axis.paths.iter().position(|path| path == "scene");
@@ -163,7 +168,7 @@ fn of_contents(path: &Path) -> String {
     format!("{}={}", path.display(), contents.unwrap_or_default())
 }
 
-/// Scenes by name and number of primitives, each loaded once.
+/// A cache of loaded scenes by name and number of primitives.
 #[derive(Default)]
 struct Scenes(BTreeMap<(String, Option<u64>), Arc<Scene>>);
 
@@ -179,7 +184,7 @@ impl Scenes {
     }
 }
 
-/// Draws a point; what is wrong with it becomes its row.
+/// Draws a point and returns its row. An error becomes part of the row.
 fn row(space: &VolumeSpace, point: u64, scenes: &mut Scenes, how: (&Threads, BudgetArgs)) -> SweepRow {
     let own = space.of_point(point);
     let parameters: BTreeMap<String, Value> =
@@ -195,6 +200,7 @@ fn row(space: &VolumeSpace, point: u64, scenes: &mut Scenes, how: (&Threads, Bud
         trace_hash: None,
         error: None,
     };
+    // Errors become part of the row, so that the other points go on.
     match drawn(&all, point, scenes, how) {
         Ok(volume) => {
             let report = serde_json::to_value(volume.report()).unwrap_or_default();
@@ -224,6 +230,7 @@ fn drawn(
         settings.set(path, &plain(value), &place)?;
     }
     let name = all.get("scene").map_or_else(|| "mig".to_owned(), plain);
+    // `scene` and `triangles` are not settings of the volume.
     let triangles = match all.get("triangles").map(plain) {
         None => None,
         Some(text) => Some(text.parse::<u64>().ok().filter(|count| *count > 0).ok_or_else(|| {
@@ -232,6 +239,7 @@ fn drawn(
     };
     let scene = scenes.get(&name, triangles)?;
     settings.swept_display()?;
+    // Each point has to fit the budget by itself.
     let one = VolumeWork::of(&settings, &scene, threads.0.get()).estimate();
     let seconds = one.seconds / threads.0.get() as f64;
     budget.admit_estimate(Estimate { seconds, ..one }, SMALLER)?;

@@ -1,10 +1,10 @@
-//! The command as a user starts it, in a folder of its own.
+//! Support for tests that run the command in a folder of its own.
 #![allow(dead_code, unreachable_pub, reason = "each test binary uses some of it")]
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// A folder that is removed at the end.
+/// A temporary folder that is removed when dropped.
 pub struct Folder(pub PathBuf);
 
 impl Folder {
@@ -21,7 +21,7 @@ impl Folder {
         path
     }
 
-    /// Names of everything in it, sorted.
+    /// Returns the sorted names of all entries of the folder.
     pub fn names(&self) -> Vec<String> {
         names(&self.0)
     }
@@ -58,7 +58,7 @@ pub fn err(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// The object on standard output, which holds nothing else.
+/// Returns the JSON object that is the whole standard output.
 pub fn json(output: &Output) -> serde_json::Value {
     assert!(output.status.success(), "{}", err(output));
     serde_json::from_slice(&output.stdout).expect("one JSON object on standard output")

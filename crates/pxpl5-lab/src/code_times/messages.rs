@@ -1,4 +1,5 @@
-//! Mean time of a message's software: what a board receives and sends around the passes over a scene, but for entries handed over.
+//! Measures the mean time of a message's software: all messages that a board receives and sends around the passes
+//! over a scene, without the time of bin entries.
 
 use super::{BOARDS, CodeUse, Rig, VIEWS, parts, picture, solve};
 use pphigs::{FrameView, Handing, Pass, RegionEnvelope, region_messages};
@@ -10,30 +11,33 @@ use pxpl5_sim::Span;
 use pxpl5_wire::{Body, CommandList, Message, NodeId, RegionId};
 use std::sync::Arc;
 
-/// Words of an order or a notice, and of a token (rendering-control's protocol).
+/// Words of an order or a report (rendering-control's protocol).
 const ORDER: u32 = 3;
+/// Words of a token (rendering-control's protocol).
 const TOKEN: u32 = 6;
 
-/// A board other than the one that is measured.
+/// Node of a board other than the measured one.
 const OTHER: NodeId = NodeId(2);
 
-/// Time of the messages of a board, and how many there were: each received, or sent as a chain of its own.
+/// Total time and number of a board's messages. A received message and a sent chain each count as one.
 #[derive(Default)]
 pub(super) struct Traffic {
     span: Span,
     messages: u64,
-    /// Of each bin handed over: entries, nanoseconds.
+    /// Number of entries and nanoseconds of each bin that the board sent.
     handed: Vec<[f64; 2]>,
 }
 
-/// Time of an entry that is handed over, in nanoseconds: the slope over all bins; 0 where none is.
+/// Returns the time of one bin entry that a slave sends, in nanoseconds: the slope over all bins, or 0 if no bin was
+/// sent.
 pub(super) fn token_entry_ns(scenes: &[Traffic]) -> f64 {
     let mut handed = scenes.iter().flat_map(|traffic| &traffic.handed).peekable();
     if handed.peek().is_none() { 0.0 } else { solve(handed.map(|[entries, ns]| ([*entries, 1.0], *ns))) }
 }
 
 impl Traffic {
-    /// Mean time of a message in nanoseconds, without the entries that are handed over at so many each.
+    /// Returns the mean time of a message in nanoseconds. The time of bin entries, `token_entry_ns` each, is
+    /// subtracted.
     pub(super) fn message_ns(&self, token_entry_ns: f64) -> f64 {
         let [entries, ns] = self.handed.iter().fold([0.0; 2], |[n, sum], [entries, ns]| [n + entries, sum + ns]);
         (self.span.0 as f64 / 1e3 + ns - token_entry_ns * entries) / self.messages as f64
@@ -65,12 +69,13 @@ fn commands(list: CommandList) -> (u32, Body) {
     (list.words(), Body::Commands(list))
 }
 
-/// The messages of a board under a scene.
+/// Measures the messages of a board over a scene.
 pub(super) fn traffic(version: CodeVersion, of: CodeUse, scene: &str) -> Result<Traffic, ExperimentError> {
     let mut rig = Rig::new(version, scene, BOARDS)?;
     let mut traffic = Traffic::default();
     for number in 0..VIEWS {
         let view = rig.view(number);
+        // Both pipelines are measured with the messages of their own protocol.
         match of {
             CodeUse::Pphigs => slave(&mut rig, of, &view, &mut traffic),
             CodeUse::Slats | CodeUse::SlatsLit => field(&mut rig, of, &view, &mut traffic),
@@ -84,12 +89,15 @@ pub(super) fn traffic(version: CodeVersion, of: CodeUse, scene: &str) -> Result<
     Ok(traffic)
 }
 
-/// A frame of a slave: the host's view, leave for EDIT and TRANSFORM, reports of both, and of each eye the token of every region.
+/// Executes the messages of a slave for one frame. The slave receives the host's view, and permission for EDIT and
+/// TRANSFORM, and reports both. For each eye the slave receives and passes on the token of every region.
 fn slave(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) -> Result<(), Fault> {
     let regions = picture(of).viewport.grid().regions() as u16;
+    // The host's view, then the master's permission, then the slave's report.
     traffic.receive(&mut rig.processor, 1 + view.to_words().len() as u32)?;
     traffic.receive(&mut rig.processor, ORDER)?;
     traffic.send_words(&mut rig.processor, ORDER)?;
+    // Each eye has its own TRANSFORM, report and tokens.
     for eye in 0..2 {
         if eye > 0 {
             traffic.receive(&mut rig.processor, ORDER)?;
@@ -104,7 +112,8 @@ fn slave(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) ->
     Ok(())
 }
 
-/// A token of a slave in the middle: it neither begins the region nor ends it.
+/// Executes the messages of one token in the middle of the chain of slaves, so that the region neither begins nor
+/// ends there.
 fn token(
     processor: &mut Processor,
     pass: &Arc<Pass>,
@@ -113,6 +122,7 @@ fn token(
     traffic: &mut Traffic,
 ) -> Result<(), Fault> {
     let envelope = RegionEnvelope::default();
+    // Receive the token, send the bin of the region, and pass the token on.
     traffic.receive(processor, TOKEN)?;
     let span = Handing { pass, context, view: 0, region, envelope }.by_code(&GpTiming::PAPERS, processor)?;
     traffic.handed.push([pass.counts(region).total().into(), span.0 as f64 / 1e3]);
@@ -122,11 +132,12 @@ fn token(
     traffic.send_words(processor, TOKEN)
 }
 
-/// A field of Slats on a board: the view, a chain for each clump to the regions of both eyes, and two chains of copy commands to all
-/// renderers.
+/// Executes the messages of one Slats field on a board. The board receives the view, sends a chain for each clump to
+/// the regions of both eyes, and sends two chains of copy commands to all renderers.
 fn field(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) -> Result<(), Fault> {
     let regions = picture(of).viewport.grid().regions() as u16;
     traffic.receive(&mut rig.processor, view.to_words().len() as u32)?;
+    // Each clump is transformed and sent to all regions of both eyes as one chain.
     for clump in parts(of, &rig.share) {
         let passes = [0, 1].map(|eye| clump.transform(view, eye, picture(of)));
         if passes[0].run_code_for_both(&passes[1], &mut rig.processor, 0)?.is_none() {
@@ -140,6 +151,7 @@ fn field(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) ->
         });
         traffic.send(&mut rig.processor, &lists.collect::<Vec<_>>())?;
     }
+    // A field ends with one chain of copy commands for each eye.
     for _ in 0..2 {
         let words = CommandKind::SelectRegion.words() + CommandKind::CopyRegion.words();
         let copies = vec![(words, Body::Words(vec![0; words as usize].into())); MachineConfig::slats().n_renderers];

@@ -1,4 +1,4 @@
-//! What just-in-time pixels and frameless rendering take besides TRANSFORM, as the code gives it.
+//! Measures the times of just-in-time pixels and frameless rendering, apart from TRANSFORM, by executing their code.
 
 use super::{ExperimentError, Rig, fault, mean};
 use pphigs::{
@@ -10,46 +10,52 @@ use pxpl5_renderer::Layout;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{FieldParity, RegionGrid, RegionId, ViewNumber};
 
-/// The scene whose triangles are searched, and of how many boards the share is that is searched for comparison.
+/// Scene whose triangles are searched.
 const SCENE: &str = "mig";
+/// Number of boards that share the scene in the second measurement. The difference from the whole scene gives the
+/// time of one triangle.
 const SMALLER: usize = 12;
 
-/// From a view to the next one: a field.
+/// Time between two views in picoseconds: one NTSC field.
 const FIELD_PS: u64 = 16_683_333_333;
 
-/// Where display lists begin in memory: pieces of messages above are commands.
+/// Address at which display lists begin in memory. Commands of messages lie above this address.
 const COMMANDS: u32 = 1 << 20;
 
-/// Words of orders: of a strip, of a strip with its view, of blocks, of a field between two views; and how many come before the views.
+/// Sizes in words of four kinds of orders: a strip, a strip with its view, blocks, a field between two views. The
+/// second number of each pair counts the words before the views.
 const ORDERS: [(usize, usize); 4] = [(6, 6), (59, 6), (58, 5), (110, 4)];
 
-/// Times in nanoseconds.
+/// Times of strips and interpolation in nanoseconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StripTimes {
-    /// A box that is compared with a strip, which it does not meet.
+    /// Time to compare one bounding box with a strip that the box does not meet.
     pub box_ns: f64,
-    /// What meets a window of a strip besides, found and handed over, with what is near it and does not meet it.
+    /// Additional time of an entry that meets a window of a strip. The time includes finding and sending the entry,
+    /// and nearby triangles that miss the strip.
     pub entry_ns: f64,
-    /// The five windows of a strip, made and handed over empty.
+    /// Time to create and send the five windows of a strip when all are empty.
     pub windows_ns: f64,
-    /// A triangle's places in two views.
+    /// Time to compute the positions of a triangle in two views.
     pub ends_ns: f64,
-    /// A triangle between two views that is nowhere near a strip.
+    /// Time of a triangle between two views that is not near a strip.
     pub passed_ns: f64,
-    /// One that is near it besides, interpolated on the screen and in the view.
+    /// Additional time of a triangle that is near a strip, interpolated on the screen (first) and in the view
+    /// (second).
     pub interpolated_ns: [f64; 2],
-    /// An order of a strip, of a strip with a view, of blocks, of a field between two views.
+    /// Time of an order for a strip, a strip with a view, blocks, and a field between two views.
     pub order_ns: [f64; 4],
 }
 
-/// Measures them.
+/// Measures the times of a code version.
 ///
 /// # Errors
 ///
-/// [`ExperimentError::Scene`] when the code does not come to its end.
+/// Returns [`ExperimentError::Scene`] when the code does not terminate.
 pub fn strip_times(version: CodeVersion) -> Result<StripTimes, ExperimentError> {
     let [whole, smaller] = [measured(version, 1)?, measured(version, SMALLER)?];
     let more = whole.triangles - smaller.triangles;
+    // The difference between the whole scene and a smaller share gives the time of one triangle.
     let each = |of: fn(&Measured) -> f64| (of(&whole) - of(&smaller)) / more;
     let box_ns = each(|measured| measured.search_ns);
     let passed_ns = each(|measured| measured.passed_ns);
@@ -65,26 +71,32 @@ pub fn strip_times(version: CodeVersion) -> Result<StripTimes, ExperimentError> 
     })
 }
 
-/// Of a share of a scene.
+/// Times of one share of a scene.
 struct Measured {
     triangles: f64,
-    /// A strip that nothing meets, in the mean, and what more strips take for each of their entries.
+    /// Mean time of a strip that no triangle meets.
     search_ns: f64,
+    /// Additional time of each entry in strips that triangles meet.
     entry_ns: f64,
-    /// Places of all in two views; commands of none of them between these, of all on the screen, of all in the view.
+    /// Time to compute the positions of all triangles in two views.
     ends_ns: f64,
+    /// Time of the commands between two views if no triangle is near a strip.
     passed_ns: f64,
+    /// Times of the commands between two views if all triangles are near a strip: interpolated on the screen, and in
+    /// the view.
     interpolated_ns: [f64; 2],
 }
 
 fn measured(version: CodeVersion, boards: usize) -> Result<Measured, ExperimentError> {
     let mut rig = Rig::of_triangles(version, SCENE, boards)?;
     let triangles = f64::from(rig.share.counts().triangles);
+    // Strips without entries give the cost of a search, the others the cost of entries.
     let rows = searches(&mut rig).map_err(fault)?;
     let search_ns = mean(rows.iter().filter(|[entries, _]| *entries == 0.0).map(|[_, ns]| *ns));
     let [entries, more_ns] = rows.iter().fold([0.0; 2], |sum, [n, ns]| [sum[0] + n, sum[1] + ns - search_ns]);
     let entry_ns = more_ns / entries;
     let ends_ns = ends_ns(&mut rig).map_err(fault)?;
+    // The widest range of lines includes every triangle, the reversed range none.
     let all = [i32::MIN, i32::MAX];
     let passed_ns = between_ns(&mut rig, false, [i32::MAX, i32::MIN]).map_err(fault)?;
     let [on_screen, in_view] = [false, true].map(|in_view| between_ns(&mut rig, in_view, all).map_err(fault));
@@ -105,14 +117,15 @@ fn ns(span: Span) -> f64 {
     span.0 as f64 / 1e3
 }
 
-/// Entries and time of every strip of a line.
+/// Returns the number of entries and the time of every strip of one line.
 fn searches(rig: &mut Rig) -> Result<Vec<[f64; 2]>, ProcessorFault> {
     let pass = rig.share.transform(&rig.view(0), 0, PICTURE);
     pass.keep(&GpTiming::PAPERS, &mut rig.processor, MemoryPart::WHOLE)?;
-    // Room for all in each window.
+    // Each window has room for all triangles.
     let counts = [PrimitiveCounts { triangles: rig.share.counts().triangles, spheres: 0 }; 5];
     let columns = GRID.columns() as u16;
     let mut rows = Vec::new();
+    // Each strip is one line, divided into five windows.
     for strip in 0..GRID.rows() as u16 {
         let windows: Vec<_> = (strip * columns..(strip + 1) * columns).map(RegionId).collect();
         let part = MemoryPart::WHOLE;
@@ -133,7 +146,7 @@ fn ends_ns(rig: &mut Rig) -> Result<f64, ProcessorFault> {
     Ok(keeping.run_code(&GpTiming::PAPERS, &mut rig.processor)?.map_or(0.0, ns))
 }
 
-/// The commands of what is near some lines, half way.
+/// Returns the time to compute the commands of triangles near some lines, half way between two views.
 fn between_ns(rig: &mut Rig, in_view: bool, near: [i32; 2]) -> Result<f64, ProcessorFault> {
     let [from, to] = views(rig);
     let interpolating = Interpolating {
@@ -154,7 +167,7 @@ fn views(rig: &Rig) -> [pphigs::FrameView; 2] {
     [0, 1].map(|number| (rig.views)(ViewNumber(number), Time(number * FIELD_PS)))
 }
 
-/// Each order, put together after another one has brought the code into the caches.
+/// Returns the time to assemble each kind of order, after a first execution has loaded the code into the caches.
 fn order_ns(version: CodeVersion) -> Result<[f64; 4], ExperimentError> {
     let mut rig = Rig::of_triangles(version, SCENE, SMALLER)?;
     let mut times = [0.0; 4];

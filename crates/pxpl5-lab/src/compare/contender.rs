@@ -1,9 +1,9 @@
-//! What is compared: pipelines with settings, and how their pictures come before the eyes.
+//! The rows of a comparison: pipelines with settings, and the method of display.
 
 use pxpl5_measure::Showing;
 use pxpl5_run::Registry;
 
-/// One row: settings on top of those that all share.
+/// One row of a comparison: a pipeline and the settings that differ from the shared ones.
 #[derive(Clone, Debug)]
 pub(super) struct Contender {
     pub(super) name: String,
@@ -12,11 +12,12 @@ pub(super) struct Contender {
     pub(super) showing: Showing,
 }
 
-/// As published every clump of Slats goes to all regions, which limits the scene to little more than 100 triangles; clumps that go
-/// where they are seen leave the raster offset a picture to work on.
+/// Settings that send each clump of Slats only to the regions that the clump touches. As published, every clump goes
+/// to all regions. This limits the scene to little more than 100 triangles, too few for an evaluation of the raster
+/// offset.
 const TOUCHED: &[(&str, &str)] = &[("binning", "touched")];
 
-/// The same before eyes whose raster is shifted.
+/// Settings of [`TOUCHED`] with a raster that is shifted before the eyes.
 const SHIFTED: &[(&str, &str)] = &[("binning", "touched"), ("head.raster", "vdrt")];
 
 impl Contender {
@@ -30,7 +31,8 @@ impl Contender {
     }
 }
 
-/// Every pipeline of the registry that is compared, in its order, and the raster offset and the reference behind Slats.
+/// Returns a row for every compared pipeline of the registry, in its order. The variants of Slats (touched regions,
+/// raster offset, reference) follow Slats.
 pub(super) fn contenders(registry: &Registry) -> Vec<Contender> {
     let mut all = Vec::new();
     for entry in registry.pipelines().iter().filter(|entry| entry.compared) {

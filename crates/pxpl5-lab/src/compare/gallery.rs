@@ -1,4 +1,4 @@
-//! The picture that a row shows at the end of its first run.
+//! The picture that a row of a comparison shows at the end of its first run.
 
 use image::RgbImage;
 use pxpl5_measure::Measured;
@@ -6,23 +6,23 @@ use pxpl5_run::Outcome;
 use pxpl5_sim::Time;
 use pxpl5_wire::SurfaceId;
 
-/// What stands before the first eye at the end of a run, and what should.
+/// The last picture before the first eye, and the ideal picture of the same instant.
 #[derive(Clone, Debug)]
 pub struct LastPicture {
-    /// What the eye sees, whether it was complete in time or not.
+    /// Picture that the eye sees, complete or not.
     pub seen: RgbImage,
-    /// What an ideal renderer would show of the scene in the middle of the last period, the head being where it truly is: in the
-    /// shading of the pipeline. `None` where the display has no such instant.
+    /// Ideal picture of the scene in the middle of the last period, for the true pose of the head and in the shading
+    /// of the pipeline. `None` if the display has no such instant.
     pub should_be: Option<RgbImage>,
-    /// Whether what is seen was complete in time.
+    /// True if the seen picture was complete in time.
     pub is_complete: bool,
 }
 
-/// The surface that is looked at.
+/// Surface whose picture is kept.
 const FIRST: SurfaceId = SurfaceId(0);
 
 impl LastPicture {
-    /// Of a run with pixels; `None` where nothing was shown.
+    /// Returns the last picture of a run with pixels, or `None` if no picture was shown.
     pub(super) fn of(outcome: &Outcome, is_complete: bool) -> Option<Self> {
         let seen = outcome.picture(FIRST)?;
         let should_be = middle_of_last(outcome).and_then(|middle| outcome.ideal_picture(FIRST, middle));
@@ -30,7 +30,7 @@ impl LastPicture {
     }
 }
 
-/// When the beam is in the middle of the last period.
+/// Returns the time at which the beam is in the middle of the last period.
 fn middle_of_last(outcome: &Outcome) -> Option<Time> {
     let display = outcome.record().display();
     let surface = display.surfaces().first()?;

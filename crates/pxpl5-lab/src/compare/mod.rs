@@ -1,7 +1,9 @@
-//! The ways to fight latency side by side: one set of settings, every pipeline, several seeds, and one judge.
+//! Comparison of all low-latency methods: the same settings for every pipeline, several seeds, and one method of
+//! evaluation.
 //!
-//! [`CompareQuery`] says what is compared; [`Comparison`] is the table of a paper: for every [`ComparisonRow`] how long from head to light,
-//! over which interval it predicts, how many pixels it is wrong and why, and what it could draw.
+//! [`CompareQuery`] describes a comparison. [`Comparison`] is its result. Each [`ComparisonRow`] has the latency from
+//! head to light, the prediction interval, the error in pixels by cause, and the number of triangles that the
+//! pipeline could draw.
 
 mod contender;
 mod gallery;

@@ -1,4 +1,5 @@
-//! A vertical edge under a pan: conventional and just-in-time, as computed and as seen on the raster.
+//! Pictures of a vertical edge under a pan: conventional and just-in-time pixels, as computed and as seen on the
+//! raster.
 
 use glam::{DVec2, DVec3, Vec3};
 use image::{Rgb, RgbImage};
@@ -14,32 +15,34 @@ use tracking::time::span_s;
 use tracking::tracker::TrackerConfig;
 use tracking::view::HmdView;
 
-/// The four pictures of one field: 640 x 240, one row for each scanned line.
+/// The four pictures of one field: 640 x 240, with one row for each scanned line.
 #[derive(Clone, Debug)]
 pub struct EdgePictures {
-    /// Drawn for one moment: a vertical edge.
+    /// Picture drawn for one instant: the edge is vertical.
     pub conventional: RgbImage,
-    /// The same as the eye sees it, which turns while the beam runs: it slants.
+    /// The conventional picture as seen by an eye that turns while the beam runs: the edge slants.
     pub conventional_seen: RgbImage,
-    /// Drawn for the moment of each line: it slants.
+    /// Picture drawn for the instant of each line: the edge slants.
     pub just_in_time: RgbImage,
-    /// The same as the eye sees it: vertical.
+    /// The just-in-time picture as seen by the turning eye: the edge is vertical.
     pub just_in_time_seen: RgbImage,
 }
 
-/// The field that is looked at; by then the pipelines are full and the predictor has seen many reports.
+/// Field that is drawn. By then the pipelines are full and the predictor has received many reports.
 const FIELD: PeriodNumber = PeriodNumber(40);
 
-/// Distance of the edge, metres.
+/// Distance of the edge in metres.
 const DISTANCE_M: f32 = 2.0;
 
-/// A white wall to the left and nothing to the right of a vertical edge straight ahead (along -z), for a viewer who
-/// begins `yaw_deg` to the left of it.
+/// Returns a scene with a white wall on the left of a vertical edge, and nothing on its right. The edge is straight
+/// ahead (along -z). The viewer starts `yaw_deg` to the left of the edge.
 #[must_use]
 pub fn edge_scene(yaw_deg: f64) -> Scene {
     let vertex =
         |x: f32, y: f32| Vertex { position: Vec3::new(x, y, -DISTANCE_M), normal: Vec3::Z, colour: [255, 255, 255] };
+    // The wall is far larger than the view, so only its right edge is visible.
     let vertices = vec![vertex(-9.0, -9.0), vertex(0.0, -9.0), vertex(0.0, 9.0), vertex(-9.0, 9.0)];
+    // The pan starts beside the edge, so that the edge is in the middle at the evaluated field.
     let (sin, cos) = yaw_deg.to_radians().sin_cos();
     let target = DVec3::new(-sin, 0.0, -cos).as_vec3();
     let motion = HeadMotion::new(HeadPath::Still { eye: Vec3::ZERO, target }, Sway::none());
@@ -65,21 +68,22 @@ pub fn edge_scene(yaw_deg: f64) -> Scene {
     .expect("a quadrangle is a scene")
 }
 
-/// Draws the edge on a machine under a pan, with a perfect tracker and constant velocity, so that nothing but the
-/// moment that each line is drawn for makes a difference.
+/// Draws the edge on a machine under a pan. The tracker is perfect and the head's velocity constant, so the pictures
+/// differ only in the instant for which each line is drawn.
 ///
 /// # Errors
 ///
-/// As [`Experiment::run`].
+/// Fails in the same cases as [`Experiment::run`].
 pub fn edge_pictures(config: &MachineConfig, deg_per_s: f64) -> Result<EdgePictures, ExperimentError> {
     let (conventional, conventional_seen) = draw(config, deg_per_s, Viewpoint::Field)?;
     let (just_in_time, just_in_time_seen) = draw(config, deg_per_s, Viewpoint::Strip)?;
     Ok(EdgePictures { conventional, conventional_seen, just_in_time, just_in_time_seen })
 }
 
-/// A field as scanned and as seen.
+/// Returns a field as scanned and as seen.
 fn draw(config: &MachineConfig, deg_per_s: f64, viewpoint: Viewpoint) -> Result<(RgbImage, RgbImage), ExperimentError> {
     let video = Video::new(FrameBufferConfig::NTSC.video).map_err(|e| ExperimentError::Scene(e.to_string()))?;
+    // Start the pan so that the edge is in the middle of the screen in the middle of the field.
     let middle = video.when(320, 240 + FieldParity::of_field(FIELD).first_line(), FIELD).unwrap_or_default();
     let scene = edge_scene(-deg_per_s * middle.0 as f64 * 1e-12);
     let pan = Arc::new(Pan::at(deg_per_s));
@@ -90,22 +94,26 @@ fn draw(config: &MachineConfig, deg_per_s: f64, viewpoint: Viewpoint) -> Result<
         .fields(FIELD.after(2).since(PeriodNumber::FIRST))
         .pixels(Pixels::Lazy)
         .run()?;
+    // Read the field as the display scanned it.
     let scanned = outcome.record().display_of_kind::<NtscDisplay>().and_then(|ntsc| ntsc.boards().first()?.seen(FIELD));
     let black = || RgbImage::new(video.width(), video.height() / 2);
     let picture = scanned.map_or_else(black, |field| field.picture());
+    // Compute the picture that the turning eye sees.
     let seen = as_seen(&picture, FIELD, &video, &Pan::at(deg_per_s));
     Ok((picture, seen))
 }
 
-/// A scanned field (a row for each of its lines) as an eye sees it that turns with the head: everything at the place
-/// where it stands relative to the head at the moment when the middle of the field lights. Black where nothing is.
+/// Returns a scanned field as seen by an eye that turns with the head. The field has one row for each of its lines.
+/// Each pixel moves to its position relative to the head at the instant when the middle of the field lights. Pixels
+/// without content are black.
 #[must_use]
 pub fn as_seen(picture: &RgbImage, field: PeriodNumber, video: &Video, motion: &dyn Motion) -> RgbImage {
     let view = HmdView::ntsc();
     let parity = FieldParity::of_field(field).first_line();
     let when = |x: u32, row: u32| video.when(x, 2 * row + parity, field).unwrap_or_default().0;
     let middle_ps = when(video.width() / 2, video.height() / 4);
-    // A head turns by hundredths of a degree in a line, so the rate of the middle serves the whole field.
+    // A head turns by hundredths of a degree during a line, so the angular velocity at the middle serves the whole
+    // field.
     let rate = motion.angular_velocity(middle_ps);
     let fixed = motion.pose(middle_ps);
     let of_head = fixed.orientation.conjugate() * rate;
@@ -116,6 +124,7 @@ pub fn as_seen(picture: &RgbImage, field: PeriodNumber, video: &Video, motion: &
         let seen = view.project(turn * DVec3::new(flat.x, -flat.y, -1.0)).unwrap_or(place);
         seen - place
     };
+    // Each pixel of the result is looked up at its position before the head's turn.
     RgbImage::from_fn(picture.width(), picture.height(), |x, row| {
         let way = moved(x, row);
         let from = (f64::from(x) - way.x, f64::from(row) - way.y / 2.0);

@@ -1,4 +1,4 @@
-//! One experiment with every predictor: the best of none, velocity, acceleration and Kalman beside the chosen one.
+//! Comparison of all predictors (none, velocity, acceleration, Kalman) on one experiment.
 
 use super::row::PredictorMean;
 use crate::parallel;
@@ -8,42 +8,44 @@ use serde::Serialize;
 use std::sync::Arc;
 use tracking::predict::{PredictorConfig, PredictorKind, Training};
 
-/// What one predictor makes of an experiment.
+/// Result of one predictor on an experiment.
 #[derive(Clone, Debug, Serialize)]
 pub struct PredictorError {
-    /// The filter that was put between tracker and pipeline.
+    /// Predictor between tracker and pipeline.
     pub kind: PredictorKind,
-    /// Its numbers, as it ran; nothing where it could not.
+    /// Parameters of the predictor in the run. `None` if the run failed.
     pub numbers: Option<PredictorConfig>,
-    /// On what they were tuned; nothing where they were given, or nothing is tuned.
+    /// Data on which the parameters were tuned. `None` if they were given or the predictor is not tuned.
     pub training: Option<Training>,
-    /// Pixel errors; nothing where none was judged.
+    /// Errors in pixels. `None` if no pixel was evaluated.
     pub error: Option<PixelErrors>,
-    /// Why there is no error, if so.
+    /// Reason for a missing error, or `None`.
     pub failure: Option<String>,
 }
 
-/// All predictors on one experiment.
+/// Results of all predictors on one experiment.
 #[derive(Clone, Debug, Serialize)]
 pub struct Predictors {
-    /// The predictor that the experiment asks for.
+    /// Predictor that the experiment selects.
     pub chosen: PredictorKind,
-    /// The one with the least mean error; the simplest of those that have it. Nothing where no error was judged.
+    /// Predictor with the smallest mean error, and the simplest of several equal ones. `None` if no error was
+    /// evaluated.
     pub best: Option<PredictorKind>,
-    /// Each of them, the simplest first.
+    /// Result of each predictor, the simplest first.
     pub each: Vec<PredictorError>,
 }
 
 impl Predictors {
-    /// What one of them makes of the experiment.
+    /// Returns the result of one predictor.
     #[must_use]
     pub fn of(&self, kind: PredictorKind) -> Option<&PredictorError> {
         self.each.iter().find(|one| one.kind == kind)
     }
 }
 
-/// Runs an experiment with each predictor, tuned for the pipeline's interval and the motion if the experiment's own is, and else with
-/// its numbers; everything else stays. `None` of an experiment without a head. No pixels are computed.
+/// Runs an experiment with each predictor, and leaves all other settings unchanged. The predictors are tuned for the
+/// pipeline's interval and the motion if the experiment's own predictor is tuned. Returns `None` for an experiment
+/// without a head. No pixels are computed.
 #[must_use]
 pub fn predictors(experiment: &Experiment) -> Option<Predictors> {
     let head = experiment.tracked_head()?;
@@ -55,7 +57,8 @@ pub fn predictors(experiment: &Experiment) -> Option<Predictors> {
     Some(Predictors { chosen: head.predictor_kind(), best: best.map(|(kind, _)| kind), each })
 }
 
-/// The mean error of an experiment with each predictor, of which that with the chosen one has been run; no number where none was judged.
+/// Returns the mean error of an experiment with each predictor. `of_chosen_px` is the known error of the chosen
+/// predictor, which does not run again. The mean is NaN if no error was evaluated.
 pub(super) fn predictor_means(experiment: &Experiment, showing: Showing, of_chosen_px: f64) -> Vec<PredictorMean> {
     let Some(head) = experiment.tracked_head() else { return Vec::new() };
     parallel::map(&PredictorKind::ALL, |kind| {

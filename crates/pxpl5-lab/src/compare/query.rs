@@ -1,4 +1,4 @@
-//! The comparison itself.
+//! The query of a comparison and its execution.
 
 use super::contender::{Contender, contenders};
 use super::predictors::predictor_means;
@@ -16,97 +16,101 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use thiserror::Error;
 
-/// Most fields of a run that is compared, an hour and more: everything is kept of each, since its errors are judged in several ways.
+/// Maximum number of fields of a compared run: a little over an hour. A comparison keeps all observations of a run,
+/// because its errors are evaluated in several ways.
 const MOST_FIELDS: u64 = 250_000;
 
-/// Fewest seeds of a comparison whose intervals mean something.
+/// Minimum number of seeds for meaningful confidence intervals.
 pub const LEAST_SEEDS: usize = 5;
 
-/// What is compared: settings that all rows share, each of which has a pipeline and a few settings of its own.
+/// A comparison to run: settings shared by all rows. Each row adds its pipeline and a few settings of its own.
 #[derive(Clone, Debug)]
 pub struct CompareQuery {
-    /// Machine, scene, head and fields, with the registry whose pipelines are compared; no pipeline. A `head.motion` of
-    /// `synthetic` is a motion of its own for every seed.
+    /// Machine, scene, head and fields, without a pipeline. The registry of this file has the compared pipelines. A
+    /// `head.motion` of `synthetic` is a different motion for every seed.
     pub shared: ExperimentFile,
-    /// Names of the rows that are run; all where there is none.
+    /// Names of the rows to run. An empty list runs all rows.
     pub only: Vec<String>,
-    /// Seeds of tracker, host and motion: a run for each.
+    /// Seeds of tracker, host and motion. Every row has one run for each seed.
     pub seeds: Vec<u64>,
-    /// Whether the most triangles that each row can draw are searched for.
+    /// True to search for the largest number of triangles that each row can draw.
     pub limits: bool,
-    /// Whether the first seed's runs compute pixels, for [`ComparisonRow::picture`].
+    /// True to compute the pixels of the first seed's runs, for [`ComparisonRow::picture`].
     pub pictures: bool,
 }
 
-/// Why nothing can be compared.
+/// Error of a comparison that cannot be run.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum CompareError {
-    /// A setting is wrong.
+    /// An invalid setting.
     #[error(transparent)]
     Settings(#[from] FileError),
     /// Too few or too many fields.
     #[error("expected {} to {} fields, found {found}", expected.0, expected.1)]
     Fields {
-        /// Least and most.
+        /// Minimum and maximum number of fields.
         expected: (u64, u64),
-        /// The number given.
+        /// Number of fields in the settings.
         found: u64,
     },
-    /// There is nothing to take a mean over.
+    /// A query without seeds.
     #[error("expected at least one seed, found none")]
     NoSeed,
-    /// The registry has no pipeline that is compared.
+    /// A registry in which no pipeline is marked as compared.
     #[error("expected a registry with a pipeline that is compared, found none")]
     NoPipeline,
-    /// A row was asked for that there is not.
+    /// A requested row that does not exist.
     #[error("expected one of {expected}; found `{found}`, did you mean `{nearest}`?")]
     Row {
-        /// Names of all rows.
+        /// Names of all rows, separated by commas.
         expected: String,
-        /// The name given.
+        /// Name in the query.
         found: String,
-        /// The row whose name is most like it.
+        /// Name of the row that is most similar to the requested name.
         nearest: String,
     },
-    /// There is nothing to track.
+    /// Settings without a head, and so without an error to compare.
     #[error("expected a head.motion, found none: without a head there is no error to compare")]
     NoHead,
 }
 
-/// A row for each way to fight latency, and what all of them share.
+/// Result of a comparison: the shared settings, and one row for each method.
 #[derive(Clone, Debug, Serialize)]
 pub struct Comparison {
-    /// Name and version of this record's layout.
+    /// Name and version of the JSON layout.
     pub schema: &'static str,
-    /// Preset of the machine.
+    /// Name of the machine's preset.
     pub machine: String,
-    /// Graphics processors and renderers.
+    /// Number of graphics processors and number of renderers.
     pub boards: [u64; 2],
-    /// Name of the scene that all draw.
+    /// Name of the scene that all rows draw.
     pub scene: String,
-    /// How many triangles that scene has.
+    /// Number of triangles in the scene.
     pub triangles: usize,
-    /// The settings of the head, with their keys.
+    /// Keys of the head's settings with their values.
     pub head: Vec<(String, String)>,
-    /// Fields simulated for each seed.
+    /// Number of fields simulated for each seed.
     pub fields: u64,
-    /// The seeds, of each of which every row had a run.
+    /// Seeds of the runs. Every row ran once for each seed.
     pub seeds: Vec<u64>,
-    /// A row for each way to fight latency.
+    /// Rows in the order of the registry.
     pub pipelines: Vec<ComparisonRow>,
 }
 
 impl CompareQuery {
-    /// Runs every row with every seed; `finished` hears how many of all runs are done.
+    /// Runs every row with every seed. `finished` is called with the number of finished runs and the number of all
+    /// runs.
     ///
-    /// A pipeline that cannot run on the machine, or that shows nothing of the scene, has a row that says why and what it could draw.
+    /// Every pipeline has a row. If a pipeline cannot run on the machine or shows no picture of the scene, its row
+    /// has the reason and the number of triangles that it could draw.
     ///
     /// # Errors
     ///
-    /// [`CompareError`] when a setting is wrong, or the run too short to judge anything.
+    /// Returns [`CompareError`] when a setting is invalid, or when the run is too short to evaluate.
     pub fn run(&self, finished: impl Fn(u64, u64) + Sync) -> Result<Comparison, CompareError> {
         let contenders = self.contenders()?;
+        // The first row serves to check the settings that all rows share.
         let any = self.any_plan(&contenders)?;
         let scene = any.load_scene()?;
         let runs = self.runs(&contenders);
@@ -114,11 +118,13 @@ impl CompareQuery {
         let all = (runs.len() + searches) as u64;
         let done = AtomicU64::new(0);
         let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, all);
+        // All runs of all rows and seeds execute in parallel. Searches for limits follow, one for each row.
         let trials = parallel::map(&runs, |(contender, seed)| {
             let trial = self.trial(&contenders[*contender], *seed, &scene);
             step();
             trial
         });
+        // Group the trials by row again, in the order in which they were created.
         let mut of_row = trials.into_iter();
         let rows: Vec<_> = contenders
             .iter()
@@ -144,18 +150,19 @@ impl CompareQuery {
         })
     }
 
-    /// What each row runs with the first seed, of those that can run: for whoever wants to know before what all of them take.
+    /// Returns the plan of each row with the first seed, for an estimate of the cost. Rows that cannot run are left
+    /// out.
     ///
     /// # Errors
     ///
-    /// As [`CompareQuery::run`].
+    /// Fails in the same cases as [`CompareQuery::run`].
     pub fn plans(&self) -> Result<Vec<Plan>, CompareError> {
         let contenders = self.contenders()?;
         let seed = self.any_plan(&contenders)?.seed;
         Ok(contenders.iter().filter_map(|contender| contender.plan(&self.shared, seed).ok()).collect())
     }
 
-    /// The rows that are run, in the order of all.
+    /// Returns the rows to run, in the order of the registry.
     fn contenders(&self) -> Result<Vec<Contender>, CompareError> {
         let mut chosen = contenders(self.shared.registry());
         let names: Vec<String> = chosen.iter().map(|contender| contender.name.clone()).collect();
@@ -169,7 +176,7 @@ impl CompareQuery {
         Ok(chosen)
     }
 
-    /// The settings checked with some pipeline.
+    /// Returns a plan of the first row, to check the shared settings.
     fn any_plan(&self, contenders: &[Contender]) -> Result<Plan, CompareError> {
         let seed = *self.seeds.first().ok_or(CompareError::NoSeed)?;
         let first = contenders.first().ok_or(CompareError::NoPipeline)?;
@@ -177,6 +184,7 @@ impl CompareQuery {
         if plan.head.is_none() {
             return Err(CompareError::NoHead);
         }
+        // The run must be longer than the warm-up of every pipeline.
         let expected = (WARM_UP_PERIODS + 1, MOST_FIELDS);
         if !(expected.0..=expected.1).contains(&plan.fields) {
             return Err(CompareError::Fields { expected, found: plan.fields });
@@ -184,12 +192,13 @@ impl CompareQuery {
         Ok(plan)
     }
 
-    /// Contenders by place and seeds, in the order of rows.
+    /// Returns pairs of a row's index and a seed, in the order of rows.
     fn runs(&self, contenders: &[Contender]) -> Vec<(usize, u64)> {
         (0..contenders.len()).flat_map(|contender| self.seeds.iter().map(move |seed| (contender, *seed))).collect()
     }
 
     fn trial(&self, contender: &Contender, seed: u64, scene: &Arc<Scene>) -> Result<Trial, String> {
+        // Pixels are needed only for the picture of the first seed.
         let is_seen = self.pictures && self.seeds.first() == Some(&seed) && !contender.is_reference();
         let pixels = if is_seen { Pixels::Lazy } else { Pixels::Off };
         let plan = contender.plan(&self.shared, seed).map_err(|error| error.to_string())?;
@@ -203,12 +212,14 @@ impl CompareQuery {
         scene: &Arc<Scene>,
     ) -> Result<ComparisonRow, CompareError> {
         let plan = contender.plan(&self.shared, self.seeds[0])?;
+        // Failed runs are left out, and their first error is reported below.
         let ran: Vec<&Trial> = trials.iter().flatten().collect();
         let mut row = ComparisonRow::of(contender, plan.pipeline.as_ref(), &ran);
         if let Some(Ok(first)) = trials.first()
             && !contender.is_reference()
         {
             let experiment = plan.experiment(Arc::clone(scene)).rehearsed_as(first.rehearsed.clone());
+            // The dry run of the first trial is reused for every predictor.
             row.predictors = predictor_means(&experiment, contender.showing, first.errors.pixels.mean);
         }
         if self.limits && !contender.is_reference() {
@@ -216,6 +227,7 @@ impl CompareQuery {
             row.triangles_possible = LimitQuery::of_plan(&plan).search().ok().map(|limit| limit.triangles);
         }
         let error = trials.iter().find_map(|trial| trial.as_ref().err().cloned());
+        // A row that showed no picture explains the reason.
         let shown: usize = ran.iter().map(|trial| trial.shown).sum();
         row.failure = error.or_else(|| (shown == 0 && !row.is_judged()).then(|| nothing_shown(&row, plan.fields)));
         Ok(row)
@@ -228,7 +240,7 @@ impl Contender {
     }
 }
 
-/// What a row without a single picture in the window says.
+/// Returns the error message of a row that showed no picture in the window of evaluation.
 fn nothing_shown(row: &ComparisonRow, fields: u64) -> String {
     let could = row
         .triangles_possible
@@ -241,7 +253,7 @@ fn nothing_shown(row: &ComparisonRow, fields: u64) -> String {
     }
 }
 
-/// What the number of triangles means.
+/// Returns the criterion of the largest number of triangles, in words.
 fn definition(plan: &Plan) -> String {
     let goal = match plan.limit.goal {
         Goal::NoMissedRetrace => "with no retrace missed".to_owned(),
@@ -252,7 +264,7 @@ fn definition(plan: &Plan) -> String {
 }
 
 impl Comparison {
-    /// A row by name.
+    /// Returns the row with a name.
     #[must_use]
     pub fn row(&self, pipeline: &str) -> Option<&ComparisonRow> {
         self.pipelines.iter().find(|row| row.pipeline == pipeline)

@@ -1,4 +1,4 @@
-//! A row of the table: all of its runs together.
+//! A row of a comparison, which combines the runs of all seeds.
 
 use super::contender::Contender;
 use super::gallery::LastPicture;
@@ -9,21 +9,21 @@ use pxpl5_run::{Cause, Pipeline, Statistics};
 use serde::Serialize;
 use tracking::predict::PredictorKind;
 
-/// A mean over seeds and where it lies with 95 % confidence (Student's t over the means of the seeds).
+/// A mean over seeds with its 95 % confidence interval (Student's t over the means of the seeds).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MeanInterval {
-    /// Mean of the means of the seeds; no number where there is none.
+    /// Mean of the seeds' means. NaN if there are no seeds.
     pub mean: f64,
-    /// Lower end of the interval; no number of fewer than two seeds.
+    /// Lower end of the interval. NaN for fewer than two seeds.
     pub low: f64,
-    /// Upper end of the interval.
+    /// Upper end of the interval. NaN for fewer than two seeds.
     pub high: f64,
-    /// Seeds whose means these are.
+    /// Number of seeds.
     pub n: usize,
 }
 
 impl MeanInterval {
-    /// Of one number for each seed.
+    /// Computes mean and interval of one number for each seed.
     #[must_use]
     pub fn of(values: &[f64]) -> Self {
         let statistics = Statistics::of(values.iter().copied());
@@ -33,100 +33,107 @@ impl MeanInterval {
     }
 }
 
-/// The 97.5th percentile of Student's t with so many degrees of freedom.
+/// Returns the 97.5th percentile of Student's t distribution.
 fn quantile_of_t(freedom: usize) -> f64 {
     StudentsT::ppf(0.975, freedom as f64)
 }
 
-/// Errors of all runs together.
+/// Errors in pixels over the runs of all seeds.
 #[derive(Clone, Debug, Serialize)]
 pub struct ErrorSpread {
-    /// Mean distance from where a pixel's content should be, pixels.
+    /// Mean distance of a pixel's content from its ideal position, in pixels.
     pub mean_px: MeanInterval,
-    /// The same as an angle, degrees.
+    /// Mean distance of a pixel's content from its ideal position, in degrees.
     pub mean_deg: MeanInterval,
-    /// Percentiles over all judged pixels of all seeds, pixels.
+    /// Percentiles over all evaluated pixels of all seeds, in pixels.
     pub pixels: Percentiles,
-    /// Judged pixels of all seeds together.
+    /// Number of evaluated pixels of all seeds.
     pub n: u64,
-    /// Every hundredth of the judged pixels' errors, pixels: 101 numbers from the least to the greatest; empty where none was judged.
+    /// Percentiles 0 to 100 of the evaluated errors, in pixels: 101 numbers in ascending order. Empty if no pixel was
+    /// evaluated.
     pub distribution_px: Vec<f64>,
 }
 
-/// What a cause adds to the mean error, pixels, and over how many seeds that is a mean.
+/// Contribution of one cause to the mean error.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct CauseShare {
-    /// The cause; none for what is left, the interaction of all.
+    /// The cause. `None` for the remainder, which is the interaction of all causes.
     pub cause: Option<Cause>,
-    /// Pixels of the mean error; negative where the error is greater without the cause.
+    /// Contribution in pixels, as a mean over seeds. Negative if the error is larger without the cause.
     pub px: MeanInterval,
 }
 
-/// What a predictor would make of a row.
+/// Mean error of a row with one predictor.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct PredictorMean {
-    /// The predictor that stood in the place of the chosen one.
+    /// Predictor that replaced the chosen one.
     pub kind: PredictorKind,
-    /// Mean error, pixels; no number where none was judged.
+    /// Mean error in pixels. NaN if no pixel was evaluated.
     pub mean_px: f64,
 }
 
-/// One way to fight latency.
+/// Results of one low-latency method.
 #[derive(Clone, Debug, Serialize)]
 pub struct ComparisonRow {
-    /// Name of the row: the pipeline, or a variant of it.
+    /// Name of the row: the pipeline or one of its variants.
     pub pipeline: String,
-    /// What tells it from others of the same pipeline.
+    /// Settings that distinguish the row from others of the same pipeline.
     pub settings: String,
-    /// Frame buffers that it draws into.
+    /// Number of frame buffers that the pipeline draws into.
     pub eyes: usize,
-    /// What its latency is of.
+    /// Definition of the pipeline's latency, in words.
     pub latency_definition: String,
-    /// Latency of the machine alone, milliseconds, over the complete pictures of all seeds.
+    /// Latency of the machine alone in milliseconds, over the complete pictures of all seeds.
     pub latency_ms: Statistics,
-    /// From the head's pose to the light of the picture's middle, milliseconds, over the same. Of faces this is the way of a step.
+    /// Latency from the head's pose to the light of the picture's middle in milliseconds, over the complete pictures
+    /// of all seeds. For pipelines that draw cube faces, only the position of the head counts.
     pub head_to_light_ms: Statistics,
-    /// From the head's orientation to the light of the picture's middle, milliseconds. Faces are turned at scan-out, with the newest
-    /// orientation; in all other pictures a turn goes the way of a step.
+    /// Latency from the head's orientation to the light of the picture's middle in milliseconds. Cube faces are
+    /// turned at scan-out with the newest orientation. Other pictures show the orientation and the position of the
+    /// same pose.
     pub turn_to_light_ms: Statistics,
-    /// Its stages, milliseconds, over the same.
+    /// Stages of the latency from head to light in milliseconds, over the complete pictures of all seeds.
     pub end_to_end: Budget,
-    /// From the measurement of the newest report to the instant that a picture is drawn for, milliseconds.
+    /// Time from the newest measurement to the instant for which a picture is drawn, in milliseconds.
     pub prediction_interval_ms: Statistics,
-    /// Whole new pictures a second, over the seeds with two or more; no number where none has as many.
+    /// New complete pictures a second, over the seeds with at least two pictures. NaN if no seed has two.
     pub updates_hz: MeanInterval,
-    /// Pictures that were due, of all seeds; nothing where none ever is.
+    /// Number of pictures due in all seeds. `None` for a pipeline whose pictures are never due.
     pub due: Option<u64>,
-    /// Those of them that were not shown: late, incomplete and missed.
+    /// Number of due pictures that were late, incomplete or missed. `None` for a pipeline whose pictures are never
+    /// due.
     pub not_shown: Option<u64>,
-    /// Regions that came after their deadline, of all seeds; nothing where regions have none.
+    /// Number of regions that arrived after their deadline, in all seeds. `None` if regions have no deadline.
     pub late_regions: Option<usize>,
-    /// Registration over a grid of pixels and all fields.
+    /// Registration error over a grid of pixels and all fields.
     pub error: ErrorSpread,
-    /// The mean error by cause; they add up to it.
+    /// Contributions of all causes to the mean error. Their sum is the mean error.
     pub causes: Vec<CauseShare>,
-    /// The mean error of the first seed with each predictor; nothing of what is not drawn by firmware.
+    /// Mean error of the first seed with each predictor. Empty for the reference, which no firmware draws.
     pub predictors: Vec<PredictorMean>,
-    /// Most triangles by the pipeline's own criterion; `None` where it was not asked for or means nothing.
+    /// Largest number of triangles by the pipeline's own criterion. `None` if the query did not ask for a search, or
+    /// the search failed.
     pub triangles_possible: Option<u32>,
-    /// What that number means.
+    /// Criterion of `triangles_possible`, in words.
     pub triangles_definition: String,
-    /// Why there are no numbers, if so, and what could be drawn.
+    /// Reason for missing results with the number of triangles that could be drawn, or `None`.
     pub failure: Option<String>,
-    /// Time that the runs took on this host, seconds.
+    /// Time that the runs took on this host, in seconds.
     pub host_seconds: f64,
-    /// Errors of the first seed over time.
+    /// Errors of the first seed by field.
     #[serde(skip)]
     pub by_field: Vec<FieldError>,
-    /// What the first eye sees at the end of the first seed's run; `None` where pictures were not asked for, or nothing was shown.
+    /// Last picture of the first seed before the first eye. `None` if the query did not ask for pictures, or no
+    /// picture was shown.
     #[serde(skip)]
     pub picture: Option<LastPicture>,
 }
 
 impl ComparisonRow {
-    /// All runs of a contender; a row without any has no numbers.
+    /// Combines the runs of a row. A row without runs has no numbers.
     pub(super) fn of(contender: &Contender, pipeline: &dyn Pipeline, trials: &[&Trial]) -> Self {
         let is_reference = contender.showing == Showing::Ideal;
+        // The reference is computed for each pixel's own instant and has no latency.
         let definition = if is_reference {
             "none: every pixel's own moment, computed and not timed"
         } else {
@@ -159,21 +166,21 @@ impl ComparisonRow {
         }
     }
 
-    /// The predictor with the least mean error, if any was judged.
+    /// Returns the predictor with the smallest mean error, or `None` if no predictor was evaluated.
     #[must_use]
     pub fn best_predictor(&self) -> Option<PredictorMean> {
         let judged = self.predictors.iter().copied().filter(|one| one.mean_px.is_finite());
         judged.min_by(|one, other| one.mean_px.total_cmp(&other.mean_px))
     }
 
-    /// Whether any pixel of it could be judged.
+    /// Returns true if at least one pixel of the row was evaluated.
     #[must_use]
     pub const fn is_judged(&self) -> bool {
         self.error.n > 0
     }
 }
 
-/// The sum of what is known; nothing where nothing is.
+/// Returns the sum of the known values, or `None` if no value is known.
 fn sum<T: std::iter::Sum>(values: impl Iterator<Item = Option<T>>) -> Option<T> {
     let mut known = values.flatten().peekable();
     known.peek().is_some().then(|| known.sum())
@@ -188,12 +195,13 @@ fn pooled(trials: &[&Trial], values: impl Fn(&Trial) -> &Vec<f64>) -> Statistics
     Statistics::of(trials.iter().flat_map(|trial| values(trial)).copied())
 }
 
-/// The interaction comes last.
+/// Returns the contributions of all causes. The interaction of the causes comes last.
 fn causes(trials: &[&Trial]) -> Vec<CauseShare> {
     let split: Vec<_> = trials.iter().filter_map(|trial| trial.causes.as_ref()).collect();
     if split.is_empty() {
         return Vec::new();
     }
+    // Each cause gets the mean of its contribution over all seeds.
     let of_cause = |cause: Cause| {
         let px: Vec<f64> = split
             .iter()
@@ -204,6 +212,7 @@ fn causes(trials: &[&Trial]) -> Vec<CauseShare> {
         CauseShare { cause: Some(cause), px: MeanInterval::of(&px) }
     };
     let mut shares: Vec<CauseShare> = Cause::ALL.into_iter().map(of_cause).collect();
+    // The part of the error that no single cause explains comes last.
     let interaction: Vec<f64> = split.iter().map(|causes| causes.interaction_px).collect();
     shares.push(CauseShare { cause: None, px: MeanInterval::of(&interaction) });
     shares
@@ -226,9 +235,11 @@ impl ErrorSpread {
     }
 }
 
-/// The least of some sorted numbers, and for each of 1 to 100 percent the smallest that so many do not exceed.
+/// Returns the minimum of sorted numbers, followed by the percentiles 1 to 100. A percentile is the smallest number
+/// that the given share of numbers does not exceed.
 fn hundredths(sorted: &[f64]) -> Vec<f64> {
     let Some(least) = sorted.first() else { return Vec::new() };
+    // Position of the smallest number that the given percentage does not exceed.
     let place = |percent: usize| (sorted.len() * percent).div_ceil(100).max(1) - 1;
     std::iter::once(*least).chain((1..=100).map(|percent| sorted[place(percent)])).collect()
 }

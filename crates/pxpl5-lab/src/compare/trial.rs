@@ -1,4 +1,4 @@
-//! One run of one row.
+//! One run of one row of a comparison.
 
 use super::contender::Contender;
 use super::gallery::LastPicture;
@@ -10,7 +10,7 @@ use pxpl5_wire::ViewNumber;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// What one run of a row says; pools of all runs make the row.
+/// Results of one run of a row. The row pools the runs of all seeds.
 #[derive(Clone, Debug)]
 pub(super) struct Trial {
     pub(super) latency_ms: Vec<f64>,
@@ -22,18 +22,18 @@ pub(super) struct Trial {
     pub(super) causes: Option<ErrorCauses>,
     pub(super) updates_hz: Option<f64>,
     pub(super) due: Option<DuePictures>,
-    /// Complete pictures in the window.
+    /// Number of complete pictures in the window of evaluation.
     pub(super) shown: usize,
     pub(super) late_regions: usize,
     pub(super) host_seconds: f64,
-    /// What the run knew before it.
+    /// Result of the dry run before the run.
     pub(super) rehearsed: Option<Arc<Rehearsed>>,
-    /// Of a run with pixels that showed something.
+    /// Last picture of a run with pixels, if a picture was shown.
     pub(super) picture: Option<LastPicture>,
 }
 
 impl Contender {
-    /// The settings of all with this row's pipeline and a seed.
+    /// Returns the shared settings with this row's pipeline and settings and a seed.
     pub(super) fn plan(&self, shared: &ExperimentFile, seed: u64) -> Result<Plan, FileError> {
         let mut file = shared.clone();
         file.set("pipeline", self.pipeline, "compare")?;
@@ -43,7 +43,7 @@ impl Contender {
         file.resolve_for(seed)
     }
 
-    /// Runs it once; what failed says why.
+    /// Runs the row once. An error is returned as its message.
     pub(super) fn trial(&self, plan: &Plan, scene: &Arc<Scene>, pixels: Pixels) -> Result<Trial, String> {
         let experiment = plan.experiment(Arc::clone(scene)).pixels(pixels);
         let outcome = experiment.rehearsed().and_then(|it| it.run()).map_err(|error| error.to_string())?;
@@ -54,6 +54,7 @@ impl Contender {
 impl Trial {
     fn of(outcome: &Outcome, showing: Showing) -> Self {
         let report = outcome.report();
+        // The reference has errors but no times.
         let is_timed = showing != Showing::Ideal;
         let times = |values: Vec<f64>| if is_timed { values } else { Vec::new() };
         let errors = PixelErrors::shown(outcome, showing);
@@ -80,7 +81,8 @@ fn latencies_ms(outcome: &Outcome) -> Vec<f64> {
     outcome.complete_pictures().map(|times| (times.shown_at - times.transform_at).as_ms()).collect()
 }
 
-/// From the measurement of an orientation to light: faces are turned at scan-out, all other pictures are drawn for it.
+/// Returns the times from the measurement of an orientation to light, in milliseconds. Cube faces are turned at
+/// scan-out; other pictures are drawn for the orientation of their pose.
 fn turns_ms(outcome: &Outcome) -> Vec<f64> {
     if outcome.pipeline().draws_faces().is_none() {
         return Budget::totals_ms(outcome);
@@ -88,9 +90,11 @@ fn turns_ms(outcome: &Outcome) -> Vec<f64> {
     outcome.rotation_latencies().iter().map(|turn| turn.total().as_ms()).collect()
 }
 
-/// From the measurement of the newest report that a view rests on to the instant that its picture is drawn for.
+/// Returns the times from the newest measurement behind a view to the instant for which its picture is drawn, in
+/// milliseconds.
 fn prediction_intervals_ms(outcome: &Outcome) -> Vec<f64> {
     let Some(head) = outcome.head() else { return Vec::new() };
+    // Only views whose pictures were shown completely count.
     let views: BTreeSet<ViewNumber> = outcome.complete_pictures().map(|times| times.view).collect();
     let sampled = head.sampled().into_iter().filter(|sampled| views.contains(&sampled.number));
     sampled

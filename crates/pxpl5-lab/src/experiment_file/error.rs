@@ -1,104 +1,106 @@
-//! What can be wrong with an experiment file or a setting.
+//! Errors of experiment files and settings.
 
 use pxpl5_machine::ConfigError;
 use pxpl5_scene::{LoadError, RangeError, SceneError};
 use thiserror::Error;
 
-/// Why an experiment file or a setting was refused. Every message says where, what, what was expected, what was found.
+/// Error of an experiment file or a setting. Every message names the place and the key, the expected value and the
+/// value found.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum FileError {
-    /// The file cannot be read.
+    /// An experiment file that cannot be read.
     #[error("{file}: expected a readable experiment file, found: {reason}")]
     Io {
-        /// Path of the file, as it was given.
+        /// Path of the file, as the user gave it.
         file: String,
-        /// What the operating system said.
+        /// Message of the operating system.
         reason: String,
     },
-    /// The text is not TOML.
+    /// Text that is not valid TOML.
     #[error("{place}: not TOML: {reason}")]
     Syntax {
-        /// File and line, or option.
+        /// File and line, or the command line option.
         place: String,
-        /// What the parser said.
+        /// Message of the TOML parser.
         reason: String,
     },
-    /// There is no such key.
+    /// A key that does not exist.
     #[error("{place}: there is no key `{found}`; did you mean `{nearest}`?")]
     UnknownKey {
-        /// File and line, or option.
+        /// File and line, or the command line option.
         place: String,
-        /// The key that nobody knows, as it was written.
+        /// Unknown key, as the user wrote it.
         found: String,
-        /// The nearest valid one.
+        /// Most similar valid key.
         nearest: String,
     },
-    /// A value is of the wrong kind or out of range.
+    /// A value of the wrong type or out of range.
     #[error("{place}: {key}: expected {expected}, found {found}")]
     Value {
-        /// File and line, or option.
+        /// File and line, or the command line option.
         place: String,
-        /// Path of the key that was set.
+        /// Path of the key.
         key: String,
-        /// What values the key takes, in words.
+        /// Valid values of the key, in words.
         expected: String,
-        /// The value that was given, at most 60 characters of it.
+        /// Value that the user gave, cut to 60 characters.
         found: String,
     },
-    /// A setting has no meaning for the pipeline that was chosen.
+    /// A setting that does not apply to the chosen pipeline.
     #[error("{place}: {key} does not apply to the pipeline {pipeline}; leave it out (it is for {applies_to})")]
     NotApplicable {
-        /// File and line, or option.
+        /// File and line, or the command line option.
         place: String,
-        /// Path of the key that was set.
+        /// Path of the key.
         key: String,
-        /// Name of the pipeline that was chosen.
+        /// Name of the chosen pipeline.
         pipeline: &'static str,
-        /// The pipelines that know it.
+        /// Pipelines that have the key, separated by commas.
         applies_to: String,
     },
-    /// A setting that must be given is missing.
+    /// A required setting that is missing.
     #[error("{key} is missing: give {how}")]
     Missing {
-        /// Path of the key that nobody set.
+        /// Path of the missing key.
         key: &'static str,
-        /// How to give it.
+        /// Example of a value.
         how: &'static str,
     },
-    /// The head, its tracker or its predictor cannot be had.
+    /// A head, tracker or predictor that cannot be built.
     #[error("{place}: {reason}")]
     Head {
-        /// File and line, or option.
+        /// File and line, or the command line option.
         place: String,
-        /// What was expected and what was found.
+        /// Expected value and value found, in words.
         reason: String,
     },
-    /// Two settings say different things about the same.
+    /// Two settings that set the same number.
     #[error("{place}: {key} and {other} set the same numbers; leave one out")]
     Conflict {
-        /// File and line, or option.
+        /// File and line, or the command line option.
         place: String,
-        /// Path of the parameter that was set.
+        /// Path of the machine's parameter.
         key: String,
-        /// The key of the pipeline that sets it too, with its value.
+        /// Key of the pipeline that sets the parameter too, with its value.
         other: String,
     },
-    /// The machine or its numbers are impossible.
+    /// A machine that cannot be built.
     #[error("{place}: {error}")]
     Config {
-        /// File and line, or option; "machine" for the machine as a whole.
+        /// File and line, or the command line option. The text "machine" if the error concerns the machine as a
+        /// whole.
         place: String,
-        /// What the machine says about it.
+        /// Error of the machine's configuration.
         error: ConfigError,
     },
-    /// There is no such scene.
+    /// A built-in scene that does not exist.
     #[error("{0}")]
     Scene(#[from] SceneError),
-    /// The model file cannot be used.
+    /// A model file that cannot be used.
     #[error("{0}")]
     Load(#[from] LoadError),
-    /// The head motion is impossible.
+    /// A head motion with a parameter out of range.
     #[error("motion: {0}")]
     Motion(#[from] RangeError),
 }

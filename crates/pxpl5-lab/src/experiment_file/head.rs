@@ -1,4 +1,4 @@
-//! The head in front of the pipeline: how it moves, its tracker and predictor, and the raster before its eyes.
+//! The tracked head of an experiment: its motion, tracker and predictor, and the raster before its eyes.
 
 use super::read::{beside, plain, wrong};
 use super::scene::SceneChoice;
@@ -11,7 +11,7 @@ use toml::Value;
 use tracking::motion::{Axes, Columns, End, RecordingFormat};
 use tracking::predict::PredictorConfig;
 
-/// A head with its tracker, by the names of its parts.
+/// A tracked head of an experiment, with the names of its motion, tracker and predictor.
 #[derive(Clone, Debug)]
 pub struct HeadChoice {
     motion: String,
@@ -30,22 +30,26 @@ impl PartialEq for HeadChoice {
     }
 }
 
-/// What is taken where a motion is given and nothing else: as `pxpl5 compare`.
+/// Default tracker of a head.
 const TRACKER: &str = "optical";
+/// Default predictor of a head.
 const PREDICT: &str = "kalman";
 
 impl HeadChoice {
-    /// The head of an experiment; `None` where no `head.` or `tracking.` key is set. A recording is read here.
+    /// Reads the head of an experiment, including a recording of its motion. Returns `None` if no `head.` or
+    /// `tracking.` key is set.
     pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline, seed: u64) -> Result<Option<Self>, FileError> {
         let Some(motion_name) = file.text("head.motion")? else { return Self::none(file) };
         let raster = file.choice("head.raster", &Raster::ALL)?.unwrap_or_default();
         let aim = file.choice("head.aim", &Aim::ALL)?.unwrap_or_default();
+        // A raster offset needs a picture of a single pose.
         if let (Raster::Vdrt, false, Some(setting)) = (raster, pipeline.has_one_pose(), file.get("head.raster")) {
             let place = setting.place.clone();
             let key = "head.raster = vdrt".to_owned();
             let applies_to = "rendering-control, slats and jitp-field, whose pictures are of one pose".to_owned();
             return Err(FileError::NotApplicable { place, key, pipeline: pipeline.name(), applies_to });
         }
+        // A recording is found relative to the experiment file that names the recording.
         let replay = replay(file)?;
         let motion_name = match file.get("head.motion") {
             Some(setting) if is_recording(motion_name) => beside(&setting.folder, motion_name),
@@ -54,6 +58,7 @@ impl HeadChoice {
         refuse_replay_of_others(file, &motion_name)?;
         let tracker_name = file.text("head.tracker")?.unwrap_or(TRACKER).to_owned();
         let predict = file.text("head.predict")?.unwrap_or(PREDICT).to_owned();
+        // Build motion, tracker and predictor with the experiment's numbers.
         let moving = moving(file, &motion_name, &replay)?;
         let tables = tracking_numbers::read(file, &tracker_name)?;
         let by_name = tracker_by(&tables, &tracker_name);
@@ -69,31 +74,31 @@ impl HeadChoice {
         Ok(Some(Self { motion: motion_name, replay, tracker: tracker_name, predict, numbers, head: Arc::new(head) }))
     }
 
-    /// Without a motion there is nothing to track.
+    /// Returns `None`, or an error if a `head.` or `tracking.` key is set without a motion.
     fn none(file: &ExperimentFile) -> Result<Option<Self>, FileError> {
         let of_head = file.settings.keys().any(|path| path.starts_with("head.") || path.starts_with("tracking."));
         let how = "how the head moves, such as head.motion = \"pan:200\"";
         if of_head { Err(FileError::Missing { key: "head.motion", how }) } else { Ok(None) }
     }
 
-    /// The head with tracker and predictor as the experiment takes it; all runs of a plan share it.
+    /// Returns the head with tracker and predictor. All runs of a plan share this head.
     #[must_use]
     pub fn head(&self) -> Arc<Head> {
         Arc::clone(&self.head)
     }
 
-    /// What is to be said of the recording of its motion.
+    /// Returns the warnings about the recording of the head's motion.
     pub(crate) fn warnings(&self) -> impl Iterator<Item = String> {
         self.head.motion().warnings().into_iter().map(|warning| format!("{}: {warning}", self.motion))
     }
 
-    /// The numbers of its tracker, of the port and of the predictor.
+    /// Returns the parameters of the tracker, the host's port and the predictor.
     #[must_use]
     pub fn parameters(&self) -> Vec<Parameter> {
         self.numbers.clone()
     }
 
-    /// Its keys and their values.
+    /// Returns the keys of the head with their values.
     pub(crate) fn settings(&self) -> Vec<(String, Value)> {
         let filter = if self.head.is_tuned() { "tuned" } else { "given" };
         let mut all: Vec<(String, Value)> = [
@@ -107,6 +112,7 @@ impl HeadChoice {
         .map(|(key, value)| (key.to_owned(), Value::from(value)))
         .into();
         all.extend(self.head.judge_at_m().map(|metres| ("head.judge_at".to_owned(), Value::from(metres))));
+        // Only recordings have an end, axes and columns.
         if is_recording(&self.motion) {
             let Replay { format, end } = &self.replay;
             all.push(("head.end".to_owned(), Value::from(end.name())));
@@ -118,15 +124,16 @@ impl HeadChoice {
     }
 }
 
-/// What keys of columns begin with.
+/// Prefix of the keys that assign columns of a recording.
 pub(super) const COLUMNS: &str = "head.columns.";
 
-/// The motion of a name; a walk reads the path of the scene.
+/// Returns the motion with a name. A walk follows the path of the scene.
 fn moving(
     file: &ExperimentFile,
     name: &str,
     replay: &Replay,
 ) -> Result<Arc<dyn tracking::motion::Motion + Send + Sync>, FileError> {
+    // A recording in memory has priority over a file.
     if let Some(contents) = file.contents(name).filter(|_| is_recording(name)) {
         let recording = recording_of(&**contents, name, replay);
         return Ok(Arc::new(recording.map_err(|error| refused(file, "head.motion", &error))?));
@@ -138,7 +145,7 @@ fn moving(
     Ok(Arc::new(walk(name, &path).map_err(|error| refused(file, "head.motion", &error))?))
 }
 
-/// How a recording is to be read.
+/// Reads the options of a recording: columns, axes and the behaviour at its end.
 fn replay(file: &ExperimentFile) -> Result<Replay, FileError> {
     let mut columns = Columns::default();
     for (path, setting) in &file.settings {
@@ -150,7 +157,7 @@ fn replay(file: &ExperimentFile) -> Result<Replay, FileError> {
     Ok(Replay { format, end: file.choice("head.end", &End::NAMES)?.unwrap_or_default() })
 }
 
-/// What is said of a recording has no meaning for other motions.
+/// Refuses keys of recordings if the motion is not a recording.
 fn refuse_replay_of_others(file: &ExperimentFile, motion: &str) -> Result<(), FileError> {
     let is_of_recordings = |path: &str| ["head.end", "head.axes"].contains(&path) || path.starts_with(COLUMNS);
     match file.settings.iter().find(|(path, _)| is_of_recordings(path) && !is_recording(motion)) {
@@ -159,7 +166,7 @@ fn refuse_replay_of_others(file: &ExperimentFile, motion: &str) -> Result<(), Fi
     }
 }
 
-/// Numbers of the filter that tuning would find itself.
+/// Parameters of the predictor that tuning would determine.
 const TUNED: [&str; 7] = [
     "position_jerk",
     "orientation_jerk",
@@ -170,8 +177,8 @@ const TUNED: [&str; 7] = [
     "baseline",
 ];
 
-/// Whether the predictor's numbers are to be found, from those of `tracking.filter` on; where it is not said, not if any of them is
-/// given.
+/// Returns true if the predictor is tuned, starting from the numbers of `tracking.filter`. Without `head.filter`, the
+/// predictor is tuned unless one of the [`TUNED`] parameters is set.
 fn is_tuned(file: &ExperimentFile) -> Result<bool, FileError> {
     let is_given = |name: &str| file.get(&format!("tracking.filter.{name}")).is_some();
     let choice = file.choice("head.filter", &[("tuned", true), ("given", false)])?;

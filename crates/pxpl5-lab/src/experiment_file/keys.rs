@@ -1,4 +1,4 @@
-//! The keys of an experiment file.
+//! The keys of an experiment file, with their explanations.
 
 use super::head::COLUMNS;
 use super::tracking_numbers::{is_tracking_parameter, tracking_parameters};
@@ -7,18 +7,18 @@ use pxpl5_machine::MachineConfig;
 use pxpl5_run::Registry;
 use tracking::motion::Columns;
 
-/// A key and what it says.
+/// A key of an experiment file with its explanation.
 #[derive(Clone, Debug)]
 pub struct FileKey {
-    /// Its path, as it is written before the equals sign: `motion.path`.
+    /// Path of the key, as written before the equals sign: `motion.path`.
     pub path: String,
-    /// What it sets and what it takes.
+    /// Meaning and valid values of the key.
     pub about: String,
-    /// The families of pipelines to which it applies; empty for all.
+    /// Pipeline families to which the key applies. An empty list means all pipelines.
     pub applies_to: Vec<&'static str>,
 }
 
-/// Keys that do not depend on which pipelines and displays there are.
+/// Keys that exist for every registry of pipelines and displays.
 const COMMON: &[(&str, &str)] = &[
     ("title", "a line for people"),
     ("scene", "a built-in scene or a model file (.ply, .obj, .pdb), relative to the experiment file"),
@@ -75,24 +75,27 @@ const COMMON: &[(&str, &str)] = &[
     ("published.value", "its published value"),
 ];
 
-/// Names that keys had before, and what they are called now.
+/// Former names of keys, each with the current name.
 const RENAMED: [(&str, &str); 1] = [("head.display", "head.raster")];
 
-/// All keys but the machine's parameters, which are `machine.` and a path of [`MachineConfig::set`].
+/// Returns all keys except the machine's parameters, which are `machine.` and a path of [`MachineConfig::set`].
 #[must_use]
 pub(super) fn keys(registry: &Registry) -> Vec<FileKey> {
     let pipelines: Vec<&str> = registry.pipelines().iter().map(|entry| entry.name).collect();
     let displays: Vec<&str> = registry.displays().iter().map(|entry| entry.name).collect();
+    // The names of pipelines and displays depend on the registry.
     let mut all = vec![
         common("pipeline", &pipelines.join(", ")),
         common("display", &format!("what the pipeline draws for: {}", displays.join(", "))),
     ];
     all.extend(COMMON.iter().map(|(path, about)| common(path, about)));
+    // One key for each column of a recording.
     all.extend(Columns::fields().map(|field| FileKey {
         path: format!("{COLUMNS}{field}"),
         about: "name or number of the column of a recording that holds it; _ms, _us, _ns and _mm are units, else s and m".to_owned(),
         applies_to: Vec::new(),
     }));
+    // Keys of pipelines state the families to which they apply.
     let of_pipelines = registry.keys().into_iter();
     all.extend(of_pipelines.map(|(key, applies_to)| FileKey {
         path: key.name.to_owned(),
@@ -106,8 +109,10 @@ fn common(path: &str, about: &str) -> FileKey {
     FileKey { path: path.to_owned(), about: about.to_owned(), applies_to: Vec::new() }
 }
 
-/// The key by which a path is kept: a parameter of the machine may be written without `machine.`. `None` for none.
+/// Returns the full path of a key, or `None` for an unknown key. The prefix `machine.` of a machine's parameter is
+/// optional.
 pub(super) fn canonical(registry: &Registry, path: &str) -> Option<String> {
+    // Former names of keys are still accepted.
     let path = RENAMED.iter().find(|(before, _)| *before == path).map_or(path, |(_, now)| now);
     if is_key(registry, path) || is_machine_parameter(registry, path) || is_tracking_parameter(path) {
         return Some(path.to_owned());
@@ -116,25 +121,26 @@ pub(super) fn canonical(registry: &Registry, path: &str) -> Option<String> {
     is_machine_parameter(registry, &long).then_some(long)
 }
 
-/// Whether a path is a key that is no parameter of the machine.
+/// Returns true if the path is a key other than a parameter of the machine.
 fn is_key(registry: &Registry, path: &str) -> bool {
     keys(registry).iter().any(|key| key.path == path)
 }
 
-/// Whether a machine with some display has such a parameter.
+/// Returns true if the path is a parameter of a machine with some registered display.
 fn is_machine_parameter(registry: &Registry, path: &str) -> bool {
     let Some(path) = path.strip_prefix("machine.") else { return false };
     parameters(registry).iter().any(|known| known == path)
 }
 
-/// The paths of all parameters of a machine that has every display.
+/// Returns the paths of all parameters of a machine with every registered display.
 fn parameters(registry: &Registry) -> Vec<String> {
     let all_displays = registry.displays().iter().map(|entry| (entry.config)()).collect();
     let machine = MachineConfig { displays: all_displays, ..registry.machine_of(MachineConfig::small_hmd()) };
     machine.settings().into_iter().map(|(path, _)| path).collect()
 }
 
-/// The valid path with the fewest changes to a wrong one, written as the wrong one was.
+/// Returns the valid path with the smallest edit distance to an invalid path. A machine's parameter has the prefix
+/// `machine.` only if the invalid path is closer to that form.
 pub(super) fn nearest_key(registry: &Registry, found: &str) -> String {
     let parameters = parameters(registry);
     let long = parameters.iter().map(|path| format!("machine.{path}"));

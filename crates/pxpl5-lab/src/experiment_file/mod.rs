@@ -1,4 +1,4 @@
-//! Experiments as text: TOML files, single settings `path=value`, and the checked [`Plan`] that they make together.
+//! Experiments as text: TOML files, single settings `path=value`, and the checked [`Plan`] that results from them.
 //!
 //! ```
 //! use pxpl5_lab::ExperimentFile;
@@ -21,8 +21,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! All keys: [`ExperimentFile::keys`]. Keys without a value get the defaults of [`Plan`]; keys that nobody knows are errors that name
-//! the nearest valid one.
+//! [`ExperimentFile::keys_of`] lists all keys. Keys without a value get the defaults of [`Plan`]. An unknown key is
+//! an error that names the most similar valid key.
 
 mod error;
 mod head;
@@ -52,71 +52,71 @@ use std::sync::Arc;
 use toml::Value;
 use toml::de::DeTable;
 
-/// A value and where it was given.
+/// A value, with the file and line or the option that gave the value.
 #[derive(Clone, Debug)]
 pub(crate) struct Setting {
     pub(crate) value: Value,
     pub(crate) place: String,
-    /// The folder to which file names are relative.
+    /// Folder to which file names in the value are relative.
     pub(crate) folder: PathBuf,
 }
 
-/// A motion whose seed is the run's, where there are several runs.
+/// Name of a motion whose seed is the seed of the run.
 const SYNTHETIC: &str = "synthetic";
 
-/// Settings by path that were read but not yet checked together.
+/// Settings by path, read but not yet checked together.
 #[derive(Clone, Debug)]
 pub struct ExperimentFile {
     registry: Arc<Registry>,
     pub(crate) settings: BTreeMap<String, Setting>,
     pub(crate) sweep: Option<Setting>,
-    /// Where each key within the table `sweep` was given, by path.
+    /// File and line of each key within the table `sweep`, by path.
     pub(crate) sweep_places: BTreeMap<String, String>,
-    /// Contents of files that are at hand, by name.
+    /// Contents of files in memory, by name.
     contents: BTreeMap<String, Arc<[u8]>>,
 }
 
 impl ExperimentFile {
-    /// No settings; with the pipelines and displays of the papers.
+    /// Returns a file without settings, with the built-in pipelines and displays.
     #[must_use]
     pub fn new() -> Self {
         Self::with(crate::registry())
     }
 
-    /// No settings; with the pipelines and displays of a registry.
+    /// Returns a file without settings, with the pipelines and displays of a registry.
     #[must_use]
     pub fn with(registry: Arc<Registry>) -> Self {
         let contents = BTreeMap::new();
         Self { registry, settings: BTreeMap::new(), sweep: None, sweep_places: BTreeMap::new(), contents }
     }
 
-    /// The pipelines and displays that it may name.
+    /// Returns the registry of the pipelines and displays that the file may name.
     #[must_use]
     pub const fn registry(&self) -> &Arc<Registry> {
         &self.registry
     }
 
-    /// All keys but the machine's parameters, which are `machine.` and a path of `MachineConfig::set`, and those of trackers
-    /// and predictors ([`tracking_parameters`]).
+    /// Returns all keys of a registry except two groups. The machine's parameters are `machine.` and a path of
+    /// `MachineConfig::set`. The parameters of trackers and predictors are listed by [`tracking_parameters`].
     #[must_use]
     pub fn keys_of(registry: &Registry) -> Vec<FileKey> {
         keys::keys(registry)
     }
 
-    /// Reads a file.
+    /// Reads an experiment file.
     ///
     /// # Errors
     ///
-    /// [`FileError::Io`], or as [`Self::parse`].
+    /// Returns [`FileError::Io`] if the file cannot be read, and the errors of [`Self::parse`].
     pub fn load(path: impl AsRef<Path>) -> Result<Self, FileError> {
         Self::new().and_load(path)
     }
 
-    /// Reads a file on top of what is set.
+    /// Reads an experiment file and overrides the current settings.
     ///
     /// # Errors
     ///
-    /// As [`Self::load`].
+    /// Fails in the same cases as [`Self::load`].
     pub fn and_load(self, path: impl AsRef<Path>) -> Result<Self, FileError> {
         let path = path.as_ref();
         let file = path.display().to_string();
@@ -127,30 +127,32 @@ impl ExperimentFile {
         self.parse_in(text, &file, &folder)
     }
 
-    /// Reads text; `name` stands for it in errors.
+    /// Parses the text of an experiment file. Error messages refer to the text as `name`.
     ///
     /// # Errors
     ///
-    /// [`FileError::Syntax`] and [`FileError::UnknownKey`] with the line.
+    /// Returns [`FileError::Syntax`] or [`FileError::UnknownKey`] with the line.
     pub fn parse(text: &str, name: &str) -> Result<Self, FileError> {
         Self::new().and_parse(text, name)
     }
 
-    /// Reads text on top of what is set; `name` stands for it in errors.
+    /// Parses text and overrides the current settings. Error messages refer to the text as `name`.
     ///
     /// # Errors
     ///
-    /// As [`Self::parse`].
+    /// Fails in the same cases as [`Self::parse`].
     pub fn and_parse(self, text: &str, name: &str) -> Result<Self, FileError> {
         self.parse_in(text, name, Path::new(""))
     }
 
+    // Two parsers read the text: one gives the positions of keys for errors, the other the values.
     fn parse_in(mut self, text: &str, name: &str, folder: &Path) -> Result<Self, FileError> {
         let spans = DeTable::parse(text).map_err(|error| not_toml(&error, text, name))?;
         let values: toml::Table = toml::from_str(text).map_err(|error| not_toml(&error, text, name))?;
         for (key, value) in values {
             let at = spans.get_ref().get_key_value(key.as_str());
             let start = at.map_or(0, |(key, _)| key.span().start);
+            // The table of a sweep is kept as a whole and checked later.
             if key == "sweep" {
                 self.sweep = Some(Setting { value, place: place(text, name, start), folder: folder.to_owned() });
                 let inner = at.map_or_else(Vec::new, |(_, value)| starts("sweep", value.get_ref()));
@@ -166,17 +168,17 @@ impl ExperimentFile {
         Ok(self)
     }
 
-    /// Sets a value; `place` says in errors where it was given, such as `--fields`.
+    /// Sets a value. Error messages refer to its origin as `place`, such as `--fields`.
     ///
     /// # Errors
     ///
-    /// [`FileError::UnknownKey`] with the nearest valid path.
+    /// Returns [`FileError::UnknownKey`] with the most similar valid path.
     pub fn set(&mut self, path: &str, value: impl Into<Value>, place: &str) -> Result<(), FileError> {
         self.put(path, value.into(), place.to_owned(), Path::new(""))
     }
 
-    /// Has the contents of a model or of a recording at hand, which are then taken wherever a setting names that file: for a host without
-    /// files, such as a browser.
+    /// Provides the contents of a model or a recording in memory, used wherever a setting names that file. Hosts
+    /// without files, such as browsers, need this.
     #[must_use]
     pub fn with_contents(mut self, name: impl Into<String>, contents: impl Into<Arc<[u8]>>) -> Self {
         self.contents.insert(name.into(), contents.into());
@@ -187,26 +189,26 @@ impl ExperimentFile {
         self.contents.get(name)
     }
 
-    /// Where a key was set: a line, an option; `None` of one that was not.
+    /// Returns the place where a key was set (a line or an option), or `None` if the key is not set.
     #[must_use]
     pub fn place_of(&self, key: &str) -> Option<&str> {
         self.settings.get(key).map(|setting| setting.place.as_str())
     }
 
-    /// The seed, 1 where none is set.
+    /// Returns the seed, 1 by default.
     ///
     /// # Errors
     ///
-    /// [`FileError`] when it is no whole number from 0 on.
+    /// Returns [`FileError`] when the seed is not a whole number from 0 to 2^63 - 1.
     pub fn seed(&self) -> Result<u64, FileError> {
         Ok(self.integer("seed", 0..=plan::MAX_SEED)?.unwrap_or(1))
     }
 
-    /// The checked experiment of one seed; a `head.motion` of `synthetic` moves as that seed says.
+    /// Returns the checked experiment for one seed. A `head.motion` of `synthetic` uses the same seed.
     ///
     /// # Errors
     ///
-    /// As [`Self::resolve`].
+    /// Fails in the same cases as [`Self::resolve`].
     pub fn resolve_for(&self, seed: u64) -> Result<Plan, FileError> {
         let mut file = self.clone();
         file.set("seed", i64::try_from(seed).unwrap_or(i64::MAX), "seed")?;
@@ -216,33 +218,34 @@ impl ExperimentFile {
         file.resolve()
     }
 
-    /// Sets `path=value`; a value that is not TOML is taken as text.
+    /// Sets `path=value`. A value that is not valid TOML is taken as text.
     ///
     /// # Errors
     ///
-    /// As [`Self::set`], and [`FileError::Syntax`] without an equals sign.
+    /// Returns [`FileError::Syntax`] if the equals sign is missing, and the errors of [`Self::set`].
     pub fn set_text(&mut self, assignment: &str, place: &str) -> Result<(), FileError> {
         let (path, text) = assignment.split_once('=').ok_or_else(|| FileError::Syntax {
             place: place.to_owned(),
             reason: format!("expected path=value, found `{assignment}`"),
         })?;
+        // Numbers and lists need no quotes; any other text is taken literally.
         let parsed: Result<toml::Table, _> = toml::from_str(&format!("value = {text}"));
         let value = parsed.ok().filter(|table| table.len() == 1).and_then(|mut table| table.remove("value"));
         self.set(path.trim(), value.unwrap_or_else(|| Value::String(text.trim().to_owned())), place)
     }
 
-    /// Puts a setting under the key that it is kept by.
+    /// Stores a setting under its full path.
     pub(crate) fn put(&mut self, path: &str, value: Value, place: String, folder: &Path) -> Result<(), FileError> {
         let canonical = self.canonical_key(path, &place)?;
         self.settings.insert(canonical, Setting { value, place, folder: folder.to_owned() });
         Ok(())
     }
 
-    /// The key by which a path is kept.
+    /// Returns the full path of a key.
     ///
     /// # Errors
     ///
-    /// [`FileError::UnknownKey`] with the nearest valid path.
+    /// Returns [`FileError::UnknownKey`] with the most similar valid path.
     pub(crate) fn canonical_key(&self, path: &str, place: &str) -> Result<String, FileError> {
         keys::canonical(&self.registry, path).ok_or_else(|| FileError::UnknownKey {
             place: place.to_owned(),
@@ -251,12 +254,12 @@ impl ExperimentFile {
         })
     }
 
-    /// The keys that are set, in order.
+    /// Returns the keys that are set, in alphabetical order.
     pub fn keys(&self) -> impl Iterator<Item = &str> {
         self.settings.keys().map(String::as_str)
     }
 
-    /// Takes over all settings of another file, in place of its own.
+    /// Overrides the settings with all settings of another file.
     pub fn overlay(&mut self, other: Self) {
         if other.is_sweep() {
             self.sweep = other.sweep;
@@ -265,7 +268,7 @@ impl ExperimentFile {
         self.settings.extend(other.settings);
     }
 
-    /// Whether the file describes a sweep.
+    /// Returns true if the file describes a sweep.
     #[must_use]
     pub const fn is_sweep(&self) -> bool {
         self.sweep.is_some()
@@ -278,13 +281,15 @@ impl Default for ExperimentFile {
     }
 }
 
-/// The leaves of a value with their paths and places; empty tables are leaves, so that they are not lost.
+/// Returns the leaves of a value with their paths and byte positions. An empty table is a leaf, so that the table is
+/// not lost.
 fn flat(
     path: String,
     value: Value,
     spans: Option<&toml::de::DeValue<'_>>,
     start: usize,
 ) -> Vec<(String, Value, usize)> {
+    // A value that is no table is a leaf.
     let table = match value {
         Value::Table(table) if !table.is_empty() => table,
         leaf => return vec![(path, leaf, start)],
@@ -298,7 +303,7 @@ fn flat(
     entries.collect()
 }
 
-/// Where every key within a table begins, by path.
+/// Returns the byte position of every key within a table, by path.
 fn starts(path: &str, table: &toml::de::DeValue<'_>) -> Vec<(String, usize)> {
     let entries = table.as_table().into_iter().flatten();
     let nested = entries.flat_map(|(key, value)| {
@@ -309,18 +314,18 @@ fn starts(path: &str, table: &toml::de::DeValue<'_>) -> Vec<(String, usize)> {
     nested.collect()
 }
 
-/// Where a byte of a file stands, for errors.
+/// Returns the name and line of a byte position, for errors.
 fn place(text: &str, name: &str, at: usize) -> String {
     format!("{name}, line {}", line(text, at))
 }
 
-/// What the parser of TOML says, with its place.
+/// Converts an error of the TOML parser.
 fn not_toml(error: &toml::de::Error, text: &str, name: &str) -> FileError {
     let at = error.span().map_or(0, |span| span.start);
     FileError::Syntax { place: place(text, name, at), reason: error.message().to_owned() }
 }
 
-/// The line of a byte, from 1.
+/// Returns the line of a byte position, counted from 1.
 fn line(text: &str, at: usize) -> usize {
     1 + text.as_bytes().iter().take(at).filter(|byte| **byte == b'\n').count()
 }

@@ -1,4 +1,4 @@
-//! The head motion of an experiment.
+//! The head motion of an experiment without a tracker.
 
 use super::read::wrong;
 use super::{ExperimentFile, FileError};
@@ -6,43 +6,43 @@ use glam::Vec3;
 use pxpl5_scene::config::FIT_DISTANCE_RADII;
 use pxpl5_scene::{HeadMotion, HeadPath, Scene, Sway};
 
-/// How the head moves.
+/// The motion of a head without a tracker.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MotionChoice {
-    /// The path, where it is not the scene's own.
+    /// Path of the head. `None` for the scene's own path.
     pub path: Option<PathChoice>,
-    /// Scale of the sway, where it is not the path's own.
+    /// Scale of the head's sway, 0 to 10. `None` for the default of the path.
     pub sway: Option<f64>,
 }
 
-/// A path round the scene's centre.
+/// A path of the head around the scene's centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PathChoice {
-    /// Stands before the scene.
+    /// Stands in front of the scene.
     Still {
-        /// Metres from the scene's centre; `None` fits the scene into the view.
+        /// Metres from the scene's centre. `None` fits the scene into the view.
         distance: Option<f64>,
     },
-    /// Looks at the scene and walks to and fro.
+    /// Looks at the scene and walks back and forth.
     Look {
-        /// Metres from the scene's centre; `None` fits the scene into the view.
+        /// Metres from the scene's centre. `None` fits the scene into the view.
         distance: Option<f64>,
     },
-    /// Circles round the scene.
+    /// Circles around the scene.
     Orbit {
-        /// Metres from the scene's centre; `None` fits the scene into the view.
+        /// Metres from the scene's centre. `None` fits the scene into the view.
         distance: Option<f64>,
-        /// Rate of turn, degrees per second.
+        /// Rate of the circular motion in degrees per second.
         deg_per_s: f64,
     },
-    /// Stands before the scene and turns.
+    /// Stands in front of the scene and turns.
     Pan {
-        /// Rate of turn, degrees per second.
+        /// Rate of turn in degrees per second.
         deg_per_s: f64,
     },
 }
 
-/// Rate of a turning head, where none is given: the mean of recorded head motion (see `pxpl5_scene::config`).
+/// Default rate of a turning head: the mean of recorded head motion (see `pxpl5_scene::config`).
 const DEG_PER_S: f64 = pxpl5_scene::config::MEAN_HEAD_SPEED_DEG_PER_S;
 
 impl MotionChoice {
@@ -60,6 +60,7 @@ impl MotionChoice {
         let path = file.choice("motion.path", &paths)?.flatten();
         let takes_distance = !matches!(path, None | Some(PathChoice::Pan { .. }));
         let takes_rate = matches!(path, Some(PathChoice::Orbit { .. } | PathChoice::Pan { .. }));
+        // A setting without effect is an error, not ignored.
         for (key, taken) in [("motion.distance", takes_distance), ("motion.deg_per_s", takes_rate)] {
             if let (Some(setting), false) = (file.get(key), taken) {
                 return Err(wrong(key, setting, "nothing: this motion.path does not take it"));
@@ -68,10 +69,11 @@ impl MotionChoice {
         Ok(Self { path, sway: file.number("motion.sway")? })
     }
 
-    /// The motion round a scene.
+    /// Returns the motion around a scene.
     pub(super) fn motion(&self, scene: &Scene) -> Result<HeadMotion, FileError> {
         let own = scene.motion();
         let path = self.path.map_or(*own.path(), |path| path.around(scene));
+        // A replaced path loses the scene's own sway.
         let own_scale = if self.path.is_none() { own.sway().scale } else { 0.0 };
         let scale = match self.path {
             Some(PathChoice::Look { .. }) => self.sway.unwrap_or(1.0),
@@ -96,7 +98,7 @@ impl PathChoice {
     }
 }
 
-/// The point in front of another, on its +z side, so many metres away.
+/// Returns the point at a distance in metres from `target`, on its +z side.
 fn before(target: Vec3, distance: f64) -> Vec3 {
     target + Vec3::Z * distance as f32
 }

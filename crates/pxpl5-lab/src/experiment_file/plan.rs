@@ -1,4 +1,4 @@
-//! A checked experiment.
+//! The checked plan of one experiment.
 
 use super::head::HeadChoice;
 use super::read::{plain, wrong};
@@ -19,27 +19,27 @@ use std::sync::Arc;
 
 pub(super) const PIXELS: [(&str, Pixels); 3] = [("off", Pixels::Off), ("lazy", Pixels::Lazy), ("all", Pixels::All)];
 
-/// What a run writes beside its report.
+/// Files that a run writes in addition to its report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outputs {
-    /// The last pictures, PNG.
+    /// True to write the last pictures as PNG.
     pub pictures: bool,
-    /// A timeline of all boards and pictures, SVG.
+    /// True to write a timeline of all boards and pictures as SVG.
     pub timeline: bool,
-    /// The measured quantities, CSV.
+    /// True to write the measured quantities as CSV.
     pub csv: bool,
 }
 
 /// The published figure that an experiment reproduces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Published {
-    /// Its number, if it has one.
+    /// Number of the figure. `None` if the paper does not number the figure.
     pub figure: Option<u64>,
-    /// Short name of the paper that prints it.
+    /// Short name of the paper that prints the figure.
     pub source: Option<String>,
-    /// Which measured quantity it is about.
+    /// Quantity that the figure states.
     pub quantity: Measure,
-    /// Its value as printed, in the unit of the quantity.
+    /// Printed value, in the unit of the quantity.
     pub value: f64,
 }
 
@@ -61,49 +61,50 @@ fn measure(file: &ExperimentFile, key: &str, name: &str) -> Result<Measure, File
     })
 }
 
-/// A checked experiment: everything is known, nothing contradicts.
+/// A checked experiment, in which every setting has a value and no two settings contradict each other.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// A line for people.
+    /// Title of one line for the user.
     pub title: Option<String>,
-    /// The pipelines and displays that there are.
+    /// Registry of pipelines and displays.
     pub registry: Arc<Registry>,
-    /// The pipeline, built from the keys that were given for it.
+    /// Pipeline, built from its keys in the file.
     pub pipeline: Arc<dyn Pipeline>,
-    /// How the most triangles that it draws in time are found.
+    /// Criterion by which the largest number of triangles drawn in time is found.
     pub limit: LimitCriterion,
-    /// The machine: a preset as the pipeline adapts it, with the parameters that were set.
+    /// Machine: a preset that the pipeline has adapted, with the parameters of the file.
     pub machine: MachineConfig,
-    /// The scene by name, not yet loaded.
+    /// Scene by name, not yet loaded.
     pub scene: SceneChoice,
-    /// Fields to simulate; default 120.
+    /// Number of fields to simulate; default 120.
     pub fields: u64,
     /// Seed of the head motion; default 1.
     pub seed: u64,
     /// Level of modelling; default transaction.
     pub level: Level,
-    /// The head with its tracker; default the scene's own motion, seen without delay.
+    /// Head with its tracker. `None` for the scene's own motion without tracking delay.
     pub head: Option<HeadChoice>,
-    /// Which pixels are computed; default those that are looked at.
+    /// Pixels that are computed; default only pixels that are read.
     pub pixels: Pixels,
     /// Quantities for tables and rows.
     pub measure: Vec<Measure>,
-    /// What a run writes beside its report.
+    /// Files that a run writes in addition to its report.
     pub output: Outputs,
-    /// What it is compared with.
+    /// Published figure to compare with, if any.
     pub published: Option<Published>,
 }
 
-/// Seeds that TOML can write.
+/// Largest seed that TOML can represent.
 pub(super) const MAX_SEED: u64 = i64::MAX as u64;
 
 impl ExperimentFile {
-    /// Checks all settings together.
+    /// Checks all settings together and returns the plan.
     ///
     /// # Errors
     ///
-    /// [`FileError`] names the first setting that is wrong or missing.
+    /// Returns a [`FileError`] that names the first setting that is wrong or missing.
     pub fn resolve(&self) -> Result<Plan, FileError> {
+        // The pipeline comes first, because other settings depend on it.
         let (entry, given) = self.pipeline()?;
         let pipeline = (entry.build)(&given);
         let seed = self.seed()?;
@@ -130,7 +131,7 @@ impl ExperimentFile {
         })
     }
 
-    /// The quantities for tables and rows: those that are named, or the usual ones.
+    /// Returns the quantities that `measure` names, or the default ones.
     fn measures(&self) -> Result<Vec<Measure>, FileError> {
         match self.texts("measure")? {
             Some(names) => names.iter().map(|name| measure(self, "measure", name)).collect(),
@@ -138,7 +139,7 @@ impl ExperimentFile {
         }
     }
 
-    /// The pipeline and the keys given for it.
+    /// Returns the pipeline's registry entry and its keys in the file.
     fn pipeline(&self) -> Result<(&PipelineEntry, PipelineSettings), FileError> {
         let names: Vec<(&str, &PipelineEntry)> =
             self.registry().pipelines().iter().map(|entry| (entry.name, entry)).collect();
@@ -146,6 +147,7 @@ impl ExperimentFile {
         let entry = self.choice("pipeline", &names)?.ok_or(missing)?;
         self.refuse_keys_of_others(entry)?;
         let mut given = PipelineSettings::default();
+        // Collect the values of the pipeline's own keys.
         for key in entry.keys {
             if let Some(value) = self.pipeline_key(key)? {
                 given.set(key.name, value);
@@ -172,7 +174,7 @@ impl ExperimentFile {
         lens.map(Some).map_err(|_| wrong(key.name, setting, &KeyValues::Lens.to_string()))
     }
 
-    /// Keys of other pipelines have no meaning.
+    /// Refuses keys of other pipelines.
     fn refuse_keys_of_others(&self, entry: &PipelineEntry) -> Result<(), FileError> {
         for (key, families) in self.registry().keys() {
             if let Some(setting) = self.get(key.name).filter(|_| !families.contains(&entry.family)) {
@@ -190,6 +192,7 @@ impl ExperimentFile {
     fn level(&self, entry: &PipelineEntry, has_head: bool) -> Result<Level, FileError> {
         let choices = Level::ALL.map(|level| (level.name(), level));
         let level = self.choice("level", &choices)?.unwrap_or(Level::Transaction);
+        // A closed form does not cover tracked heads.
         let has_form = entry.closed_form.is_some() && !has_head;
         match self.get("level").filter(|_| level == Level::Analytic && !has_form) {
             Some(setting) => Err(wrong("level", setting, "transaction or cycle for this pipeline or a head.motion")),
@@ -197,16 +200,19 @@ impl ExperimentFile {
         }
     }
 
+    // The order matters: the preset, then the display, then the pipeline's adaptation, then single parameters.
     fn machine(&self, entry: &PipelineEntry, pipeline: &dyn Pipeline) -> Result<MachineConfig, FileError> {
         let preset = self.text("machine.preset")?.unwrap_or(entry.preset);
         let place = self.get("machine.preset").map_or("machine", |setting| &setting.place);
         let machine = MachineConfig::preset(preset).map_err(|error| refused(place, error))?;
+        // Start from the preset, with the parameters of every pipeline's firmware.
         let mut machine = self.registry().machine_of(machine);
         if let Some(display) = self.display()? {
             machine.displays = vec![display];
             let place = self.get("display").map_or("display", |setting| &setting.place);
             check_faces(&machine, pipeline).map_err(|error| refused(place, error))?;
         }
+        // The pipeline adapts the machine to its needs.
         let mut machine = pipeline.adapt(machine);
         if let Some(code) = self.choice("machine.code", &CODES)? {
             machine.code = code;
@@ -214,6 +220,7 @@ impl ExperimentFile {
         if self.choice("machine.times", &TIMES)? == Some(true) {
             machine = machine.with_times_of_code(pipeline.code_use());
         }
+        // Remember the adapted machine to detect parameters that are set twice.
         let adapted = machine.clone();
         for (path, setting) in &self.settings {
             if let Some(parameter) =
@@ -224,11 +231,12 @@ impl ExperimentFile {
                 machine.set(parameter, value).map_err(|error| refused(&setting.place, error))?;
             }
         }
+        // Parameters are valid one by one, but may contradict each other.
         machine.check().map_err(|error| refused(self.place_of_error(&error), error))?;
         Ok(machine)
     }
 
-    /// Where the number was given that a machine cannot have.
+    /// Returns the place of the setting that caused an error of the machine.
     fn place_of_error(&self, error: &ConfigError) -> &str {
         let key = match error {
             ConfigError::Value { what, .. } => format!("machine.{what}"),
@@ -240,14 +248,14 @@ impl ExperimentFile {
         self.get(&key).map_or("machine", |setting| &setting.place)
     }
 
-    /// The display, where one is named.
+    /// Returns the configuration of the display that `display` names.
     fn display(&self) -> Result<Option<Box<dyn pxpl5_display::DisplayConfig>>, FileError> {
         let displays: Vec<(&str, &pxpl5_run::DisplayEntry)> =
             self.registry().displays().iter().map(|entry| (entry.name, entry)).collect();
         Ok(self.choice("display", &displays)?.map(|entry| (entry.config)()))
     }
 
-    /// A key of the pipeline that sets parameters, and one of these parameters beside it.
+    /// Refuses a parameter that a key of the pipeline sets too, unless both give the same value.
     fn refuse_twice(
         &self,
         entry: &PipelineEntry,
@@ -274,7 +282,7 @@ const CODES: [(&str, Option<CodeVersion>); 4] = [
     (CodeVersion::Scheduled.name(), Some(CodeVersion::Scheduled)),
 ];
 
-/// Whether the times of primitives are those of the code.
+/// Names of the origins of primitive times. True stands for the times of executed code.
 const TIMES: [(&str, bool); 2] = [("papers", false), ("code", true)];
 
 fn refused(place: &str, error: ConfigError) -> FileError {
@@ -292,28 +300,28 @@ impl Plan {
     ///
     /// # Errors
     ///
-    /// As [`SceneChoice::load`].
+    /// Fails in the same cases as [`SceneChoice::load`].
     pub fn load_scene(&self) -> Result<Arc<Scene>, FileError> {
         self.scene.load()
     }
 
-    /// All numbers of the experiment: those of its machine and, with a tracked head, of the tracker, the port and the
-    /// predictor, whose paths begin with `tracking.`.
+    /// Returns all parameters of the experiment. They are the parameters of its machine and, with a tracked head,
+    /// those of the tracker, the host's port and the predictor. Paths of the latter begin with `tracking.`.
     #[must_use]
     pub fn parameters(&self) -> Vec<Parameter> {
         let of_head = self.head.iter().flat_map(HeadChoice::parameters);
         self.machine.parameters().into_iter().chain(of_head).collect()
     }
 
-    /// Parameters of the machine and of what tracks the head that no source allows.
+    /// Returns the parameters of machine and tracking whose values lie outside the range of their sources.
     #[must_use]
     pub fn out_of_range(&self) -> Vec<Parameter> {
         let of_head = self.head.iter().flat_map(|head| head.head().suppositions().to_vec());
         out_of_range(&self.machine, self.pipeline.as_ref()).into_iter().chain(of_head).collect()
     }
 
-    /// What cannot be taken for the machine: parameters that no source allows, and times of a table where code is asked for. And
-    /// what is to be said of the recording of the head.
+    /// Returns warnings about settings that do not represent the real machine: parameters out of range, and times
+    /// from a table where executed code was requested. Warnings about the head's recording are included.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let of_table = times_of_table(self.level, &self.machine, self.pipeline.as_ref());
@@ -321,19 +329,19 @@ impl Plan {
         self.out_of_range().iter().map(Parameter::warning).chain(of_table).chain(of_head).collect()
     }
 
-    /// Name of the level of modelling.
+    /// Returns the name of the level of modelling.
     #[must_use]
     pub fn level_name(&self) -> String {
         self.level.name().to_owned()
     }
 
-    /// Name of the display that the pipeline draws for.
+    /// Returns the name of the display that the pipeline draws for.
     #[must_use]
     pub fn display(&self) -> &'static str {
         self.machine.displays.first().map_or("", |display| display.name())
     }
 
-    /// The experiment with the scene loaded, on this computer.
+    /// Returns the experiment with a loaded scene, for execution on this computer.
     #[must_use]
     pub fn experiment(&self, scene: Arc<Scene>) -> Experiment {
         let entry = self.registry.pipeline(self.pipeline.name()).ok();
@@ -351,11 +359,11 @@ impl Plan {
         }
     }
 
-    /// Runs it at its level, without pixels.
+    /// Runs the experiment at its level, without pixels.
     ///
     /// # Errors
     ///
-    /// As [`Experiment::run`].
+    /// Fails in the same cases as [`Experiment::run`].
     pub fn run(&self, scene: Arc<Scene>) -> Result<Results, ExperimentError> {
         let experiment = self.experiment(scene).pixels(Pixels::Off).host(Workstation::with_threads(1));
         match self.level {

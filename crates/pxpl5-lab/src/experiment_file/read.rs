@@ -1,4 +1,4 @@
-//! Typed reading of settings.
+//! Typed access to the settings of an experiment file.
 
 use super::{ExperimentFile, FileError, Setting};
 use parameters::{Value as Number, nearest};
@@ -30,11 +30,12 @@ impl ExperimentFile {
             .ok_or_else(|| wrong(key, setting, &format!("a whole number from {} to {}", range.start(), range.end())))
     }
 
-    /// A parameter's value: whole, or real where the text is.
+    /// Returns the value of a parameter, as a real number if the TOML value has a fraction, otherwise as a whole
+    /// number.
     pub(super) fn parameter_value(&self, path: &str, setting: &Setting) -> Result<Number, FileError> {
         match &setting.value {
             Value::Float(number) if number.is_finite() => Ok(Number::Real(*number)),
-            // Whole numbers of TOML go so far.
+            // The largest whole number of TOML is `i64::MAX`.
             _ => Ok(Number::Whole(self.integer(path, 0..=i64::MAX as u64)?.unwrap_or_default())),
         }
     }
@@ -52,7 +53,8 @@ impl ExperimentFile {
         list.flatten().map(Some).ok_or_else(|| wrong(key, setting, "a list of texts in quotes"))
     }
 
-    /// One of some names; a number is taken by its digits, so that `code = 1994` needs no quotes.
+    /// Returns one of several named values. A number matches the name with the same digits, so that `code = 1994`
+    /// needs no quotes.
     pub(super) fn choice<T: Copy>(&self, key: &str, choices: &[(&str, T)]) -> Result<Option<T>, FileError> {
         let Some(setting) = self.get(key) else { return Ok(None) };
         let found = plain(&setting.value);
@@ -65,7 +67,7 @@ impl ExperimentFile {
     }
 }
 
-/// A value without quotes.
+/// Returns a value as text without quotes.
 pub(crate) fn plain(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
@@ -75,7 +77,7 @@ pub(super) fn wrong(key: &str, setting: &Setting, expected: &str) -> FileError {
     FileError::Value { place: setting.place.clone(), key: key.to_owned(), expected: expected.to_owned(), found }
 }
 
-/// A file beside others in a folder.
+/// Returns the path of a file relative to a folder.
 pub(crate) fn beside(folder: &Path, name: &str) -> String {
     folder.join(name).display().to_string()
 }

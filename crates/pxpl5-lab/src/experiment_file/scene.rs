@@ -7,20 +7,20 @@ use pxpl5_scene::{Format, Placement, Scene};
 use std::path::Path;
 use std::sync::Arc;
 
-/// The scene that is drawn, how much of it, and how the head moves before it.
+/// The scene to draw: its origin, its number of primitives, and the head motion in front of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneChoice {
-    /// A built-in scene's name or a model file's path.
+    /// Name of a built-in scene, or path of a model file.
     pub name: String,
-    /// Whether a model file is moved and scaled into the view; a built-in scene is where it is.
+    /// Placement of a model file: fitted into the view, or at its own coordinates. A built-in scene is never moved.
     pub placement: Placement,
-    /// To how many primitives it is decimated; `None` for all.
+    /// Number of primitives after decimation. `None` for all.
     pub triangles: Option<usize>,
-    /// Whether all its structures drop their back faces.
+    /// True if all structures of the scene drop their back faces.
     pub culled: bool,
-    /// How the head moves.
+    /// Motion of a head without a tracker.
     pub motion: MotionChoice,
-    /// What the model file contains, where that is at hand ([`ExperimentFile::with_contents`]) and not to be asked of the host.
+    /// Contents of the model file in memory ([`ExperimentFile::with_contents`]), used instead of the host's file.
     pub contents: Option<Arc<[u8]>>,
 }
 
@@ -32,6 +32,7 @@ impl SceneChoice {
         let name = if is_file(name) { beside(&folder, name) } else { name.to_owned() };
         let triangles = file.integer("triangles", 1..=u64::from(u32::MAX))?.map(|n| n as usize);
         let placement = if file.flag("fit")?.unwrap_or(true) { Placement::Fitted } else { Placement::AsInFile };
+        // Built-in scenes are already in the view.
         if let (Some(setting), false) = (file.get("fit"), is_file(&name)) {
             return Err(wrong("fit", setting, "nothing: only model files are fitted into the view"));
         }
@@ -40,16 +41,16 @@ impl SceneChoice {
         Ok(Self { name, placement, triangles, culled, motion: MotionChoice::read(file)?, contents })
     }
 
-    /// Generates it or reads its file.
+    /// Generates the scene or reads its file.
     ///
     /// # Errors
     ///
-    /// [`FileError`] for an unknown scene or an unusable file.
+    /// Returns [`FileError`] for an unknown scene or an unusable file.
     pub fn load(&self) -> Result<Arc<Scene>, FileError> {
         self.prepared(Arc::new(self.load_whole()?))
     }
 
-    /// Corners of the scene's closed path; model files have none.
+    /// Returns the corners of the scene's closed path. Model files have no path.
     pub(super) fn path(&self) -> Result<Vec<glam::Vec3>, FileError> {
         if is_file(&self.name) { Ok(Vec::new()) } else { Ok(pxpl5_scene::builtin(&self.name)?.path().to_vec()) }
     }
@@ -63,13 +64,14 @@ impl SceneChoice {
         Ok(if self.culled { whole.culled() } else { whole })
     }
 
-    /// The whole scene decimated and moved as chosen.
+    /// Returns the whole scene, decimated and with the chosen head motion.
     pub(crate) fn prepared(&self, whole: Arc<Scene>) -> Result<Arc<Scene>, FileError> {
-        // Of a scene that has no more than so many, all are drawn.
+        // A scene with no more primitives than requested is drawn whole.
         let scene = match self.triangles {
             Some(n) if n < whole.triangles().len() + whole.spheres().len() => Arc::new(whole.decimated(n)?),
             _ => whole,
         };
+        // The scene's own motion needs no copy of the scene.
         if self.motion == MotionChoice::default() {
             return Ok(scene);
         }
@@ -80,8 +82,8 @@ impl SceneChoice {
     }
 }
 
-/// Returns true if a scene's name is a path: it has a separator, or an extension of whatever format. No built-in scene has one; what
-/// follows the point in `typical:1.5` is none.
+/// Returns true if a scene's name is a path: it contains a separator or an extension of any format. No built-in scene
+/// has an extension, because the part behind the dot in `typical:1.5` does not start with a letter.
 pub(crate) fn is_file(name: &str) -> bool {
     let extension =
         Path::new(name).extension().map(|end| end.to_string_lossy().starts_with(|c: char| c.is_alphabetic()));

@@ -27,7 +27,8 @@ fn what_is_not_given_is_what_the_papers_used() {
 fn every_machine_parameter_is_reached_with_and_without_its_first_part() {
     for parameter in MachineConfig::small_hmd().parameters().into_iter().filter(|parameter| !parameter.read_only) {
         let mut file = ExperimentFile::parse(RC, "test").expect("TOML");
-        // One more than the preset's: always in range, but for sizes and rates that frame buffers check together.
+        // One more than the preset's value is always in range, except for sizes and rates that frame buffers check
+        // together.
         let path = &parameter.path;
         file.set_text(&format!("{path}={}", one_more(parameter.value)), "--set").expect("known");
         file.set_text(&format!("machine.{path}={}", parameter.value), "--set").expect("the same key");
@@ -220,7 +221,7 @@ fn a_recording_is_read_beside_its_file_with_the_columns_and_the_end_that_it_says
         "half of 2,000 mm after half a second"
     );
     assert_eq!((head.motion().ends_ps(), head.judge_at_m()), (None, Some(3.5)));
-    // What is written into another folder means the same.
+    // The written settings mean the same in another folder.
     let other = folder.join("elsewhere");
     std::fs::create_dir_all(&other).expect("a folder");
     std::fs::write(other.join("again.toml"), plan.settings_for_any_folder().to_string()).expect("written");
@@ -245,7 +246,7 @@ fn what_is_said_of_a_head_is_checked() {
     assert!(judged.contains("head.motion is missing"), "{judged}");
 }
 
-/// The plan of `e.toml` beside a recording of a head that moves so many metres in a second.
+/// Returns the plan of `e.toml` with a recording of a head that moves `x` metres in one second.
 fn moved_to(x: f64, folder: &Path) -> Plan {
     let rows = format!("time_s,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,{x},0,0,1,0,0,0\n");
     std::fs::write(folder.join("head.csv"), rows).expect("writable");

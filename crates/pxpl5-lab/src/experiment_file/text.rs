@@ -1,4 +1,4 @@
-//! A plan written out in full.
+//! Conversion of a plan to the text of a complete experiment file.
 
 use super::motion::PathChoice;
 use super::plan::{PIXELS, Plan};
@@ -12,22 +12,22 @@ use std::collections::BTreeMap;
 use std::fmt;
 use toml::Value;
 
-/// Settings by path, as they take effect; shown as the text of an experiment file that says the same.
+/// Effective settings by path. Their `Display` output is an experiment file with the same meaning.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Values as TOML has them, by the path of their key.
+    /// Values of the settings as TOML, by the path of their key.
     pub values: BTreeMap<String, Value>,
-    /// Remarks by path: units, and what a preset would have said.
+    /// Remarks by path: the unit, the provenance, and the value in the preset.
     remarks: BTreeMap<String, String>,
 }
 
-/// The name of a choice.
+/// Returns the name of a choice.
 fn name<T: PartialEq>(choices: &[(&'static str, T)], value: &T) -> &'static str {
     choices.iter().find(|(_, choice)| choice == value).map_or("", |(name, _)| name)
 }
 
 impl Plan {
-    /// Every setting as it takes effect.
+    /// Returns every setting with its effective value.
     #[must_use]
     pub fn settings(&self) -> Settings {
         let mut all = Settings { values: BTreeMap::new(), remarks: BTreeMap::new() };
@@ -53,13 +53,14 @@ impl Plan {
         all
     }
 
-    /// The same for a file in any folder: names of files, which are relative to the folder of the file that says them, are absolute.
+    /// Returns every setting with its effective value, for an experiment file in any folder. Names of files, which
+    /// are relative to the folder of the experiment file, become absolute.
     #[must_use]
     pub fn settings_for_any_folder(&self) -> Settings {
         let mut all = self.settings();
         for (key, is_file) in [("scene", is_file as fn(&str) -> bool), ("head.motion", is_recording)] {
             let named = all.values.get(key).and_then(Value::as_str).filter(|name| is_file(name));
-            // A path that cannot be made absolute (an empty one) stays as it is.
+            // An empty path cannot be made absolute and stays unchanged.
             if let Some(absolute) = named.and_then(|name| std::path::absolute(name).ok()) {
                 all.put(key, absolute.display().to_string());
             }
@@ -67,9 +68,11 @@ impl Plan {
         all
     }
 
-    /// The settings on which the result depends, but not those on what is looked at, written or compared.
+    /// Returns a hash of the settings that determine the result. Settings of pixels, output files and comparison are
+    /// excluded.
     #[must_use]
     pub fn fingerprint(&self) -> Fingerprint {
+        // These settings do not change the simulated result.
         let outside = ["title", "pixels", "measure", "output.", "published."];
         let settings = self.settings();
         let inside = settings.values.iter().filter(|(path, _)| !outside.iter().any(|o| path.starts_with(o)));
@@ -92,6 +95,7 @@ impl Plan {
 
     fn scene_settings(&self, all: &mut Settings) {
         all.put("scene", self.scene.name.clone());
+        // `fit` and `cull` are written only if they differ from their defaults.
         if self.scene.placement == Placement::AsInFile {
             all.put("fit", false);
         }
@@ -141,13 +145,15 @@ impl Settings {
         self.put("machine.code", machine.code_name());
         self.put("machine.n_gps", machine.n_gps as i64);
         self.put("machine.n_renderers", machine.n_renderers as i64);
+        // The remarks name the values of the preset that differ.
         let preset = MachineConfig::preset(&machine.preset).map(|preset| preset.parameters()).unwrap_or_default();
         for parameter in machine.parameters().into_iter().filter(|parameter| !parameter.read_only) {
             self.parameter(&format!("machine.{}", parameter.path), &parameter, &preset);
         }
     }
 
-    /// A number under its key, with a remark on unit and standing, and on what it is among the parameters of a preset.
+    /// Adds a parameter under its key. Its remark states unit and provenance, and the value in the preset if the two
+    /// differ.
     fn parameter(&mut self, key: &str, parameter: &Parameter, preset: &[Parameter]) {
         let own = preset.iter().find(|other| other.path == parameter.path).map(|other| other.value);
         let changed = own.filter(|own| *own != parameter.value);
@@ -172,7 +178,7 @@ impl Settings {
     }
 }
 
-/// A parameter as TOML has it.
+/// Converts a parameter's value to TOML.
 fn toml_number(value: Number) -> Value {
     match value {
         Number::Whole(number) => Value::from(i64::try_from(number).unwrap_or(i64::MAX)),

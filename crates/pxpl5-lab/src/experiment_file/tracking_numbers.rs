@@ -1,4 +1,4 @@
-//! The numbers of trackers, predictors and of the port between them, as an experiment sets them: `tracking.table.name`.
+//! Parameters of trackers, predictors and the host's port, set by an experiment as `tracking.table.name`.
 
 use super::{ExperimentFile, FileError, Setting};
 use crate::compare::tracker_by;
@@ -7,14 +7,15 @@ use pxpl5_machine::{ConfigError, Parameter};
 use tracking::config::{FACTS, Tables};
 use tracking::tracker::{HostLine, TrackerConfig};
 
-/// The first part of every path.
+/// Prefix of every path.
 const PREFIX: &str = "tracking.";
 
-/// Tables that matter to every tracker: the host's serial port, the prediction filters, the gate before them.
+/// Tables that apply to every tracker: the host's serial port, the prediction filters, and the gate in front of the
+/// filters.
 const COMMON: [&str; 3] = ["host", "filter", "gate"];
 
-/// Every number with the value of the papers. Those that describe heads, the measuring rig, the video and the picture of the
-/// papers are read-only: they are facts that models are compared with, and no setting of a tracked head.
+/// Returns every parameter of tracking with its published value. Parameters of heads, the measuring rig, the video
+/// and the papers' pictures are read-only. They are facts to compare models with, not settings of a tracked head.
 #[must_use]
 pub fn tracking_parameters() -> Vec<Parameter> {
     let numbers = Tables::PAPERS.all().into_iter().flat_map(|(name, table)| parameters_of(name, table, false));
@@ -26,7 +27,7 @@ fn parameters_of(name: &str, table: &dyn ParameterTable, read_only: bool) -> Vec
     Parameter::of_table(&format!("{PREFIX}{name}"), table, read_only).collect()
 }
 
-/// The numbers of an experiment that its tracker, whose own table has this name, can feel.
+/// Returns the parameters that have an effect on a tracker, whose own table is named `own`.
 pub(super) fn parameters_with(tables: &Tables, own: &str, tracker: &TrackerConfig) -> Vec<Parameter> {
     let applying = tables.all().into_iter().filter(|(name, _)| applies(name, own));
     let numbers = applying.flat_map(|(name, table)| parameters_of(name, table, false));
@@ -37,7 +38,8 @@ fn applies(table: &str, own: &str) -> bool {
     table == own || COMMON.contains(&table)
 }
 
-/// The reason why a number of the host's port changes nothing for a tracker; `None` where it does.
+/// Returns the reason why a parameter of the host's port has no effect on a tracker, or `None` if the parameter has
+/// an effect.
 fn without_effect(path: &str, tracker: &TrackerConfig) -> Option<&'static str> {
     match path {
         "tracking.host.poll" if !matches!(tracker.host, HostLine::Polled { .. }) => {
@@ -50,19 +52,20 @@ fn without_effect(path: &str, tracker: &TrackerConfig) -> Option<&'static str> {
     }
 }
 
-/// Whether a path is one of these numbers.
+/// Returns true if the path is a parameter of tracking.
 pub(super) fn is_tracking_parameter(path: &str) -> bool {
     path.starts_with(PREFIX) && tracking_parameters().iter().any(|parameter| parameter.path == path)
 }
 
-/// The numbers that a file sets, for the tracker of this name.
+/// Returns the tables with the parameters that a file sets, for a tracker.
 pub(super) fn read(file: &ExperimentFile, tracker: &str) -> Result<Tables, FileError> {
     let mut tables = Tables::PAPERS;
-    // An unknown tracker is refused by who builds it.
+    // The function that builds the tracker refuses an unknown name.
     let known = tracker_by(&tables, tracker).ok();
     let own = known.as_ref().map_or("", |(_, own)| *own);
     for (path, setting) in &file.settings {
         let Some((table, name)) = path.strip_prefix(PREFIX).and_then(|path| path.split_once('.')) else { continue };
+        // Facts of the papers cannot be changed.
         refuse_facts(path, setting)?;
         if !applies(table, own) && !own.is_empty() {
             let reason = format!("{path} does not apply to head.tracker = {tracker}; leave it out");
@@ -72,6 +75,7 @@ pub(super) fn read(file: &ExperimentFile, tracker: &str) -> Result<Tables, FileE
             let reason = format!("{path} does not apply to head.tracker = {tracker}, {why}");
             return Err(FileError::Head { place: setting.place.clone(), reason });
         }
+        // Each assignment is checked together with the rest of its table.
         let value = file.parameter_value(path, setting)?;
         if let Some(table) = tables.named_mut(table) {
             let set = table.set(name, value).and_then(|()| table.check());

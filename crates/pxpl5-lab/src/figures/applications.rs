@@ -1,5 +1,5 @@
-//! The application scenes of the papers, the loads of their fly-throughs, what the rig measures, and the results of experiments: made once
-//! for all benches that share them.
+//! A cache shared by benches: application scenes of the papers, loads of their fly-throughs, measurements of the rig,
+//! and results of experiments.
 
 use super::measured::{FigureValue, Result, scene_named};
 use crate::limit::Limit;
@@ -9,25 +9,25 @@ use pxpl5_scene::Scene;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// A scene by its name, and whether its back faces are dropped.
+/// Name of a scene, and true if its back faces are dropped.
 type Key = (&'static str, bool);
 
-/// The same, with the number of seeds and of frames.
+/// Name of a scene, true if its back faces are dropped, number of seeds, and number of frames.
 type LoadsKey = (&'static str, bool, u64, u64);
 
-/// Loads of every view of a fly-through, a list for each seed.
+/// Loads of every view of a fly-through, one list for each seed.
 type LoadsOfSeeds = Arc<Vec<Vec<Load>>>;
 
-/// Regions kept, the master's rule, and changed parameters.
+/// Number of finished regions that a renderer keeps, the master's rule, and changed parameters.
 pub(super) type RigKey = (u64, FinishedRegions, Vec<(String, u64)>);
 
-/// What one key stands for, if it has been made.
+/// The cached value of one key, `None` until it is computed.
 type Place<T> = Arc<Mutex<Option<Arc<T>>>>;
 
-/// What all keys that were asked for stand for.
+/// The cached values of all requested keys.
 type Places<K, T> = Mutex<BTreeMap<K, Place<T>>>;
 
-/// What was made so far.
+/// The cache of scenes, loads and results.
 #[derive(Debug, Default)]
 pub(crate) struct Applications {
     scenes: Places<Key, Scene>,
@@ -37,7 +37,8 @@ pub(crate) struct Applications {
     limits: Places<String, Limit>,
 }
 
-/// All that decides what comes of an experiment with a built-in scene: machine, pipeline, scene, length, seed and level.
+/// Returns the cache key of an experiment with a built-in scene: everything that determines its result (machine,
+/// pipeline, scene, length, seed and level).
 pub(super) fn key_of(experiment: &Experiment, scene: &str) -> String {
     format!(
         "{scene} {} {} {:?} {:?} {:?}",
@@ -50,7 +51,7 @@ pub(super) fn key_of(experiment: &Experiment, scene: &str) -> String {
 }
 
 impl Applications {
-    /// A built-in scene.
+    /// Returns a built-in scene.
     pub(super) fn scene(&self, name: &'static str, culled: bool) -> Result<Arc<Scene>> {
         let make = || {
             let whole = scene_named(name)?;
@@ -59,32 +60,35 @@ impl Applications {
         find_or_make(&self.scenes, (name, culled), make)
     }
 
-    /// The loads of a scene, from `make` where they are asked for the first time.
+    /// Returns the loads of a scene. `make` computes them at the first request.
     pub(super) fn loads(&self, key: LoadsKey, make: impl FnOnce() -> Result<Vec<Vec<Load>>>) -> Result<LoadsOfSeeds> {
         find_or_make(&self.loads, key, || make().map(Arc::new))
     }
 
-    /// What the pendulum rig measures with these rules, from `make` where it is asked for the first time.
+    /// Returns the measurement of the pendulum rig for some rules. `make` computes the measurement at the first
+    /// request.
     pub(super) fn rig(&self, key: RigKey, make: impl FnOnce() -> Result<FigureValue>) -> Result<FigureValue> {
         find_or_make(&self.rigs, key, || make().map(Arc::new)).map(Arc::unwrap_or_clone)
     }
 }
 
 impl Applications {
-    /// What comes of an experiment, from `make` where it is asked for the first time.
+    /// Returns the summary of an experiment. `make` computes the summary at the first request.
     pub(super) fn summary(&self, key: String, make: impl FnOnce() -> Result<Summary>) -> Result<Arc<Summary>> {
         find_or_make(&self.summaries, key, || make().map(Arc::new))
     }
 
-    /// The answer of a search, from `make` where it is asked for the first time.
+    /// Returns the result of a search for a limit. `make` runs the search at the first request.
     pub(super) fn limit(&self, key: String, make: impl FnOnce() -> Result<Limit>) -> Result<Limit> {
         find_or_make(&self.limits, key, || make().map(Arc::new)).map(|limit| *limit)
     }
 }
 
-/// Others who ask for the same wait until it is made. What makes it must not run anything on other threads: who waits for them could be given
-/// work that asks for the same.
+/// Returns the cached value of a key, or computes it once. Other threads that request the same key wait for the
+/// result. `make` must not run work on other threads. A thread that waits for them could take over work that requests
+/// the same key, and deadlock.
 fn find_or_make<K: Ord, T>(all: &Places<K, T>, key: K, make: impl FnOnce() -> Result<Arc<T>>) -> Result<Arc<T>> {
+    // The outer lock is held only to find the slot; the inner lock is held while the value is computed.
     let place = Arc::clone(locked(all).entry(key).or_default());
     let mut known = locked(&place);
     if let Some(known) = &*known {

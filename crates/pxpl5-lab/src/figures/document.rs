@@ -1,4 +1,4 @@
-//! The figures as a document.
+//! The document ACCURACY.md, generated from the figures.
 
 use super::{FigureRow, Figures, MISS_PERCENT, Reading, mean_error_percent};
 use crate::application_time::{ApplicationTime, Spread, published};
@@ -7,11 +7,12 @@ use crate::levels::deviation_percent;
 use crate::readings::{self, Fit, FitOfFigure, Readings};
 use std::fmt::Write as _;
 
-/// ACCURACY.md: every figure, then the misses one by one.
+/// Returns ACCURACY.md: a table of all figures, then each miss with its cause.
 #[must_use]
 pub fn markdown(figures: &Figures) -> String {
     let mut text = String::new();
     let rows = &figures.rows;
+    // The order of sections: table, misses, then the comparisons that qualify the table.
     head(&mut text, rows);
     rows.iter().for_each(|row| line(&mut text, row));
     misses(&mut text, rows);
@@ -25,10 +26,11 @@ pub fn markdown(figures: &Figures) -> String {
     text
 }
 
-/// Figures that the timing table moves by more than so many percent are listed.
+/// Minimum difference, in percent, between the timing table and executed code for a figure to be listed.
 const MOVED_PERCENT: f64 = 0.05;
 
-/// The figures with the times of primitives that follow from code, where they are not the same, and why they are not the default.
+/// Writes the figures that change with the times of executed code, and the reason why these times are not the
+/// default.
 fn of_code(text: &mut String, rows: &[FigureRow], of_code: &[FigureRow]) {
     let _ = write!(
         text,
@@ -39,6 +41,7 @@ fn of_code(text: &mut String, rows: &[FigureRow], of_code: &[FigureRow]) {
          differ, at the transaction level:\n\n\
          | # | figure | published | table | error | code | error |\n|---|---|---|---|---|---|---|\n"
     );
+    // Figures that do not depend on the times are left out.
     let moved =
         |(table, code): &(&FigureRow, &FigureRow)| deviation_percent(code.simulated, table.simulated) > MOVED_PERCENT;
     for (table, code) in rows.iter().zip(of_code).filter(moved) {
@@ -68,11 +71,12 @@ fn of_code(text: &mut String, rows: &[FigureRow], of_code: &[FigureRow]) {
     );
 }
 
-/// Readings listed.
+/// Number of interpretations listed.
 const BEST: usize = 12;
 
-/// Which readings were tried, what each explains, and how sure the choice is.
+/// Writes the table of interpretations: the figures that each explains, and the confidence of the choice.
 fn of_readings(text: &mut String, readings: &Readings) {
+    // State how likely the default interpretation is, compared with the most likely one.
     let fits = &readings.analytic;
     let likeliest = fits.iter().map(|fit| fit.log_likelihood).fold(f64::NEG_INFINITY, f64::max);
     let usual = fits.iter().find(|fit| fit.reading == Reading::USUAL).map_or(f64::NAN, |fit| fit.log_likelihood);
@@ -92,6 +96,7 @@ fn of_readings(text: &mut String, readings: &Readings) {
         readings::FIGURES.join(" | "),
         "---|".repeat(readings::FIGURES.len()),
     );
+    // The table lists only the best interpretations.
     fits.iter().take(BEST).for_each(|fit| text.push_str(&fitted(fit)));
     let _ = write!(
         text,
@@ -112,12 +117,13 @@ fn of_readings(text: &mut String, readings: &Readings) {
         readings.as_good,
         readings.rounding_percent,
     );
+    // Each figure is predicted without its own data.
     for left_out in &readings.left_out {
         let _ = writeln!(text, "| {} | {:+.1} % | {} |", left_out.id, left_out.error_percent, left_out.words);
     }
 }
 
-/// A row of the readings' table; figures that it does not explain stand in bold.
+/// Returns a row of the table of interpretations. Figures that the interpretation does not explain are bold.
 fn fitted(fit: &Fit) -> String {
     let value = |figure: &FitOfFigure| {
         let sd = figure.simulated_sd.map_or(String::new(), |sd| format!(" ({sd:.2})"));
@@ -135,7 +141,7 @@ fn fitted(fit: &Fit) -> String {
     )
 }
 
-/// What the time of the host's application does to mean and deviation of the fly-throughs.
+/// Writes the effect of the application's time on the mean and deviation of the fly-throughs.
 fn of_application(text: &mut String, times: &[ApplicationTime]) {
     text.push_str(
         "\n## The application's time a frame\n\n\
@@ -150,12 +156,13 @@ fn of_application(text: &mut String, times: &[ApplicationTime]) {
         cells.collect::<Vec<_>>().join(" | ")
     };
     let _ = writeln!(text, "| printed latencies | | {} |", cells(&published()));
+    // One line for each setting of the application's time.
     for time in times {
         let _ = writeln!(text, "| {} ms | +- {} ms | {} |", time.mean_ms, time.jitter_ms, cells(&time.figures));
     }
 }
 
-/// Parameters listed for each figure.
+/// Number of parameters listed for each figure.
 const STRONGEST: usize = 4;
 
 fn sensitivity(text: &mut String, intervals: &[Interval]) {
@@ -168,6 +175,7 @@ fn sensitivity(text: &mut String, intervals: &[Interval]) {
          end, then the elasticity (relative change of the figure over relative change of the parameter).\n\n\
          | # | one at a time | joint | 5 % to 95 % | moved by | rules |\n|---|---|---|---|---|---|\n"
     );
+    // Only the strongest parameters of each figure are listed.
     for i in intervals {
         let strongest = i.effects.iter().take(STRONGEST);
         let effects: Vec<_> = strongest
@@ -217,6 +225,7 @@ fn head(text: &mut String, rows: &[FigureRow]) {
 
 fn line(text: &mut String, row: &FigureRow) {
     let analytic = row.analytic.map_or("-".to_owned(), number);
+    // A figure out of reach shows an error of the rules, not of a parameter.
     let interval = row.interval.map_or("not varied".to_owned(), |bounds| {
         let outside = if row.is_out_of_reach() { ", **out of reach**" } else { "" };
         format!("{}{outside}", range(bounds))
@@ -263,8 +272,9 @@ fn experiments(text: &mut String, rows: &[FigureRow]) {
     }
 }
 
-/// Four significant digits, without trailing zeros.
+/// Formats a number with four significant digits and without trailing zeros.
 fn number(value: f64) -> String {
+    // The number of decimals follows from the magnitude.
     let digits = if value == 0.0 { 0 } else { (3 - value.abs().log10().floor() as i32).max(0) as usize };
     let text = format!("{value:.digits$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }

@@ -1,4 +1,4 @@
-//! Figures of papers about other systems: rows of their own kind, printed and kept beside those of Pixel-Planes 5.
+//! Figures of papers about other systems. They have a row type of their own and follow the figures of Pixel-Planes 5.
 
 use super::measured::{Result, scene_named};
 use super::{Bench, FigureError};
@@ -14,34 +14,37 @@ use tracking::motion::Pan;
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
 
-/// Figures of one group of papers.
+/// Figures of one group of papers about another system.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FigureFamily {
-    /// What they are about.
+    /// Title of the group's section.
     pub title: &'static str,
-    /// The document that has more of them.
+    /// Path of the document with more details.
     pub document: &'static str,
-    /// Experiment by experiment.
+    /// Rows in the order of the experiments.
     pub rows: Vec<Row>,
 }
 
-/// Triangles of the balls before which the head of E1 turns; the papers' drawing ends at 1,000.
+/// Numbers of triangles of the spheres in experiment E1. The papers' drawing ends at 1,000.
 const TRIANGLES: [u32; 4] = [10, 100, 1_000, 10_000];
 
-/// A field, ms: pictures of Rendering Control wait for retraces, so what grows by less than that may not be seen.
+/// Duration of an NTSC field in ms. Pictures of Rendering Control wait for retraces, so a smaller growth of latency
+/// may be invisible.
 const FIELD_MS: f64 = 1001.0 / 60.0;
 
-/// Fields of a run of E1, and the first ones, which all of them have in common.
+/// Number of fields of a run of experiment E1.
 const FIELDS: u64 = 60;
+/// Number of first fields that all runs of experiment E1 share.
 const COMPARED: usize = 55;
 
 impl FigureFamily {
-    /// Address recalculation, priority rendering, region warping: E1 on Pixel-Planes 5, E2 to E9 with an ideal renderer. What follows
-    /// from the papers' tables by arithmetic alone is left to the document.
+    /// Runs the experiments on address recalculation, priority rendering and region warping: E1 on Pixel-Planes 5, E2
+    /// to E9 with an ideal renderer. Results that follow from the papers' tables by arithmetic are left to the
+    /// document.
     ///
     /// # Errors
     ///
-    /// [`FigureError`] names the experiment.
+    /// Returns a [`FigureError`] that names the experiment.
     pub fn address_recalculation(bench: &Bench) -> std::result::Result<Self, FigureError> {
         let failed = |reason: String| FigureError { id: "E1".to_owned(), reason };
         let mut all = turning(bench).map_err(|error| failed(error.to_string()))?;
@@ -54,7 +57,7 @@ impl FigureFamily {
         })
     }
 
-    /// Its part of ACCURACY.md.
+    /// Returns the family's section of ACCURACY.md.
     #[must_use]
     pub fn markdown(&self) -> String {
         let shapes = self.rows.iter().filter(|row| row.standing == Standing::Shape).count();
@@ -78,11 +81,13 @@ impl FigureFamily {
     }
 }
 
-/// E1: the latency of a turn behind the display and of a picture under Rendering Control, with more and more triangles. There the head
-/// looks at them all the time: what has turned out of sight is not drawn.
+/// Runs E1, which measures two latencies with growing numbers of triangles: that of the head's rotation with the
+/// display, and that of a picture under Rendering Control. Under Rendering Control the head looks at the triangles
+/// all the time, because triangles out of sight are not drawn.
 fn turning(bench: &Bench) -> Result<Vec<Row>> {
     let mut turns = Vec::new();
     let mut drawn_ms = Vec::new();
+    // For each size, run the display with faces under a turning head, then Rendering Control without a tracked head.
     for triangles in TRIANGLES {
         let faces = FacePipeline::new(FacePolicy::Full);
         let machine = faces.adapt(bench.machine("small-hmd")?);
@@ -94,6 +99,7 @@ fn turning(bench: &Bench) -> Result<Vec<Row>> {
     }
     let same =
         "greatest difference between the latencies of a turn with 10, 100, 1,000 and 10,000 triangles, field by field";
+    // With address recalculation, the latency of rotation must not depend on the number of triangles at all.
     let differences = turns.iter().flat_map(|turn| turn.iter().zip(&turns[0]).map(|(a, b)| a.abs_diff(*b)));
     let greatest = differences.max().filter(|_| turns.iter().all(|turn| turn.len() == COMPARED));
     let grows = "latency of a picture with 10,000 triangles under Rendering Control less that with 10";
@@ -105,7 +111,7 @@ fn turning(bench: &Bench) -> Result<Vec<Row>> {
     Ok(rows.map(|row| row.of("E1")).to_vec())
 }
 
-/// A head that turns with 200 degrees a second.
+/// Runs an experiment with a head that turns at 200 degrees a second.
 fn turned(experiment: Experiment) -> Result<Outcome> {
     let head = Head::new(Arc::new(Pan::at(200.0)), TrackerConfig::ideal(), PredictorKind::None, 1);
     let head = head.map_err(|error| ExperimentError::Scene(error.to_string()))?;

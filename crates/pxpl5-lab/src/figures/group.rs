@@ -1,5 +1,5 @@
-//! Published figures by topic beside those of the table: peak rates, just-in-time pixels, trackers. Each is measured in runs, with
-//! events at every level of the bench; none counts for the mean error of the table.
+//! Groups of published figures by topic: peak rates, just-in-time pixels, trackers. Each figure is measured in runs
+//! with events at every level of the bench. None counts in the mean error of the main table.
 
 use super::measured::{FigureValue, Result};
 use super::{Basis, Bench, Figure, FigureError, FigureRow};
@@ -8,22 +8,22 @@ use crate::parallel;
 use serde::Serialize;
 use std::fmt::Write as _;
 
-/// Figures of one topic.
+/// Published figures of one topic, with the model's values.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FigureGroup {
-    /// The topic.
+    /// Name of the topic.
     pub title: &'static str,
-    /// The conditions that all of its rows share, and what is open about them.
+    /// Conditions shared by all rows of the group, and conditions that the papers leave open.
     pub about: &'static str,
-    /// In the order of the group's table.
+    /// Rows in the order of the group's table.
     pub rows: Vec<FigureRow>,
 }
 
-/// A figure and its experiment.
+/// A published figure with its experiment.
 pub(super) struct Measurement {
     pub(super) figure: Figure,
     pub(super) measure: fn(&Bench) -> Result<FigureValue>,
-    /// Paths of the parameters that are moved to both ends of their ranges, one at a time.
+    /// Paths of the parameters that are set to both ends of their ranges, one at a time.
     pub(super) moved_by: &'static [&'static str],
 }
 
@@ -34,7 +34,7 @@ pub(super) struct Topic {
     pub(super) measurements: Vec<Measurement>,
 }
 
-/// A figure in which nothing was fitted.
+/// Returns a figure for which no parameter was fitted.
 pub(super) const fn free(
     (id, paper, section): (&'static str, &'static str, &'static str),
     statement: &'static str,
@@ -53,7 +53,7 @@ impl FigureGroup {
         Ok(Self { title: topic.title, about: topic.about, rows })
     }
 
-    /// Its part of ACCURACY.md.
+    /// Returns the group's section of ACCURACY.md.
     #[must_use]
     pub fn markdown(&self) -> String {
         let missed: Vec<&FigureRow> = self.rows.iter().filter(|row| row.misses()).collect();
@@ -69,10 +69,12 @@ impl FigureGroup {
         if !missed.is_empty() {
             text.push('\n');
         }
+        // Each miss is followed by its known cause.
         for row in missed {
             let _ = writeln!(text, "- **{}**: {}", row.id, row.cause);
         }
         text.push('\n');
+        // The experiments come last, for readers who want to repeat them.
         for row in &self.rows {
             let also: Vec<_> =
                 row.details.iter().map(|d| format!("{} {} {}", d.name, digits(d.value), d.unit)).collect();
@@ -102,7 +104,7 @@ fn line(row: &FigureRow) -> String {
     )
 }
 
-/// Four significant digits, without trailing zeros.
+/// Formats a number with four significant digits and without trailing zeros.
 fn digits(value: f64) -> String {
     let after = if value == 0.0 { 0 } else { (3 - value.abs().log10().floor() as i32).max(0) as usize };
     let text = format!("{value:.after$}");
@@ -118,11 +120,12 @@ impl Measurement {
         Ok(FigureRow { interval, ..FigureRow::new(&self.figure, measured) })
     }
 
-    /// Least and greatest value over both ends of each range, around the one with the presets' numbers. An end that leaves the
-    /// experiment without a value counts as not moved.
+    /// Returns the minimum and maximum of the figure over both ends of each parameter's range, including the value
+    /// for the presets. A setting for which the experiment has no value counts as the preset's value.
     fn interval(&self, bench: &Bench, nominal: f64) -> Option<[f64; 2]> {
         let all = variations().into_iter().chain(photodiode_line());
         let moved = all.filter(|variation| self.moved_by.contains(&variation.path.as_str()));
+        // Each parameter is set to the low and to the high end of its range.
         let ends: Vec<_> = moved.flat_map(|v| [(v.path.clone(), v.range.0), (v.path, v.range.1)]).collect();
         let values = parallel::map(&ends, |end| {
             let changes = bench.changes.iter().cloned().chain([end.clone()]).collect();

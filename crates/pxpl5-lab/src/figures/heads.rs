@@ -1,4 +1,4 @@
-//! Experiments with a head: the pendulum rig, and what passes from head to light.
+//! Figures with a tracked head: the pendulum rig, and the latency from head to light.
 
 use super::measured::{FigureValue, Result, detail, scene_named};
 use super::reading::Reading;
@@ -12,11 +12,13 @@ use tracking::predict::PredictorKind;
 use tracking::rig::{Latency, PendulumRig};
 use tracking::tracker::TrackerConfig;
 
-/// The visible line of the screen under the photodiode of figure 17, as a change of a bench.
+/// Path of the rig's photodiode line, the visible line of the screen under the photodiode of figure 17. The path may
+/// occur in a bench's changes.
 pub const PHOTODIODE_LINE: &str = "tracking.rig.photodiode_line";
 
-/// Figure 17: the mean that is seen from outside, with the photodiode on a line that was said, or else on the line that is assumed,
-/// beside what is seen under the first and the last line of the screen. The paper does not print the photodiode's place.
+/// Measures figure 17: the mean latency seen from outside. The photodiode is on the given line, or on the assumed
+/// line. The paper does not print the photodiode's position, so the result also states the latency under the first
+/// and the last line.
 pub(super) fn rig(machine: &MachineConfig, pipeline: RenderingControl, line: Option<u64>) -> Result<FigureValue> {
     if let Some(line) = line {
         return under_line(machine, pipeline, line as u32);
@@ -30,7 +32,7 @@ pub(super) fn rig(machine: &MachineConfig, pipeline: RenderingControl, line: Opt
     Ok(FigureValue { details, unprinted: Some([first.min(last), first.max(last)]), ..measured })
 }
 
-/// The line under the photodiode that is assumed, between the least and the greatest that it may be.
+/// Returns the first, the assumed and the last possible line of the photodiode.
 fn photodiode_lines() -> [u32; 3] {
     let assumed = PendulumRig::assumed().photodiode_line;
     let table = crate::tracking_parameters().into_iter().find(|parameter| parameter.path == PHOTODIODE_LINE);
@@ -52,11 +54,13 @@ fn under_line(machine: &MachineConfig, pipeline: RenderingControl, line: u32) ->
     Ok(FigureValue::with(mean_s * 1e3, details))
 }
 
-/// Seeds and length of figure 18's motion.
+/// Number of seeds of figure 18's motion.
 const SEEDS: u64 = 4;
+/// Length of figure 18's motion in seconds.
 const SECONDS: u64 = 120;
 
-/// Figure 18. The error is that of a rotation, but for the little that a point 1 m ahead adds.
+/// Measures figure 18. The error is almost only the error of a rotation; the position adds little for a point 1 m
+/// ahead.
 pub(super) fn ratio_of_errors() -> FigureValue {
     let ratio = |seed: u64| {
         let motion = Synthetic::recorded_use(seed);
@@ -67,10 +71,11 @@ pub(super) fn ratio_of_errors() -> FigureValue {
     FigureValue::with(mean, vec![detail("least", min, ""), detail("greatest", max, "")])
 }
 
-/// Fields of figure 19's runs: ten seconds.
+/// Number of fields of figure 19's runs: ten seconds.
 const FIELDS: u64 = 600;
 
-/// Figures 19 and 19b: the parts that the paper adds, and beside them those that it does not.
+/// Measures figures 19 and 19b: the sum of the stages that the paper adds. The stages that the paper leaves out
+/// appear as details.
 pub(super) fn tracker_and_rendering(
     machine: MachineConfig,
     pipeline: impl Pipeline,
@@ -80,10 +85,12 @@ pub(super) fn tracker_and_rendering(
     let head = Head::new(motion, TrackerConfig::optical_ceiling(), PredictorKind::None, 1);
     let head = head.map_err(|error| ExperimentError::Scene(error.to_string()))?;
     let experiment = Experiment::new(machine, pipeline, scene_named("full-screen:12")?);
+    // One run gives all stages from head to light.
     let outcome = experiment.head(head).fields(FIELDS).pixels(Pixels::Off).run()?;
     let Budget { tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, total_ms, .. } =
         Budget::of(&outcome);
-    // The paper adds its own means, which are read as figure 4 is; eyes of Slats have no TRANSFORM of their own.
+    // The paper adds its own mean latencies, so rendering is measured like figure 4. Eyes of Slats have no TRANSFORM
+    // of their own.
     let of_eyes = summary(&outcome);
     let samples = reading.latencies_ms(&of_eyes);
     let rendering_ms =

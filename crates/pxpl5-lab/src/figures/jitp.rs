@@ -1,4 +1,5 @@
-//! Just-in-time pixels (Mine and Bishop): errors of a turning head, the time of a line, transforms, and the plates.
+//! Figures of just-in-time pixels (Mine and Bishop): errors under a turning head, the duration of a line, the number
+//! of transforms, and the pictures of an edge.
 
 use super::Bench;
 use super::group::{Measurement, free};
@@ -22,21 +23,24 @@ delay, so that only the instants of drawing and of light differ. Angles are meas
 what it should show when it lights. Pixels are the paper's, 600 over 60 degrees. Each angle is scaled from the pixels that are lit to the \
 whole field or line, retrace included, as the paper counts.";
 
-/// A fast turn of the head, degrees a second (JITP).
+/// Rate of a fast turn of the head in degrees a second (JITP).
 const PAN: f64 = 200.0;
 
-/// Pixels a degree of the paper's view.
+/// Pixels per degree of the paper's view.
 const PX_PER_DEG: f64 = 10.0;
 
-/// A field well past the start, and even.
+/// Field that is evaluated: well after the start, and even.
 const FIELD: PeriodNumber = PeriodNumber(40);
 
-/// Column and lines of the picture of 640 x 480 that are looked at.
+/// Column of the 640 x 480 picture that is evaluated.
 const COLUMN: u32 = 320;
+/// Line in the middle of the 640 x 480 picture.
 const MIDDLE_LINE: u32 = 240;
+/// Last line of an even field in the 640 x 480 picture.
 const LAST_LINE: u32 = 478;
 
 pub(super) fn measurements() -> Vec<Measurement> {
+    // All figures of this group come from JITP and have no varied parameters.
     let row = |id, statement, value, experiment, cause, measure| Measurement {
         figure: free((id, "JITP", "raster"), statement, value, experiment, cause),
         measure,
@@ -90,14 +94,14 @@ fn run(machine: MachineConfig, viewpoint: Viewpoint, aim: Aim, fields: u64) -> R
     experiment.fields(fields).pixels(Pixels::Off).run()
 }
 
-/// Error at a pixel, degrees.
+/// Returns the error at a pixel in degrees.
 fn degrees(outcome: &Outcome, x: u32, y: u32) -> Result<f64> {
     let shown = Registration::of(outcome).and_then(|registration| registration.at(x, y, FIELD));
     let nothing = || ExperimentError::Scene(format!("pixel ({x}, {y}) of field {} shows nothing", FIELD.0));
     Ok(shown.ok_or_else(nothing)?.degrees)
 }
 
-/// Seconds between the beam's passes over two pixels of a field.
+/// Returns the seconds between the beam's passes over two pixels of a field.
 fn beam_s(outcome: &Outcome, from: (u32, u32), to: (u32, u32)) -> f64 {
     let display = outcome.record().display();
     let at_s = |(x, y)| display.lights(0, x, y, FIELD).map_or(f64::NAN, |at| at.0 as f64 / 1e12);
@@ -108,14 +112,17 @@ fn in_pixels(angle: FigureValue) -> Result<FigureValue> {
     Ok((angle.value * PX_PER_DEG).into())
 }
 
-/// J1: the turn from the first pixel of a field to its last line, scaled to the time from one retrace to the next.
+/// Measures J1: the rotation from the first pixel of a field to its last line, scaled to the time from one retrace to
+/// the next.
 fn error_of_field(bench: &Bench) -> Result<FigureValue> {
     let outcome = run(bench.machine("small-hmd")?, Viewpoint::Field, Aim::FirstPixel, FIELD.0 + 2)?;
     let surface = &outcome.record().display().surfaces()[0];
     let [width, height] = [surface.width, surface.height].map(f64::from);
     let focal_px = width / 2.0 / 30_f64.to_radians().tan();
-    // The pixel is below the level: a turn about the vertical moves it by the chord of a smaller circle.
+    // The evaluated pixel lies below the horizon, so a rotation about the vertical axis moves the pixel along a
+    // smaller circle.
     let level = focal_px / f64::hypot(focal_px, f64::from(LAST_LINE) + 0.5 - height / 2.0);
+    // The measured angle is a chord, so it is converted to a rotation.
     let chord = (degrees(&outcome, COLUMN, LAST_LINE)? / 2.0).to_radians().sin();
     let turn_deg = 2.0 * (chord / level).asin().to_degrees();
     let scan_s = beam_s(&outcome, (0, 0), (COLUMN, LAST_LINE));
@@ -123,24 +130,24 @@ fn error_of_field(bench: &Bench) -> Result<FigureValue> {
     Ok(FigureValue::with(turn_deg / scan_s * outcome.field_ms() / 1e3, details))
 }
 
-/// J2: the turn from the left end of a line to its right end, scaled to the whole line.
+/// Measures J2: the rotation from the left end of a line to its right end, scaled to the whole line.
 fn error_of_line(bench: &Bench) -> Result<FigureValue> {
     let outcome = run(bench.machine("small-hmd")?, Viewpoint::Strip, Aim::Middle, FIELD.0 + 2)?;
     let last = outcome.record().display().surfaces()[0].width - 1;
-    // The line is drawn for its middle, so that the errors of both ends add up.
+    // The line is drawn for its middle, so the errors of both ends add up.
     let ends_deg = degrees(&outcome, 0, MIDDLE_LINE)? + degrees(&outcome, last, MIDDLE_LINE)?;
     let active_s = beam_s(&outcome, (0, MIDDLE_LINE), (last, MIDDLE_LINE));
     let line_s = beam_s(&outcome, (0, MIDDLE_LINE), (0, MIDDLE_LINE + 2));
     Ok((ends_deg / active_s * line_s).into())
 }
 
-/// J3: lines of a field are every other line of the frame.
+/// Measures J3: the time between two lines of a field, which are two lines apart in the frame.
 fn time_of_line(bench: &Bench) -> Result<FigureValue> {
     let outcome = run(bench.machine("small-hmd")?, Viewpoint::Field, Aim::FirstPixel, FIELD.0 + 2)?;
     Ok((beam_s(&outcome, (0, 0), (0, 2)) * 1e6).into())
 }
 
-/// J4 of a conventional picture and one of just-in-time pixels.
+/// Measures J4: the slant of an edge in a conventional picture and in one of just-in-time pixels.
 fn slant_removed(bench: &Bench) -> Result<FigureValue> {
     let plates = edge_pictures(&bench.machine("small-hmd")?, PAN)?;
     let [conventional, just_in_time] = [&plates.conventional_seen, &plates.just_in_time_seen].map(slant);
@@ -149,10 +156,12 @@ fn slant_removed(bench: &Bench) -> Result<FigureValue> {
     Ok(FigureValue::with(100.0 * (1.0 - (just_in_time / conventional).abs()), details))
 }
 
-/// Pixels between the first and the last row of the straight line through the right ends of what is white.
+/// Returns the slant of the straight line through the right ends of the white pixels, in pixels from the first row to
+/// the last.
 fn slant(picture: &RgbImage) -> f64 {
     let end = |row| (0..picture.width()).rev().find(|x| picture.get_pixel(*x, row)[0] > 100).map_or(0, |x| x + 1);
     let rows = f64::from(picture.height());
+    // Fit the line by least squares.
     let middle = (rows - 1.0) / 2.0;
     let ends: Vec<f64> = (0..picture.height()).map(|row| f64::from(end(row))).collect();
     let from_middle = |row: usize| row as f64 - middle;
@@ -161,11 +170,12 @@ fn slant(picture: &RgbImage) -> f64 {
     up / down * (rows - 1.0)
 }
 
-/// J5: what is counted in [`COUNTED`] fields after a start that both runs share.
+/// Measures J5: the transforms counted in [`COUNTED`] fields after a start that both runs share.
 fn transforms(bench: &Bench) -> Result<FigureValue> {
     let counted = |viewpoint, fields| -> Result<u64> {
         Ok(run(free_slave(bench)?, viewpoint, Aim::Middle, fields)?.record().vertex_transforms())
     };
+    // The difference of two runs removes the start.
     let a_field = |viewpoint| -> Result<f64> {
         let before = counted(viewpoint, FIELD.0)?;
         Ok((counted(viewpoint, FIELD.0 + COUNTED)? - before) as f64 / COUNTED as f64)
@@ -178,10 +188,10 @@ fn transforms(bench: &Bench) -> Result<FigureValue> {
     Ok(FigureValue::with(line / field, details))
 }
 
-/// Fields over which transforms are counted.
+/// Number of fields over which transforms are counted.
 const COUNTED: u64 = 20;
 
-/// A machine with one slave, whose software costs no time.
+/// Returns a machine with one slave, whose software costs no time.
 fn free_slave(bench: &Bench) -> Result<MachineConfig> {
     let mut machine = MachineConfig { n_gps: 2, code: None, ..bench.machine("small-hmd")? };
     for name in ["message", "triangle", "guard", "bin_entry", "token_entry", "edit", "pass", "structure"] {

@@ -1,4 +1,4 @@
-//! The experiments behind the figures.
+//! The experiment behind each published figure.
 
 use super::applications::{Applications, key_of};
 use super::heads::{self, PHOTODIODE_LINE};
@@ -22,38 +22,41 @@ use pxpl5_scene::{Hmd, HmdConfig, Scene};
 use pxpl5_sim::Time;
 use std::sync::Arc;
 
-/// A bench for the figures: a level of modelling, and changes to the machine's parameters.
+/// Settings under which all figures are measured: a level of modelling, and changes to the machine's parameters.
 #[derive(Clone, Debug)]
 pub struct Bench {
-    /// The level of modelling at which every figure is measured.
+    /// Level of modelling at which every figure is measured.
     pub level: Level,
-    /// Parameters by path that differ from the presets. A path that begins with a preset's name and a colon changes
-    /// that one only; the times of PPHIGS code do not change the machines that run Slats. [`PHOTODIODE_LINE`] is the rig's.
+    /// Parameters, by path, that differ from the presets. A path that begins with a preset's name and a colon changes
+    /// only that preset. Times of PPHIGS code do not change the machines that run Slats. [`PHOTODIODE_LINE`] is a
+    /// parameter of the rig.
     pub changes: Vec<(String, u64)>,
-    /// Seeds of the head motion of figure 7.
+    /// Number of seeds of the head motion of figure 7.
     pub seeds: u64,
-    /// Frames of figure 7 that count, for each seed.
+    /// Number of evaluated frames of figure 7, for each seed.
     pub frames: u64,
-    /// How the open questions of Rendering Control are answered.
+    /// Interpretation of the questions that the papers leave open about Rendering Control.
     pub reading: Reading,
     pub(crate) applications: Arc<Applications>,
 }
 
-/// TRANSFORM and RENDER of figure 6 (milliseconds): a spread of lengths, because the swap waits for a retrace.
+/// Lengths of TRANSFORM and RENDER in figure 6, in milliseconds. Several lengths are averaged, because the swap waits
+/// for a retrace.
 const LONG_STAGES_MS: [u64; 7] = [22, 23, 24, 25, 26, 27, 28];
 
-/// Fields of figures 16b and 16c, whose frames take about 30 each.
+/// Number of fields of figures 16b and 16c, whose frames take about 30 fields each.
 const FIELDS_OF_FULL_BINS: u64 = 600;
 
-/// Parameters of the code that Rendering Control runs.
+/// Parameters of the code of Rendering Control.
 const PPHIGS_CODE: [&str; 3] = ["gp.triangle_ns", "gp.sphere_ns", "gp.bin_entry_ns"];
 
-/// Views of figure 8 and time between them.
+/// Number of views of figure 8.
 const VIEWS: u64 = 40;
+/// Time between two views of figure 8 in picoseconds.
 const VIEW_PERIOD_PS: u64 = 500_000_000_000;
 
 impl Bench {
-    /// The presets as they are, with 10 seeds of 150 frames.
+    /// Returns a bench with the unchanged presets, and 10 seeds of 150 frames.
     #[must_use]
     pub fn new(level: Level) -> Self {
         Self {
@@ -66,15 +69,16 @@ impl Bench {
         }
     }
 
-    /// The same with fewer or more seeds and frames of the Mig.
+    /// Returns the bench with another number of seeds and frames for the fly-throughs.
     #[must_use]
     pub fn with_mig(self, seeds: u64, frames: u64) -> Self {
         Self { seeds, frames, ..self }
     }
 
-    /// The same with the times of primitives that follow from the code that each preset runs.
+    /// Returns the bench with the times of primitives of executed code, for the code that each preset runs.
     #[must_use]
     pub fn with_times_of_code(mut self) -> Self {
+        // Each preset runs its own code, so each has its own times.
         for preset in PRESETS {
             let Ok(machine) = MachineConfig::preset(preset.name) else { continue };
             let of = if preset.name.starts_with("slats") { CodeUse::Slats } else { CodeUse::Pphigs };
@@ -94,8 +98,9 @@ impl Bench {
     ///
     /// # Errors
     ///
-    /// [`ExperimentError`]; [`ExperimentError::Scene`] for an unknown figure.
+    /// Returns [`ExperimentError`] if the experiment fails, and [`ExperimentError::Scene`] for an unknown figure.
     pub fn measure(&self, id: &str) -> Result<FigureValue> {
+        // Experiments that several figures need are cached.
         match id {
             "1" => Ok(self.trivial()?.region_copy_us.into()),
             "2" => self.trivial().map(|s| (s.first_copy_ms + s.last_copy_ms).into()),
@@ -133,14 +138,15 @@ impl Bench {
         }
     }
 
-    /// The machine of a preset with the bench's changes.
+    /// Returns the machine of a preset with the bench's changes.
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] for a preset or path that does not exist.
+    /// Returns [`ConfigError`] for a preset or path that does not exist.
     pub fn machine(&self, preset: &str) -> std::result::Result<MachineConfig, ConfigError> {
         let mut machine = MachineConfig::preset(preset)?;
         for (path, value) in &self.changes {
+            // A path with a preset's name applies only to this preset.
             match path.split_once(':') {
                 Some((only, path)) if only == preset => machine.set(path, *value)?,
                 Some(_) => {}
@@ -152,14 +158,16 @@ impl Bench {
         Ok(machine)
     }
 
-    /// The same bench with another reading.
+    /// Returns the bench with another interpretation of the papers.
     #[must_use]
     pub fn with(&self, reading: Reading) -> Self {
         Self { reading, ..self.clone() }
     }
 
-    /// An experiment with a built-in scene at the bench's level, without pixels; several figures and readings share it.
+    /// Runs an experiment with a built-in scene at the bench's level, without pixels. The result is cached, because
+    /// several figures and interpretations share experiments.
     fn run(&self, machine: MachineConfig, pipeline: impl Pipeline, scene: &str, fields: u64) -> Result<Arc<Summary>> {
+        // The key needs an experiment, but the scene is loaded only if the result is not cached.
         let empty = self.applications.scene("full-screen:1", false)?;
         let experiment = Experiment::new(machine, pipeline, empty).fields(fields).level(self.level);
         let make = || self.summarise(&experiment.clone().with_scene(scene_named(scene)?));
@@ -174,18 +182,19 @@ impl Bench {
         self.run(self.reading.on(machine)?, self.reading.pipeline(), "full-screen:12", 80)
     }
 
-    /// Figures 1, 2, 4: twelve triangles that cover the screen.
+    /// Runs the experiment of figures 1, 2 and 4: twelve triangles that cover the screen.
     fn trivial(&self) -> Result<Arc<Summary>> {
         self.stereo(self.machine("small-hmd")?)
     }
 
-    /// Figures 16b and 16c: as many triangles that cover the screen as the bins were said to hold.
+    /// Runs the experiment of figures 16b and 16c: as many screen-filling triangles as the bins hold according to the
+    /// papers.
     fn full_bins(&self) -> Result<Arc<Summary>> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
         self.run(machine, self.reading.pipeline(), "full-screen:7700", FIELDS_OF_FULL_BINS)
     }
 
-    /// Figure 3: everything but COPY is free.
+    /// Measures figure 3: the latency if everything except COPY costs no time.
     fn copy_alone(&self) -> Result<FigureValue> {
         let mut machine = self.machine("small-hmd")?;
         let gp = ["message", "triangle", "guard", "bin_entry", "token_entry", "edit", "pass", "structure"];
@@ -199,7 +208,8 @@ impl Bench {
         Ok(spread_ms(Statistics::of(self.stereo(machine)?.eye_latencies_ms.iter().copied())))
     }
 
-    /// Figure 16: triangles that cover the screen, as many as the slaves' bins hold for one eye, or for both.
+    /// Computes figure 16: the number of screen-filling triangles that the slaves' bins hold for one eye, or for
+    /// both.
     fn most_in_bins(&self) -> Result<FigureValue> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
         let slaves = machine.n_gps as u64 - 1;
@@ -208,7 +218,8 @@ impl Bench {
         Ok(((of_slave * slaves) as f64).into())
     }
 
-    /// Figure 17, over all lines where no line was said. Its events do not depend on the level, nor on how samples are taken.
+    /// Measures figure 17, over all lines unless the bench sets a line. The rig's events do not depend on the level
+    /// or on the definition of samples.
     fn rig(&self) -> Result<FigureValue> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
         let key = (self.reading.kept, self.reading.finished, self.changes.clone());
@@ -216,22 +227,22 @@ impl Bench {
         self.applications.rig(key, || heads::rig(&machine, self.reading.pipeline(), line))
     }
 
-    /// A machine and a scene that each take `ms` for TRANSFORM and for RENDER of an eye.
+    /// Returns a machine and a scene for which TRANSFORM and RENDER of an eye each take `ms` milliseconds.
     ///
-    /// RENDER is as long as that by its load: so many triangles cover the screen. Slow renderers would not do, because what comes behind a
-    /// full input FIFO would wait as many times longer: a copy command, for a whole region's time. TRANSFORM is that long by slow
-    /// code, which keeps nothing else waiting.
+    /// RENDER takes that time because enough triangles cover the screen. Slower renderers would distort the result:
+    /// commands that wait behind a full input FIFO, such as a copy command, would wait longer by the same factor.
+    /// TRANSFORM takes that time because its code is slow, which delays nothing else.
     fn stages_of(&self, ms: f64) -> Result<(MachineConfig, String)> {
         let mut machine = self.machine("small-hmd")?;
         let slaves = machine.n_gps as u64 - 1;
         let regions = u64::from(Viewport::FRAME.grid().regions());
         let of_renderer = regions.div_ceil(machine.n_renderers as u64) as f64;
-        // A region's time on a renderer: triangles, and what each region takes besides.
+        // Time of a region on a renderer: its triangles, and a constant part.
         let ns = |kind| machine.renderer.span(kind).unwrap_or_default().as_ms() * 1e6;
         let besides_ns =
             ns(CommandKind::Clear) + ns(CommandKind::Shade) + machine.renderer.backing_block().as_ms() * 1e6;
         let triangles = (ms * 1e6 / of_renderer - besides_ns) / ns(CommandKind::PhongTriangle);
-        // As many triangles on each slave.
+        // All slaves get the same number of triangles.
         let of_slave = ((triangles / slaves as f64).round() as u64).max(1);
         let rest = TransformCost { structures: 1, entries: regions * of_slave, ..TransformCost::PASS };
         machine.set("gp.triangle_ns", ((ms * 1e6) as u64).saturating_sub(rest.ns(&machine.gp)) / of_slave)?;
@@ -252,16 +263,18 @@ impl Bench {
         for ms in LONG_STAGES_MS {
             let (machine, scene) = self.stages_of(ms as f64)?;
             let summary = self.run(self.reading.on(machine)?, self.reading.pipeline(), &scene, 160)?;
-            // Three times TRANSFORM: that of the first eye, and RENDER of both.
+            // The latency is three times TRANSFORM: TRANSFORM of the first eye and RENDER of both eyes.
             means.push(Statistics::of(summary.latencies_ms.iter().copied()).mean);
         }
         Ok(spread_ms(Statistics::of(means.into_iter())))
     }
 
-    /// Figures 7, 7b and 7c: a fly-through of an application scene, with one seed for so many of figure 7.
+    /// Measures figures 7, 7b and 7c: a fly-through of an application scene. `seeds_of_one` divides the number of
+    /// seeds.
     fn application(&self, scene: &'static str, seeds_of_one: u64) -> Result<FigureValue> {
         let samples_a_frame = if self.reading.samples == Samples::EachEye { 2 } else { 1 };
         let seeds: Vec<u64> = (1..=self.seeds.div_ceil(seeds_of_one)).collect();
+        // One seed gives one fly-through.
         let latencies = parallel::map(&seeds, |seed| {
             let summary = self.fly_through(scene, *seed, seeds.len() as u64)?;
             let samples = self.reading.latencies_ms(&summary).iter().take(samples_a_frame * self.frames as usize);
@@ -270,6 +283,7 @@ impl Bench {
         let latencies = latencies.into_iter().collect::<Result<Vec<Vec<f64>>>>()?.concat();
         let samples = latencies.len() as f64;
         let all = Statistics::of(latencies.into_iter());
+        // The ranking of interpretations also uses the deviation.
         let details = vec![
             detail("standard deviation", all.sd, "fields"),
             detail("least", all.min, "fields"),
@@ -287,6 +301,7 @@ impl Bench {
     }
 
     fn fly_through_once(&self, experiment: &Experiment, scene: &'static str, seed: u64, seeds: u64) -> Result<Summary> {
+        // At the analytic level the loads of all views are computed once for all seeds.
         if self.level != Level::Analytic {
             return self.summarise(experiment);
         }
@@ -296,7 +311,8 @@ impl Bench {
         Ok(model.summary(&model.frames(&loads[seed as usize - 1]), experiment.length()))
     }
 
-    /// Two fields a frame at 30 Hz; of slower frames fewer are shown.
+    /// Returns the experiment of a fly-through, with two fields a frame (30 Hz). Slower frames leave fewer frames in
+    /// the run.
     fn application_experiment(&self, scene: &'static str, seed: u64) -> Result<Experiment> {
         let fields = 2 * (self.frames + WARM_UP_PICTURES as u64) + 8;
         let machine = self.reading.on(self.machine(self.reading.machine)?)?;
@@ -324,7 +340,8 @@ impl Bench {
         Ok(LimitQuery { level: self.level, ..LimitQuery::of_papers(self.machine(preset)?, pipeline)? })
     }
 
-    /// The most triangles of Slats; two figures ask for the same.
+    /// Returns the largest number of triangles of Slats. The result is cached, because two figures need the same
+    /// search.
     fn most(&self, preset: &str, pipeline: Slats) -> Result<u32> {
         let query = self.limit_query(preset, pipeline)?;
         let key = format!("{:?} {pipeline:?} {:?}", query.level, query.config);
@@ -338,7 +355,7 @@ impl Bench {
     }
 }
 
-/// Figure 8: bins of one pass over each scene, from the views of its own head motion.
+/// Measures figure 8: the bin entries of one pass over each scene, from views along the scene's own head motion.
 fn regions_touched() -> Result<FigureValue> {
     let mut details = Vec::new();
     for name in ["mig", "molecules", "head"] {
@@ -348,7 +365,7 @@ fn regions_touched() -> Result<FigureValue> {
     Ok(FigureValue::with(value, details))
 }
 
-/// Bin entries per triangle that touches any region, over both eyes and so many views.
+/// Returns the bin entries per visible triangle, over both eyes and a number of views.
 fn touched(scene: &Arc<Scene>, n_views: u64) -> Result<f64> {
     let list = Arc::new(display_list(scene).map_err(ExperimentError::Scene)?);
     let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is valid");
@@ -367,6 +384,7 @@ fn touched(scene: &Arc<Scene>, n_views: u64) -> Result<f64> {
     for number in 0..n_views {
         let view = views(pxpl5_wire::ViewNumber(number), Time(number * VIEW_PERIOD_PS));
         for eye in 0..2 {
+            // Both eyes of every view count.
             let pass = share.transform(&view, eye, picture);
             let regions = (0..picture.viewport.grid().regions() as u16).map(pxpl5_wire::RegionId);
             entries += regions.map(|region| u64::from(pass.counts(region).triangles)).sum::<u64>();
@@ -376,12 +394,12 @@ fn touched(scene: &Arc<Scene>, n_views: u64) -> Result<f64> {
     Ok(entries as f64 / triangles.max(1) as f64)
 }
 
-/// Whole pictures shown a second; 0 where none was.
+/// Returns the complete pictures shown per second, or 0 if none was shown.
 fn rate_hz(summary: &Summary) -> f64 {
     summary.updates_hz.unwrap_or_default()
 }
 
-/// The mean with least, greatest and deviation.
+/// Returns the mean as the figure's value, with deviation, minimum and maximum as details.
 fn spread_ms(statistics: Statistics) -> FigureValue {
     let Statistics { mean, sd, min, max, .. } = statistics;
     let details =
@@ -396,13 +414,14 @@ mod tests {
     use pxpl5_run::TestScene;
     use pxpl5_scene::config::{TYPICAL_LEG_PX, TYPICAL_SPREAD_PX};
 
-    /// Triangles with both legs parallel to the region borders, their corners spread evenly over `TYPICAL_SPREAD_PX`.
+    /// Expected number of regions that a right-angled triangle touches. Both legs are parallel to the region borders,
+    /// and the corners are spread evenly over `TYPICAL_SPREAD_PX`.
     ///
-    /// A region counts when the triangle covers the centre of one of its pixels, so a leg meets a border across its way with
-    /// a pixel's centre on either side: for leg - 1 of all places. Four borders part the five columns of regions and three
-    /// the four rows; the triangle's box touches (1 + 4 (leg - 1) / width)(1 + 3 (leg - 1) / height) regions on average. The
-    /// far corner of the box is not the triangle's, which leaves out half of the cases in which a place where four regions
-    /// meet lies in the box.
+    /// A region counts if the triangle covers the centre of one of its pixels. A leg therefore crosses a border if
+    /// pixel centres lie on both sides, which holds for leg - 1 of all positions. Four borders separate the five
+    /// columns of regions, and three the four rows. The triangle's box touches (1 + 4 (leg - 1) / width)(1 + 3 (leg -
+    /// 1) / height) regions on average. The triangle does not reach the far corner of the box. This removes half of
+    /// the cases in which a point where four regions meet lies in the box.
     fn expected(leg: f64) -> f64 {
         let [width, height] = TYPICAL_SPREAD_PX;
         let columns = 4.0 * (leg - 1.0) / width;
@@ -414,7 +433,7 @@ mod tests {
     fn triangles_of_18_pixels_touch_as_many_regions_as_the_formula_of_their_legs_says() {
         let found = touched(&Arc::new(test_scene(TestScene::Typical, 4_000)), 1).expect("it has triangles");
         let expected = expected(TYPICAL_LEG_PX);
-        // 4,000 evenly spread places leave a few thousandths open.
+        // The 4,000 positions sample the average to a few thousandths.
         assert!((found - expected).abs() < 0.005, "{found}, expected {expected}");
     }
 }

@@ -1,4 +1,4 @@
-//! What an experiment behind a figure gives.
+//! Results of the experiments behind the figures.
 
 use pxpl5_run::ExperimentError;
 use pxpl5_scene::{Scene, builtin};
@@ -7,30 +7,31 @@ use std::sync::Arc;
 
 pub(super) type Result<T> = std::result::Result<T, ExperimentError>;
 
-/// A further number of an experiment.
+/// An additional number of a figure's experiment.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Detail {
-    /// What the number is, in a few words: `standard deviation`.
+    /// Name of the number in a few words, such as `standard deviation`.
     pub name: String,
-    /// The number, in the unit that stands beside it.
+    /// The number, in [`Detail::unit`].
     pub value: f64,
-    /// Unit of the value: `ms`, `fields`, `Hz`, `triangles`.
+    /// Unit of the number: `ms`, `fields`, `Hz`, `triangles`.
     pub unit: &'static str,
 }
 
-/// What an experiment gave.
+/// Result of a figure's experiment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FigureValue {
-    /// The figure's own number.
+    /// Value of the figure, in the figure's unit.
     pub value: f64,
-    /// Further numbers of the same experiment, each with a unit of its own.
+    /// Additional numbers of the same experiment, each with its own unit.
     pub details: Vec<Detail>,
-    /// Least and greatest value over a condition of the experiment that the paper does not print; `None` where it prints all.
+    /// Minimum and maximum over a condition of the experiment that the paper does not print. `None` if the paper
+    /// prints all conditions.
     pub unprinted: Option<[f64; 2]>,
 }
 
 impl FigureValue {
-    /// The figure's own number with further numbers of the same experiment.
+    /// Returns a result with additional numbers of the same experiment.
     pub(super) const fn with(value: f64, details: Vec<Detail>) -> Self {
         Self { value, details, unprinted: None }
     }

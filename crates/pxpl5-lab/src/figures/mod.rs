@@ -1,15 +1,16 @@
-//! The published figures, measured: what was printed, what the model gives, how far apart they are.
+//! Published figures compared with the model: the printed value, the simulated value and their difference.
 //!
 //! ```text
 //!   FIGURES (data) --> Bench::measure (one experiment each) --> Row: published, simulated, error, interval, standing
 //! ```
 //!
-//! Papers about other systems are families of rows ([`FigureFamily`]), which come with the others.
+//! Papers about other systems are families of rows ([`FigureFamily`]), measured together with the figures of
+//! Pixel-Planes 5.
 //!
-//! All rows come from the same machine parameters. Rows 5, 6 and 3 describe machines with other loads or costs than
-//! the presets; their experiments change what the statement itself changes, and nothing else.
+//! All rows come from the same machine parameters. Rows 3, 5 and 6 describe machines with other loads or costs than
+//! the presets. Their experiments change only the parameters that the paper's statement changes.
 //!
-//! Sources: TR94, I3D95; the loads of the experiments are ours.
+//! Sources: TR94, I3D95. The loads of the experiments are chosen here.
 
 mod applications;
 mod document;
@@ -45,54 +46,55 @@ use serde::Serialize;
 use std::sync::atomic::{AtomicU64, Ordering};
 use thiserror::Error;
 
-/// A figure whose experiment gave no result.
+/// Error of a figure whose experiment has no result.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("figure {id}: {reason}")]
 pub struct FigureError {
     /// Number of the figure.
     pub id: String,
-    /// Why its experiment gave no result.
+    /// Reason for the missing result.
     pub reason: String,
 }
 
-/// All figures, and what the open parameters do to them.
+/// All figures with the model's values, their intervals, and further comparisons.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figures {
-    /// In the order of [`FIGURES`].
+    /// Rows of the main table, in the order of [`FIGURES`].
     pub rows: Vec<FigureRow>,
-    /// The same with the times of primitives that follow from the i860 code, without intervals.
+    /// Rows of the main table with the times of executed i860 code, without intervals.
     pub of_code: Vec<FigureRow>,
-    /// What the open parameters do to each figure but the one of the scenes.
+    /// Effects of the open parameters on each figure except the ones that depend only on scenes.
     pub intervals: Vec<Interval>,
     /// Figures of papers about other systems than Pixel-Planes 5.
     pub families: Vec<FigureFamily>,
     /// Further figures of Pixel-Planes 5 by topic: peak rates, just-in-time pixels, trackers.
     pub groups: Vec<FigureGroup>,
-    /// What all readings make of the figures of Rendering Control, at the analytic level.
+    /// Figures of Rendering Control under all interpretations, at the analytic level.
     pub readings: Readings,
-    /// The fly-throughs with the times that the host's application may take, at the analytic level.
+    /// Latencies of the fly-throughs for several times of the host's application, at the analytic level.
     pub application_times: Vec<ApplicationTime>,
 }
 
-/// Seeds and frames of the application scenes by which readings are ranked.
+/// Number of seeds of the application scenes in the ranking of interpretations.
 const SEEDS: u64 = 6;
+/// Number of frames of each seed in the ranking of interpretations.
 const FRAMES: u64 = 150;
 
-/// Measures all figures, several at a time, with their intervals.
+/// Measures all figures in parallel, with their intervals.
 ///
 /// # Errors
 ///
-/// The first [`FigureError`].
+/// Returns the first [`FigureError`].
 pub fn run_all(bench: &Bench) -> Result<Figures, FigureError> {
     run_all_with(bench, |_, _| {})
 }
 
-/// The same; `finished` hears how many of all steps are done: one for each figure, and one each for the
-/// intervals, the readings, the application's time, the families and the groups.
+/// Measures all figures in parallel, with their intervals. `finished` is called with the number of finished steps and
+/// the number of all steps. A step is one figure of the main table, or one of the other parts of [`Figures`].
 ///
 /// # Errors
 ///
-/// As [`run_all`].
+/// Fails in the same cases as [`run_all`].
 pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result<Figures, FigureError> {
     let steps = FIGURES.len() as u64 + 6;
     let done = AtomicU64::new(0);
@@ -103,6 +105,7 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
         row
     };
     let rows = || parallel::map(&FIGURES, with_step).into_iter().collect::<Result<Vec<_>, _>>();
+    // The parts below are closures, so that they can run in parallel.
     let of_code = || {
         let by_code = bench.clone().with_times_of_code();
         let rows = parallel::map(&FIGURES, |figure| row_of(&by_code, figure));
@@ -134,17 +137,19 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
         step();
         times.map_err(|error| FigureError { id: "7".to_owned(), reason: error.to_string() })
     };
+    // All parts run in parallel. The intervals then go into the rows of the main table.
     let of_machine = || parallel::both(|| parallel::both(rows, groups), of_code);
     let of_models =
         || parallel::both(|| parallel::both(readings, intervals), || parallel::both(families, of_application));
     let (((rows, groups), of_code), ((readings, intervals), (families, application_times))) =
         parallel::both(of_machine, of_models);
+    // Report the first error in the order of the parts.
     let (mut rows, groups, of_code, readings, families) = (rows?, groups?, of_code?, readings?, vec![families?]);
     fill(&mut rows, &intervals);
     Ok(Figures { rows, of_code, intervals, families, groups, readings, application_times: application_times? })
 }
 
-/// A figure with what the bench gives for it.
+/// Measures a figure with a bench and returns its row.
 fn row_of(bench: &Bench, figure: &Figure) -> Result<FigureRow, FigureError> {
     match bench.measure(figure.id) {
         Ok(measured) => Ok(FigureRow::new(figure, measured)),

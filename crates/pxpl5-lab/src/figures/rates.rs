@@ -1,4 +1,5 @@
-//! Peak rates that were published: triangles of the machine, a renderer and a processor, operations of the i860, the rig's total.
+//! Published peak rates: triangles of the machine, a renderer and a processor, operations of the i860, and the total
+//! latency of the rig.
 
 use super::group::{Measurement, free};
 use super::measured::{FigureValue, Result, detail, scene_named};
@@ -20,7 +21,7 @@ to come; he states neither the size of the machine nor that of the triangles. In
 the channels of a sender, the channels for messages to FIFOs, and the times of a triangle on a processor and on a renderer, one at a time \
 at both ends of their ranges. All runs are by events.";
 
-/// Parameters that decide how fast triangles go through the machine, and that no source gives.
+/// Parameters that limit the rate of triangles of the machine and that no source gives.
 const OF_TRIANGLES: &[&str] = &[
     "renderer.fifo_words",
     "ring.source_channels",
@@ -30,7 +31,7 @@ const OF_TRIANGLES: &[&str] = &[
     "renderer.phong_triangle_clocks",
 ];
 
-/// Parameters of a renderer alone.
+/// Parameters that limit the rate of a single renderer.
 const OF_RENDERER: &[&str] =
     &["renderer.fifo_words", "renderer.triangle_clocks", "renderer.phong_triangle_clocks", "renderer.shade_clocks"];
 
@@ -146,10 +147,10 @@ fn of_boards() -> Vec<Measurement> {
     ]
 }
 
-/// Triangles of a frame.
+/// Number of triangles of a frame.
 const TRIANGLES: u64 = 40_000;
 
-/// Fields of a run: 15 to 20 frames.
+/// Number of fields of a run, enough for 15 to 20 frames.
 const FIELDS: u64 = 44;
 
 fn drawn(machine: MachineConfig, shading: Shading, triangles: u64, fields: u64) -> Result<Outcome> {
@@ -163,10 +164,12 @@ fn triangle_rate(bench: &Bench, preset: &str, shading: Shading) -> Result<Figure
     Ok(FigureValue::with(TRIANGLES as f64 * hz, vec![detail("frames a second", hz, "Hz")]))
 }
 
-/// Commands of a renderer over the time in which its array works. Of the 26,000 of a frame 80 are no triangles.
+/// Measures the commands of a renderer per second of work of its array. Of the 26,000 commands of a frame, 80 are not
+/// triangles.
 fn renderer_rate(bench: &Bench, shading: Shading) -> Result<FigureValue> {
     let machine = MachineConfig { n_renderers: 1, ..bench.machine("small-hmd")? };
     let outcome = drawn(machine, shading, TRIANGLES / 2, 2 * FIELDS)?;
+    // Idle time of the array does not count.
     let rates = outcome.record().renderers().iter().map(|renderer| {
         let busy_s = renderer.busy().0 as f64 / 1e12;
         renderer.stats().commands as f64 / busy_s
@@ -174,12 +177,13 @@ fn renderer_rate(bench: &Bench, shading: Shading) -> Result<FigureValue> {
     Ok(rates.sum::<f64>().into())
 }
 
-/// Triangles of a share over the time of TRANSFORM, the frames after the first.
+/// Measures the triangles of a share per second of TRANSFORM. The first frame is left out.
 fn processor_rate(bench: &Bench) -> Result<FigureValue> {
     let triangles = 2_000;
     let machine = MachineConfig { n_gps: 2, ..bench.machine("small-hmd")? };
     let outcome = drawn(machine, Shading::Phong, triangles, 60)?;
     let stages = outcome.stages();
+    // The first frame includes the start.
     let transforms = stages.iter().filter(|span| span.stage == Stage::Transform).skip(1);
     let spans_s: Vec<f64> = transforms.filter_map(|span| Some((span.end? - span.begin).as_ms() / 1e3)).collect();
     let mean_s = spans_s.iter().sum::<f64>() / spans_s.len() as f64;
@@ -189,6 +193,7 @@ fn processor_rate(bench: &Bench) -> Result<FigureValue> {
 fn rig_total(bench: &Bench) -> Result<FigureValue> {
     let machine = bench.reading.on(bench.machine("small-hmd")?)?;
     let mut rig = Rig::assumed(TrackerConfig::optical_ceiling());
+    // The photodiode's line may be varied by the bench.
     if let Some((_, line)) = bench.changes.iter().rev().find(|(path, _)| path == PHOTODIODE_LINE) {
         rig.rig.photodiode_line = u32::try_from(*line).unwrap_or(u32::MAX);
     }
@@ -199,15 +204,17 @@ fn rig_total(bench: &Bench) -> Result<FigureValue> {
     Ok(FigureValue::with(measured.outside.total.mean_s * 1e3, details))
 }
 
-/// Turns of the loop of the i860, and multiply-adds in each.
+/// Number of iterations of the i860 loop.
 const TURNS: u32 = 100;
+/// Number of multiply-adds in an iteration of the i860 loop.
 const MULTIPLY_ADDS: usize = 256;
 
-/// Floating-point operations a second, in millions, at 40 MHz.
+/// Measures the floating-point operations of the i860 in millions per second, at 40 MHz.
 fn i860_peak() -> Result<FigureValue> {
     let failed = |reason: String| ExperimentError::Scene(format!("the peak of the i860: {reason}"));
     let body = "m12apm.ss f8, f9, f0\n".repeat(MULTIPLY_ADDS);
     let source = format!("begin: or {TURNS}, r0, r16\nagain: {body}adds -1, r16, r16\nbtne r0, r16, again\nend: nop");
+    // The loop is unrolled, so that its branch costs little.
     let program = assemble("peak.s", CODE, &source).map_err(|error| failed(error.to_string()))?;
     let end = program.symbol("end").ok_or_else(|| failed("the loop has no end".to_owned()))?;
     let mut ram = Ram::new(0, 0x4000);
@@ -223,9 +230,10 @@ fn i860_peak() -> Result<FigureValue> {
             other => return Err(failed(format!("expected the end of the loop, found {other:?}"))),
         }
     }
+    // Each multiply-add counts as two operations.
     let operations = f64::from(2 * TURNS) * MULTIPLY_ADDS as f64;
     Ok((operations / clocks as f64 * 40.0).into())
 }
 
-/// Where the program lies.
+/// Address of the program.
 const CODE: u32 = 0x1000;

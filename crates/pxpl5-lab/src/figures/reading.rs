@@ -1,50 +1,50 @@
-//! What the papers leave open about Rendering Control, as values.
+//! Interpretations of the questions that the papers leave open about Rendering Control.
 
 use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_renderer::RendererTiming;
 use pxpl5_run::{FinishedRegions, RenderingControl, Summary, retraces};
 use serde::Serialize;
 
-/// Whose latency a published mean is of.
+/// Definition of the samples that a published mean latency averages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Samples {
-    /// One sample a frame: from the start of TRANSFORM of its first eye.
+    /// One sample for each frame, from the start of TRANSFORM of its first eye.
     FirstEye,
-    /// One sample for each eye of a frame: from the start of that eye's TRANSFORM.
+    /// One sample for each eye of a frame, from the start of that eye's TRANSFORM.
     EachEye,
 }
 
-/// How a published latency in fields was counted.
+/// Definition of a published latency in fields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FieldCount {
-    /// As a time, in fields of 1001/60000 s.
+    /// A time, in fields of 1001/60000 s.
     Exact,
-    /// The retraces up to and with the one of the swap.
+    /// The number of retraces, including the one of the swap.
     Whole,
 }
 
-/// One answer to each question that the papers leave open about the figures of Rendering Control.
+/// An interpretation: one answer to each question that the papers leave open about the figures of Rendering Control.
 ///
-/// The first two are about the figures, the others about the machine and the scenes. All figures are measured with one
-/// reading: none is chosen for a figure.
+/// The first two answers concern the figures, the others the machine and the scenes. All figures are measured with
+/// one interpretation. None is chosen for a single figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Reading {
-    /// Whose latency a mean is of.
+    /// Definition of the samples of a mean latency.
     pub samples: Samples,
-    /// How latencies that are printed in fields were counted.
+    /// Definition of a latency printed in fields.
     pub fields: FieldCount,
-    /// Finished regions that a renderer keeps in its backing store, 1 to [`ROOM`] (`renderer.kept_bits`).
+    /// Number of finished regions that a renderer keeps in its backing store, 1 to [`ROOM`] (`renderer.kept_bits`).
     pub kept: u64,
-    /// What the master does with a renderer whose region is finished while the frame buffer is not available.
+    /// The master's rule for a renderer whose region is finished while the frame buffer is not available.
     #[serde(serialize_with = "by_name")]
     pub finished: FinishedRegions,
     /// Preset of the machine that drew the application scenes.
     pub machine: &'static str,
-    /// Whether the application scenes were drawn without their back faces.
+    /// True if the application scenes were drawn without their back faces.
     pub culled: bool,
-    /// Drawings of an eye, 1 or 2, that the 7,700 triangles fill the bins with (`gp.bin_bytes`).
+    /// Number of eyes, 1 or 2, whose entries fill the bins when 7,700 triangles are drawn (`gp.bin_bytes`).
     pub bins: u64,
 }
 
@@ -52,11 +52,13 @@ fn by_name<S: serde::Serializer>(finished: &FinishedRegions, serializer: S) -> R
     serializer.serialize_str(finished.name())
 }
 
-/// Regions that a renderer's backing store has room for: 4,096 bits a pixel, of which a region's colours take a block of 32.
+/// Number of regions that fit in a renderer's backing store: 4,096 bits a pixel, of which the colours of a region take
+/// a block of 32.
 pub const ROOM: u64 = RendererTiming::PAPERS.backing_regions();
 
 impl Reading {
-    /// The one with which figures are measured: what `pxpl5 readings` finds best, and nothing in the text contradicts.
+    /// The interpretation with which figures are measured. `pxpl5 readings` ranks this interpretation among the best,
+    /// and no text contradicts it.
     pub const USUAL: Self = Self {
         samples: Samples::EachEye,
         fields: FieldCount::Whole,
@@ -67,16 +69,17 @@ impl Reading {
         bins: 1,
     };
 
-    /// The rules of TR94 alone, on a machine that never keeps them waiting: what its theory (figures 3 and 5) is derived from.
+    /// The rules of TR94 alone, on a machine that never delays them. The theory behind figures 3 and 5 rests on this
+    /// interpretation.
     pub const THEORY: Self = Self { kept: ROOM, finished: FinishedRegions::Store, ..Self::USUAL };
 
-    /// The readings that answer one question differently.
+    /// Returns the interpretations that differ in the answer to one question.
     #[must_use]
     pub fn neighbours(&self) -> Vec<Self> {
         Self::all().into_iter().filter(|other| self.differences(other) == 1).collect()
     }
 
-    /// Every combination of answers.
+    /// Returns every combination of answers.
     #[must_use]
     pub fn all() -> Vec<Self> {
         let mut all = vec![Self::USUAL];
@@ -89,7 +92,7 @@ impl Reading {
         varied(&all, &[FieldCount::Exact, FieldCount::Whole], |reading, fields| Self { fields, ..reading })
     }
 
-    /// Its answers in words, in the order of the questions.
+    /// Returns the answers in words, in the order of the questions.
     fn answers(&self) -> [String; 7] {
         let samples = if self.samples == Samples::FirstEye { "first eye" } else { "each eye" };
         let fields = if self.fields == FieldCount::Exact { "exact" } else { "whole fields" };
@@ -100,7 +103,7 @@ impl Reading {
         [samples, fields, kept, self.finished.name().to_owned(), machine, faces, bins]
     }
 
-    /// What it answers differently, in words.
+    /// Returns the answers that differ from those of another interpretation, in words.
     #[must_use]
     pub fn difference(&self, other: &Self) -> String {
         let both = self.answers().into_iter().zip(other.answers());
@@ -111,17 +114,17 @@ impl Reading {
         self.answers().iter().zip(&other.answers()).filter(|(mine, others)| mine != others).count()
     }
 
-    /// The pipeline as it reads the rules.
+    /// Returns the pipeline under this interpretation.
     #[must_use]
     pub const fn pipeline(&self) -> RenderingControl {
         RenderingControl { finished: self.finished, ..RenderingControl::stereo() }
     }
 
-    /// A machine on which Rendering Control runs, as it reads the renderers.
+    /// Returns a machine for Rendering Control under this interpretation.
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] for a number of regions beyond the parameter's limits.
+    /// Returns [`ConfigError`] for a number of regions beyond the parameter's limits.
     pub fn on(&self, mut machine: MachineConfig) -> Result<MachineConfig, ConfigError> {
         if self.kept != Self::USUAL.kept {
             machine.set("renderer.kept_bits", machine.renderer.backing_bits / self.kept)?;
@@ -132,7 +135,7 @@ impl Reading {
         Ok(machine)
     }
 
-    /// The samples of a latency to the swap, milliseconds.
+    /// Returns the samples of the latency to the swap, in milliseconds.
     #[must_use]
     pub fn latencies_ms<'a>(&self, summary: &'a Summary) -> &'a [f64] {
         match self.samples {
@@ -141,7 +144,7 @@ impl Reading {
         }
     }
 
-    /// A latency in fields.
+    /// Converts a latency in milliseconds to fields.
     #[must_use]
     pub fn fields_of(&self, latency_ms: f64, field_ms: f64) -> f64 {
         match self.fields {
@@ -151,13 +154,13 @@ impl Reading {
     }
 }
 
-/// Machines that could have drawn the application scenes.
+/// Presets of machines that could have drawn the application scenes.
 const MACHINES: [&str; 4] = ["small-hmd", "medium", "design-maximum", "large"];
 
-/// Regions that a renderer may keep; the last is what its backing store has room for.
+/// Numbers of regions that a renderer may keep. The last one fills the backing store.
 const KEPT: [u64; 4] = [1, 2, 3, ROOM];
 
-/// Each reading with each answer to one question.
+/// Returns each interpretation with each answer to one question.
 fn varied<A: Copy>(readings: &[Reading], answers: &[A], answer: impl Fn(Reading, A) -> Reading) -> Vec<Reading> {
     readings.iter().flat_map(|reading| answers.iter().map(|one| answer(*reading, *one))).collect()
 }

@@ -1,59 +1,60 @@
-//! A published figure beside what the model gives, and when it is missed.
+//! Rows that compare a published figure with the model, and the definition of a miss.
 
 use super::measured::{Detail, FigureValue};
 use super::table::{Basis, Figure};
 use serde::Serialize;
 
-/// A figure beside what the model gives.
+/// A published figure and the model's value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FigureRow {
     /// Number of the figure.
     pub id: &'static str,
-    /// The value that the paper prints, in `unit`.
+    /// Value printed in the paper, in `unit`.
     pub published: f64,
-    /// The model's value, in `unit`, at the level of the bench.
+    /// Value of the model in `unit`, at the level of the bench.
     pub simulated: f64,
     /// Unit of the published and the simulated value.
     pub unit: &'static str,
-    /// (simulated - published) / published, in percent.
+    /// Relative error in percent: (simulated - published) / published.
     pub error_percent: f64,
-    /// What the analytic level gives with the presets' numbers: how far it is from `simulated` is that level's own error.
-    /// `None` where nothing was varied.
+    /// Value at the analytic level with the presets' numbers. Its distance from `simulated` is the error of that
+    /// level. `None` if no parameter was varied.
     pub analytic: Option<f64>,
-    /// Least and greatest value when parameters that are not published are varied within their ranges, as computed at the
-    /// analytic level. `None` where nothing was varied: a property of the scenes.
+    /// Minimum and maximum while unpublished parameters vary within their ranges, computed at the analytic level.
+    /// `None` if no parameter was varied, because the figure depends only on scenes.
     pub interval: Option<[f64; 2]>,
-    /// `free`, `fitted` or `rule`.
+    /// Provenance of the row: `free`, `fitted` or `rule`.
     pub standing: &'static str,
-    /// Half of the printed range.
+    /// Half of the printed range, in `unit`. `None` if the paper prints no range.
     pub spread: Option<f64>,
-    /// What was fitted, or which rule was chosen; empty for a free check.
+    /// Fitted parameter or chosen rule. Empty for a free check.
     pub fitted: &'static str,
-    /// Short name of the paper, and the topic within it.
+    /// Short name of the paper and the topic within the paper.
     pub source: String,
-    /// What the paper states, in a few words.
+    /// Statement of the paper in a few words.
     pub statement: &'static str,
-    /// What was run for it here: machine, pipeline, scene.
+    /// Simulated experiment: machine, pipeline and scene.
     pub experiment: &'static str,
-    /// What is known of the cause of a miss.
+    /// Known cause of a miss. Empty if the cause is unknown.
     pub cause: &'static str,
-    /// Further numbers of the same experiment.
+    /// Additional numbers of the same experiment.
     pub details: Vec<Detail>,
-    /// Least and greatest value over a condition of the experiment that the paper does not print; `simulated` is for the condition that is
-    /// assumed. `None` where the paper prints all conditions.
+    /// Minimum and maximum over a condition of the experiment that the paper does not print. `simulated` is the value
+    /// for the assumed condition. `None` if the paper prints all conditions.
     pub unprinted: Option<[f64; 2]>,
 }
 
-/// A difference that is called a miss, in percent, where a paper prints no range.
+/// Relative difference in percent above which a figure is missed, if the paper prints no range.
 pub const MISS_PERCENT: f64 = 3.0;
 
-/// Papers print three digits.
+/// Relative rounding error of printed numbers: papers print three digits.
 const ROUNDING: f64 = 0.01;
 
 impl FigureRow {
-    /// A figure with what was measured.
+    /// Creates the row of a figure from its measurement.
     #[must_use]
     pub fn new(figure: &Figure, measured: FigureValue) -> Self {
+        // The provenance decides whether the row counts as a free check.
         let (standing, fitted) = match figure.basis {
             Basis::Free => ("free", ""),
             Basis::Fitted { parameter } => ("fitted", parameter),
@@ -79,31 +80,35 @@ impl FigureRow {
         }
     }
 
-    /// Whether no values of the open parameters within their ranges give the figure: an error of the model's rules.
+    /// Returns true if no values of the open parameters within their ranges reproduce the figure. Such a figure shows
+    /// an error of the model's rules.
     ///
-    /// The interval is the analytic level's. It is widened on both sides by the distance of `analytic` from `simulated`: as
-    /// far as the levels are apart at the presets they may be at the ends of the ranges. What is published is met within
-    /// its printed range, and where none is printed within its last digit.
+    /// The interval comes from the analytic level. It is widened on both sides by the distance between `analytic` and
+    /// `simulated`: the levels may differ as much at the ends of the ranges as at the presets. The published value is
+    /// met within its printed range, or within its last digit if no range is printed.
     #[must_use]
     pub fn is_out_of_reach(&self) -> bool {
         let Some([low, high]) = self.interval else { return false };
+        // Allow for the distance between the levels and for the printed precision.
         let of_levels = self.analytic.map_or(0.0, |analytic| (analytic - self.simulated).abs());
         let spread = self.spread.unwrap_or(0.0);
         let slack = of_levels + spread.max(self.published.abs() * ROUNDING);
         self.published + slack < low || self.published - slack > high
     }
 
-    /// Whether the model is outside of the printed range, or, where none is printed, off by more than
-    /// [`MISS_PERCENT`]. Where a condition is not printed, no value of it may give the figure.
+    /// Returns true if the model lies outside the printed range. If no range is printed, an error of more than
+    /// [`MISS_PERCENT`] is a miss. If the paper does not print a condition, the figure is missed only if no value of
+    /// the condition reproduces it.
     #[must_use]
     pub fn misses(&self) -> bool {
+        // A tiny margin absorbs rounding in floating-point arithmetic.
         let allowed = self.spread.unwrap_or(self.published * MISS_PERCENT / 100.0) * (1.0 + 1e-9);
         let [low, high] = self.unprinted.unwrap_or([self.simulated; 2]);
         self.published + allowed < low || self.published - allowed > high
     }
 }
 
-/// Mean absolute error in percent over the rows that are free checks.
+/// Returns the mean absolute error in percent over all free checks. A figure without a value counts 100 %.
 #[must_use]
 pub fn mean_error_percent(rows: &[FigureRow]) -> f64 {
     let free: Vec<_> = rows.iter().filter(|row| row.standing == "free").collect();
@@ -116,7 +121,7 @@ mod tests {
     use super::*;
     use crate::figures::FIGURES;
 
-    /// Figure 17, published as 54 to 57 ms.
+    /// Row of figure 17, published as 54 to 57 ms.
     fn row_of_figure_17(value: f64, unprinted: Option<[f64; 2]>) -> FigureRow {
         let figure = FIGURES.iter().find(|figure| figure.id == "17").expect("listed");
         FigureRow::new(figure, FigureValue { unprinted, ..FigureValue::from(value) })
@@ -130,7 +135,7 @@ mod tests {
         {
             let row = row_of_figure_17(49.0, Some(interval));
             assert_eq!(row.misses(), misses, "{interval:?}");
-            // The error is that of the assumed condition all the same.
+            // The error always refers to the assumed condition.
             assert!((row.error_percent - 100.0 * (49.0 / 55.5 - 1.0)).abs() < 1e-9);
         }
     }

@@ -1,21 +1,21 @@
-//! The published figures.
+//! The table of published figures.
 
 use serde::Serialize;
 
-/// Whether something was chosen so that a figure comes out.
+/// Relation between a figure and the choices made in the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Basis {
-    /// Nothing was: an independent check.
+    /// An independent check: nothing was chosen to reproduce the figure.
     Free,
     /// A parameter was fitted to this figure, or derived from it.
     Fitted {
-        /// Path of the parameter, and the preset in which it stands.
+        /// Path of the parameter, and the preset that holds the fitted value.
         parameter: &'static str,
     },
     /// A rule of the model was chosen because of this figure.
     Rule {
-        /// The rule of the model, in a few words.
+        /// Description of the rule in a few words.
         rule: &'static str,
     },
 }
@@ -23,25 +23,26 @@ pub enum Basis {
 /// A figure printed in a paper.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Figure {
-    /// Number in the specification, with a letter where a statement holds two numbers.
+    /// Number in the specification, with a letter if a statement holds several numbers.
     pub id: &'static str,
     /// Short name of the paper.
     pub paper: &'static str,
-    /// What part of the paper it belongs to, by topic.
+    /// Part of the paper, by topic.
     pub section: &'static str,
-    /// What the paper states, in a few words.
+    /// Statement of the paper in a few words.
     pub statement: &'static str,
-    /// The value that the paper prints, in `unit`.
+    /// Value printed in the paper, in `unit`.
     pub value: f64,
     /// Unit of the printed value.
     pub unit: &'static str,
-    /// Half of the range that the paper prints or words like "about" and "1 to 2" give; `None` where it gives none.
+    /// Half of the range that the paper prints, or implies by words like "about" and "1 to 2". `None` if the paper
+    /// gives no range.
     pub spread: Option<f64>,
-    /// The experiment that produces it here.
+    /// Experiment that simulates the figure.
     pub experiment: &'static str,
-    /// Whether something was fitted or chosen so that the figure comes out.
+    /// Relation between the figure and the choices made in the model.
     pub basis: Basis,
-    /// What is known of the cause where the model misses the figure; empty where it does not.
+    /// Known cause of a miss. Empty if the model reproduces the figure.
     pub cause: &'static str,
 }
 
@@ -50,7 +51,7 @@ const SLATS: &str = "Slats";
 const HEAD: &str = "from head to light";
 const FREE: Basis = Basis::Free;
 
-/// A figure without a miss.
+/// Returns a figure that the model does not miss.
 const fn figure(
     id: &'static str,
     (paper, section): (&'static str, &'static str),
@@ -68,7 +69,7 @@ impl Figure {
     }
 }
 
-/// All of them, in the order of the specification.
+/// All published figures, in the order of the specification.
 pub const FIGURES: [Figure; 26] = [
     figure(
         "1",
@@ -297,6 +298,6 @@ pub const FIGURES: [Figure; 26] = [
     ),
 ];
 
-/// Figures in which no closed form has a part: a property of the scenes, and what needs a tracker or a motion. Their experiments are
-/// run by events at every level, and no parameter is varied.
+/// Figures without a closed form: a property of the scenes, and figures that need a tracker or a motion. Their
+/// experiments are simulated with events at every level, and no parameter is varied.
 pub const WITHOUT_CLOSED_FORM: [&str; 5] = ["8", "17", "18", "19", "19b"];

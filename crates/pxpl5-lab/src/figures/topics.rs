@@ -1,4 +1,4 @@
-//! The topics of [`FigureGroup`].
+//! The topics of figure groups.
 
 use super::group::Topic;
 use super::{Bench, FigureError, FigureGroup, jitp, rates, trackers};
@@ -7,7 +7,7 @@ use super::{Bench, FigureError, FigureGroup, jitp, rates, trackers};
 ///
 /// # Errors
 ///
-/// The first [`FigureError`].
+/// Returns the first [`FigureError`].
 pub fn figure_groups(bench: &Bench) -> Result<Vec<FigureGroup>, FigureError> {
     let topics = [
         Topic { title: rates::TITLE, about: rates::ABOUT, measurements: rates::measurements() },

@@ -1,4 +1,4 @@
-//! Published statements about trackers and the host's serial line.
+//! Figures of trackers and the host's serial line.
 
 use super::Bench;
 use super::group::{Measurement, free};
@@ -47,14 +47,16 @@ fn model(config: TrackerConfig) -> Result<TrackerModel> {
     TrackerModel::new(config).map_err(|error| ExperimentError::Scene(error.to_string()))
 }
 
-/// Seeds of the kernel's phase and reports of each.
+/// Number of seeds of the kernel's phase.
 const SEEDS: u64 = 200;
+/// Number of reports for each seed.
 const REPORTS: usize = 240;
 
 fn polling(bench: &Bench) -> Result<FigureValue> {
     let patched = TrackerConfig::fastrak();
     let polled = patched.clone().with_polling_by(&Tables::PAPERS);
     let mut waits_ms = Vec::new();
+    // Each seed gives the kernel another phase relative to the tracker.
     for seed in 1..=SEEDS {
         let arrivals = |config: &TrackerConfig| {
             let reports: Vec<TrackerReport> =
@@ -67,15 +69,16 @@ fn polling(bench: &Bench) -> Result<FigureValue> {
     let field_ms = 1001.0 / 60.0;
     let mean = waits_ms.iter().sum::<f64>() / waits_ms.len() as f64 / field_ms;
     let greatest = waits_ms.iter().copied().fold(0.0, f64::max) / field_ms;
+    // A run of the pipeline shows the same delay from outside.
     let in_a_run = (pose_to_transform_ms(bench, polled)? - pose_to_transform_ms(bench, patched)?) / field_ms;
     let details = vec![detail("mean of all reports", mean, "fields"), detail("mean in a run", in_a_run, "fields")];
     Ok(FigureValue::with(greatest, details))
 }
 
-/// Fields of a run: ten seconds.
+/// Number of fields of a run: ten seconds.
 const FIELDS: u64 = 600;
 
-/// Mean time from the head's pose to the start of TRANSFORM of the picture that is drawn for it, ms.
+/// Returns the mean time in ms from the head's pose to the start of TRANSFORM of its picture.
 fn pose_to_transform_ms(bench: &Bench, tracker: TrackerConfig) -> Result<f64> {
     let head = Head::new(Arc::new(Still(Pose::IDENTITY)), tracker, PredictorKind::None, 1);
     let head = head.map_err(|error| ExperimentError::Scene(error.to_string()))?;
@@ -86,16 +89,17 @@ fn pose_to_transform_ms(bench: &Bench, tracker: TrackerConfig) -> Result<f64> {
     Ok(tracking_ms + waiting_ms + sending_ms)
 }
 
-/// Rate of the turn, degrees a second: so slow that a quarter of a second of delay is half a degree.
+/// Rate of the turn in degrees a second. The rate is low, so that a quarter of a second of delay is half a degree.
 const SLOW: f64 = 2.0;
 
-/// How far behind a steady turn the Fastrak with this filter is when it sends, ms.
+/// Measures the delay in ms of the Fastrak's reported orientation behind a steady turn, for a filter gain.
 fn apparent_latency(gain: f64) -> Result<FigureValue> {
     let mut tables = Tables::PAPERS;
     tables.fastrak.filter_gain = gain;
     let config = TrackerConfig::fastrak_by(&tables).without_noise();
     let (output_ps, rate_hz) = (config.sync_to_output_ps, u64::from(config.rate_hz));
     let motion = Pan::at(SLOW);
+    // After 1,000 reports the filter has settled.
     let settled = model(config)?.reports(&motion, 1).nth(1_000);
     let report = settled.ok_or_else(|| ExperimentError::Scene("the Fastrak fell silent".to_owned()))?;
     let sent_ps = report.solution * tracking::time::PS_PER_S / rate_hz + output_ps;

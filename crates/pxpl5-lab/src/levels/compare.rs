@@ -1,4 +1,4 @@
-//! Speed against error: the same experiments at every level.
+//! Comparison of the levels of modelling by speed and error, with the same experiments at every level.
 
 use super::random::{compared_ms, experiment};
 use super::record::{LevelRecord, LevelReport, LevelSpeed, SCHEMA, Spread};
@@ -10,8 +10,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-/// A level, and whether the times of primitives in the table are those of the code, instead of published or fitted ones. At the cycle level
-/// no time of the table is used, so it stands once.
+/// Levels that are compared. The second value is true if the table's times of primitives come from executed code,
+/// instead of published or fitted values. The cycle level uses no time of the table, so it occurs once.
 const VARIANTS: [(Level, bool); 5] = [
     (Level::Analytic, false),
     (Level::Analytic, true),
@@ -20,21 +20,21 @@ const VARIANTS: [(Level, bool); 5] = [
     (Level::Cycle, true),
 ];
 
-/// Pixels that are computed; the analytic level has none.
+/// Choices of pixels whose speed is measured. The analytic level has no pixels.
 const PIXELS: [Pixels; 3] = [Pixels::Off, Pixels::Lazy, Pixels::All];
 
-/// Seeds and frames of the Mig here: the levels are compared, not the Mig.
+/// Number of seeds and number of frames of the Mig. Few suffice, because the comparison concerns the levels.
 const MIG: (u64, u64) = (2, 60);
 
-/// Experiments of which speeds are measured: one after the other, so that nothing else runs meanwhile.
+/// Number of experiments whose speed is measured, one after the other, so that nothing else runs at the same time.
 const TIMED: u64 = 16;
 
-/// What is measured.
+/// Parameters of a comparison of levels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LevelQuery {
-    /// Random experiments for the error against the cycle level.
+    /// Number of random experiments for the error against the cycle level.
     pub experiments: u64,
-    /// Whether speeds are measured too; they mean something on a quiet machine alone.
+    /// True to measure speeds as well. Speeds are meaningful only on an otherwise idle computer.
     pub speeds: bool,
 }
 
@@ -44,11 +44,12 @@ impl Default for LevelQuery {
     }
 }
 
-/// Compares all levels on this host, now; `finished` hears how many of all steps are done.
+/// Compares all levels on this host. `finished` is called with the number of finished steps and the number of all
+/// steps.
 ///
 /// # Errors
 ///
-/// The first [`ExperimentError`].
+/// Returns the first [`ExperimentError`].
 pub fn compare_with(query: LevelQuery, finished: impl Fn(u64, u64) + Sync) -> Result<LevelRecord, ExperimentError> {
     let of_variant = FIGURES.len() as u64 + query.experiments;
     let steps = VARIANTS.len() as u64 * of_variant;
@@ -56,6 +57,7 @@ pub fn compare_with(query: LevelQuery, finished: impl Fn(u64, u64) + Sync) -> Re
     let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
     let numbers: Vec<u64> = (0..query.experiments).collect();
     let mut of_experiments = Vec::new();
+    // Run the random experiments at every level first. The last level, cycle, is the reference for the deviations.
     for variant in VARIANTS {
         let values = parallel::map(&numbers, |number| {
             let value = value(variant, *number);
@@ -68,6 +70,7 @@ pub fn compare_with(query: LevelQuery, finished: impl Fn(u64, u64) + Sync) -> Re
     let mut levels = Vec::new();
     for (variant, values) in VARIANTS.into_iter().zip(&of_experiments) {
         let rows = rows_of(variant, &step)?;
+        // Compare each level with the cycle level, experiment by experiment.
         let deviations = values.iter().zip(&of_cycle).map(|(value, of_cycle)| deviation_percent(*value, *of_cycle));
         let is_cycle = variant.0 == Level::Cycle;
         levels.push(LevelReport {
@@ -88,7 +91,7 @@ pub fn compare_with(query: LevelQuery, finished: impl Fn(u64, u64) + Sync) -> Re
     })
 }
 
-/// An experiment of a variant.
+/// Returns a random experiment for a variant.
 fn of_variant((level, times_of_code): (Level, bool), number: u64) -> Result<Experiment, ExperimentError> {
     let experiment = experiment(number)?.level(level);
     if !times_of_code || level == Level::Cycle {
@@ -99,7 +102,7 @@ fn of_variant((level, times_of_code): (Level, bool), number: u64) -> Result<Expe
     Ok(other.fields(experiment.length()).seed(experiment.seed_of_motion()).pixels(Pixels::Off).level(level))
 }
 
-/// What the levels are compared in; not a number where no picture is shown.
+/// Returns the quantity that is compared between levels. The value is NaN if no picture is shown.
 fn value(variant: (Level, bool), number: u64) -> Result<f64, ExperimentError> {
     let experiment = of_variant(variant, number)?;
     match summarise(&crate::registry(), &experiment) {
@@ -109,7 +112,7 @@ fn value(variant: (Level, bool), number: u64) -> Result<f64, ExperimentError> {
     }
 }
 
-/// All figures of a variant.
+/// Measures all figures with a variant.
 fn rows_of(
     (level, times_of_code): (Level, bool),
     step: &(impl Fn() + Sync),
@@ -124,7 +127,7 @@ fn rows_of(
     parallel::map(&FIGURES, row).into_iter().collect()
 }
 
-/// Speeds for each choice of pixels.
+/// Measures the speed for each choice of pixels.
 fn speeds(variant: (Level, bool), measures: bool) -> Result<Vec<LevelSpeed>, ExperimentError> {
     let choices = if variant.0 == Level::Analytic { &PIXELS[..1] } else { &PIXELS[..] };
     let speed = |pixels: &Pixels| {
@@ -134,13 +137,14 @@ fn speeds(variant: (Level, bool), measures: bool) -> Result<Vec<LevelSpeed>, Exp
     choices.iter().map(speed).collect()
 }
 
-/// Simulated seconds for each second of the host, over all timed experiments.
+/// Returns the simulated seconds per second of the host, over all timed experiments.
 fn speed(variant: (Level, bool), pixels: Pixels) -> Result<f64, ExperimentError> {
     let registry = crate::registry();
     let (mut simulated, mut taken) = (0.0, 0.0);
     for number in 0..TIMED {
         let experiment = of_variant(variant, number)?.pixels(pixels);
         simulated += experiment.length() as f64 * experiment.config().period()?.as_ms() * 1e-3;
+        // Only the simulation is timed, not the construction of the scene.
         let begin = Instant::now();
         let result = if variant.0 == Level::Analytic {
             summarise(&registry, &experiment).map(|_| ())
@@ -148,6 +152,7 @@ fn speed(variant: (Level, bool), pixels: Pixels) -> Result<f64, ExperimentError>
             experiment.run().map(|_| ())
         };
         taken += begin.elapsed().as_secs_f64();
+        // Runs that are too short take time like all others.
         match result {
             Ok(()) | Err(ExperimentError::TooShort { .. } | ExperimentError::Run { .. }) => {}
             Err(error) => return Err(error),

@@ -1,4 +1,4 @@
-//! The levels of modelling behind one interface, and how they differ: speed against error.
+//! The levels of modelling behind one interface, and their comparison by speed and error.
 
 mod compare;
 mod random;
@@ -11,11 +11,12 @@ pub use record::{LevelRecord, LevelReport, LevelSpeed, SCHEMA, Spread};
 use pxpl5_measure::summary;
 use pxpl5_run::{Experiment, ExperimentError, Level, Registry, Summary};
 
-/// What comes of an experiment at its level of modelling, without pixels.
+/// Runs an experiment at its level of modelling, without pixels, and returns the summary.
 ///
 /// # Errors
 ///
-/// As [`Experiment::run`]; at the analytic level, the closed form's, or that there is none.
+/// Fails in the same cases as [`Experiment::run`]. At the analytic level fails with the error of the closed form, or
+/// with [`ExperimentError::Level`] if there is none.
 pub fn summarise(registry: &Registry, experiment: &Experiment) -> Result<Summary, ExperimentError> {
     if experiment.level_of_modelling() != Level::Analytic {
         return Ok(summary(&experiment.run()?));
@@ -27,8 +28,9 @@ pub fn summarise(registry: &Registry, experiment: &Experiment) -> Result<Summary
     }
 }
 
-/// How far a figure is from that of the cycle level, percent; none where both have no value, or both are 0: pictures that are never in
-/// time have no latency. Where one of them has none, or that of the cycle level is 0, it counts 100.
+/// Returns the deviation of a figure from its value at the cycle level, in percent. The deviation is 0 if neither
+/// level has a value, because pictures that are never in time have no latency, or if both values are 0. The deviation
+/// is 100 if only one level has a value, or if only the cycle level's value is 0.
 #[must_use]
 pub fn deviation_percent(value: f64, of_cycle: f64) -> f64 {
     match (value.is_finite(), of_cycle.is_finite()) {

@@ -1,65 +1,67 @@
-//! What was measured of the levels, as a file that is kept.
+//! The recorded measurement of the levels of modelling, as a file.
 
 use pxpl5_run::{Level, Pixels};
 use serde::{Deserialize, Serialize};
 
-/// Name and version of the record's layout.
+/// Name and version of the record's JSON layout.
 pub const SCHEMA: &str = "pxpl5-levels/2";
 
-/// All levels, and when and where they were measured. What was not measured is null.
+/// Measurement of all levels, with date and host. Missing values are null.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LevelRecord {
-    /// Name and version of the layout.
+    /// Name and version of the JSON layout.
     pub schema: String,
-    /// Random experiments behind each [`LevelReport::from_cycle_percent`].
+    /// Number of random experiments behind each [`LevelReport::from_cycle_percent`].
     pub experiments: u64,
-    /// What a reader must know of the numbers, such as what is missing.
+    /// Remarks for the reader, such as missing values.
     pub note: Option<String>,
-    /// The day, as 2026-11-25.
+    /// Date of the measurement, such as 2026-11-25.
     pub date: Option<String>,
-    /// The machine that measured.
+    /// Host on which the levels were measured.
     pub host: Option<String>,
-    /// Each level with each table of times.
+    /// Reports of the levels. A level that uses the timing table has two reports, one for each source of its times.
     pub levels: Vec<LevelReport>,
 }
 
-/// A level's errors and speeds.
+/// Errors and speeds of a level.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LevelReport {
-    /// The level that was timed and evaluated.
+    /// Level that was measured.
     pub level: Level,
-    /// Whether the times of primitives in the table are those of the code, instead of published or fitted ones.
+    /// True if the table's times of primitives come from executed code, instead of published or fitted values.
     pub times_of_code: bool,
-    /// Mean absolute error of the figures that are free checks, percent.
+    /// Mean absolute error of the free checks, in percent.
     pub published_error_percent: Option<f64>,
-    /// Absolute deviations of random experiments from the cycle level, percent.
+    /// Absolute deviations of random experiments from the cycle level, in percent.
     pub from_cycle_percent: Option<Spread>,
-    /// Speeds for each choice of pixels, which changes no time.
+    /// Speeds for each choice of pixels. Pixels do not change simulated times.
     pub speeds: Vec<LevelSpeed>,
 }
 
-/// How fast a level is.
+/// Speed of a level for one choice of pixels.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LevelSpeed {
     /// Pixels that are computed.
     pub pixels: Pixels,
-    /// Simulated seconds for each second of one thread of the host, with as many threads for pixels as it has.
+    /// Simulated seconds per second of one thread of the host. Pixels are computed by as many further threads as the
+    /// host has.
     pub simulated_seconds_per_second: Option<f64>,
 }
 
-/// Median, and the band that nine of ten values lie in.
+/// Median of some values, and the interval that contains nine of ten.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
-    /// Half of the values are less.
+    /// Median of the values.
     pub median: f64,
-    /// One of 20 values is less.
+    /// 5th percentile of the values.
     pub low_5: f64,
-    /// One of 20 values is more.
+    /// 95th percentile of the values.
     pub high_95: f64,
 }
 
 impl Spread {
-    /// Computes the spread of some values, of which none is not a number; `None` of no value. Between two values it interpolates.
+    /// Computes the spread of values without NaN, with interpolation between neighbours. Returns `None` for no
+    /// values.
     #[must_use]
     pub fn of(mut values: Vec<f64>) -> Option<Self> {
         values.sort_by(f64::total_cmp);
@@ -74,11 +76,11 @@ impl Spread {
 }
 
 impl LevelRecord {
-    /// Reads a record.
+    /// Parses a record.
     ///
     /// # Errors
     ///
-    /// What is wrong with the text.
+    /// Returns a description of the error in the text.
     pub fn read(text: &str) -> Result<Self, String> {
         let record: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
         if record.schema == SCHEMA {
@@ -89,14 +91,14 @@ impl LevelRecord {
 }
 
 impl LevelReport {
-    /// Its name in tables and charts.
+    /// Returns the level's name for tables and charts.
     #[must_use]
     pub fn name(&self) -> String {
         let times = if self.times_of_code && self.level != Level::Cycle { ", times of code" } else { "" };
         format!("{}{times}", self.level.name())
     }
 
-    /// What it is for, and where it must not be used.
+    /// Returns advice on the uses of the level, and on uses to avoid.
     #[must_use]
     pub const fn advice(&self) -> &'static str {
         match (self.level, self.times_of_code) {

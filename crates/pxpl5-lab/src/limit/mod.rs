@@ -1,15 +1,16 @@
-//! Limits: the most triangles that a pipeline can draw in time.
+//! Limits: the largest number of triangles that a pipeline can draw in time.
 //!
-//! A limit is found by simulation, not by a formula. A formula says where to begin and which sizes to doubt: the closed form of the
-//! analytic level, where the pipeline has one.
+//! A limit is found by simulation, not by a formula. The closed form of the analytic level, if the pipeline has one,
+//! only gives the size at which the search starts, and sizes that are doubtful.
 //!
 //! ```text
 //!   analytic level --about this many; least margin at these--> Hints
 //!   Hints --near: bracket, bisect--> first miss --sizes below it, doubtful sizes--> least size that misses
 //! ```
 //!
-//! The answer need not be monotone (a clump that is nearly empty costs as many messages as a full one). So the sizes below the bisection's
-//! answer are tried as well, and of two answers the smaller one counts; [`most`] says what that guarantees.
+//! The result need not be monotone, because a nearly empty clump costs as many messages as a full one. The search
+//! therefore also tries sizes below the result of the bisection, and the smallest miss counts. [`most`] states the
+//! guarantee.
 
 mod search;
 
@@ -25,38 +26,38 @@ use pxpl5_run::{
 use pxpl5_scene::{Scene, builtin};
 use std::sync::Arc;
 
-/// Which pipeline, on which machine, must draw what in time.
+/// A search for a limit: a pipeline, a machine, the triangles and the goal.
 #[derive(Clone, Debug)]
 pub struct LimitQuery {
-    /// Where the pipeline's closed form is found.
+    /// Registry with the pipeline's closed form.
     pub registry: Arc<Registry>,
-    /// The machine that it runs on.
+    /// Machine on which the pipeline runs.
     pub config: MachineConfig,
-    /// The pipeline whose limit is sought.
+    /// Pipeline whose limit is searched.
     pub pipeline: Arc<dyn Pipeline>,
-    /// The triangles, what must hold, and for how many fields each size is simulated.
+    /// Triangles, goal, and number of fields simulated for each size.
     pub criterion: LimitCriterion,
-    /// A model in place of the criterion's triangles.
+    /// Model whose triangles replace the criterion's triangles, if any.
     pub model: Option<Model>,
-    /// The level of modelling at which every size is tried.
+    /// Level of modelling at which every size is tried.
     pub level: Level,
 }
 
-/// A model that is thinned out evenly to every size; more triangles than it has are not tried.
+/// A model that is thinned out evenly to every size. Its number of triangles bounds the search.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// As the experiment chose it, whatever number of triangles that names.
+    /// Settings of the model's scene. Its number of triangles is ignored.
     pub choice: SceneChoice,
     /// The model with all of its primitives.
     pub whole: Arc<Scene>,
 }
 
 impl Model {
-    /// Reads or generates it.
+    /// Reads or generates the model.
     ///
     /// # Errors
     ///
-    /// As [`SceneChoice::load`].
+    /// Fails in the same cases as [`SceneChoice::load`].
     pub fn load(choice: SceneChoice) -> Result<Self, FileError> {
         let choice = SceneChoice { triangles: None, ..choice };
         let whole = Arc::new(choice.load_whole()?);
@@ -69,21 +70,22 @@ impl Model {
     }
 }
 
-/// NTSC's rates over the round ones.
+/// Ratio of NTSC's rates to round rates.
 const NTSC: f64 = 0.999;
 
-/// Most triangles that are tried.
+/// Maximum number of triangles that is tried.
 pub const CEILING: u32 = 1_000_000;
 
-/// Sizes at most of which the analytic level tells the margin, and those of them that are tried.
+/// Maximum number of sizes whose margin the analytic level computes.
 const MARGINS: u32 = 1_000;
+/// Maximum number of doubtful sizes that are tried.
 const DOUBTFUL: usize = 8;
 
-/// Pictures after the warm-up without which nothing can be said of a rate: the goal counts as missed.
+/// Minimum number of pictures after the warm-up. With fewer pictures no rate is known, and the goal counts as missed.
 const PICTURES: usize = 4;
 
 impl LimitQuery {
-    /// Of a checked experiment: its machine, pipeline and level, and the pipeline's own criterion.
+    /// Creates a query from a checked experiment: its machine, pipeline and level, and the pipeline's own criterion.
     #[must_use]
     pub fn of_plan(plan: &Plan) -> Self {
         Self {
@@ -96,11 +98,11 @@ impl LimitQuery {
         }
     }
 
-    /// The most triangles by the pipeline's own criterion, which its registry entry states.
+    /// Creates a query with the pipeline's own criterion, as stated in its registry entry.
     ///
     /// # Errors
     ///
-    /// [`ExperimentError::Config`] when the registry of the papers does not know the pipeline.
+    /// Returns [`ExperimentError::Config`] if the built-in registry does not contain the pipeline.
     pub fn of_papers(config: MachineConfig, pipeline: impl Pipeline) -> Result<Self, ExperimentError> {
         let registry = crate::registry();
         let unknown = |_| ConfigError::Board(format!("no pipeline {} is known", pipeline.name()));
@@ -108,22 +110,23 @@ impl LimitQuery {
         Ok(Self { registry, config, pipeline: Arc::new(pipeline), criterion, model: None, level: Level::Transaction })
     }
 
-    /// Searches.
+    /// Searches for the limit.
     ///
     /// # Errors
     ///
-    /// [`ExperimentError`] when the machine cannot be built or the pipeline cannot run on it. A scene that does not
-    /// fit into a board's memory, or that is too slow to be shown at all, misses the goal.
+    /// Returns [`ExperimentError`] if the machine cannot be built or the pipeline cannot run on it. A scene that does
+    /// not fit into a board's memory, or is never shown, misses the goal.
     pub fn search(&self) -> Result<Limit, ExperimentError> {
         let limit = most(self.ceiling(), &self.hints(), |triangles| self.reached(triangles))?;
+        // A limit of zero may mean that the goal cannot be evaluated.
         if limit.triangles == 0 {
             self.check_rate()?;
         }
         Ok(limit)
     }
 
-    /// Refuses a goal that means nothing: a rate where so little is redrawn that there is none, on a display that goes on turning what
-    /// was drawn.
+    /// Refuses a rate as the goal if the scene has no rate of updates. A display with cube faces redraws so little of
+    /// some scenes that fewer than two updates occur.
     fn check_rate(&self) -> Result<(), ExperimentError> {
         let (Goal::RateHz(hz), Some(_)) = (self.criterion.goal, self.pipeline.draws_faces()) else { return Ok(()) };
         let outcome = self.experiment(1)?.run()?;
@@ -137,23 +140,25 @@ impl LimitQuery {
         )))
     }
 
-    /// The same search without the analytic level's help, which takes longer.
+    /// Searches for the limit without the hints of the analytic level, which takes longer.
     ///
     /// # Errors
     ///
-    /// As [`search`](Self::search).
+    /// Fails in the same cases as [`search`](Self::search).
     pub fn search_without_hints(&self) -> Result<Limit, ExperimentError> {
         most(self.ceiling(), &Hints::default(), |triangles| self.reached(triangles))
     }
 
-    /// What the analytic level says of the sizes; nothing where the pipeline has no closed form, or where that is what is searched.
+    /// Returns the hints of the analytic level. There are none if the pipeline has no closed form, or if the search
+    /// itself uses the analytic level.
     ///
-    /// A model is thinned and seen from all views for each size, which takes as long at that level as at any other. So small triangles stand
-    /// for it, of which a size takes a moment.
+    /// A model would be thinned out and viewed for each size, which takes as long at the analytic level as at any
+    /// other. Small triangles therefore replace the model.
     fn hints(&self) -> Hints {
         if self.level == Level::Analytic && self.model.is_none() {
             return Hints::default();
         }
+        // Small triangles stand for a model, whose sizes are expensive to build.
         let scene = if self.model.is_some() { TestScene::Typical } else { self.criterion.scene };
         let criterion = LimitCriterion { scene, ..self.criterion };
         let analytic = Self { level: Level::Analytic, model: None, criterion, ..self.clone() };
@@ -162,19 +167,20 @@ impl LimitQuery {
         Hints { near, doubtful: doubtful.unwrap_or_default() }
     }
 
-    /// Returns sizes up to a little above one that have less margin than their neighbours, the least margin first.
+    /// Returns sizes up to 5 % above `near` with a smaller margin than their neighbours, smallest margin first.
     fn doubtful(&self, near: u32) -> Vec<u32> {
         let most = near + near / 20;
         let step = most.div_ceil(MARGINS).max(1) as usize;
         let margin = |triangles: u32| Some((self.margin(triangles)?, triangles));
         let margins: Vec<(f64, u32)> = (1..=most).step_by(step).filter_map(margin).collect();
+        // A local minimum of the margin may hide a miss.
         let dips = margins.windows(3).filter(|of| of[1].0 < of[0].0 && of[1].0 <= of[2].0);
         let mut least: Vec<(f64, u32)> = dips.map(|of| of[1]).collect();
         least.sort_by(|a, b| a.0.total_cmp(&b.0));
         least.into_iter().take(DOUBTFUL).map(|(_, triangles)| triangles).collect()
     }
 
-    /// How far a size is from missing the goal, in units of the goal's own: more is better.
+    /// Returns the distance of a size from missing the goal, in the unit of the goal. A larger margin is better.
     fn margin(&self, triangles: u32) -> Option<f64> {
         let summary = self.summary(triangles).ok()?;
         match self.criterion.goal {
@@ -184,7 +190,7 @@ impl LimitQuery {
         }
     }
 
-    /// Most triangles that are tried.
+    /// Returns the maximum number of triangles that is tried.
     fn ceiling(&self) -> u32 {
         let of_model = self.model.as_ref().map(|model| model.whole.triangles().len());
         of_model.map_or(CEILING, |triangles| u32::try_from(triangles).unwrap_or(CEILING).min(CEILING))
@@ -213,7 +219,7 @@ impl LimitQuery {
     ///
     /// # Errors
     ///
-    /// As [`search`](Self::search).
+    /// Fails in the same cases as [`search`](Self::search).
     pub fn reached(&self, triangles: u32) -> Result<bool, ExperimentError> {
         match self.summary(triangles) {
             Ok(summary) => Ok(is_reached(self.criterion.goal, &summary)),
@@ -234,11 +240,11 @@ fn is_reached(goal: Goal, summary: &Summary) -> bool {
     }
 }
 
-/// A scene of so many triangles, at least one.
+/// Returns a scene with a number of triangles, at least one.
 ///
 /// # Panics
 ///
-/// Above the scene generator's largest number of triangles.
+/// Panics above the scene generator's maximum number of triangles.
 #[must_use]
 pub fn test_scene(kind: TestScene, triangles: u32) -> Scene {
     builtin(&format!("{}:{}", kind.name(), triangles.max(1))).expect("in range")

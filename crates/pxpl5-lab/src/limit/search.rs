@@ -1,42 +1,45 @@
-//! The least size that misses a goal, found by trying.
+//! Search for the smallest size that misses a goal, by trying sizes.
 
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// The answer of a search, and what is known of the sizes around it.
+/// Result of a search, with the tried sizes around the limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Limit {
-    /// One less than the first miss: no tried size up to this one missed the goal. 0 if it was missed with one triangle.
+    /// Largest size below the first miss. Every tried size up to this one reached the goal. 0 if one triangle already
+    /// misses.
     pub triangles: u32,
-    /// The least size that was tried and missed the goal; `None` if all that were tried reached it.
+    /// Smallest tried size that missed the goal. `None` if all tried sizes reached the goal.
     pub first_miss: Option<u32>,
-    /// The greatest size above the first miss that was tried and reaches the goal all the same.
+    /// Largest tried size above the first miss that reached the goal, if any.
     pub island: Option<u32>,
-    /// All sizes from here to `triangles` were tried. Below this size only some were.
+    /// Smallest size from which all sizes up to `triangles` were tried. Below this size only some sizes were tried.
     pub unbroken_from: u32,
-    /// Sizes that were simulated.
+    /// Number of simulated sizes.
     pub tried: usize,
 }
 
-/// What another model says of the sizes, which saves trials and changes no answer of a size.
+/// Hints of another model, which reduce the number of trials and change no result of a trial.
 #[derive(Clone, Debug, Default)]
 pub struct Hints {
-    /// A size that is near the limit; without it the search begins with one triangle.
+    /// Size near the limit. Without this hint the search starts with one triangle.
     pub near: Option<u32>,
-    /// Sizes that miss, or nearly so, though greater ones may not: they are tried too.
+    /// Sizes that may miss the goal although larger ones reach it. The search tries them too.
     pub doubtful: Vec<u32>,
 }
 
-/// Sizes below the answer that are all tried, and distance above it up to which islands are looked for: those of two clumps.
+/// Number of sizes directly below the result that are all tried: the sizes of two clumps. The search looks for
+/// islands up to the same distance above the result.
 const LOOK: u32 = 60;
 
-/// Triangles of all sizes together that are tried in a row on either side of the answer: fewer sizes where each takes longer.
+/// Maximum sum of triangles over the consecutive sizes tried on either side of the result. Larger sizes take longer,
+/// so fewer are tried.
 const TRIANGLES_IN_A_ROW: u32 = 60_000;
 
-/// The least number of sizes that are tried in a row.
+/// Minimum number of consecutive sizes that are tried.
 const LEAST_IN_A_ROW: u32 = 4;
 
-/// Sizes that were asked for, and what came of each.
+/// Sizes that were tried, with the result of each.
 struct Tried<F> {
     answers: BTreeMap<u32, bool>,
     reached: F,
@@ -55,22 +58,23 @@ impl<F> Tried<F> {
         Ok(answer)
     }
 
-    /// The least size that missed.
+    /// Returns the smallest size that missed.
     fn first_miss(&self) -> Option<u32> {
         self.answers.iter().find(|(_, reached)| !**reached).map(|(size, _)| *size)
     }
 
-    /// The greatest size below another one that was tried; 0 if there is none.
+    /// Returns the largest tried size below `size`, or 0 if there is none.
     fn before(&self, size: u32) -> u32 {
         self.answers.range(..size).next_back().map_or(0, |(size, _)| *size)
     }
 
-    /// Tries sizes around a first one, in steps that double, until one reaches the goal and one misses it.
+    /// Tries sizes around `near` in steps that double, until one size reaches the goal and one misses.
     fn bracket<E>(&mut self, near: u32, ceiling: u32) -> Result<(), E>
     where
         F: FnMut(u32) -> Result<bool, E>,
     {
         let mut size = near.clamp(1, ceiling);
+        // The first step is proportional to the size.
         let mut step = (size / 64).max(1);
         let up = self.ask(size)?;
         while if up { size < ceiling } else { size > 1 } {
@@ -83,7 +87,7 @@ impl<F> Tried<F> {
         Ok(())
     }
 
-    /// Halves the gap below the first miss until the size before it was tried too.
+    /// Bisects the gap below the first miss until the size directly before it was tried.
     fn bisect<E>(&mut self) -> Result<(), E>
     where
         F: FnMut(u32) -> Result<bool, E>,
@@ -98,7 +102,7 @@ impl<F> Tried<F> {
         Ok(())
     }
 
-    /// Tries sizes until one misses; returns true if one did.
+    /// Tries sizes until one misses. Returns true if one missed.
     fn finds_a_miss<E>(&mut self, sizes: impl IntoIterator<Item = u32>) -> Result<bool, E>
     where
         F: FnMut(u32) -> Result<bool, E>,
@@ -115,6 +119,7 @@ impl<F> Tried<F> {
         let first_miss = self.first_miss();
         let triangles = first_miss.map_or(ceiling, |miss| miss - 1);
         let island = self.answers.iter().rev().find(|(size, reached)| **reached && **size > triangles);
+        // Walk down while every size was tried.
         let mut unbroken_from = triangles;
         while unbroken_from > 1 && self.answers.contains_key(&(unbroken_from - 1)) {
             unbroken_from -= 1;
@@ -123,21 +128,23 @@ impl<F> Tried<F> {
     }
 }
 
-/// The least size that misses, up to `ceiling`, as far as trials can tell.
+/// Returns the smallest size that misses the goal, up to `ceiling`, as far as trials can show.
 ///
-/// A goal need not be missed by all sizes above the first that misses: a clump that is nearly empty costs as many messages as a full one.
-/// Guaranteed is that the first miss misses, that the size before it and [`Limit::unbroken_from`] to there reach the goal, and that no
-/// tried size below missed it. Below that the sizes of the hints are tried, and five at growing distance; a miss that lies between
-/// them is not found.
+/// Sizes above the first miss may reach the goal, because a nearly empty clump costs as many messages as a full one.
+/// The result is guaranteed in three respects. The first miss misses the goal. The sizes from
+/// [`Limit::unbroken_from`] to the size before the first miss reach the goal. No tried size below misses the goal.
+/// Below [`Limit::unbroken_from`] the search tries the sizes of the hints, and five sizes at growing distances. A
+/// miss between these sizes is not found.
 ///
 /// # Errors
 ///
-/// The first error of `reached`.
+/// Returns the first error of `reached`.
 pub fn most<E>(ceiling: u32, hints: &Hints, reached: impl FnMut(u32) -> Result<bool, E>) -> Result<Limit, E> {
     let mut tried = Tried { answers: BTreeMap::new(), reached };
     if ceiling == 0 {
         return Ok(tried.limit(0));
     }
+    // Find a first miss, then bisect again as long as a smaller size misses.
     tried.bracket(hints.near.unwrap_or(1), ceiling)?;
     loop {
         tried.bisect()?;
@@ -146,6 +153,7 @@ pub fn most<E>(ceiling: u32, hints: &Hints, reached: impl FnMut(u32) -> Result<b
             break;
         }
     }
+    // Islands above the first miss do not change the limit, but the result reports them.
     let limit = tried.limit(ceiling).triangles;
     for size in above(limit, ceiling) {
         tried.ask(size)?;
@@ -153,11 +161,11 @@ pub fn most<E>(ceiling: u32, hints: &Hints, reached: impl FnMut(u32) -> Result<b
     Ok(tried.limit(ceiling))
 }
 
-/// The answer of another model's search, as a hint: no size besides those of the bisection is tried.
+/// Returns the limit by bisection alone, as a hint for the search with another model.
 ///
 /// # Errors
 ///
-/// The first error of `reached`.
+/// Returns the first error of `reached`.
 pub fn about<E>(ceiling: u32, reached: impl FnMut(u32) -> Result<bool, E>) -> Result<u32, E> {
     let mut tried = Tried { answers: BTreeMap::new(), reached };
     tried.bracket(1, ceiling)?;
@@ -165,20 +173,21 @@ pub fn about<E>(ceiling: u32, reached: impl FnMut(u32) -> Result<bool, E>) -> Re
     Ok(tried.limit(ceiling).triangles)
 }
 
-/// Sizes that are tried below an answer: all nearest ones, doubtful ones, and some at distances that double.
+/// Returns the sizes to try below a result: consecutive ones, doubtful ones, and some at distances that double.
 fn below(limit: u32, doubtful: &[u32]) -> impl Iterator<Item = u32> {
     let in_a_row = in_a_row(limit);
+    // All sizes directly below, from the largest down.
     let near = (limit.saturating_sub(in_a_row)..limit).rev();
     let far = (1..=5).rev().map(move |halvings| limit - (limit >> halvings));
     near.chain(doubtful.iter().copied().filter(move |size| *size < limit)).chain(far).filter(|size| *size > 0)
 }
 
-/// How many sizes on either side of an answer are tried.
+/// Returns the number of consecutive sizes to try on either side of a result.
 fn in_a_row(limit: u32) -> u32 {
     (TRIANGLES_IN_A_ROW / limit.max(1)).clamp(LEAST_IN_A_ROW, LOOK)
 }
 
-/// Sizes that are tried above the first miss, as many as below the answer.
+/// Returns the sizes to try above the first miss, as many as below the result.
 fn above(limit: u32, ceiling: u32) -> impl Iterator<Item = u32> {
     let farthest = limit.saturating_add(1 + LOOK.min(limit / 2)).min(ceiling);
     let step = (farthest.saturating_sub(limit) / in_a_row(limit)).max(1) as usize;
@@ -211,7 +220,7 @@ mod tests {
 
     #[test]
     fn the_answer_lies_below_an_island() {
-        // 796 to 806 miss because of an almost empty clump, 807 does not.
+        // The sizes 796 to 806 miss because of an almost empty clump. 807 does not miss.
         for near in [None, Some(700), Some(807), Some(900)] {
             let hints = Hints { near, ..Hints::default() };
             let found = with(CEILING, &hints, |size| size <= 795 || size == 807);
@@ -238,7 +247,7 @@ mod tests {
     }
 
     proptest! {
-        /// Wherever a search begins, it ends at the same size, if sizes below the answer do not miss.
+        /// A search ends at the same size for any starting size if no size below the result misses.
         #[test]
         fn hints_change_the_number_of_trials_alone(
             limit in 0u32..5_000,
@@ -250,7 +259,7 @@ mod tests {
             prop_assert_eq!((found.triangles, found.first_miss), (limit, Some(limit + 1)));
         }
 
-        /// What is said of the sizes in a row is so.
+        /// All sizes in the reported unbroken range reach the goal.
         #[test]
         fn all_sizes_of_the_unbroken_row_reach_the_goal(misses in proptest::collection::btree_set(1u32..400, 1..20)) {
             let found = of(400, |size| !misses.contains(&size));

@@ -1,61 +1,64 @@
-//! How well one reading explains the figures.
+//! The fit of one interpretation of the papers to the published figures.
 
 use super::FIGURES;
 use crate::figures::{Bench, Figure, Reading};
 use pxpl5_run::ExperimentError;
 use serde::Serialize;
 
-/// What a reading makes of one figure.
+/// Fit of one figure under one interpretation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FitOfFigure {
     /// Number of the figure.
     pub id: &'static str,
-    /// The value that the paper prints.
+    /// Value printed in the paper, in `unit`.
     pub published: f64,
-    /// The model's value.
+    /// Value of the model, in `unit`.
     pub simulated: f64,
-    /// Unit of both.
+    /// Unit of the published and the simulated value.
     pub unit: &'static str,
-    /// (simulated - published) / published, in percent; 0 within a printed range.
+    /// Relative error in percent: (simulated - published) / published. 0 within a printed range.
     pub error_percent: f64,
-    /// The deviation that the paper prints, of figures whose samples vary.
+    /// Printed standard deviation. `None` for figures without a printed deviation of samples.
     pub published_sd: Option<f64>,
-    /// The deviation of the samples.
+    /// Standard deviation of the simulated samples. `None` for figures without a printed deviation.
     pub simulated_sd: Option<f64>,
 }
 
-/// What a reading makes of all figures.
+/// Fit of all figures under one interpretation.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fit {
-    /// The reading, as a value and in words.
+    /// The interpretation.
     pub reading: Reading,
-    /// The same in words.
+    /// The interpretation in words.
     pub words: String,
-    /// Each figure, in the order of [`FIGURES`].
+    /// Fit of each figure, in the order of [`FIGURES`].
     pub figures: Vec<FitOfFigure>,
-    /// Mean of the absolute errors, percent.
+    /// Mean of the absolute errors in percent.
     pub mean_error_percent: f64,
-    /// The greatest of them.
+    /// Largest absolute error in percent.
     pub greatest_error_percent: f64,
-    /// Logarithm of the likelihood of the printed means and deviations, up to a constant; see [`FitOfFigure::log_likelihood`].
+    /// Logarithm of the likelihood of the printed means and deviations, up to a constant. See
+    /// [`FitOfFigure::log_likelihood`].
     pub log_likelihood: f64,
-    /// Figures that it does not explain: off by more than 8 %, or a deviation off by more than a quarter.
+    /// Figures that the interpretation does not explain: their error exceeds 8 %, or their deviation differs by more
+    /// than a quarter.
     pub unexplained: Vec<&'static str>,
 }
 
-/// Error of a mean that is still an explanation, percent (the project\'s own bound).
+/// Largest error in percent of a mean that still counts as explained. The bound is this project's own.
 const EXPLAINED_PERCENT: f64 = 8.0;
 
-/// The same of a deviation, as a ratio less 1.
+/// Largest relative error of a deviation that still counts as explained.
 const EXPLAINED_SD: f64 = 0.25;
 
-/// What the model may be wrong besides, as a part of a mean: clocks and costs that no paper gives.
+/// Relative uncertainty of the model itself: clocks and costs that no paper gives.
 const DISCREPANCY: f64 = 0.02;
 
-/// Samples of the papers\' means with a deviation: 4.47 with 0.502 are samples of 4 and 5 only if there were 67 to 119.
+/// Assumed number of samples behind the papers' means. A mean of 4.47 with a deviation of 0.502 follows from samples
+/// of 4 and 5 only for 67 to 119 samples.
 const SAMPLES: f64 = 87.0;
 
-/// Deviations of an application scene: those that the paper prints.
+/// Returns the deviation that the paper prints for an application scene.
 fn published_sd(figure: &Figure) -> Option<f64> {
     ["7", "7b", "7c"].contains(&figure.id).then_some(figure.spread).flatten()
 }
@@ -66,6 +69,7 @@ impl FitOfFigure {
         let published_sd = published_sd(figure);
         let sd = measured.details.iter().find(|detail| detail.name == "standard deviation").map(|detail| detail.value);
         let off = measured.value - figure.value;
+        // A printed range counts as exact within its bounds.
         let range = figure.spread.filter(|_| published_sd.is_none()).unwrap_or(0.0);
         let beyond = off.signum() * (off.abs() - range).max(0.0);
         Ok(Self {
@@ -79,11 +83,13 @@ impl FitOfFigure {
         })
     }
 
-    /// Of a normal error of the mean (the printed digits, the error of a mean of so many samples, and a fiftieth for what the model does
-    /// not know), and of the logarithm of the deviations\' ratio (a quarter).
+    /// Returns the logarithm of the figure's likelihood. The error of the mean is normal with three parts: the
+    /// printed digits, the error of a mean of 87 samples, and 2 % for the model. The logarithm of the ratio
+    /// of deviations is normal with a standard deviation of 0.25.
     #[must_use]
     pub fn log_likelihood(&self) -> f64 {
         let of_samples = self.published_sd.map_or(0.0, |sd| sd / SAMPLES.sqrt());
+        // Three independent errors of the mean.
         let sigma = of_samples.hypot(DISCREPANCY * self.published).hypot(half_a_digit(self.published));
         let of_mean = -0.5 * (self.error_percent / 100.0 * self.published / sigma).powi(2);
         let ratio =
@@ -99,11 +105,11 @@ impl FitOfFigure {
 }
 
 impl Fit {
-    /// Measures all figures with a reading.
+    /// Measures all figures with an interpretation.
     ///
     /// # Errors
     ///
-    /// As [`Bench::measure`].
+    /// Fails in the same cases as [`Bench::measure`].
     pub fn of(bench: &Bench, reading: Reading) -> Result<Self, ExperimentError> {
         let bench = Bench { reading, ..bench.clone() };
         let of_reading = crate::figures::FIGURES.iter().filter(|figure| FIGURES.contains(&figure.id));
@@ -119,14 +125,14 @@ impl Fit {
         })
     }
 
-    /// Mean of the absolute errors without one figure, percent.
+    /// Returns the mean of the absolute errors without one figure, in percent.
     #[must_use]
     pub fn mean_error_without(&self, id: &str) -> f64 {
         mean_without(&self.figures, Some(id))
     }
 }
 
-/// Half of the last digit of a value of which three are printed.
+/// Returns half of the last digit of a value that is printed with three digits.
 pub(super) fn half_a_digit(value: f64) -> f64 {
     0.5 * 10f64.powf(value.log10().floor() - 2.0)
 }
@@ -155,7 +161,7 @@ mod tests {
     fn what_is_printed_is_the_likeliest_and_a_deviation_of_nothing_is_no_explanation() {
         assert_eq!(EXACT.log_likelihood(), 0.0);
         let off = FitOfFigure { simulated: 4.2, error_percent: 5.0, ..EXACT };
-        // 0.2 in units of the three parts: 0.5 / sqrt(87), a fiftieth of 4, half of a hundredth.
+        // 0.2 in units of the three parts: 0.5 / sqrt(87), a fiftieth of 4, and half of a hundredth.
         let expected = -0.5 * (0.2f64.powi(2) / (0.25 / 87.0 + 0.0064 + 0.000_025));
         assert!((off.log_likelihood() - expected).abs() < 1e-12);
         assert!(off.is_explained() && !FitOfFigure { simulated_sd: Some(0.0), ..EXACT }.is_explained());

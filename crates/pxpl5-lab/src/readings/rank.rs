@@ -1,4 +1,4 @@
-//! All readings, ranked.
+//! Ranking of all interpretations of the papers.
 
 use super::FIGURES;
 use super::fit::{Fit, half_a_digit};
@@ -8,47 +8,50 @@ use pxpl5_run::{ExperimentError, Level};
 use serde::Serialize;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// A figure as the reading predicts it that all others choose.
+/// Prediction of a figure by the interpretation that fits all other figures best.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LeftOut {
     /// Number of the figure.
     pub id: &'static str,
-    /// The reading with the least mean error of the other figures.
+    /// Interpretation with the smallest mean error over the other figures.
     pub chosen: Reading,
-    /// The same in words.
+    /// The interpretation in words.
     pub words: String,
-    /// What it gives for the figure, less what the paper prints, percent.
+    /// Relative error of the prediction in percent.
     pub error_percent: f64,
 }
 
-/// What all readings make of the figures.
+/// Ranking of all interpretations.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Readings {
-    /// Name and version of this record\'s layout.
+    /// Name and version of the JSON layout.
     pub schema: &'static str,
-    /// Every reading at the analytic level, the least mean error first.
+    /// Every interpretation at the analytic level, by ascending mean error.
     pub analytic: Vec<Fit>,
-    /// The best of them at the transaction level, the least mean error first.
+    /// The best interpretations at the transaction level, by ascending mean error.
     pub transaction: Vec<Fit>,
-    /// Each figure left out in turn, at the analytic level.
+    /// Prediction of each figure by all others, at the analytic level.
     pub left_out: Vec<LeftOut>,
-    /// Readings whose mean error is that of the best one but for the digits that the papers print.
+    /// Number of interpretations whose mean error equals that of the best one within the printed digits.
     pub as_good: usize,
-    /// What those digits can hide of a mean error, percent.
+    /// Part of a mean error that the rounding of printed digits can hide, in percent.
     pub rounding_percent: f64,
 }
 
-/// Ranks all readings, with the seeds and frames of a bench; `best` of them at the transaction level too. `finished` hears how many of all runs are done.
+/// Ranks all interpretations at the analytic level, with the seeds and frames of a bench. The `best` ones are then
+/// simulated at the transaction level. `finished` is called with the number of finished runs and the number of all
+/// runs.
 ///
 /// # Errors
 ///
-/// As [`Bench::measure`].
+/// Fails in the same cases as [`Bench::measure`].
 pub fn run(bench: &Bench, best: usize, finished: impl Fn(u64, u64) + Sync) -> Result<Readings, ExperimentError> {
     let readings = Reading::all();
     let best = best.min(readings.len());
     let steps = (readings.len() + best) as u64;
     let done = AtomicU64::new(0);
     let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
+    // The same steps serve both levels.
     let fits = |level: Level, readings: &[Reading]| {
         let bench = Bench { level, ..bench.clone() };
         let fits = parallel::map(readings, |reading| {
@@ -59,10 +62,12 @@ pub fn run(bench: &Bench, best: usize, finished: impl Fn(u64, u64) + Sync) -> Re
         fits.into_iter().collect::<Result<Vec<_>, _>>().map(ranked)
     };
     let analytic = fits(Level::Analytic, &readings)?;
+    // Only the best interpretations are worth simulating with events.
     let chosen: Vec<Reading> = analytic.iter().take(best).map(|fit| fit.reading).collect();
     let transaction = fits(Level::Transaction, &chosen)?;
     let rounding_percent = rounding_percent(&analytic);
     let least = analytic.first().map_or(f64::NAN, |fit| fit.mean_error_percent);
+    // Errors within the rounding of printed digits are indistinguishable.
     let as_good = analytic.iter().filter(|fit| fit.mean_error_percent <= least + rounding_percent).count();
     let left_out = FIGURES.iter().filter_map(|id| left_out(&analytic, id)).collect();
     Ok(Readings { schema: "pxpl5-readings/1", analytic, transaction, left_out, as_good, rounding_percent })
@@ -79,7 +84,7 @@ fn left_out(fits: &[Fit], id: &'static str) -> Option<LeftOut> {
     Some(LeftOut { id, chosen: chosen.reading, words: chosen.words.clone(), error_percent: figure.error_percent })
 }
 
-/// Half of the last printed digit, as a mean over the figures: three digits are printed.
+/// Returns half of the last printed digit in percent, as a mean over the figures. Papers print three digits.
 fn rounding_percent(fits: &[Fit]) -> f64 {
     let published = fits.first().into_iter().flat_map(|fit| &fit.figures).map(|figure| figure.published);
     let halves: Vec<f64> = published.map(|value| 100.0 * half_a_digit(value) / value).collect();
@@ -90,7 +95,7 @@ fn rounding_percent(fits: &[Fit]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Each reading by itself, with a bench that shares nothing, gives what the bench gives that all share.
+    /// A bench with a cache shared by all interpretations gives the same fits as a separate bench for each.
     #[test]
     fn runs_that_readings_share_change_no_fit() {
         let shared = Bench::new(Level::Analytic).with_mig(1, 12);

@@ -1,13 +1,14 @@
-//! Some points of a sweep at a time, for whoever hands them out.
+//! Simulation of some points of a sweep within a time limit, for callers that distribute points themselves.
 
 use super::{Status, Sweep, SweepRow};
 use std::time::{Duration, Instant};
 
 impl Sweep {
-    /// Simulates some points, one after the other on this thread, until so much time is over; each row comes with the seconds that
-    /// it took. The first point is always simulated, and none is broken off: so whoever asks for the rest again gets to the end.
+    /// Simulates some points one after the other on this thread, until `at_most` has passed. Each row comes with the
+    /// seconds that it took. The first point is always simulated, and no point is interrupted, so a caller that
+    /// repeats the call with the remaining points finishes.
     ///
-    /// A row depends on the file and the point alone; what is wrong with a point, even a panic, becomes its row.
+    /// A row depends only on the file and the point. Errors of a point, even panics, become its row.
     #[must_use]
     pub fn rows(&self, points: &[u64], at_most: Duration) -> Vec<(SweepRow, f64)> {
         let begin = Instant::now();
@@ -29,7 +30,7 @@ fn timed(row: impl FnOnce() -> SweepRow) -> (SweepRow, f64) {
 }
 
 impl SweepRow {
-    /// Whether its point could be simulated.
+    /// Returns true if the point was simulated.
     #[must_use]
     pub fn is_done(&self) -> bool {
         self.status == Status::Done
@@ -78,10 +79,11 @@ mod tests {
         assert_eq!(found, at_once);
     }
 
-    /// Whichever point loads the scene first: with and without its back faces it is not the same.
+    /// Rows do not depend on the point that loads the scene first. A scene with and without its back faces must not
+    /// be confused.
     #[test]
     fn a_row_does_not_depend_on_the_points_before_it() {
-        // Half of a ball's triangles are behind it.
+        // Half of a sphere's triangles face away from the eye.
         let text = "pipeline = \"rendering-control\"\nscene = \"sphere:400\"\nfields = 20\n[sweep.grid]\ncull = [false, true]\n";
         let rows = |points: &[u64]| {
             let mut rows = sweep(text).rows(points, Duration::MAX);

@@ -1,6 +1,7 @@
-//! What points will cost, before they are run: [`crate::estimate`], with the number of pictures of the closed forms.
+//! Estimates of the cost of points before they run: [`crate::estimate`], with the number of pictures from closed
+//! forms.
 //!
-//! Whoever hands points out corrects the estimate by what points have taken.
+//! Callers that distribute points correct the estimate by the time that finished points have taken.
 
 use super::Sweep;
 use crate::Plan;
@@ -8,28 +9,29 @@ use crate::estimate::{Estimate, Work};
 use pxpl5_run::{Experiment, Level};
 use std::collections::BTreeMap;
 
-/// Seconds of a plan, its scene and its row.
+/// Seconds to build a plan, its scene and its row.
 const POINT: f64 = 3e-3;
 
-/// Bytes of a point that simulates nothing.
+/// Memory of a point that simulates nothing, in bytes.
 const NO_RUN_BYTES: f64 = 15e6;
 
 impl Sweep {
-    /// About how many seconds each of some points will take on one core, by the analytic level where the pipeline has a closed form: how
-    /// many pictures there will be. A point that is no experiment costs next to nothing. Points that differ in their seed alone are taken to cost the
-    /// same.
+    /// Estimates the seconds that each point takes on one core. The number of pictures comes from the closed form, if
+    /// the pipeline has one. An invalid point costs almost nothing. Points that differ only in their seed get the
+    /// same estimate.
     #[must_use]
     pub fn costs(&self, points: &[u64]) -> Vec<f64> {
         self.estimates(points).into_iter().map(|estimate| estimate.seconds).collect()
     }
 
-    /// The same with the memory of each point, which keeps everything that it observes until it is measured.
+    /// Estimates the seconds and the memory of each point. A point keeps all observations until it is measured.
     #[must_use]
     pub fn estimates(&self, points: &[u64]) -> Vec<Estimate> {
         let mut known: BTreeMap<String, Estimate> = BTreeMap::new();
         let mut estimates = Vec::with_capacity(points.len());
         for point in points {
             let mut settings = self.space().settings(*point);
+            // Points that differ only in their seed share one estimate.
             settings.remove("seed");
             estimates.push(*known.entry(format!("{settings:?}")).or_insert_with(|| self.estimate(*point)));
         }
@@ -51,7 +53,7 @@ impl Sweep {
     }
 }
 
-/// How many pictures a run shows in a field, by the closed form; `None` where there is none.
+/// Returns the number of pictures shown in a field by the closed form, or `None` if there is no closed form.
 fn pictures_by_form(plan: &Plan, experiment: Experiment) -> Option<f64> {
     let entry = plan.registry.pipeline(plan.pipeline.name()).ok()?;
     let form = entry.closed_form.filter(|_| plan.head.is_none())?;

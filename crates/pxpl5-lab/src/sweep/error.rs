@@ -1,91 +1,91 @@
-//! What can go wrong with the files of a sweep.
+//! Errors of the files of a sweep.
 
 use crate::experiment_file::FileError;
 use crate::manifest::ManifestError;
 use thiserror::Error;
 
-/// Why a sweep did not run or shards could not be joined.
+/// Error of a sweep, or of joining its shards.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SweepError {
-    /// A file or folder cannot be read or written.
+    /// A file or folder that cannot be read or written.
     #[error("{path}: {doing}: {reason}")]
     Io {
-        /// The file or folder.
+        /// Path of the file or folder.
         path: String,
-        /// What was tried, in words: `cannot be read`.
+        /// Failed operation in words: `cannot be read`.
         doing: &'static str,
-        /// What the operating system said.
+        /// Message of the operating system.
         reason: String,
     },
-    /// Another process is writing into the folder.
+    /// A folder that another process is writing into.
     #[error("{path}: another process is writing here; wait for it, or choose another folder")]
     Locked {
-        /// Path of the folder, as it was given.
+        /// Path of the folder, as the user gave it.
         path: String,
     },
-    /// The folder holds results already.
+    /// A folder that already holds finished points, without permission to resume.
     #[error("{path}: there are {rows} finished points here already; continue with --resume, or choose another folder")]
     NotEmpty {
-        /// Path of the folder, as it was given.
+        /// Path of the folder, as the user gave it.
         path: String,
-        /// Number of finished points that it holds.
+        /// Number of finished points in the folder.
         rows: u64,
     },
-    /// The folder holds results of another sweep.
+    /// A folder with results of another sweep.
     #[error("{path}: these are results of another sweep: {what} was {found}, expected {expected}")]
     Foreign {
         /// Path of the file of rows.
         path: String,
-        /// What differs first between the two headers.
+        /// First value that differs between the two headers.
         what: String,
-        /// What this sweep has.
+        /// Value of this sweep.
         expected: String,
-        /// What the file has.
+        /// Value in the file.
         found: String,
     },
-    /// The folder holds what another command wrote.
+    /// A folder with files of another command.
     #[error("{path}: these are files of `pxpl5 {command}`; choose another folder")]
     Occupied {
-        /// Path of the folder, as it was given.
+        /// Path of the folder, as the user gave it.
         path: String,
-        /// The command that wrote there.
+        /// Command that wrote the files.
         command: String,
     },
-    /// The manifest of the folder cannot be used.
+    /// A manifest that cannot be used.
     #[error(transparent)]
     Manifest(#[from] ManifestError),
-    /// A line is no row.
+    /// A line that is not a row.
     #[error("{path}, line {line}: expected a row of a sweep, found {found}")]
     Damaged {
         /// Path of the file of rows.
         path: String,
-        /// The line, from 1.
+        /// Number of the line, from 1.
         line: usize,
-        /// Its beginning, or what is wrong with it.
+        /// Beginning of the line, or its error.
         found: String,
     },
-    /// A point has two different rows.
+    /// A point with two different rows.
     #[error("point {point} has different rows in {first} and {second}")]
     Contradiction {
         /// Number of the point, from 0.
         point: u64,
-        /// The file with the row that was read first.
+        /// Path of the file whose row was read first.
         first: String,
-        /// Another file, or the same.
+        /// Path of the file whose row was read second, possibly the same file.
         second: String,
     },
-    /// Some points are in none of the folders.
+    /// Points that no folder holds.
     #[error("{missing} of {points} points are missing: {which}; run the shards that hold them with --resume")]
     Missing {
-        /// Number of points that are missing.
+        /// Number of missing points.
         missing: u64,
         /// Number of points of the whole sweep.
         points: u64,
-        /// Which points, as ranges of their numbers.
+        /// Missing points as ranges of their numbers.
         which: String,
     },
-    /// The experiment file is wrong.
+    /// An invalid experiment file.
     #[error(transparent)]
     File(#[from] FileError),
 }

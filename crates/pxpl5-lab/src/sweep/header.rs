@@ -1,4 +1,4 @@
-//! The first line of a sweep's rows: everything that is needed to make them again.
+//! The header of a sweep's rows, which holds all data needed to repeat them.
 
 use super::{Axis, Sweep, Values};
 use crate::experiment_file::{FileError, Plan};
@@ -7,71 +7,72 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// What all rows of a sweep have in common.
+/// Header of a sweep: the data shared by all of its rows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Header {
-    /// Name and version of the layout of header and rows.
+    /// Name and version of the JSON layout of header and rows.
     pub schema: String,
-    /// Version of the program.
+    /// Version of the program that wrote the rows.
     pub version: String,
-    /// Preset of the machine at the first point that is an experiment.
+    /// Preset of the machine at the first valid point.
     pub machine: String,
-    /// Name of the settings, the space and the quantities.
+    /// Hash of the settings, the space and the quantities.
     pub config_hash: String,
-    /// Level of modelling at that point.
+    /// Level of modelling at the first valid point.
     pub level: String,
-    /// Seed at that point.
+    /// Seed at the first valid point.
     pub seed: u64,
-    /// A line for people.
+    /// Title of one line for the user.
     pub title: Option<String>,
-    /// Number of points of the whole sweep, all shards together.
+    /// Number of points of the whole sweep, over all shards.
     pub points: u64,
-    /// The quantities measured, and their definitions.
+    /// Names of the measured quantities with their definitions.
     pub measure: BTreeMap<String, String>,
-    /// The settings that all points share.
+    /// Settings that all points share.
     pub settings: BTreeMap<String, Value>,
-    /// The axes: settings that change together, and the values that they take.
+    /// Axes of the space: settings that change together, with their values.
     pub axes: Vec<AxisRecord>,
 }
 
-/// An axis as it is written.
+/// An axis in the JSON layout.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AxisRecord {
-    /// Keys of the experiment file.
+    /// Keys of the experiment file that change together.
     pub paths: Vec<String>,
-    /// What they take.
+    /// Values of the keys at each step.
     #[serde(flatten)]
     pub steps: Steps,
 }
 
-/// The steps of an axis as they are written.
+/// Steps of an axis in the JSON layout.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Steps {
-    /// For each step one value per path.
+    /// Lists of values, one list for each step with one value for each path.
     Steps(Vec<Vec<Value>>),
-    /// Of a long axis that consists of ranges: for each path the first value, the distance between two, and their number.
+    /// Ranges of a long axis, one for each path: first value, step, and number of values.
     Ranges(Vec<[i64; 3]>),
 }
 
-/// Steps up to which all are written out.
+/// Maximum number of steps that are written as lists.
 const LISTED_STEPS: u64 = 1_000;
 
 impl Header {
-    /// Name and version of the layout.
+    /// Name and version of the JSON layout.
     pub const SCHEMA: &'static str = "pxpl5-sweep/1";
 }
 
-/// Points among which the first experiment is looked for: assumed, some seconds' worth.
+/// Maximum number of points among which the first valid point is searched. Assumed: some seconds of work.
 const MOST_LOOKED_AT: u64 = 100_000;
 
 impl Sweep {
-    /// The header of the sweep's rows.
+    /// Returns the header of the sweep's rows.
     ///
     /// # Errors
     ///
-    /// [`FileError`] of the first point when no point is an experiment.
+    /// Returns the [`FileError`] of the first point if no point is valid.
     pub fn header(&self) -> Result<Header, FileError> {
+        // The header describes the first valid point.
         let looked_at = self.space.points().min(MOST_LOOKED_AT);
         let mut points = (0..looked_at).map(|point| self.plan(point));
         let first = points.find_map(Result::ok).map_or_else(|| self.plan(0), Ok)?;
@@ -80,6 +81,7 @@ impl Sweep {
             self.base.settings.iter().map(|(path, setting)| (path.clone(), json(&setting.value))).collect();
         let measure: BTreeMap<String, String> =
             first.measure.iter().map(|m| (m.name().to_owned(), m.definition().to_owned())).collect();
+        // The version is part of the hash, because results may change between versions.
         let version = env!("CARGO_PKG_VERSION").to_owned();
         Ok(Header {
             schema: Header::SCHEMA.to_owned(),
@@ -97,8 +99,8 @@ impl Sweep {
     }
 }
 
-/// The effective settings of the first point are part of it: a preset may change from version to version. So are the contents of
-/// all files that points name.
+/// Returns the hash that identifies a sweep. The hash covers the effective settings of the first point, because a
+/// preset may change between versions, and the contents of all files that points name.
 fn hash(
     version: &str,
     first: &Plan,
@@ -109,7 +111,7 @@ fn hash(
     let mut hash = Fingerprint::default();
     hash.setting("version", version);
     hash.setting("first", first.fingerprint());
-    // Maps are sorted by their keys: equal settings are equal texts.
+    // Maps are sorted by their keys, so equal settings give equal texts.
     settings.iter().for_each(|(path, value)| hash.setting(path, value));
     first.measure.iter().for_each(|measure| hash.setting("measure", measure.name()));
     for axis in axes {
@@ -125,6 +127,7 @@ fn hash(
 
 fn record(axis: &Axis) -> AxisRecord {
     let paths = axis.paths.clone();
+    // Long ranges are written as three numbers, so that the header stays short.
     let ranges: Option<Vec<[i64; 3]>> = axis.values.iter().map(range).collect();
     let steps = match ranges.filter(|_| axis.len() > LISTED_STEPS) {
         Some(ranges) => Steps::Ranges(ranges),

@@ -1,7 +1,8 @@
-//! Rows of many files as if they were one: which file has the row of a point, and where in it.
+//! Access to the rows of many files as if they were one file, through an index of points.
 //!
-//! It takes 12 bytes a point and [`BLOCK`] bytes a file, and holds one file open at a time: a thousand shards of a million points
-//! are 28 MB, where a table for each file would be 8 GB, and more files than a process may have open.
+//! The index takes 12 bytes for each point and [`BLOCK`] bytes for each file. Only one file is open at a time. A
+//! thousand shards of a million points take 28 MB. A table for each file would take 8 GB and exceed the number of
+//! files that a process may open.
 
 use super::points::Points;
 use super::rows::Scan;
@@ -11,10 +12,10 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::PathBuf;
 
-/// Bytes that are read of a file at a time: some tens of rows.
+/// Bytes read from a file at a time: some tens of rows.
 const BLOCK: usize = 16 << 10;
 
-/// What failed of a file that could be read before.
+/// Error text for a file that can no longer be read.
 const AGAIN: &str = "cannot be read again";
 
 /// The rows of all files.
@@ -22,27 +23,28 @@ const AGAIN: &str = "cannot be read again";
 pub(super) struct Joined {
     header: Header,
     files: Vec<RowBlocks>,
-    /// By point: number of the file with its row, from 1; 0 of a point that has none.
+    /// Number of the file that holds the row of each point, counted from 1. 0 for a point without a row.
     holders: Vec<u32>,
-    /// By point: the byte of that file at which the row begins.
+    /// Byte position in that file at which the row of each point begins.
     places: Vec<u64>,
     failed: Points,
-    /// Points that have several rows, all equal.
+    /// Points with several equal rows.
     duplicates: Vec<u64>,
 }
 
 impl Joined {
-    /// Reads the rows of all folders through. A folder in which not even a header is whole counts for nothing.
+    /// Indexes the rows of all folders. A folder without a complete header is ignored.
     ///
     /// # Errors
     ///
-    /// [`SweepError::Missing`] when no folder holds a row, [`SweepError::Foreign`] when one is of another sweep,
-    /// [`SweepError::Contradiction`] when a point has different rows.
+    /// Returns [`SweepError::Missing`] if no folder holds a row, [`SweepError::Foreign`] if a folder belongs to
+    /// another sweep, and [`SweepError::Contradiction`] if a point has different rows.
     pub(super) fn of(folders: &[PathBuf]) -> Result<Self, SweepError> {
         let mut joined: Option<Self> = None;
         for folder in folders {
             let path = folder.join(ROWS_FILE);
             let mut scan = Scan::open(&path)?;
+            // A shard that was interrupted at its start contributes nothing.
             let Some(header) = scan.header.take() else { continue };
             let joined = joined.get_or_insert_with(|| Self::new(header.clone()));
             check_header(&path, &joined.header, Some(&header))?;
@@ -67,9 +69,10 @@ impl Joined {
         Self { holders: vec![0; points], places: vec![0; points], header, files, failed, duplicates }
     }
 
-    /// Takes a row of the newest file in.
+    /// Adds a row of the newest file.
     fn add(&mut self, row: &SweepRow, byte: u64) -> Result<(), SweepError> {
         let point = row.point as usize;
+        // A second row of a point must equal the first.
         if let Some(first) = self.row(row.point)? {
             if first != *row {
                 let [first, second] = [self.holders[point] as usize, self.files.len()]
@@ -87,38 +90,38 @@ impl Joined {
         Ok(())
     }
 
-    /// What all rows have in common.
+    /// Returns the data shared by all rows.
     pub(super) const fn header(&self) -> &Header {
         &self.header
     }
 
-    /// The points that have no row, in order.
+    /// Returns the points without a row, in order.
     pub(super) fn missing(&self) -> Vec<u64> {
         (0..).zip(&self.holders).filter(|(_, holder)| **holder == 0).map(|(point, _)| point).collect()
     }
 
-    /// How many points could not be simulated.
+    /// Returns the number of points that could not be simulated.
     pub(super) fn failed(&self) -> u64 {
         (0..self.header.points).filter(|point| self.failed.holds(*point)).count() as u64
     }
 
-    /// The points that have several rows, all equal, in order.
+    /// Returns the points with several equal rows, in order.
     pub(super) fn duplicates(&self) -> &[u64] {
         &self.duplicates
     }
 
-    /// The row of a point below the number of points, if there is one.
+    /// Returns the row of a point, or `None` if the point has no row. `point` must be below the number of points.
     pub(super) fn row(&mut self, point: u64) -> Result<Option<SweepRow>, SweepError> {
         let Some(file) = (self.holders[point as usize] as usize).checked_sub(1) else { return Ok(None) };
         self.files[file].row_at(self.places[point as usize]).map(Some)
     }
 }
 
-/// A file of rows that is open only while a block of it is read.
+/// A file of rows that is open only while one of its blocks is read.
 #[derive(Debug)]
 struct RowBlocks {
     path: PathBuf,
-    /// The byte of the file at which the block begins.
+    /// Byte position in the file at which the block begins.
     begin: u64,
     block: Vec<u8>,
 }
@@ -128,7 +131,7 @@ impl RowBlocks {
         Self { path, begin: 0, block: Vec::new() }
     }
 
-    /// The row that begins at a byte; cheapest in the order of the file.
+    /// Returns the row that begins at a byte position. Reading in the order of the file is fastest.
     fn row_at(&mut self, byte: u64) -> Result<SweepRow, SweepError> {
         if self.line_at(byte).is_none() {
             self.read(byte).map_err(SweepError::io(&self.path, AGAIN))?;
@@ -137,7 +140,7 @@ impl RowBlocks {
         serde_json::from_slice(line).map_err(io::Error::from).map_err(SweepError::io(&self.path, AGAIN))
     }
 
-    /// A line of the block, if it is in it to its end.
+    /// Returns the line at a byte position if the block holds the complete line.
     fn line_at(&self, byte: u64) -> Option<&[u8]> {
         let begin = usize::try_from(byte.checked_sub(self.begin)?).ok()?;
         let rest = self.block.get(begin..)?;
@@ -145,12 +148,13 @@ impl RowBlocks {
         Some(&rest[..end])
     }
 
-    /// Reads the block that begins at a byte, with at least one whole line where the file has one.
+    /// Reads the block that begins at a byte position. The block holds at least one complete line if the file does.
     fn read(&mut self, byte: u64) -> io::Result<()> {
         let mut file = File::open(&self.path)?;
         file.seek(SeekFrom::Start(byte))?;
         self.begin = byte;
         self.block.clear();
+        // A row may be longer than a block.
         loop {
             let read = (&mut file).take(BLOCK as u64).read_to_end(&mut self.block)?;
             if read == 0 || self.line_at(byte).is_some() {

@@ -1,4 +1,4 @@
-//! Joining shards.
+//! Joining the shards of a sweep into one folder.
 
 use super::joined::Joined;
 use super::replacement::Replacement;
@@ -8,25 +8,25 @@ use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
-/// What joining the shards of a sweep found, point by point.
+/// Result of joining the shards of a sweep.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Merged {
-    /// Points of the sweep.
+    /// Number of points of the sweep.
     pub points: u64,
-    /// Points that could not be simulated.
+    /// Number of points that could not be simulated.
     pub failed: u64,
-    /// Points that were there more than once, with equal rows.
+    /// Points that occurred more than once, with equal rows.
     pub duplicates: Vec<u64>,
-    /// Points that are nowhere; none unless that was allowed.
+    /// Points without a row. Empty unless missing points were allowed.
     pub missing: Vec<u64>,
 }
 
-/// Joins the rows of folders into one folder, in order of the points. Nothing is written unless all is well.
+/// Joins the rows of several folders into one folder, in order of the points. Nothing is written after an error.
 ///
 /// # Errors
 ///
-/// [`SweepError::Foreign`] when a folder is of another sweep, [`SweepError::Contradiction`] when a point has different
-/// rows, [`SweepError::Missing`] when points are nowhere and that is not allowed.
+/// Returns [`SweepError::Foreign`] if a folder belongs to another sweep, [`SweepError::Contradiction`] if a point has
+/// different rows, and [`SweepError::Missing`] if points are missing and `allow_missing` is false.
 pub fn merge(folders: &[PathBuf], out: &Path, allow_missing: bool) -> Result<Merged, SweepError> {
     let mut joined = Joined::of(folders)?;
     let points = joined.header().points;
@@ -42,6 +42,7 @@ fn write(joined: &mut Joined, folders: &[PathBuf], out: &Path) -> Result<(), Swe
     check_command(out)?;
     std::fs::create_dir_all(out).map_err(SweepError::io(out, "cannot be made"))?;
     let header = joined.header().clone();
+    // Times of all shards are concatenated; they need no order.
     let mut times = Replacement::of(&out.join(TIMES_FILE))?;
     times.put(line_of(&header).as_bytes())?;
     folders.iter().try_for_each(|folder| put_times(&mut times, &folder.join(TIMES_FILE)))?;
@@ -51,14 +52,14 @@ fn write(joined: &mut Joined, folders: &[PathBuf], out: &Path) -> Result<(), Swe
     renew_manifest(out)
 }
 
-/// The lines of a folder's times behind the first one, which is the header.
+/// Copies the lines of a folder's times, except the header in the first line.
 fn put_times(times: &mut Replacement, path: &Path) -> Result<(), SweepError> {
     let Ok(file) = File::open(path) else { return Ok(()) };
     let lines = BufReader::new(file).lines().map_while(Result::ok);
     lines.skip(1).try_for_each(|line| times.put(format!("{line}\n").as_bytes()))
 }
 
-/// Ranges of numbers in order, at most ten of them.
+/// Formats numbers as at most ten ranges.
 fn ranges(numbers: &[u64]) -> String {
     let mut ranges: Vec<(u64, u64)> = Vec::new();
     for number in numbers {

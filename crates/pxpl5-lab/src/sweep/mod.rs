@@ -1,4 +1,4 @@
-//! Sweeps: one experiment at every point of a space of settings.
+//! Sweeps: one experiment at every point of a parameter space.
 //!
 //! ```text
 //!  FILE.toml --> Sweep --> points 0 .. n --> threads --> rows.jsonl   one line a point, appended when it is finished
@@ -8,18 +8,19 @@
 //!
 //! # Behaviour
 //!
-//! - A point's row depends on the file and the point alone: not on threads, shards, order or host. What does depend on
-//!   the host is kept apart, in times.jsonl.
-//! - Rows are appended as they come, each with one write. When all are there they are put in order of their points, so
-//!   that the finished file is the same bytes however it came about.
-//! - After a kill at any moment the last line may be torn: [`Store::open`] cuts it off, and that point is computed
-//!   again; no other.
-//! - A point that cannot be simulated has a row that says why; the others go on.
-//! - Two processes never write into one folder: the second is refused.
+//! - The row of a point depends only on the file and the point, not on threads, shards, order or host. Data that
+//!   depend on the host are in times.jsonl.
+//! - Each row is appended by one write when its point is finished. At the end the rows are sorted by their points.
+//!   The bytes of the finished file therefore do not depend on the execution.
+//! - After a crash the last line may be incomplete. [`Store::open`] removes the incomplete line, and only its point
+//!   is computed again.
+//! - A point that cannot be simulated has a row with the reason. The other points continue.
+//! - Two processes never write into one folder. The second process is refused.
 //!
 //! # Not modelled
 //!
-//! Random sampling and adaptive refinement of the space; points of one sweep on several hosts other than by shards.
+//! Random sampling and adaptive refinement of the space are not supported. Several hosts can share a sweep only by
+//! shards.
 
 mod chunk;
 mod cost;
@@ -53,47 +54,47 @@ use scenes::Scenes;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// An experiment file with a space of settings.
+/// An experiment file with a parameter space.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     base: ExperimentFile,
     space: SweepSpace,
-    /// What its points have loaded so far; clones share it.
+    /// Scenes loaded so far, shared by all clones of the sweep.
     scenes: Arc<Scenes>,
 }
 
 impl Sweep {
-    /// Reads a file.
+    /// Reads a sweep from a file.
     ///
     /// # Errors
     ///
-    /// As [`ExperimentFile::load`] and [`Sweep::new`].
+    /// Fails in the same cases as [`ExperimentFile::load`] and [`Sweep::new`].
     pub fn load(path: impl AsRef<Path>) -> Result<Self, FileError> {
         Self::new(ExperimentFile::load(path)?)
     }
 
-    /// The sweep that a file describes in its table `sweep`.
+    /// Creates the sweep that the table `sweep` of a file describes.
     ///
     /// # Errors
     ///
-    /// [`FileError`] when it has none, or one that makes no sense.
+    /// Returns [`FileError`] if the table is missing or invalid.
     pub fn new(base: ExperimentFile) -> Result<Self, FileError> {
         let space = SweepSpace::read(&base)?;
         Ok(Self { base, space, scenes: Arc::default() })
     }
 
-    /// The settings that all points share.
+    /// Returns the settings that all points share.
     #[must_use]
     pub const fn base(&self) -> &ExperimentFile {
         &self.base
     }
 
-    /// The folder of the sweep's file, to which names of files are relative.
+    /// Returns the folder of the sweep's file, to which names of files are relative.
     fn folder(&self) -> PathBuf {
         self.base.sweep.as_ref().map(|sweep| sweep.folder.clone()).unwrap_or_default()
     }
 
-    /// The space of settings, whose points are the experiments.
+    /// Returns the parameter space, whose points are the experiments.
     #[must_use]
     pub const fn space(&self) -> &SweepSpace {
         &self.space

@@ -1,4 +1,4 @@
-//! One point of a sweep.
+//! Simulation of one point of a sweep.
 
 use super::Sweep;
 use super::header::json;
@@ -10,41 +10,41 @@ use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
-/// Whether a point could be simulated.
+/// Status of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
-    /// It could be simulated; `measured` holds what came of it.
+    /// The point was simulated. The results are in [`SweepRow::measured`].
     Done,
-    /// It could not; `error` says why.
+    /// The point could not be simulated. The reason is in [`SweepRow::error`].
     Failed,
 }
 
-/// What came of a point; the same on every host.
+/// Result of a point, identical on every host.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SweepRow {
     /// Number of the point, from 0, in the order of the space.
     pub point: u64,
-    /// Whether it could be simulated.
+    /// Status of the point.
     pub status: Status,
-    /// The settings of the point that are not those of all, by key.
+    /// Settings that vary in the sweep, with their values at this point, by key.
     pub parameters: BTreeMap<String, Value>,
-    /// Quantities by name; null where the run shows none.
+    /// Measured quantities by name. Null if the run does not define the quantity.
     pub measured: BTreeMap<String, Option<f64>>,
-    /// Name of everything on which the trace depends; null for an experiment that could not be made.
+    /// Hash of all settings on which the trace depends. Null for an invalid experiment.
     pub config_hash: Option<String>,
-    /// Hash of everything that happened; null at a level without events.
+    /// Trace hash of all events. Null at a level without events.
     pub trace_hash: Option<String>,
-    /// Why it could not be simulated.
+    /// Reason why the point could not be simulated.
     pub error: Option<String>,
 }
 
 impl Sweep {
-    /// The experiment at a point.
+    /// Returns the experiment at a point.
     ///
     /// # Errors
     ///
-    /// [`FileError`] when its settings make no experiment.
+    /// Returns [`FileError`] if the settings of the point are invalid.
     pub fn plan(&self, point: u64) -> Result<Plan, FileError> {
         let mut file = self.base.clone();
         for (path, value) in self.space.settings(point) {
@@ -53,20 +53,22 @@ impl Sweep {
         file.resolve()
     }
 
-    /// The scene of a point's plan, loaded once for all points that share it.
+    /// Returns the scene of a point's plan, loaded once for all points that share it.
     ///
     /// # Errors
     ///
-    /// As [`crate::experiment_file::SceneChoice::load`].
+    /// Fails in the same cases as [`crate::experiment_file::SceneChoice::load`].
     pub fn scene(&self, plan: &Plan) -> Result<Arc<Scene>, FileError> {
         self.scenes.scene_of(plan)
     }
 
-    /// Simulates a point; what is wrong with it, even a panic, becomes its row.
+    /// Simulates a point. Errors, even panics, become the point's row.
     pub(super) fn row(&self, point: u64) -> SweepRow {
+        // A panic in one point must not end the sweep.
         let result = catch_unwind(AssertUnwindSafe(|| self.simulate(point)));
         let result = result.unwrap_or_else(|panic| Err(format!("a bug of the emulator: {}", panic_text(&*panic))));
         let parameters = self.space.settings(point).iter().map(|(path, value)| (path.clone(), json(value))).collect();
+        // A failed row has the parameters and the error only.
         let empty = SweepRow {
             point,
             status: Status::Failed,
@@ -91,8 +93,9 @@ impl Sweep {
     fn simulate(&self, point: u64) -> Result<Simulated, String> {
         let plan = self.plan(point).map_err(|error| error.to_string())?;
         let scene = self.scenes.scene_of(&plan).map_err(|error| error.to_string())?;
+        // The hash identifies the point even if its run fails later.
         let config_hash = plan.experiment(scene.clone()).config_hash().to_string();
-        // Nobody looks at the pictures of a sweep, and pixels change no time.
+        // No pixels are computed, because a sweep keeps no pictures and pixels do not change simulated times.
         let results = plan.run(scene).map_err(|error| error.to_string())?;
         let measured = plan.measure.iter().map(|m| (m.name().to_owned(), m.of(&results))).collect();
         let trace_hash = results.run.map(|(_, report)| report.trace_hash);

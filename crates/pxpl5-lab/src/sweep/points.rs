@@ -1,6 +1,6 @@
-//! A set of points, one bit each.
+//! A bit set of points.
 
-/// Points of a sweep by their numbers; ten million take 1.25 MB.
+/// A set of points of a sweep, stored as bits. Ten million points take 1.25 MB.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Points(Vec<u64>);
 

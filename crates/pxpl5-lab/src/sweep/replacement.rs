@@ -1,11 +1,12 @@
-//! A file that takes another's place when it is whole.
+//! Replacement of a file by a complete new version.
 
 use super::SweepError;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// What is written goes under a temporary name beside the file; dropped before its end, it leaves nothing.
+/// A new version of a file under a temporary name in the same folder. An unfinished replacement is removed when it is
+/// dropped.
 #[derive(Debug)]
 pub(super) struct Replacement {
     path: PathBuf,
@@ -24,7 +25,7 @@ impl Replacement {
         self.writer.write_all(bytes).map_err(SweepError::io(&self.path, "cannot be written"))
     }
 
-    /// Puts it in the place of the file, which changes at once or not at all.
+    /// Renames the new version to the file's name. The file changes completely or not at all.
     pub(super) fn finish(mut self) -> Result<(), SweepError> {
         self.take_place().map_err(SweepError::io(&self.path, "cannot be written"))
     }
@@ -38,7 +39,7 @@ impl Replacement {
 
 impl Drop for Replacement {
     fn drop(&mut self) {
-        // Once it has taken its place there is nothing under the temporary name.
+        // After a successful `finish` no file has the temporary name.
         let _ = fs::remove_file(&self.temporary);
     }
 }

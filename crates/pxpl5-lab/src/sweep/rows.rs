@@ -1,4 +1,4 @@
-//! A file of rows: where each point's row begins is held, the rows themselves are read when they are asked for.
+//! Access to a file of rows through an index of byte positions. Rows are read from the file on request.
 
 use super::points::Points;
 use super::{Header, MAX_POINTS, Status, SweepError, SweepRow};
@@ -7,21 +7,21 @@ use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
-/// What a file of rows holds; eight bytes a point, and a bit for each that failed.
+/// Index of a file of rows, with eight bytes for each point and one bit for each failed point.
 #[derive(Debug, Default)]
 pub(super) struct RowFile {
     path: PathBuf,
     header: Option<Header>,
-    /// By point: the byte at which its row begins. The header is there, so that no row begins at 0.
+    /// Byte position of the row of each point. 0 means no row, because the header is at position 0.
     places: Vec<u64>,
     finished: u64,
     failed: Points,
-    /// Bytes up to the end of the last whole line.
+    /// Length in bytes up to the end of the last complete line.
     whole_bytes: u64,
 }
 
 impl RowFile {
-    /// Reads a file through; a last line without an end is passed over.
+    /// Indexes a file. An incomplete last line is ignored.
     pub(super) fn open(path: &Path) -> Result<Self, SweepError> {
         let mut scan = Scan::open(path)?;
         let mut found = Self { path: path.to_owned(), header: scan.header.take(), ..Self::default() };
@@ -32,7 +32,7 @@ impl RowFile {
         Ok(found)
     }
 
-    /// The same of a file that need not be there.
+    /// Indexes a file, or returns an empty index if the file does not exist.
     pub(super) fn open_or_none(path: &Path) -> Result<Self, SweepError> {
         match path.try_exists() {
             Ok(false) => Ok(Self { path: path.to_owned(), ..Self::default() }),
@@ -50,7 +50,7 @@ impl RowFile {
         Ok(())
     }
 
-    /// Notes that a point's row begins at a byte.
+    /// Records the byte position of a point's row.
     pub(super) fn add(&mut self, row: &SweepRow, byte: u64) {
         let point = row.point as usize;
         if self.places.len() <= point {
@@ -71,7 +71,7 @@ impl RowFile {
         self.whole_bytes
     }
 
-    /// How many points have a row.
+    /// Returns the number of points with a row.
     pub(super) const fn finished(&self) -> u64 {
         self.finished
     }
@@ -80,12 +80,12 @@ impl RowFile {
         self.place(point).is_some()
     }
 
-    /// Whether a point has a row that says why it could not be simulated.
+    /// Returns true if a point has a row and could not be simulated.
     pub(super) fn is_failed(&self, point: u64) -> bool {
         self.failed.holds(point)
     }
 
-    /// The points that have a row, in order.
+    /// Returns the points with a row, in order.
     pub(super) fn points(&self) -> impl Iterator<Item = u64> {
         (0..).zip(&self.places).filter(|(_, place)| **place > 0).map(|(point, _)| point)
     }
@@ -95,25 +95,25 @@ impl RowFile {
         place.copied().filter(|place| *place > 0)
     }
 
-    /// Opens the file again, to read rows that it is known to hold.
+    /// Opens the file again to read rows that the index contains.
     pub(super) fn reader(&self) -> Result<RowReader<'_>, SweepError> {
         let file = File::open(&self.path).map_err(SweepError::io(&self.path, "cannot be read"))?;
         Ok(RowReader { rows: self, file: BufReader::new(file), at: 0 })
     }
 }
 
-/// A file of rows from its beginning to the end of its last whole line.
+/// Sequential reader of a file of rows, from its beginning to its last complete line.
 #[derive(Debug)]
 pub(super) struct Scan {
     path: PathBuf,
     file: BufReader<File>,
     text: Vec<u8>,
-    /// Number of the line that was read last, from 1.
+    /// Number of the last line read, from 1.
     line: usize,
     points: u64,
-    /// None of a file in which not even the header is whole.
+    /// Header of the file. `None` if the file does not contain a complete header.
     pub(super) header: Option<Header>,
-    /// Bytes up to the end of the last whole line that was read.
+    /// Length in bytes up to the end of the last complete line read.
     pub(super) whole_bytes: u64,
 }
 
@@ -134,7 +134,7 @@ impl Scan {
         Ok(scan)
     }
 
-    /// The next row, and the byte at which it begins.
+    /// Returns the next row and its byte position.
     pub(super) fn next(&mut self) -> Result<Option<(SweepRow, u64)>, SweepError> {
         let begin = self.whole_bytes;
         if !self.read_line()? {
@@ -147,7 +147,7 @@ impl Scan {
         Ok(Some((row, begin)))
     }
 
-    /// Reads a line; none that has no end.
+    /// Reads a line. Returns false if the line is incomplete.
     fn read_line(&mut self) -> Result<bool, SweepError> {
         self.text.clear();
         self.file.read_until(b'\n', &mut self.text).map_err(SweepError::io(&self.path, "cannot be read"))?;
@@ -159,7 +159,7 @@ impl Scan {
         Ok(is_whole)
     }
 
-    /// What the line holds.
+    /// Parses the current line.
     fn parsed<T: DeserializeOwned>(&self) -> Result<T, SweepError> {
         serde_json::from_slice(&self.text).map_err(|error| self.damaged(format!("{} ({error})", excerpt(&self.text))))
     }
@@ -169,17 +169,17 @@ impl Scan {
     }
 }
 
-/// Reads rows by point; cheapest in the order of the file.
+/// Random-access reader of rows. Reading in the order of the file is fastest.
 #[derive(Debug)]
 pub(super) struct RowReader<'a> {
     rows: &'a RowFile,
     file: BufReader<File>,
-    /// The byte that comes next.
+    /// Byte position of the next read.
     at: u64,
 }
 
 impl RowReader<'_> {
-    /// A point's row, if the file has one.
+    /// Returns the row of a point, or `None` if the file has none.
     pub(super) fn row(&mut self, point: u64) -> Result<Option<SweepRow>, SweepError> {
         let Some(place) = self.rows.place(point) else { return Ok(None) };
         let row = self.row_at(place).map_err(SweepError::io(&self.rows.path, "cannot be read again"))?;

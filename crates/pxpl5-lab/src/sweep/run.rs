@@ -1,4 +1,4 @@
-//! Simulating the points of a sweep on all cores.
+//! Parallel simulation of the points of a sweep.
 
 use super::points::Points;
 use super::shard::Shard;
@@ -8,23 +8,25 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread;
 use std::time::Instant;
 
-/// How to run a sweep.
+/// Options for running a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RunOptions {
-    /// The share to run.
+    /// Shard of the sweep to run.
     pub shard: Shard,
-    /// Points at a time.
+    /// Number of points simulated in parallel.
     pub threads: usize,
 }
 
-/// Rows that may wait to be written; more would only delay what a kill loses.
+/// Maximum number of rows that wait to be written. More rows would only be lost after a crash.
 const WAITING_ROWS: usize = 64;
 
-/// Simulates the points of a shard that the store does not hold yet; `finished` hears of every row once it is stored.
+/// Simulates the points of a shard that the store does not hold yet. `finished` is called with every row after it is
+/// stored.
 ///
 /// # Errors
 ///
-/// [`SweepError::Io`] when a row cannot be stored; the points in hand are finished first and lost.
+/// Returns [`SweepError::Io`] if a row cannot be stored. Points in progress are then finished, and their rows are
+/// lost.
 pub fn run(
     sweep: &Sweep,
     store: &mut Store,
@@ -39,6 +41,7 @@ pub fn run(
         stop: AtomicBool::new(false),
     };
     let (sender, rows) = bounded(WAITING_ROWS);
+    // Workers send rows to this thread, which owns the store.
     thread::scope(|scope| {
         let points = usize::try_from(sweep.space().points()).unwrap_or(usize::MAX);
         for _ in 0..options.threads.clamp(1, points.max(1)) {
@@ -46,6 +49,7 @@ pub fn run(
             scope.spawn(|| work.run(sender));
         }
         drop(sender);
+        // This thread alone writes into the store. On an error the workers stop after their current points.
         let result = rows.iter().try_for_each(|(row, seconds)| {
             store.append(&row, seconds)?;
             finished(&row);
@@ -57,19 +61,19 @@ pub fn run(
     })
 }
 
-/// The points that are missing, which all threads take from, one at a time.
+/// Work shared by all threads: each thread takes one missing point at a time.
 struct Work<'a> {
     sweep: &'a Sweep,
     shard: Shard,
-    /// Points that were finished before.
+    /// Points that were finished before this run.
     finished: Points,
-    /// Number of the next point that somebody may take.
+    /// Number of the next point to take.
     next: AtomicU64,
     stop: AtomicBool,
 }
 
 impl Work<'_> {
-    /// What one thread does: it simulates points until there are no more, or nobody wants their rows.
+    /// Simulates points on one thread, until no more are left or the rows are no longer accepted.
     fn run(&self, rows: Sender<(SweepRow, f64)>) {
         while !self.stop.load(Ordering::Relaxed) {
             let Some(point) = self.take() else { break };
@@ -81,7 +85,7 @@ impl Work<'_> {
         }
     }
 
-    /// A point of the shard that nobody has simulated or taken; `None` when there are no more.
+    /// Takes the next point of the shard that is neither finished nor taken. Returns `None` if no more are left.
     fn take(&self) -> Option<u64> {
         let all = self.sweep.space().points();
         let mut taken =

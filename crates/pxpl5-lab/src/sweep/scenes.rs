@@ -1,21 +1,21 @@
-//! Scenes that points share.
+//! A cache of scenes that points share.
 
 use crate::experiment_file::{FileError, Plan};
 use pxpl5_scene::{Placement, Scene};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Scenes that were loaded, by what decides on them: points mostly share one.
+/// Loaded scenes by key. Most points of a sweep share one scene.
 #[derive(Debug, Default)]
 pub(super) struct Scenes(Mutex<BTreeMap<SceneKey, Arc<Scene>>>);
 
-/// Name of a scene, whether it is placed as in its file, and whether it drops its back faces: what loading depends on.
+/// Cache key of a scene: its name, true if it is placed as in its file, and true if its back faces are dropped.
 type SceneKey = (String, bool, bool);
 
 impl Scenes {
-    /// The scene of a plan, loaded once for all points that share it.
+    /// Returns the scene of a plan, loaded once for all points that share it.
     pub(super) fn scene_of(&self, plan: &Plan) -> Result<Arc<Scene>, FileError> {
-        // Loading under the lock: nobody else should load the same.
+        // The lock is held while loading, so that no other thread loads the same scene.
         let mut loaded = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let key = (plan.scene.name.clone(), plan.scene.placement == Placement::AsInFile, plan.scene.culled);
         let whole = match loaded.get(&key) {

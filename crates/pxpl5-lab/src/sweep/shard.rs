@@ -1,6 +1,6 @@
-//! Shares of a sweep.
+//! Division of a sweep into disjoint shards.
 
-/// A disjoint share of a sweep: the points whose number leaves remainder `index` when divided by `of`.
+/// A shard of a sweep: the points whose number has the remainder `index` after division by `of`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     index: u64,
@@ -8,34 +8,34 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// The whole sweep in one share.
+    /// The whole sweep as a single shard.
     pub const ALL: Self = Self { index: 0, of: 1 };
 
-    /// Share `number` of `of`, counted from 1; `None` when there is no such share.
+    /// Creates shard `number` of `of`, counted from 1. Returns `None` if `number` is out of range.
     #[must_use]
     pub const fn new(number: u64, of: u64) -> Option<Self> {
         if number == 0 || number > of { None } else { Some(Self { index: number - 1, of }) }
     }
 
-    /// Which of them it is, from 1.
+    /// Returns the number of the shard, counted from 1.
     #[must_use]
     pub const fn number(self) -> u64 {
         self.index + 1
     }
 
-    /// How many shares there are.
+    /// Returns the number of all shards.
     #[must_use]
     pub const fn of(self) -> u64 {
         self.of
     }
 
-    /// How many of the first `points` points belong to it.
+    /// Returns the number of points of this shard among the first `points` points.
     #[must_use]
     pub const fn share_of(&self, points: u64) -> u64 {
         (points + self.of - 1 - self.index) / self.of
     }
 
-    /// Whether a point belongs to it.
+    /// Returns true if a point belongs to this shard.
     #[must_use]
     pub const fn holds(&self, point: u64) -> bool {
         point % self.of == self.index

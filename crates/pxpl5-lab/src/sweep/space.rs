@@ -1,18 +1,18 @@
-//! The space of settings: axes of values, and its points by number.
+//! The parameter space of a sweep: axes of values, and points by number.
 
 use crate::experiment_file::{ExperimentFile, FileError, Setting};
 use std::collections::BTreeMap;
 use toml::{Table, Value};
 
-/// Most points of a sweep: assumed, what a folder of rows can hold (some gigabytes).
+/// Maximum number of points of a sweep. Assumed: the rows fill a folder of some gigabytes.
 pub const MAX_POINTS: u64 = 10_000_000;
 
-/// Settings that change together, and their values in order.
+/// An axis of the space: settings that change together, with their values in order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// Keys of the experiment file.
+    /// Keys of the experiment file that change together.
     pub paths: Vec<String>,
-    /// What each of them takes; all have as many values.
+    /// Values of each key. All lists have the same length.
     pub values: Vec<Values>,
 }
 
@@ -21,43 +21,43 @@ impl Axis {
         Self { paths: vec![path], values: vec![values] }
     }
 
-    /// The number of steps.
+    /// Returns the number of steps.
     #[must_use]
     pub fn len(&self) -> u64 {
         self.values.first().map_or(0, Values::len)
     }
 
-    /// Whether it has no steps; none of a [`SweepSpace`] is so.
+    /// Returns true if the axis has no steps. No axis of a [`SweepSpace`] is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// One value per path, at a step from 0.
+    /// Returns the values at a step, counted from 0, with one value for each path.
     #[must_use]
     pub fn step(&self, n: u64) -> Vec<Value> {
         self.values.iter().map(|values| values.at(n)).collect()
     }
 }
 
-/// The values that a setting takes, in order. A range takes no memory for them.
+/// Values of a setting in order. A range does not store its values.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
-    /// As the file lists them.
+    /// Values listed in the file.
     Listed(Vec<Value>),
-    /// Whole numbers.
+    /// A range of whole numbers.
     Range {
-        /// The first.
+        /// First value of the range.
         from: i64,
-        /// From one to the next, above 0.
+        /// Difference between neighbouring values, above 0.
         step: i64,
-        /// How many there are.
+        /// Number of values in the range.
         count: u64,
     },
 }
 
 impl Values {
-    /// How many there are.
+    /// Returns the number of values.
     #[must_use]
     pub fn len(&self) -> u64 {
         match self {
@@ -66,13 +66,13 @@ impl Values {
         }
     }
 
-    /// Whether there are none.
+    /// Returns true if there are no values.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The value at a step from 0; the last one behind the end.
+    /// Returns the value at a step, counted from 0. Steps beyond the end return the last value.
     #[must_use]
     pub fn at(&self, n: u64) -> Value {
         let n = n.min(self.len().saturating_sub(1));
@@ -83,7 +83,7 @@ impl Values {
     }
 }
 
-/// All combinations of the steps of all axes; the last axis changes fastest.
+/// All combinations of the steps of all axes. The last axis changes fastest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepSpace {
     axes: Vec<Axis>,
@@ -102,6 +102,7 @@ impl SweepSpace {
             let nearest = parameters::nearest(key, KEYS.into_iter()).unwrap_or_default();
             return Err(fault.unknown(&format!("sweep.{key}"), &format!("sweep.{nearest}")));
         }
+        // Each setting of the grid is an axis. The lists of `together` form one more axis, the seeds the last.
         let mut axes = Vec::new();
         for (path, values) in leaves(fault.table(table, "grid")?) {
             let values = fault.values(&path, &values)?;
@@ -110,29 +111,31 @@ impl SweepSpace {
         axes.extend(fault.together(fault.table(table, "together")?)?);
         axes.extend(fault.seeds(table.get("seeds"))?);
         fault.check(file, &axes)?;
+        // Multiply with care: the product of long axes can overflow.
         let points = axes.iter().try_fold(1u64, |all, axis| all.checked_mul(axis.len()));
         let points = points.filter(|points| *points <= MAX_POINTS);
         let points = points.ok_or_else(|| fault.text("sweep", &format!("at most {MAX_POINTS} points"), "more"))?;
         Ok(Self { axes, points })
     }
 
-    /// The axes, of which the last one changes fastest.
+    /// Returns the axes. The last axis changes fastest.
     #[must_use]
     pub fn axes(&self) -> &[Axis] {
         &self.axes
     }
 
-    /// The number of points.
+    /// Returns the number of points: the product of the numbers of steps.
     #[must_use]
     pub const fn points(&self) -> u64 {
         self.points
     }
 
-    /// The settings of a point.
+    /// Returns the settings that vary in the sweep, with their values at a point.
     #[must_use]
     pub fn settings(&self, point: u64) -> BTreeMap<String, Value> {
         let mut rest = point;
         let mut settings = BTreeMap::new();
+        // The number of the point has one mixed-radix digit for each axis, the last axis lowest.
         for axis in self.axes.iter().rev() {
             let step = axis.step(rest % axis.len());
             rest /= axis.len();
@@ -142,14 +145,14 @@ impl SweepSpace {
     }
 }
 
-/// Makes errors that point to a key's place in the file.
+/// Builder of errors that state a key's place in the file.
 struct Fault<'a> {
     sweep: &'a Setting,
     places: &'a BTreeMap<String, String>,
 }
 
 impl Fault<'_> {
-    /// Where a key was given: by its path in the file, or by the setting that an axis varies.
+    /// Returns the place of a key: its path in the file, or the setting that an axis varies.
     fn place(&self, key: &str) -> String {
         let paths = [key.to_owned(), format!("sweep.grid.{key}"), format!("sweep.together.{key}")];
         paths.iter().find_map(|path| self.places.get(path)).unwrap_or(&self.sweep.place).clone()
@@ -196,12 +199,13 @@ impl Fault<'_> {
         Ok(Values::Range { from, step, count })
     }
 
-    /// Lists of the same length, taken in step.
+    /// Returns an axis of lists with equal lengths that change together.
     fn together(&self, table: Table) -> Result<Option<Axis>, FileError> {
         let mut axis = Axis { paths: Vec::new(), values: Vec::new() };
         for (path, value) in leaves(table) {
             let values = self.values(&path, &value)?;
             let expected = axis.values.first().map_or(values.len(), Values::len);
+            // All lists of one axis need the same length.
             if values.len() != expected {
                 let expected = format!("{expected} values, as many as the other lists of sweep.together");
                 return Err(self.text(&path, &expected, &values.len().to_string()));
@@ -220,7 +224,7 @@ impl Fault<'_> {
         Ok(Some(Axis::of_one("seed".to_owned(), Values::Range { from: 1, step: 1, count: count as u64 })))
     }
 
-    /// Every path is a key, and no two axes set the same.
+    /// Checks that every path is a key, and that no two axes set the same key.
     fn check(&self, file: &ExperimentFile, axes: &[Axis]) -> Result<(), FileError> {
         let mut seen = BTreeMap::new();
         if axes.is_empty() {
@@ -236,7 +240,7 @@ impl Fault<'_> {
     }
 }
 
-/// The first value of a range, the distance between two of them, and how many come behind the first.
+/// Returns the first value of a range, the step, and the number of values after the first.
 fn from_step_last(range: &Table) -> Option<[i64; 3]> {
     let from = range.get("from")?.as_integer()?;
     let to = range.get("to")?.as_integer()?;
@@ -246,7 +250,8 @@ fn from_step_last(range: &Table) -> Option<[i64; 3]> {
     Some([from, step, length / step])
 }
 
-/// Paths and values; a table with `from` is a range, any other one part of the path.
+/// Flattens a table into paths and values. A table with the key `from` is a range and stays a value; every other
+/// table adds a part to the path.
 fn leaves(table: Table) -> Vec<(String, Value)> {
     let mut all = Vec::new();
     for (key, value) in table {

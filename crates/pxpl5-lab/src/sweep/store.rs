@@ -1,4 +1,4 @@
-//! The folder of a sweep: rows are appended with one write each, and survive a kill at any moment.
+//! The folder of a sweep. Each row is appended by one write, so finished rows survive a crash at any moment.
 
 use super::points::Points;
 use super::replacement::Replacement;
@@ -12,31 +12,31 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 
-/// A header line, then a row a line.
+/// Name of the file of rows: a header line, then one line for each row.
 pub const ROWS_FILE: &str = "rows.jsonl";
-/// The header line, then how long points took on this host, a line each.
+/// Name of the file of times: the header line, then one line for each point with its duration on this host.
 pub const TIMES_FILE: &str = "times.jsonl";
-/// The rows as a table.
+/// Name of the table of rows as comma-separated values.
 pub const RESULTS_FILE: &str = "results.csv";
 const LOCK_FILE: &str = ".lock";
 
-/// The rows of one folder.
+/// The rows of a sweep in one folder.
 #[derive(Debug)]
 pub struct Store {
     folder: PathBuf,
     header: Header,
     rows: RowFile,
-    /// Where the next row begins.
+    /// Byte position at which the next row begins.
     end: u64,
     rows_file: File,
     times_file: File,
-    /// True once a row was appended: plots and pages of fewer rows have been taken away.
+    /// True after a row was appended. Plots and pages of fewer rows have then been removed.
     is_renewed: bool,
-    /// Held as long as the store lives; the operating system gives it back after a kill.
+    /// Lock of the folder, held for the lifetime of the store. The operating system releases the lock after a crash.
     _lock: File,
 }
 
-/// How a point's time is written.
+/// Duration of a point on this host, as written to the file of times.
 #[derive(Serialize)]
 struct PointTime {
     point: u64,
@@ -44,28 +44,33 @@ struct PointTime {
 }
 
 impl Store {
-    /// Opens a folder, or makes it. A torn last line is cut off. Finished points are only taken over to `resume`.
+    /// Opens a folder, or creates it. An incomplete last line is removed. Finished points are kept if `resume` is
+    /// true.
     ///
     /// # Errors
     ///
-    /// [`SweepError`] when it cannot be read or written, is in use, holds finished points that nobody wants to
-    /// continue, results of another sweep, or a damaged line before the last.
+    /// Returns [`SweepError`] if the folder cannot be read or written, is in use, or has a damaged line before the
+    /// last. Also fails if the folder holds results of another sweep, or finished points although `resume` is false.
     pub fn open(folder: &Path, header: Header, resume: bool) -> Result<Self, SweepError> {
         check_command(folder)?;
         fs::create_dir_all(folder).map_err(SweepError::io(folder, "cannot be made"))?;
+        // The lock comes before any change to the folder.
         let lock = lock(folder)?;
         remove_left_over(folder);
         let path = folder.join(ROWS_FILE);
         let rows = RowFile::open_or_none(&path)?;
         check_header(&path, &header, rows.header())?;
+        // Without --resume, existing rows are never extended by accident.
         if !resume && rows.finished() > 0 {
             return Err(SweepError::NotEmpty { path: folder.display().to_string(), rows: rows.finished() });
         }
+        // Both files continue after their last complete line; a new file starts with the header.
         let end = rows.whole_bytes();
         let rows_file = opened(&path, end)?;
         let times_path = folder.join(TIMES_FILE);
         let times_end = whole_lines(&times_path);
         let times_file = opened(&times_path, times_end)?;
+        // The manifest marks the folder as a sweep's from the start.
         if Manifest::read(folder)?.is_none() {
             renew_manifest(folder)?;
         }
@@ -82,43 +87,44 @@ impl Store {
         Ok(store)
     }
 
-    /// Whether a point is finished.
+    /// Returns true if a point is finished.
     #[must_use]
     pub fn holds(&self, point: u64) -> bool {
         self.rows.holds(point)
     }
 
-    /// The points that are finished.
+    /// Returns the set of finished points.
     pub(super) fn held(&self) -> Points {
         self.rows.points().collect()
     }
 
-    /// How many points of a shard are finished.
+    /// Returns the number of finished points of a shard.
     #[must_use]
     pub fn finished(&self, shard: Shard) -> u64 {
         self.rows.points().filter(|point| shard.holds(*point)).count() as u64
     }
 
-    /// The points of a shard that could not be simulated, in order.
+    /// Returns the points of a shard that could not be simulated, in order.
     pub fn failed(&self, shard: Shard) -> impl Iterator<Item = u64> {
         self.rows.points().filter(move |point| shard.holds(*point) && self.rows.is_failed(*point))
     }
 
-    /// The row of a point, read from the file; `None` of one that is not finished.
+    /// Reads the row of a point from the file. Returns `None` if the point is not finished.
     ///
     /// # Errors
     ///
-    /// [`SweepError::Io`].
+    /// Returns [`SweepError::Io`] if the file cannot be read.
     pub fn row(&self, point: u64) -> Result<Option<SweepRow>, SweepError> {
         self.rows.reader()?.row(point)
     }
 
-    /// Appends the row of a finished point.
+    /// Appends the row of a finished point, and the seconds that the point took.
     ///
     /// # Errors
     ///
-    /// [`SweepError::Io`].
+    /// Returns [`SweepError::Io`] if a file cannot be written.
     pub fn append(&mut self, row: &SweepRow, host_seconds: f64) -> Result<(), SweepError> {
+        // Plots and pages of fewer rows become outdated with the first new row.
         if !self.is_renewed {
             renew_manifest(&self.folder)?;
             self.is_renewed = true;
@@ -130,7 +136,7 @@ impl Store {
         Ok(())
     }
 
-    /// One write, so that a kill tears at most this line.
+    /// Appends a line by one write, so that a crash leaves at most this line incomplete.
     fn append_line(&mut self, line: &str) -> Result<(), SweepError> {
         let path = self.folder.join(ROWS_FILE);
         self.rows_file.write_all(line.as_bytes()).map_err(SweepError::io(&path, "cannot be written"))?;
@@ -143,11 +149,11 @@ impl Store {
         self.times_file.write_all(line.as_bytes()).map_err(SweepError::io(&path, "cannot be written"))
     }
 
-    /// Puts the rows in order of their points and writes the table; the file changes at once or not at all.
+    /// Sorts the rows by their points and writes the table. The file changes completely or not at all.
     ///
     /// # Errors
     ///
-    /// [`SweepError::Io`].
+    /// Returns [`SweepError::Io`] if a file cannot be read or written.
     pub fn finish(self) -> Result<(), SweepError> {
         let mut reader = self.rows.reader()?;
         let rows = self.rows.points().filter_map(|point| reader.row(point).transpose());
@@ -155,7 +161,7 @@ impl Store {
     }
 }
 
-/// Refuses a folder that holds what another command wrote.
+/// Refuses a folder that holds files of another command.
 pub(super) fn check_command(folder: &Path) -> Result<(), SweepError> {
     match Manifest::read(folder)? {
         Some(manifest) if manifest.command() != Manifest::SWEEP => {
@@ -166,7 +172,7 @@ pub(super) fn check_command(folder: &Path) -> Result<(), SweepError> {
     }
 }
 
-/// Lists the files of a sweep alone. Plots and pages that were made of fewer rows are taken away.
+/// Rewrites the manifest with only the files of the sweep. Plots and pages made from fewer rows are removed.
 pub(super) fn renew_manifest(folder: &Path) -> Result<(), SweepError> {
     let mut manifest = Manifest::new(Manifest::SWEEP);
     [ROWS_FILE, TIMES_FILE, RESULTS_FILE].into_iter().for_each(|name| manifest.add_growing(name));
@@ -178,7 +184,7 @@ pub(super) fn renew_manifest(folder: &Path) -> Result<(), SweepError> {
     Ok(())
 }
 
-/// Rows in order, and the table; a row is held at a time.
+/// Writes the rows in order, and the table. Only one row is in memory at a time.
 pub(super) fn write_all(
     folder: &Path,
     header: &Header,
@@ -189,6 +195,7 @@ pub(super) fn write_all(
     let table = Table::of(header);
     lines.put(line_of(header).as_bytes())?;
     results.put(&table.head())?;
+    // Both files are written in one pass over the rows.
     for row in rows {
         let row = row?;
         lines.put(line_of(&row).as_bytes())?;
@@ -198,11 +205,12 @@ pub(super) fn write_all(
     results.finish()
 }
 
-/// Removes what processes that were killed while they finished have left under temporary names. Nobody else is at work here: the
-/// folder is locked.
+/// Removes temporary files that processes left behind when they were killed. The folder is locked, so no other
+/// process uses these files.
 fn remove_left_over(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
+        // Temporary names end with a process number and `.tmp`.
         let is_temporary = |file: &str| {
             let stem = file.split('.').next().unwrap_or_default();
             let number =
@@ -226,12 +234,12 @@ fn lock(folder: &Path) -> Result<File, SweepError> {
     let file = File::create(&path).map_err(SweepError::io(&path, "cannot be written"))?;
     match file.try_lock() {
         Err(fs::TryLockError::WouldBlock) => Err(SweepError::Locked { path: folder.display().to_string() }),
-        // A file system without locks: better no protection than no sweep.
+        // On a file system without locks, a sweep without protection is better than no sweep.
         _ => Ok(file),
     }
 }
 
-/// Opens for appending after the first `keep` bytes.
+/// Opens a file for appending after its first `keep` bytes.
 fn opened(path: &Path, keep: u64) -> Result<File, SweepError> {
     let file = OpenOptions::new().create(true).append(true).open(path);
     let cut = file.and_then(|file| {
@@ -241,7 +249,7 @@ fn opened(path: &Path, keep: u64) -> Result<File, SweepError> {
     cut.map_err(SweepError::io(path, "cannot be written"))
 }
 
-/// Bytes up to the end of the last whole line; 0 of a file that cannot be read.
+/// Returns the length in bytes up to the end of the last complete line, or 0 if the file cannot be read.
 fn whole_lines(path: &Path) -> u64 {
     let Ok(file) = File::open(path) else { return 0 };
     let mut file = BufReader::new(file);
@@ -254,7 +262,7 @@ fn whole_lines(path: &Path) -> u64 {
     whole
 }
 
-/// Names the first thing in which two headers differ.
+/// Returns an error that names the first difference between two headers.
 pub(super) fn check_header(path: &Path, expected: &Header, found: Option<&Header>) -> Result<(), SweepError> {
     let Some(found) = found.filter(|found| *found != expected) else { return Ok(()) };
     let pairs = [

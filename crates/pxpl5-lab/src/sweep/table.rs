@@ -1,8 +1,8 @@
-//! Rows as comma-separated values.
+//! Conversion of rows to comma-separated values.
 
 use super::{Header, Status, SweepRow};
 
-/// Which columns there are: the settings that differ and the quantities that were measured.
+/// Columns of the table: the settings that differ between points, and the measured quantities.
 #[derive(Debug)]
 pub(super) struct Table<'a> {
     parameters: Vec<&'a str>,
@@ -17,14 +17,14 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// The names of the columns; where the rows come from stands in the header of `rows.jsonl`.
+    /// Returns the line of column names. The origin of the rows is in the header of `rows.jsonl`.
     pub(super) fn head(&self) -> Vec<u8> {
         let settings = self.parameters.iter().chain(&self.measured).copied();
         let columns = ["point", "status"].into_iter().chain(settings).chain(["trace_hash", "error"]);
         line_of_cells(columns.map(str::to_owned))
     }
 
-    /// The line of a row.
+    /// Returns the line of a row.
     pub(super) fn line(&self, row: &SweepRow) -> Vec<u8> {
         let status = if row.status == Status::Done { "done" } else { "failed" };
         let settings = self.parameters.iter().map(|path| row.parameters.get(*path).map_or_else(String::new, plain));
@@ -36,7 +36,7 @@ impl<'a> Table<'a> {
 }
 
 impl SweepRow {
-    /// A quantity's value as text; empty where the run shows none.
+    /// Returns the value of a quantity as text, or an empty text if the run does not define the quantity.
     fn value_text(&self, name: &str) -> String {
         self.measured.get(name).copied().flatten().map_or_else(String::new, |value| value.to_string())
     }
@@ -46,7 +46,7 @@ fn plain(value: &serde_json::Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 
-/// A line of its own; memory can always be written.
+/// Returns a line of comma-separated cells. Writing to memory cannot fail.
 fn line_of_cells(cells: impl Iterator<Item = String>) -> Vec<u8> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let _ = writer.write_record(cells);

@@ -92,7 +92,7 @@ fn a_space_that_makes_no_sense_is_refused() {
 
 #[test]
 fn an_error_of_a_sweep_names_the_line_of_its_key() {
-    // Four lines that all points share stand before the space.
+    // Four lines of shared settings come before the space.
     for (space, line) in [
         ("[sweep]", 5),
         ("[sweep.grid]\n\nseeed = [1]", 7),
@@ -120,7 +120,7 @@ fn shards_are_disjoint_and_hold_everything() {
 
 #[test]
 fn a_point_that_fails_is_recorded_and_the_rest_go_on() {
-    // Slats binds 20 regions, four to a renderer: fewer than five renderers cannot hold them.
+    // Slats binds 20 regions, four to a renderer. Fewer than five renderers cannot hold them.
     let sweep = sweep("[sweep.grid]\nmachine.n_renderers = [0, 4, 5]\n");
     let path = folder("fails");
     let mut store = Store::open(&path, sweep.header().expect("a valid point"), false).expect("writable");
@@ -207,7 +207,8 @@ fn files_named_by_a_sweep_are_beside_it_in_axes_too() {
     let _ = std::fs::remove_dir_all(&place);
 }
 
-/// The product is known before any value is made, and no value is held: 13 axes of ten million took 9 GB, ten million seeds 560 MB.
+/// The number of points is computed before any value, and no value is stored. Stored values of 13 axes of ten million
+/// took 9 GB, and those of ten million seeds 560 MB.
 #[test]
 fn a_space_of_any_size_takes_no_memory_for_its_values() {
     let keys = [

@@ -1,22 +1,22 @@
-//! PDF and PNG of a figure, with a typeface that comes with the command.
+//! Conversion of a figure to PDF and PNG, with a built-in typeface.
 
 use crate::error::CliError;
 use svg2pdf::usvg::{Options, Transform, Tree};
 use svg2pdf::{ConversionOptions, PageOptions};
 
-/// Dots of a PNG per inch.
+/// Resolution of a PNG in dots per inch.
 const PNG_DOTS: f32 = 300.0;
 
-/// Pixels of a style sheet per inch, the unit of an SVG.
+/// CSS pixels per inch, the unit of lengths in an SVG.
 const SVG_DOTS: f32 = 96.0;
 
-/// Returns the figure as a page of its own size.
+/// Returns the figure as a PDF page of the figure's size.
 pub(super) fn pdf(svg: &str) -> Result<Vec<u8>, CliError> {
     let page = PageOptions { dpi: SVG_DOTS };
     svg2pdf::to_pdf(&tree(svg)?, ConversionOptions::default(), page).map_err(CliError::failure)
 }
 
-/// Returns the figure at 300 dots per inch.
+/// Returns the figure as a PNG at 300 dots per inch.
 pub(super) fn png(svg: &str) -> Result<Vec<u8>, CliError> {
     let tree = tree(svg)?;
     let scale = PNG_DOTS / SVG_DOTS;
