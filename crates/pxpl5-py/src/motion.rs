@@ -192,7 +192,7 @@ impl Moving for Called {
     }
 }
 
-/// Number of instants whose poses identify a callable. They are an eighth of a second apart.
+/// Number of instants, an eighth of a second apart, whose poses identify a callable.
 const SAMPLES: u64 = 512;
 const SAMPLE_PS: u64 = 125_000_000_000;
 

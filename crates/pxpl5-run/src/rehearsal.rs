@@ -29,7 +29,7 @@ impl Rehearsal {
     }
 }
 
-/// Results of a dry run that a predictor needs. They are the same for every predictor.
+/// Results of a dry run that a predictor needs. Every predictor gets the same results.
 #[derive(Clone, Debug)]
 pub struct Rehearsed {
     /// Instants at which views are seen.

@@ -140,7 +140,7 @@ impl Stepper {
         self.run_to(self.record().tick(self.period().next()))
     }
 
-    /// Sets the code addresses at which the run stops. They replace all earlier addresses. Only a run at
+    /// Sets the code addresses at which the run stops, in place of all earlier addresses. Only a run at
     /// [`Level::Cycle`](crate::Level::Cycle) executes code and can stop at an address.
     pub fn break_at(&mut self, addresses: BTreeSet<u32>) {
         self.run.machine.break_at(&addresses);

@@ -16,8 +16,8 @@ use std::collections::VecDeque;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
-/// Time before a retrace at which the ideal renderer requests views. It is the shortest time of the simulation, one
-/// picosecond.
+/// Time before a retrace at which the ideal renderer requests views. One picosecond is the shortest time of the
+/// simulation.
 const BEFORE_RETRACE: Span = Span(1);
 
 /// Source of ideal faces: at each retrace, it writes the updates that a policy requests into the display's memories.
