@@ -243,7 +243,6 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
     sum / f64::max(n, 1.0)
 }
 
-/// Returns the minimum and the maximum.
 fn extremes(values: &[f64]) -> [f64; 2] {
     [values.iter().copied().fold(f64::INFINITY, f64::min), values.iter().copied().fold(0.0, f64::max)]
 }
