@@ -3,8 +3,8 @@
 //! A pass over the application scenes is executed on a board, and its clocks are attributed to primitives:
 //!
 //! ```text
-//!   clocks of triangles in a pass = triangle * (triangles) + guard * (of these, cut by the clipper) + entry * (their entries of bins)
-//!   clocks of spheres             = sphere * (spheres) + entry * (their entries of bins)
+//!   clocks of triangles in a pass = triangle * (triangles) + guard * (clipped triangles) + entry * (bin entries)
+//!   clocks of spheres             = sphere * (spheres) + entry * (bin entries)
 //! ```
 //!
 //! - `guard` comes from triangles that cover the screen and reach beyond the guard band (`CLIPPED_M`).
@@ -19,7 +19,7 @@
 //! converge.
 //!
 //! ```text
-//!   beginning of a pass = pass + structure * (structures * eyes) + sphere view * (of these, with spheres)
+//!   beginning of a pass = pass + structure * (structures * eyes) + sphere view * (structures with spheres * eyes)
 //! ```
 //!
 //! - `structure` is the cost of one more empty structure in the display list.
