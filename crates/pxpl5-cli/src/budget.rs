@@ -19,7 +19,7 @@ pub(crate) struct BudgetArgs {
     max_seconds: u64,
 }
 
-/// The budget of commands without these options.
+/// The default limits, also used by commands without options for memory and time.
 impl Default for BudgetArgs {
     fn default() -> Self {
         Self { max_memory: MOST_MEGABYTES, max_seconds: MOST_SECONDS }

@@ -3,8 +3,8 @@
 //! A pass over the application scenes is executed on a board, and its clocks are attributed to primitives:
 //!
 //! ```text
-//!   clocks of triangles in a pass = triangle * (triangles) + guard * (of these, cut by the clipper) + entry * (their entries of bins)
-//!   clocks of spheres             = sphere * (spheres) + entry * (their entries of bins)
+//!   clocks of triangles in a pass = triangle * (triangles) + guard * (clipped triangles) + entry * (bin entries)
+//!   clocks of spheres             = sphere * (spheres) + entry * (bin entries)
 //! ```
 //!
 //! - `guard` comes from triangles that cover the screen and reach beyond the guard band (`CLIPPED_M`).
@@ -19,7 +19,7 @@
 //! converge.
 //!
 //! ```text
-//!   beginning of a pass = pass + structure * (structures * eyes) + sphere view * (of these, with spheres)
+//!   beginning of a pass = pass + structure * (structures * eyes) + sphere view * (structures with spheres * eyes)
 //! ```
 //!
 //! - `structure` is the cost of one more empty structure in the display list.
@@ -230,7 +230,6 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
     sum / f64::max(n, 1.0)
 }
 
-/// Returns the minimum and the maximum.
 fn extremes(values: &[f64]) -> [f64; 2] {
     [values.iter().copied().fold(f64::INFINITY, f64::min), values.iter().copied().fold(0.0, f64::max)]
 }

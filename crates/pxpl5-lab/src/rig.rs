@@ -128,8 +128,8 @@ impl Rig {
         Ok(measured.counted_in_the_scan(counted.unwrap_or_default()))
     }
 
-    /// Returns the experiment. At every sighting the reported head turns away from the lamp or back. The experiment
-    /// ends after the last frame must have been shown.
+    /// Returns the experiment of a measurement. At every sighting the reported head turns away from the lamp or back.
+    /// The experiment ends after the last frame must have been shown.
     fn experiment(
         &self,
         machine: &MachineConfig,

@@ -35,7 +35,6 @@ pub(super) fn time(stepper: &Stepper) -> String {
     text
 }
 
-/// Returns one line for each board.
 pub(super) fn boards(stepper: &Stepper) -> String {
     let lines = stepper.boards().filter_map(|board| Some((board.to_string(), stepper.says(board)?)));
     lines.map(|(name, says)| format!("{name:<12} {says}\n")).collect()

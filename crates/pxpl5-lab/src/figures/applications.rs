@@ -51,7 +51,6 @@ pub(super) fn key_of(experiment: &Experiment, scene: &str) -> String {
 }
 
 impl Applications {
-    /// Returns a built-in scene.
     pub(super) fn scene(&self, name: &'static str, culled: bool) -> Result<Arc<Scene>> {
         let make = || {
             let whole = scene_named(name)?;

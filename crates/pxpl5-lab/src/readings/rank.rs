@@ -30,7 +30,7 @@ pub struct Readings {
     pub analytic: Vec<Fit>,
     /// The best interpretations at the transaction level, by ascending mean error.
     pub transaction: Vec<Fit>,
-    /// Prediction of each figure by all others, at the analytic level.
+    /// Prediction of each figure by the interpretation that fits all other figures best, at the analytic level.
     pub left_out: Vec<LeftOut>,
     /// Number of interpretations whose mean error equals that of the best one within the printed digits.
     pub as_good: usize,
