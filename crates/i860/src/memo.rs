@@ -66,11 +66,13 @@ impl Memo {
         if fill.clocks > u64::from(MOST_CLOCKS) {
             return None;
         }
+        // The state must fit into a few bits; otherwise it gets no number.
         let left = written.leftover(now, MOST_CLOCKS, [fill.clocks as u8, fill.first])?;
         let Numbers { numbers, leftovers } = &mut *self.numbers;
         if let Some(number) = numbers.get(&left) {
             return Some(*number);
         }
+        // A full table assigns no new numbers.
         if leftovers.len() == MOST_NUMBERS {
             return None;
         }

@@ -62,6 +62,7 @@ impl SeedTable {
 
     fn apply(self, x: f64, exact: impl Fn(f64) -> f64) -> u64 {
         let value = exact(x);
+        // Zero, infinity, NaN and denormal results are returned without a cut.
         if !is_finite_nonzero(value) || value.to_bits() & !(1 << 63) <= FRACTION {
             return value.to_bits();
         }

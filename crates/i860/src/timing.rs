@@ -188,6 +188,7 @@ impl Config {
     /// Names of experiments include them. Memoization changes no result and is left out.
     #[must_use]
     pub fn unusual_settings(&self) -> Vec<(&'static str, String)> {
+        // The pattern names every field, so that a new one cannot be forgotten.
         let Config { timing, freezes, dram: _, seeds, replacement_seed, memoise: _ } = self;
         let usual = Config::cycle();
         let all = [

@@ -80,6 +80,7 @@ impl Buffer {
         if *newest == place {
             return None;
         }
+        // The region with the higher index is the newer one, also if an older one completes later.
         let older = place.min(*newest);
         self.held[older].hidden = true;
         *newest = place.max(*newest);
@@ -123,6 +124,7 @@ impl Buffer {
             self.shared = None;
             self.index();
         }
+        // The search by pixels is slow, so it runs only after many regions have come.
         if self.held.len() > self.search_above {
             self.forget_covered(width, height);
             self.search_above = FEW.max(2 * self.held.len());

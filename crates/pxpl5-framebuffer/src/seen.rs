@@ -95,10 +95,12 @@ impl SeenField {
         for region in self.regions.iter().rev() {
             let pixels = LazyCell::new(|| region.image.pixels());
             for segment in region.segments(self.word) {
+                // A field scans every second line only.
                 let Some(scanned_at) = self.video.when(segment.x, segment.y, self.field) else {
                     continue;
                 };
                 let row = canvas.row([segment.x, row_of(segment.y)], segment.length);
+                // If the last word was in time, all words of the segment were.
                 if segment.message_at <= scanned_at {
                     row.put(&pixels, &segment);
                 } else {

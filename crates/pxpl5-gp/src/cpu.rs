@@ -36,6 +36,7 @@ impl Cpu {
         let Some((priority, since)) = self.running else {
             return;
         };
+        // Charge the time since the last change to the running program.
         let elapsed = now - since;
         self.busy += elapsed;
         let left = self.remaining[priority as usize].map_or(Span::ZERO, |left| left - elapsed);

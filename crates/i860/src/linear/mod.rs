@@ -86,6 +86,7 @@ pub fn slots(source: &str) -> Result<Vec<Slots>, LinearError> {
     stretches(
         source,
         |operations, pairs| {
+            // A multiply of doubles takes two slots.
             let floating = operations.iter().filter(|operation| operation.name.unit.is_floating());
             let doubles = floating
                 .clone()
@@ -130,9 +131,11 @@ fn stretches(
     while let Some((line, text)) = lines.next() {
         let words: Vec<&str> = text.split_whitespace().collect();
         match words.as_slice() {
+            // A pool applies to all stretches after it.
             [".pool", registers @ ..] => pool = parse::pool(line, registers)?,
             [".linear", parameters @ ..] => {
                 let settings = parse::settings(line, parameters)?;
+                // A stretch goes up to the end directive.
                 let block: Vec<(usize, &str)> = lines.by_ref().take_while(|(_, t)| t.trim() != ".endlinear").collect();
                 let operations = parse::operations(&block)?;
                 let pairs =
