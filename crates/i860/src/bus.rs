@@ -38,7 +38,7 @@ pub struct Ram {
 }
 
 impl Ram {
-    /// Makes `len` zero bytes from address `base`.
+    /// Makes a memory of `len` zero bytes from address `base`.
     #[must_use]
     pub fn new(base: u32, len: usize) -> Ram {
         Ram { base, bytes: vec![0; len] }

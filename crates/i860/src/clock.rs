@@ -1,4 +1,5 @@
-//! The clock: issue, freezes, caches and queues. It receives every executed block and changes no value of the program.
+//! The clock: issue, freezes, caches and queues. The clock receives every executed block and changes no value of the
+//! program.
 
 use crate::block::{Access, Block, Unit};
 use crate::bus::Bus;

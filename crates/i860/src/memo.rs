@@ -1,7 +1,7 @@
 //! Memoization: clocks of repeated runs of code, reused instead of counted again.
 //!
 //! The idea comes from FastSim (Schnarr and Larus, *Fast Out-Of-Order Processor Simulation Using Memoization*, ASPLOS
-//! 1998). A run is a part of a basic block whose instructions and data are all in the caches. It leaves the bus, the
+//! 1998). A run is a part of a basic block whose instructions and data are all in the caches. A run leaves the bus, the
 //! queues and the replacement sequence unchanged. Its clocks depend on three things: the scoreboard before it, the rest
 //! of an arriving instruction line, and the branches and traps of its execution.
 //!

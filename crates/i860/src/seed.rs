@@ -1,6 +1,6 @@
 //! The seeds of frcp (reciprocal) and frsqr (reciprocal square root).
 //!
-//! The chip's table is not public. It is only known that the fraction error stays below 2^-7, so the user chooses a
+//! The chip's table is not public. The fraction error is known to stay below 2^-7, so the user chooses a
 //! table. Programs that refine by Newton steps differ by the last bit or two between the tables, never in their clocks.
 
 use crate::arithmetic::{narrow, widen};

@@ -122,7 +122,7 @@ impl Bus for Sparse {
 pub struct Difference {
     /// `r5`, `f12`, or the address of a word.
     pub place: String,
-    /// Bit pattern of the vector.
+    /// Bit pattern that the vector expects.
     pub expected: u32,
     /// Bit pattern of this model.
     pub found: u32,

@@ -1,4 +1,4 @@
-//! One of the two buffers of a board. It keeps a region as long as one of its pixels can still be seen.
+//! One of the two buffers of a board. A buffer keeps a region as long as one of its pixels can still be seen.
 
 use crate::region::RegionWrite;
 use crate::scans::{Overwritten, Scans};

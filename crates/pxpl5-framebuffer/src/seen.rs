@@ -9,8 +9,8 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{CopyTarget, FieldParity, PeriodNumber};
 use std::cell::LazyCell;
 
-/// One field as it was scanned. Its pixels are computed when they are read. It is cheap to clone and independent of
-/// later events.
+/// One field as it was scanned. Its pixels are computed when they are read. A field is cheap to clone and independent
+/// of later events.
 #[derive(Clone, Debug)]
 pub struct SeenField {
     pub(crate) field: PeriodNumber,

@@ -6,8 +6,8 @@ use pxpl5_wire::{CopyTarget, FieldParity, Lines, PeriodNumber};
 
 /// Times of retraces, lines and pixels, all computed from time zero.
 ///
-/// Field `n` begins at retrace `n`. It scans the even lines of the frame if `n` is even, else the odd lines. Lines
-/// follow an uninterrupted line clock. A field has 262.5 lines, so an odd field begins in the middle of a line.
+/// Field `n` begins at retrace `n`. The field scans the even lines of the frame if `n` is even, else the odd lines.
+/// Lines follow an uninterrupted line clock. A field has 262.5 lines, so an odd field begins in the middle of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Video {
     timing: VideoTiming,

@@ -7,7 +7,7 @@ use pxpl5_sim::{Span, Time};
 pub enum Priority {
     /// The interrupt program. The foreground stands still while it spends time.
     Interrupt,
-    /// The foreground program. It runs while the interrupt program spends no time.
+    /// The foreground program, which runs while the interrupt program spends no time.
     Foreground,
 }
 

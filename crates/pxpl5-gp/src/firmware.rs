@@ -14,7 +14,7 @@ use std::pin::Pin;
 use std::rc::Rc;
 use std::task::Poll;
 
-/// A program on a board. It ends only with a fault.
+/// A program on a board, which ends only with a fault.
 /// A program must wait for one future at a time. If it polls several futures side by side, the board knows only the
 /// last wait.
 pub type Firmware = Pin<Box<dyn Future<Output = Result<(), Fault>>>>;
@@ -244,8 +244,8 @@ impl Gp {
         self.shared.borrow().field
     }
 
-    /// Returns the value of another board's status line, for example the number of swaps of a frame buffer. It is zero
-    /// before its first change.
+    /// Returns the value of another board's status line, for example the number of swaps of a frame buffer. The value
+    /// is zero before its first change.
     #[must_use]
     pub fn status(&self, from: NodeId) -> u64 {
         self.shared.borrow().status.iter().find(|status| status.0 == from).map_or(0, |status| status.1)

@@ -10,9 +10,9 @@
 //! The original software is not published. kernels/ring_rules.md states what the code assumes about it and how the code
 //! was written.
 //!
-//! Before each call, Rust code plays the part of the interface's DMA. It puts a message into the next buffer when its
-//! software begins, because the board's inbox has no limited number of buffers. When a chain is built, all earlier
-//! chains have been sent, because [`crate::Gp::start`] simulates the queue of chains.
+//! Before each call, Rust code plays the part of the interface's DMA. This code puts a message into the next buffer
+//! when its software begins, because the board's inbox has no limited number of buffers. When a chain is built, all
+//! earlier chains have been sent, because [`crate::Gp::start`] simulates the queue of chains.
 
 use crate::firmware::Fault;
 use crate::processor::{Processor, ProcessorFault};

@@ -170,7 +170,7 @@ impl Ring {
         &self.refusals
     }
 
-    /// Returns the number of occupied channels. It is up to date after each event of a ring that is
+    /// Returns the number of occupied channels. The number is up to date after each event of a ring that is
     /// [watched](Ring::watch).
     #[must_use]
     pub fn busy_channels(&self) -> u32 {

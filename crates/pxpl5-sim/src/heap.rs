@@ -1,5 +1,5 @@
-//! A heap with four children per node. It is half as deep as a binary heap, and the children of a node are adjacent in
-//! memory.
+//! A heap with four children per node. This heap is half as deep as a binary heap, and the children of a node are
+//! adjacent in memory.
 
 /// The sort key of a heap, the least first.
 pub(crate) trait Keyed: Copy {

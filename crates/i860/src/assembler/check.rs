@@ -76,7 +76,7 @@ pub(super) fn warnings(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usiz
 struct Refilled(Option<usize>);
 
 impl Refilled {
-    /// Returns true if the result that now leaves a pipe of this many stages was destroyed by the scalar operation.
+    /// Returns true if a scalar operation has destroyed the result that leaves next from a pipe of this many stages.
     fn has_lost(self, stages: usize) -> bool {
         self.0.is_some_and(|operations| operations < stages)
     }

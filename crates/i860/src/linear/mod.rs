@@ -2,8 +2,9 @@
 //!
 //! A *linear stretch* of an assembler source lies between `.linear` and `.endlinear`. Each of its lines computes a
 //! value from other values, by the name of an operation without its pipe. [`schedule`] replaces the stretch by pairs of
-//! a floating-point and a core instruction. It chooses the order, fills and drains the pipes of adder and multiplier,
-//! and assigns registers. The operations and their operands stay as written, so results do not depend on the order.
+//! a floating-point and a core instruction. The scheduler chooses the order, fills and drains the pipes of adder and
+//! multiplier, and assigns registers. The operations and their operands stay as written, so results do not depend on
+//! the order.
 //!
 //! ```text
 //!         .linear                       or with numbers: window, eagerness, reserve, slope, shake

@@ -542,7 +542,7 @@ impl<'a> Placer<'a> {
     }
 
     /// Records the issue of an operation and frees the registers that it is the last to read.
-    /// They are free from the next clock on, or one clock later after a store (row 24).
+    /// The registers are free from the next clock on, or one clock later after a store (row 24).
     fn finish_issue(&mut self, n: usize) {
         self.issued[n] = Some(self.now);
         if matches!(self.operations[n].name.unit, Unit::Adder | Unit::Multiplier { .. }) {
