@@ -1,4 +1,5 @@
-//! The clock: issue, freezes, caches and queues. It receives every executed block and changes no value of the program.
+//! The clock: issue, freezes, caches and queues. The clock receives every executed block and changes no value of the
+//! program.
 
 use crate::block::{Access, Block, Unit};
 use crate::bus::Bus;
@@ -168,6 +169,7 @@ impl Clock {
         let last = execution.units + usize::from(execution.slot) - 1;
         block.executed(execution).iter().enumerate().for_each(|(n, unit)| {
             let before = self.common.now;
+            // Each instruction or pair is fetched, issued and completed, unless it trapped.
             self.fetch(unit, bus);
             self.issue(unit);
             if !(execution.trapped && n == last) {
@@ -244,6 +246,7 @@ impl Clock {
     /// Issues a pair. Both halves wait for the longer freeze.
     #[inline]
     fn issue_pair(&mut self, floating: &Decoded, core: &Decoded) {
+        // Find the longest wait of both halves.
         let mut longest = NO_WAIT;
         for d in [floating, core] {
             if self.board.may_wait(d) {
@@ -299,6 +302,7 @@ impl Clock {
     fn load<B: Bus>(&mut self, address: u32, size: u32, bus: &B) -> Option<Transfer> {
         self.translation.translate(address, &mut self.common);
         let transfer = self.data.load(address, size, &mut self.stores, &mut self.common, bus)?;
+        // Some instructions wait for the first word of the miss, others for its last.
         self.hold_up(hazard::TRANSFER_IN_MISS, transfer.first, Freeze::TransferDuringMiss);
         self.hold_up(hazard::ACCESS_IN_MISS, transfer.last, Freeze::AccessDuringMiss);
         Some(transfer)
@@ -315,6 +319,7 @@ impl Clock {
     #[inline]
     fn store(&mut self, address: u32, size: u32) {
         self.translation.translate(address, &mut self.common);
+        // A store that hits delays only a load right after it.
         if self.data.access(address, true) {
             self.board.set_hazard(hazard::STORE_HIT, Freeze::LoadAfterStoreHit, self.common.now);
         } else {

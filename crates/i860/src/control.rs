@@ -29,6 +29,7 @@ impl Cpu {
     /// Executes a core instruction, or the core half of a pair.
     #[inline(always)]
     pub(crate) fn core<'a, B: Bus>(&mut self, a: &CoreAction, unit: impl Fn() -> &'a Unit, bus: &mut B) -> Flow {
+        // Integer operations return directly, because they cannot trap.
         let done = match a.does {
             Core::Nothing => return Flow::Next,
             Core::Integer => {
@@ -76,6 +77,7 @@ impl Cpu {
 
     fn call_indirect(&mut self, i: &Instruction, unit: &Unit) -> Flow {
         let target = self.state.r(i.src1);
+        // r1 may be the target register, so the target was read first.
         self.state.set_r(1, behind_slot(unit));
         Flow::Delayed(target & !3)
     }
@@ -83,6 +85,7 @@ impl Cpu {
     #[inline]
     fn branch(&mut self, unit: &Unit) -> Flow {
         let i = &unit.core().instruction;
+        // Offsets count words from the instruction after the branch.
         let target = unit.core_pc().wrapping_add(4).wrapping_add((i.imm as u32) << 2);
         let condition = self.state.psr & psr::CC != 0;
         match i.op {
@@ -130,8 +133,10 @@ impl Cpu {
     fn return_from_trap(&mut self) {
         let old = self.state.psr;
         self.state.psr = old & !(psr::TRAPS | psr::DIM | psr::DS);
+        // Restore the user and interrupt bits of before the trap.
         self.state.set_psr_bit(psr::U, old & psr::PU != 0);
         self.state.set_psr_bit(psr::IM, old & psr::PIM != 0);
+        // The old mode of pairing returns after the delay slot.
         self.mode_after_slot = Some(match (old & psr::DIM != 0, old & psr::DS != 0) {
             (true, true) => Mode::DualOnce,
             (true, false) => Mode::Dual,

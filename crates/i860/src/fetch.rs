@@ -8,7 +8,7 @@ use crate::memo::Filling;
 use crate::timing::{ChipSizes, Freeze};
 use crate::translation::Translation;
 
-/// Value of [`Fetch::line`] when no line is held.
+/// Value of `Fetch::line` when no line is held.
 const NO_LINE: u32 = u32::MAX;
 const LINE_BYTES: u32 = ChipSizes::PAPERS.line_bytes as u32;
 /// Bus transfers of one cache line.
@@ -110,6 +110,7 @@ impl Fetch {
     }
 
     fn miss<B: Bus>(&mut self, pc: u32, common: &mut Common, bus: &B) {
+        // Row 1b applies if a data fill runs when the miss begins.
         common.profile.instruction_misses += 1;
         let is_behind_data = common.now < common.data_fill_end;
         common.await_address_pipe();
@@ -129,6 +130,7 @@ impl Fetch {
         let random = common.chance.next();
         self.cache.fill(pc, random);
         let line = common.bus.read(common.now, pc, BEATS);
+        // The needed word arrives first, the others follow in cyclic order.
         for beat in 0..BEATS {
             self.arrivals[((pc / 8 + beat) % BEATS) as usize] = line.arrival(beat);
         }

@@ -55,14 +55,15 @@
 //! All rows are *assumed* (recollections of Intel's list). Published figures are tests: 2 and 1.5 operations per clock,
 //! 39 clocks for three reciprocal roots, about 48 clocks for a square root. One published figure is a tree-traversal
 //! loop of 117 instructions in 106 clocks. Its description does not suffice to write the same code. The test runs a
-//! loop of the same shape (pairs, odd entry, taken `bnc.t`). It therefore checks the issue rules and not that program.
+//! loop of the same shape (pairs, odd entry, taken `bnc.t`). The test therefore checks the issue rules and not that
+//! program.
 //!
 //! # Speed
 //!
 //! Code is decoded once, as basic blocks: a block goes from an address to the next branch with its delay slot. The
 //! processor executes a block, and the clock then counts its time.
 //!
-//! A *run* is a part of a block whose instructions and data are all in the caches. It uses neither the bus nor the
+//! A *run* is a part of a block whose instructions and data are all in the caches. A run uses neither the bus nor the
 //! queues nor the replacement sequence. Its clocks depend only on the waits left by earlier instructions, on the rest
 //! of an arriving instruction line and on taken branches and traps. The model remembers these clocks and reuses them,
 //! as FastSim does (Schnarr and Larus, ASPLOS 1998). [`Config::memoise`] turns this on.
@@ -80,9 +81,9 @@
 //!
 //! # Conformance
 //!
-//! 2,175 test vectors of other functional models pass (tests/conformance.rs; module and feature `vectors`). They decide
-//! three questions that the manuals leave open. `faddz` is one 64-bit addition. Scalar `ftrunc` writes only the low
-//! word, and `fix` clears the high word. A dual operation that reloads K or T uses their old values.
+//! 2,175 test vectors of other functional models pass (tests/conformance.rs; module and feature `vectors`). The vectors
+//! decide three questions that the manuals leave open. `faddz` is one 64-bit addition. Scalar `ftrunc` writes only the
+//! low word, and `fix` clears the high word. A dual operation that reloads K or T uses their old values.
 //!
 //! # Not modelled
 //!

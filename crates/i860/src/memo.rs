@@ -1,7 +1,7 @@
 //! Memoization: clocks of repeated runs of code, reused instead of counted again.
 //!
 //! The idea comes from FastSim (Schnarr and Larus, *Fast Out-Of-Order Processor Simulation Using Memoization*, ASPLOS
-//! 1998). A run is a part of a basic block whose instructions and data are all in the caches. It leaves the bus, the
+//! 1998). A run is a part of a basic block whose instructions and data are all in the caches. A run leaves the bus, the
 //! queues and the replacement sequence unchanged. Its clocks depend on three things: the scoreboard before it, the rest
 //! of an arriving instruction line, and the branches and traps of its execution.
 //!
@@ -66,11 +66,13 @@ impl Memo {
         if fill.clocks > u64::from(MOST_CLOCKS) {
             return None;
         }
+        // The state must fit into a few bits; otherwise it gets no number.
         let left = written.leftover(now, MOST_CLOCKS, [fill.clocks as u8, fill.first])?;
         let Numbers { numbers, leftovers } = &mut *self.numbers;
         if let Some(number) = numbers.get(&left) {
             return Some(*number);
         }
+        // A full table assigns no new numbers.
         if leftovers.len() == MOST_NUMBERS {
             return None;
         }

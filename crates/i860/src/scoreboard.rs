@@ -199,6 +199,7 @@ impl Scoreboard {
     pub(crate) fn wait(&mut self, d: &Decoded, now: u64) -> Wait {
         let mut longest = self.wait_for_registers(d.reads, now);
         let mut bits = d.sensitive & self.armed;
+        // Of the hazards that matter to the instruction, find the longest wait.
         while bits != 0 {
             let n = bits.trailing_zeros() as usize;
             bits &= bits - 1;
@@ -289,6 +290,7 @@ impl Scoreboard {
 
     fn arm(&mut self, d: &Decoded, now: u64) {
         let i = &d.instruction;
+        // Row 9 needs the result of the last floating-point instruction only.
         if d.arms & arm::FLOATING_RESULT != 0 {
             self.note_result(i, now);
         } else if d.is_floating() && i.op != Op::Fnop {
@@ -312,6 +314,7 @@ impl Scoreboard {
     pub(crate) fn set_hazard_until(&mut self, bit: u16, until: u64, why: Freeze) {
         self.armed |= bit;
         self.latest = self.latest.max(until);
+        // A new hazard of a kind replaces the old one.
         self.hazards[bit.trailing_zeros() as usize] = Wait { until, why };
     }
 
@@ -328,6 +331,7 @@ impl Scoreboard {
     // Marks the destination of a load or seed as not ready. A miss that takes longer stays in force.
     fn arm_destination(&mut self, d: &Decoded, now: u64) {
         let i = &d.instruction;
+        // The row depends on the kind of the result.
         let (mask, why) = match i.op {
             Op::Call | Op::Calli => (1 << 1, Freeze::LoadUse),
             Op::LdB | Op::LdS | Op::LdL | Op::LdC | Op::Fxfr => (1 << i.dest, Freeze::LoadUse),
@@ -338,6 +342,7 @@ impl Scoreboard {
             _ => (float_mask(i.dest, i.size.max(4)), Freeze::FloatingLoadUse),
         };
         let until = now + self.costs.clocks(why);
+        // A load that missed is ready later than row 6 says.
         let missed = mask & self.pending != 0 && self.ready[mask.trailing_zeros() as usize].until > until;
         if !(missed && why == Freeze::LoadUse) {
             self.set_ready(mask, until, why);

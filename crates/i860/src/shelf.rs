@@ -34,6 +34,7 @@ impl Shelf {
     }
 
     fn place(&mut self, program: &Arc<Program>) -> &mut Option<Code> {
+        // Programs are compared by address, since one program is shared by all processors.
         let known = self.codes.iter().position(|(known, _)| Arc::ptr_eq(known, program));
         let at = known.unwrap_or_else(|| {
             self.codes.push((Arc::clone(program), None));

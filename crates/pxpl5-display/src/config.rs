@@ -46,8 +46,8 @@ pub trait DisplayConfig: Any + Debug + Send + Sync {
     /// Returns a boxed copy of the numbers.
     fn boxed(&self) -> Box<dyn DisplayConfig>;
 
-    /// Sets the number of past periods that the display remembers. Without this call it is 2; displays without memory
-    /// ignore it.
+    /// Sets the number of past periods that the display remembers. The default is 2. Displays without memory ignore the
+    /// number.
     fn remember(&mut self, _periods: u64) {}
 
     /// Sets the background colour 0x00RRGGBB of places where nothing is drawn. Displays whose pictures contain their

@@ -98,6 +98,7 @@ impl DoubleBuffer {
             format!("region {region} of {grid:?} does not lie in {} x {} or exceeds 128 x 128", self.width, self.height)
         };
         let rectangle = place.ok_or_else(outside)?;
+        // The number of messages follows from the size of the region.
         let expected = (rectangle[2] * rectangle[3]).div_ceil(MAX_MESSAGE_WORDS);
         if parts != expected || part >= parts {
             return Err(format!("expected one of {expected} messages of a region, found message {part} of {parts}"));
@@ -130,6 +131,7 @@ impl DoubleBuffer {
 
     /// Shows the buffer requested before (not at) this tick and returns it, or returns `None` without a request.
     pub fn swap(&mut self, now: Time) -> Option<u8> {
+        // Keep the old picture, which was visible until this tick.
         self.scanned.clone_from(&self.buffers[usize::from(self.shown)]);
         let (_, buffer) = self.requested.take_if(|(asked_at, _)| *asked_at < now)?;
         self.shown = buffer;

@@ -138,11 +138,13 @@ impl FrameBuffer {
 
     fn receive(&mut self, pixels: &RegionPixels, context: &mut Out) -> Result<(), FrameBufferFault> {
         let target = pixels.target;
+        // Refuse pixels for another board or for a buffer that does not exist.
         if target.frame_buffer != self.node {
             return Err(FrameBufferFault::WrongBoard { expected: self.node, found: target.frame_buffer });
         }
         let found = target.buffer;
         let buffer = self.buffers.get_mut(usize::from(found)).ok_or(FrameBufferFault::NoSuchBuffer { found })?;
+        // Record the arrival in the region, which is new for a first message.
         let place = arriving(buffer, pixels, &self.video)?;
         buffer.region_mut(place).arrive(pixels.part, context.now());
         self.stats.messages += 1;
@@ -192,6 +194,7 @@ impl FrameBuffer {
     }
 
     fn remember(&mut self, field: PeriodNumber, ends_at: Time) {
+        // Forget the oldest field if the memory is full.
         if self.seen.len() == self.fields_kept {
             self.seen.pop_front();
         }
@@ -208,6 +211,7 @@ impl FrameBuffer {
 
     fn swap(&mut self, field: PeriodNumber, context: &mut Out) {
         let now = context.now();
+        // Requests that arrived before this instant take effect, and the last one wins.
         let due = self.swaps.iter().filter(|swap| swap.0 < now).max().copied();
         let Some((_, buffer)) = due else { return };
         self.swaps.retain(|swap| swap.0 >= now);

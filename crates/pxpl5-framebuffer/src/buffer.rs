@@ -1,4 +1,4 @@
-//! One of the two buffers of a board. It keeps a region as long as one of its pixels can still be seen.
+//! One of the two buffers of a board. A buffer keeps a region as long as one of its pixels can still be seen.
 
 use crate::region::RegionWrite;
 use crate::scans::{Overwritten, Scans};
@@ -80,6 +80,7 @@ impl Buffer {
         if *newest == place {
             return None;
         }
+        // The region with the higher index is the newer one, also if an older one completes later.
         let older = place.min(*newest);
         self.held[older].hidden = true;
         *newest = place.max(*newest);
@@ -123,6 +124,7 @@ impl Buffer {
             self.shared = None;
             self.index();
         }
+        // The search by pixels is slow, so it runs only after many regions have come.
         if self.held.len() > self.search_above {
             self.forget_covered(width, height);
             self.search_above = FEW.max(2 * self.held.len());

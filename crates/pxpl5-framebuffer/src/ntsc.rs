@@ -115,6 +115,7 @@ impl Display for NtscDisplay {
     fn seen(&self, surface: usize, period: PeriodNumber) -> Option<RgbImage> {
         let board = self.boards.get(surface)?;
         let now = board.seen(period)?;
+        // The picture has the lines of this field and of the field before.
         let before = period.before(1).and_then(|field| board.seen(field));
         Some(now.interlaced_with(before.as_ref().unwrap_or(&now)))
     }
@@ -123,6 +124,7 @@ impl Display for NtscDisplay {
         let board = self.boards.get(surface)?;
         let now = self.video.field_at(time);
         board.seen(now)?;
+        // A screen shows parts of up to three fields.
         let oldest = now.before(2).unwrap_or(PeriodNumber::FIRST);
         let fields: Vec<SeenField> = oldest.until(now.next()).filter_map(|field| board.seen(field)).collect();
         Some(seen_at(&self.video, time, &fields))

@@ -9,8 +9,8 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{CopyTarget, FieldParity, PeriodNumber};
 use std::cell::LazyCell;
 
-/// One field as it was scanned. Its pixels are computed when they are read. It is cheap to clone and independent of
-/// later events.
+/// One field as it was scanned. Its pixels are computed when they are read. A field is cheap to clone and independent
+/// of later events.
 #[derive(Clone, Debug)]
 pub struct SeenField {
     pub(crate) field: PeriodNumber,
@@ -95,10 +95,12 @@ impl SeenField {
         for region in self.regions.iter().rev() {
             let pixels = LazyCell::new(|| region.image.pixels());
             for segment in region.segments(self.word) {
+                // A field scans every second line only.
                 let Some(scanned_at) = self.video.when(segment.x, segment.y, self.field) else {
                     continue;
                 };
                 let row = canvas.row([segment.x, row_of(segment.y)], segment.length);
+                // If the last word was in time, all words of the segment were.
                 if segment.message_at <= scanned_at {
                     row.put(&pixels, &segment);
                 } else {

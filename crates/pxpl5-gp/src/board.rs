@@ -173,14 +173,17 @@ impl GpBoard {
             let shared = &mut *self.shared.borrow_mut();
             shared.cpu.settle(shared.now);
         }
+        // Work may have ended at this instant; then run the programs as far as they go.
         self.poll_until_quiet();
         let mut shared = self.shared.borrow_mut();
         if let Some(batch) = shared.next_batch() {
+            // All messages of a chain go to the board's ring port at once.
             for (place, ChainLink { message, hold }) in (0..).zip(batch.links) {
                 let ticket = batch.ticket.0 << PLACE_BITS | place;
                 context.output(context.now() + self.cycle, GpOutput::Send { message, ticket, hold });
             }
         }
+        // A program may have begun new work.
         let end = shared.cpu.next_end();
         drop(shared);
         self.announce(end, context);
@@ -209,6 +212,7 @@ impl GpBoard {
     fn poll_until_quiet(&mut self) {
         let mut task_context = TaskContext::from_waker(Waker::noop());
         let mut quiet = 0;
+        // Stop after a full round without progress.
         for place in (0..self.tasks.len()).cycle() {
             let before = self.shared.borrow().progress;
             self.poll(place, &mut task_context);
@@ -228,6 +232,7 @@ impl GpBoard {
         }
         if let Poll::Ready(result) = task.firmware.as_mut().poll(context) {
             task.has_ended = true;
+            // The first fault of a board is the one that it reports.
             self.fault = self.fault.take().or(result.err());
         }
     }

@@ -14,7 +14,7 @@ use std::pin::Pin;
 use std::rc::Rc;
 use std::task::Poll;
 
-/// A program on a board. It ends only with a fault.
+/// A program on a board, which ends only with a fault.
 /// A program must wait for one future at a time. If it polls several futures side by side, the board knows only the
 /// last wait.
 pub type Firmware = Pin<Box<dyn Future<Output = Result<(), Fault>>>>;
@@ -157,6 +157,7 @@ impl Shared {
     /// does not matter.
     pub(crate) fn latch(&mut self, Message { source, body, .. }: Message) -> Cause {
         let arrived = self.now;
+        // Insert after all messages of earlier instants and lower senders.
         let before = self.inbox.iter().rposition(|other| (other.arrived, other.source) <= (arrived, source));
         self.inbox.insert(before.map_or(0, |place| place + 1), Received { arrived, source, body });
         Cause::Arrival
@@ -189,6 +190,7 @@ impl Shared {
     /// Returns the next batch if the DMA is free, and records its receivers.
     pub(crate) fn next_batch(&mut self) -> Option<Batch> {
         let batch = if self.in_flight.is_empty() { self.batches.pop_front() } else { None }?;
+        // All messages of the batch now wait for their acceptance.
         self.in_flight.extend((0..).zip(batch.links.iter().map(|link| link.message.destination)));
         self.not_begun.clear();
         self.not_begun.extend(self.in_flight.iter().map(|flight| flight.1));
@@ -242,8 +244,8 @@ impl Gp {
         self.shared.borrow().field
     }
 
-    /// Returns the value of another board's status line, for example the number of swaps of a frame buffer. It is zero
-    /// before its first change.
+    /// Returns the value of another board's status line, for example the number of swaps of a frame buffer. The value
+    /// is zero before its first change.
     #[must_use]
     pub fn status(&self, from: NodeId) -> u64 {
         self.shared.borrow().status.iter().find(|status| status.0 == from).map_or(0, |status| status.1)

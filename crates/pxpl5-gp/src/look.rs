@@ -52,6 +52,7 @@ impl GpLook {
             waits_for: shared.waits[priority as usize].what,
             work_left: shared.cpu.left(priority, now).filter(|left| *left > Span::ZERO),
         };
+        // Acceptances come in any order, so restore the order of the chain.
         let mut unaccepted = shared.in_flight.clone();
         unaccepted.sort_unstable_by_key(|flight| flight.0);
         Self {

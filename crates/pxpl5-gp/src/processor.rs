@@ -317,10 +317,12 @@ impl Processor {
     ) -> Result<Span, ProcessorFault> {
         let gp = self.gp;
         self.load(program)?;
+        // The program must be in memory before its label is called.
         let start = program.symbol(entry).ok_or_else(|| ProcessorFault::NoEntry { gp, label: entry.to_owned() })?;
         let begin = self.cpu.clocks();
         let state = &mut self.cpu.state;
         state.pc = start;
+        // A return to this address ends the run.
         state.r[LINK] = RETURN;
         for (number, value) in registers {
             state.r[*number] = *value;
@@ -354,6 +356,7 @@ impl Processor {
         let last = self.cpu.instructions().saturating_add(budget);
         loop {
             let address = self.cpu.state.pc;
+            // Record the state before the instruction executes.
             if self.breakpoints.contains(&address) && self.hits.len() < KEPT_HITS {
                 let into_call = Self::CLOCK * (self.cpu.clocks() - begin);
                 let state = Box::new(self.cpu.state.clone());

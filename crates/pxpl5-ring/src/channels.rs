@@ -90,6 +90,7 @@ impl RingChannels {
     pub(crate) fn end_at(&mut self, channel: usize, at: Time) {
         let before = std::mem::replace(&mut self.ends_at[channel], at);
         debug_assert_eq!(before, UNKNOWN, "an end that is known stays");
+        // Keep the list sorted, with the earliest end last.
         let earlier = self.due.iter().rev().take_while(|end| end.0 < at).count();
         self.due.insert(self.due.len() - earlier, (at, channel));
     }

@@ -121,6 +121,7 @@ impl Ring {
 
     fn arbitrate(&mut self, context: &mut RingContext) {
         let now = context.now();
+        // Arbitrations up to this instant are done.
         self.arbitrations.retain(|at| *at > now);
         self.settle(now);
         self.grant_all(now, context);
@@ -169,7 +170,7 @@ impl Ring {
         &self.refusals
     }
 
-    /// Returns the number of occupied channels. It is up to date after each event of a ring that is
+    /// Returns the number of occupied channels. The number is up to date after each event of a ring that is
     /// [watched](Ring::watch).
     #[must_use]
     pub fn busy_channels(&self) -> u32 {
@@ -258,6 +259,7 @@ impl Ring {
 
     /// Schedules an arbitration at the next end of a message that matters to a waiting head or to a watched ring.
     fn arbitrate_at_next_end(&mut self, context: &mut RingContext) {
+        // A source at its limit or a missing channel makes every end matter.
         let any_end = self.watched || self.at_limit > 0;
         let next = if any_end || self.lacks_channel() {
             self.channels.first_end()
@@ -294,8 +296,10 @@ impl Ring {
     fn add_head(&mut self, since: Time, source: NodeId) {
         let Some(first) = self.sources[usize::from(source.0)].queue.front() else { return };
         let head = QueueHead { since, source, destination: first.request.message.destination };
+        // Heads stay sorted by the time as head, then by source.
         let later = self.heads.iter().rev().take_while(|&&h| h > head).count();
         self.heads.insert(self.heads.len() - later, head);
+        // Count the head at its destination, so that the end of a message there grants it.
         let destination = &mut self.destinations[usize::from(head.destination.0)];
         destination.heads += 1;
         self.heads_to_fifos += u32::from(!destination.elastic);
@@ -314,6 +318,7 @@ impl Ring {
         let lacked_channel = self.lacks_channel();
         while let Some((channel, ended, flight)) = self.channels.take_ended(now) {
             let destination = &mut self.destinations[usize::from(flight.destination.0)];
+            // Free the destination, and keep it reserved if the message was held.
             destination.release(&flight);
             self.unblocked |= lacked_channel || destination.heads > 0;
             self.to_fifos -= u64::from(!destination.elastic);
@@ -365,6 +370,7 @@ impl Ring {
         let port = &mut self.sources[usize::from(source.0)];
         let Some(QueuedRequest { at, request }) = port.queue.pop_front() else { return };
         port.in_flight += 1;
+        // Account for the time in the queue.
         let waited = now.since(at);
         self.stats.waiting += waited;
         self.stats.longest_wait = self.stats.longest_wait.max(waited);
@@ -422,10 +428,12 @@ impl Ring {
     /// elastic receiver gets the message after the last.
     fn move_word(&mut self, channel: usize, context: &mut RingContext) {
         let Some(mut flight) = self.channels.take_slot(channel) else { return };
+        // The next word slot follows at once.
         if flight.slots_left > 0 {
             context.schedule(context.now() + self.word, Phase::Arrive, RingEvent::Slot { channel });
         }
         let elastic = self.is_elastic(flight.destination);
+        // Elastic receivers get the message after its last word, others its announcement after the first slot.
         let message = if flight.slots_left == 0 || !elastic { flight.message.take() } else { None };
         match message {
             Some(message) if elastic => {
@@ -459,6 +467,7 @@ impl Ring {
             return self.refusals.record(now, error);
         };
         // The channel is occupied for a stall too, but never ends before now.
+        // An answer cannot be earlier than the words without a stall.
         let earliest = flight.granted + self.timing.occupancy(flight.words) + flight.latency;
         let accepted = last_word_at.max(earliest);
         let end = now.max(Time(accepted.0 - flight.latency.0));

@@ -56,6 +56,7 @@ impl<E, O> Context<E, O> {
     /// one.
     #[inline]
     pub fn each_event(&mut self, mut take: impl FnMut(Time, Phase, E)) {
+        // The usual case of one event needs no iterator.
         if self.own.len() > 1 {
             return self.own.drain(..).for_each(|(time, phase, event)| take(time, phase, event));
         }
@@ -124,6 +125,7 @@ impl<E, O> TestBench<E, O> {
                 break;
             };
             handle(event, self.context.at(now));
+            // Events that the device scheduled for itself go into the queue.
             for (time, phase, event) in self.context.drain_events() {
                 self.queue.schedule(time, phase, event);
             }

@@ -105,9 +105,11 @@ impl<E> EventQueue<E> {
     }
 
     fn enter(&mut self, due: Due) {
+        // Events later than the first one of the heap go into the heap.
         if self.heap.peek().is_some_and(|first| first.key() < due.key()) {
             return self.heap.push(due);
         }
+        // Earlier events go into the sorted list, whose latest event moves to the heap if the list is full.
         let sooner = self.near.iter().rev().take_while(|near| near.key() < due.key()).count();
         self.near.insert(self.near.len() - sooner, due);
         if self.near.len() > NEAR {
@@ -131,6 +133,7 @@ impl<E> EventQueue<E> {
     }
 
     fn keep(&mut self, event: E) -> u32 {
+        // Reuse the slot of a taken event.
         if let Some(slot) = self.free.pop() {
             self.events[slot as usize] = Some(event);
             return slot;

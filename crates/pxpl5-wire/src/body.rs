@@ -162,7 +162,7 @@ pub trait CommandWords: Debug + Send + Sync {
     /// Appends the words of a part (one message) to `out`. Every call appends the same words.
     fn append_words(&self, part: u32, out: &mut Vec<Word>);
 
-    /// Passes the same commands to `out`; it may leave out primitives that touch no pixel of their region.
+    /// Passes the commands of a part to `out`, possibly without primitives that touch no pixel of their region.
     /// Returns true if a primitive is among the commands. `out` receives whole commands; each command that draws sets
     /// Enable first.
     fn append_touching(&self, part: u32, out: &mut dyn CommandSink) -> bool {
