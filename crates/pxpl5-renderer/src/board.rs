@@ -65,9 +65,9 @@ pub struct RendererStats {
     pub illegal_commands: u64,
 }
 
-/// One renderer board: FIFO and controller in simulated time, and the pixels of its regions as [`PixelJob`]s.
+/// One renderer board: FIFO and controller in simulated time, and the pixels of its regions as pixel jobs.
 ///
-/// A [`PixelJob`] computes its pixels only when they are read.
+/// A pixel job computes its pixels only when they are read.
 #[derive(Debug)]
 pub struct Renderer {
     node: NodeId,
