@@ -365,8 +365,8 @@ fn check_memory(name: &str, found: usize, file_bytes: usize) -> Result<(), LoadE
     if found <= expected { Ok(()) } else { Err(LoadError::TooMuchMemory { file: name.to_owned(), expected, found }) }
 }
 
-/// Most bytes of a table of vertices for each vertex. A slot takes five bytes, and between 7/16 and 7/8 of the slots
-/// are used. The table needs half as much again while it grows.
+/// Greatest number of bytes per vertex in a table of vertices. A slot takes five bytes, and between 7/16 and 7/8 of the
+/// slots are used. The table needs half as much again while it grows.
 const TABLE_BYTES: usize = 17;
 
 /// Keeps the items whose `keep` is true, and frees the rest of the memory. An empty list stays empty.

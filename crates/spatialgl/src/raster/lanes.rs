@@ -15,7 +15,7 @@ const LANES: usize = 8;
 /// A value for each pixel of a vector.
 type EachLane = [f64; LANES];
 
-/// Greatest number of pixels in the bounds of a triangle for which all rows are treated as one sequence.
+/// Greatest number of pixels in a triangle's bounds at which all rows are drawn as one sequence of pixels.
 const SMALL: u32 = 64;
 
 /// Least width in pixels for which the range of each row is computed before its pixels.

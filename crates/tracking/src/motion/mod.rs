@@ -36,7 +36,7 @@ use crate::time::{PS_PER_S, span_s};
 /// 10^8.
 const HALF_STEP_PS: u64 = 50_000_000;
 
-/// Interval of the poses that the default [`Motion::identify`] writes; `SAMPLES` is the number of poses.
+/// Time between the poses that the default [`Motion::identify`] writes, and their number.
 const SAMPLE_PS: u64 = PS_PER_S / 8;
 const SAMPLES: u64 = 512;
 

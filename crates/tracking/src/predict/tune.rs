@@ -39,7 +39,7 @@ pub struct Training {
     pub interval_ps: u64,
     /// True if another motion of the same kind was used, false if the motion itself was used.
     pub sibling: bool,
-    /// Length of the motion, seconds. The first second at most is not evaluated.
+    /// Length of the training motion, seconds. At most the first second is not evaluated.
     pub seconds: f64,
     /// Number of reports whose predictions were evaluated.
     pub reports: u64,
