@@ -109,6 +109,7 @@ fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
 impl<'a> Reader<'a> {
     fn new(source: &'a Source<'a>) -> Result<Self, LoadError> {
         let counts = Counts::of(source);
+        // Reserve the lists at their final lengths.
         let mut model = Model::new(Places::Double(Vec::new()));
         model.places.reserve_exact(counts.points);
         model.normals.reserve_exact(counts.normals);

@@ -311,6 +311,7 @@ impl<'a> Rows<'a> {
     ) -> Result<u32, LoadError> {
         let point = self.corner(at, row, n, mesh)?;
         let Some([red, green, blue]) = colour else { return Ok(point) };
+        // A point with several colours becomes several vertices.
         mesh.detail = Detail::Colour;
         Ok(self.coloured.of(&mut mesh.corners, (point, u32::from_le_bytes([red, green, blue, 0]))))
     }

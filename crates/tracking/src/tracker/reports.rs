@@ -119,6 +119,7 @@ impl<M: Motion> Reports<M> {
     fn is_lost(&mut self, solution: u64, sync_ps: u64) -> bool {
         for (i, fault) in self.model.config().faults.iter().enumerate() {
             match *fault {
+                // Skip the whole interval at once.
                 TrackerFault::Dropout { from_ps, to_ps } if (from_ps..to_ps).contains(&sync_ps) => {
                     self.next_solution = self.model.solution_at(to_ps);
                     return true;
