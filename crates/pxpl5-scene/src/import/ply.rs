@@ -66,7 +66,7 @@ struct Rows<'a> {
     text: &'a str,
     /// Greatest number of items in a list. Faces and strips never need longer lists for this number of vertices.
     longest_list: usize,
-    /// Number of normals in the file that are NaN, and the position of the first.
+    /// Number of normals in the file that are NaN, and the position of the first such normal.
     not_numbers: Option<(usize, FilePlace)>,
     /// True if the colours of faces are ignored because vertices have colours too.
     has_both_colours: bool,
