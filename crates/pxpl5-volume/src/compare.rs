@@ -228,6 +228,7 @@ impl VolumeComparison {
             let Some((_, of)) = exact.iter().find(|(projection, _)| *projection == row.variant.projection) else {
                 continue;
             };
+            // Rings that the exact clip leaves dark have no ratio.
             let ratio = |(own, exact): (&u64, &u64)| (*exact > 0).then(|| *own as f64 / *exact as f64);
             row.brightness_over_exact = row.brightness_by_radius.iter().zip(of).map(ratio).collect();
         }

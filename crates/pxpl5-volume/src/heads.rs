@@ -142,6 +142,7 @@ impl<'a> HeadBefore<'a> {
             expected: "0 to 10000 ms (--latency; Pixel-Planes 5 has none of its own here)".to_owned(),
             found,
         };
+        // The default is the latency of the volume itself.
         let latency_ms = latency_ms.or_else(|| volume.latency_ms()).ok_or_else(|| wrong("none".to_owned()))?;
         if !(0.0..=10_000.0).contains(&latency_ms) {
             return Err(wrong(latency_ms.to_string()));
@@ -206,6 +207,7 @@ impl<'a> HeadBefore<'a> {
         if instants < 2 {
             return Err(wrong("instants", "2 or more", instants.to_string()));
         }
+        // The first instant must have a picture, which is drawn one latency earlier.
         let step = seconds * PS_PER_S / f64::from(instants - 1);
         Ok((0..instants).map(|i| self.latency_ps + (f64::from(i) * step) as u64).collect())
     }

@@ -77,6 +77,7 @@ fn drop_pieces(surface: &mut Surface<'_>, wanted: usize) {
     let pieces = surface.pieces();
     let areas: Vec<f64> = pieces.iter().map(|piece| piece.iter().map(|&t| area(surface, t)).sum()).collect();
     let order = smallest_first(&areas);
+    // The largest piece always stays.
     for index in order.into_iter().take(pieces.len() - 1) {
         if surface.left <= wanted {
             return;

@@ -32,6 +32,7 @@ pub fn load_placed(path: impl AsRef<Path>, placement: Placement) -> Result<Scene
         return Err(not_a_model(path, file));
     };
     let metadata = fs::metadata(path).map_err(|source| LoadError::Io { file: file.clone(), source })?;
+    // Reading a device or a pipe might never end.
     let kind = metadata.file_type();
     if !kind.is_file() {
         let found = if kind.is_dir() { "a directory" } else { "a device or a pipe" };

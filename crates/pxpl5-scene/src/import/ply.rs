@@ -66,7 +66,7 @@ struct Rows<'a> {
     text: &'a str,
     /// Greatest number of items in a list. Faces and strips never need longer lists for this number of vertices.
     longest_list: usize,
-    /// Number of normals in the file that are NaN, and the position of the first.
+    /// Number of normals in the file that are NaN, and the position of the first such normal.
     not_numbers: Option<(usize, FilePlace)>,
     /// True if the colours of faces are ignored because vertices have colours too.
     has_both_colours: bool,
@@ -311,6 +311,7 @@ impl<'a> Rows<'a> {
     ) -> Result<u32, LoadError> {
         let point = self.corner(at, row, n, mesh)?;
         let Some([red, green, blue]) = colour else { return Ok(point) };
+        // A point with several colours becomes several vertices.
         mesh.detail = Detail::Colour;
         Ok(self.coloured.of(&mut mesh.corners, (point, u32::from_le_bytes([red, green, blue, 0]))))
     }

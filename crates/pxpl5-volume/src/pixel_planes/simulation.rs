@@ -341,6 +341,7 @@ impl<'a> Machine<'a> {
         for (time, phase, event) in self.renderer_context.drain_events() {
             self.queue.schedule(time, phase, Event::Renderer(board, event));
         }
+        // Collect the outputs first, because sending tiles needs the whole machine.
         let outputs: Vec<_> = self.renderer_context.drain_outputs().collect();
         for (time, output) in outputs {
             match output {
@@ -360,6 +361,7 @@ impl<'a> Machine<'a> {
         let slice = pixels.target.picture.0 as usize;
         let region = usize::from(pixels.target.region.0);
         let tiles: Vec<Arc<[Word]>> = self.traffic.slices[slice].tiles[region].clone();
+        // The last tile has the ticket, so the renderer learns when its region has left.
         let last = tiles.len().saturating_sub(1);
         for (i, words) in tiles.into_iter().enumerate() {
             let body = Body::Words(words);

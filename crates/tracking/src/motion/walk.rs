@@ -41,6 +41,7 @@ impl Walk {
             SettingError::check("coordinate of the path", coordinate, -1e6, 1e6)?;
         }
         SettingError::check("corners of the path", corners.len() as f64, 2.0, 1e6)?;
+        // Sum up the legs, including the leg from the last corner back to the first.
         let mut ways = vec![0.0];
         for (i, corner) in corners.iter().enumerate() {
             let leg = corner.distance(corners[(i + 1) % corners.len()]);

@@ -119,6 +119,7 @@ impl PredictorConfig {
             kind,
             position_baseline: filter.baseline as u32,
             orientation_baseline: filter.baseline as u32,
+            // A tracker without noise would make the covariance singular.
             position_noise_m: tracker.position_noise_m.max(LEAST_NOISE_M),
             orientation_noise_deg: tracker.orientation_noise_deg.max(LEAST_NOISE_DEG),
             position_jerk: filter.position_jerk,

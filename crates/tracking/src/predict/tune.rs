@@ -126,6 +126,7 @@ struct Lesson {
 impl Lesson {
     /// Collects the training data of a motion behind a tracker, or returns `None` if no report can be evaluated.
     fn of<M: Motion + ?Sized>(motion: &M, tracker: &TrackerModel, interval_ps: u64, seed: u64) -> Option<Self> {
+        // A head that stands still at its end teaches the filter nothing.
         let until_ps = motion.moves_until_ps().unwrap_or(u64::MAX).min(TRAINING_S * PS_PER_S);
         let settling_ps = (SETTLING_S * PS_PER_S).min(until_ps / 2);
         let in_time = |report: &TrackerReport| report.measured_ps.saturating_add(interval_ps) <= until_ps;
@@ -156,6 +157,7 @@ impl Lesson {
         let mut predictor = config.build()?;
         let mut sums = [0.0; 2];
         for (i, (report, truth)) in self.reports.iter().zip(&self.truths).enumerate() {
+            // The filter sees every report, but its first predictions are not evaluated.
             predictor.observe(report);
             if i >= self.settled {
                 let predicted = predictor.predict(report.measured_ps + self.interval_ps);
@@ -228,6 +230,7 @@ fn rates<M: Motion + ?Sized>(motion: &M, reports: &[TrackerReport]) -> [f64; 4] 
         |report: &TrackerReport| (motion.velocity(report.measured_ps), motion.angular_velocity(report.measured_ps));
     let mut squares = [0.0; 4];
     for pair in reports.windows(2) {
+        // Accelerations are differences of the velocities at successive reports.
         let dt_s = span_s(pair[0].measured_ps, pair[1].measured_ps);
         let before = at(&pair[0]);
         let after = at(&pair[1]);

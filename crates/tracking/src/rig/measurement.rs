@@ -53,6 +53,7 @@ impl Latency {
         let spans: Vec<f64> = passes.iter().map(span).map(|(from, to)| span_s(from, to)).collect();
         let n = spans.len();
         let mean_s = spans.iter().sum::<f64>() / n as f64;
+        // One pass has no deviation: the division gives NaN.
         let variance = spans.iter().map(|s| (s - mean_s) * (s - mean_s)).sum::<f64>() / (n as f64 - 1.0);
         Self {
             n,
