@@ -23,7 +23,7 @@ fn scene_of(name: &str, triangles: usize) -> Scene {
 fn tracked(experiment: Experiment) -> Experiment {
     let motion = Arc::new(Synthetic::recorded_use(3));
     let head = Head::new(motion, TrackerConfig::fastrak(), PredictorKind::Kalman, 1).expect("in range");
-    experiment.head(head).summed_by(Some(HeadSum::begin))
+    experiment.head(head).observed_by(Some(HeadSum::begin))
 }
 
 /// Returns experiments with the number of fields of a short run. A long run has twenty times as many fields.

@@ -8,8 +8,8 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use pxpl5::{
-    Experiment, Level, MachineConfig, NtscDisplay, PeriodNumber, Pixels, RenderingControl, Saving, Slats, Workstation,
-    scene, scene::Scene,
+    Experiment, Level, MachineConfig, NtscDisplay, Optimization, PeriodNumber, Pixels, RenderingControl, Slats,
+    Workstation, scene, scene::Scene,
 };
 use std::hint::black_box;
 
@@ -29,16 +29,16 @@ fn experiments() -> [(&'static str, Experiment); 3] {
 }
 
 /// Returns a number of fields that is large enough to show a picture and small enough for the slowest run.
-const fn fields(saving: Saving) -> u64 {
-    if matches!(saving, Saving::IdleBoards) { 2 } else { 20 }
+const fn fields(saving: Optimization) -> u64 {
+    if matches!(saving, Optimization::IdleBoards) { 2 } else { 20 }
 }
 
 /// Measures every optimization. An element is a field.
 fn savings(criterion: &mut Criterion) {
     for (name, experiment) in experiments() {
-        for saving in Saving::ALL {
-            let pixels = if saving == Saving::EmptyRegions { Pixels::All } else { Pixels::Off };
-            let level = if saving == Saving::RepeatedCode { Level::Cycle } else { Level::Transaction };
+        for saving in Optimization::ALL {
+            let pixels = if saving == Optimization::EmptyRegions { Pixels::All } else { Pixels::Off };
+            let level = if saving == Optimization::RepeatedCode { Level::Cycle } else { Level::Transaction };
             let with = experiment.clone().pixels(pixels).level(level).host(Workstation::with_threads(1));
             let mut group = criterion.benchmark_group(format!("savings/{name}/{saving}"));
             group.throughput(Throughput::Elements(fields(saving)));

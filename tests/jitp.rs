@@ -58,7 +58,7 @@ fn under_a_pan(viewpoint: Viewpoint, racing: bool) -> Outcome {
 /// Returns a run in which a field is drawn for one instant as in the paper: for its first pixel.
 fn conventional() -> Outcome {
     let jitp = Jitp { strip_rows: 1, ..Jitp::new(Viewpoint::Field, true) };
-    run(jitp, perfect(Pan::at(PAN)).aiming(Aim::FirstPixel), FIELD.0 + 2)
+    run(jitp, perfect(Pan::at(PAN)).with_aim(Aim::FirstPixel), FIELD.0 + 2)
 }
 
 /// Returns the seconds between the beam's passes over two pixels of a field.

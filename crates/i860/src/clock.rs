@@ -145,14 +145,14 @@ impl Clock {
     /// Counts the clocks of the executed part of a block.
     #[inline]
     pub(crate) fn pass<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &Accesses, bus: &B) {
-        if !(accesses.all_held && self.repeat_all(block, execution)) {
-            self.pass_slowly(block, execution, accesses, bus);
+        if !(accesses.all_held && self.reuse_block_clocks(block, execution)) {
+            self.count_block(block, execution, accesses, bus);
         }
     }
 
     /// Counts the clocks of a block whose accesses or runs are not all remembered.
     #[inline(never)]
-    fn pass_slowly<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &Accesses, bus: &B) {
+    fn count_block<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &Accesses, bus: &B) {
         if !self.on {
             self.common.profile.instructions += block.instructions_of(execution);
         } else if !self.repeats() {
@@ -202,7 +202,7 @@ impl Clock {
     #[inline]
     pub(crate) fn end<B: Bus>(&mut self, unit: &Unit, taken: bool, accesses: &mut std::slice::Iter<'_, u32>, bus: &B) {
         let core = unit.core();
-        if core.is_told() {
+        if core.affects_clock() {
             match core.instruction.op {
                 op if core.is_branch() => self.end_of_branch(op, taken),
                 Op::StC => self.common.charge(Freeze::ControlStore),
@@ -303,13 +303,13 @@ impl Clock {
         self.translation.translate(address, &mut self.common);
         let transfer = self.data.load(address, size, &mut self.stores, &mut self.common, bus)?;
         // Some instructions wait for the first word of the miss, others for its last.
-        self.hold_up(hazard::TRANSFER_IN_MISS, transfer.first, Freeze::TransferDuringMiss);
-        self.hold_up(hazard::ACCESS_IN_MISS, transfer.last, Freeze::AccessDuringMiss);
+        self.delay_hazard(hazard::TRANSFER_IN_MISS, transfer.first, Freeze::TransferDuringMiss);
+        self.delay_hazard(hazard::ACCESS_IN_MISS, transfer.last, Freeze::AccessDuringMiss);
         Some(transfer)
     }
 
     /// Makes instructions of a hazard class wait until clock `until` of a running miss, if the freeze row applies.
-    fn hold_up(&mut self, hazard: u16, until: u64, why: Freeze) {
+    fn delay_hazard(&mut self, hazard: u16, until: u64, why: Freeze) {
         if self.common.costs.applies(why) {
             self.board.set_hazard_until(hazard, until + self.common.costs.clocks(why), why);
         }

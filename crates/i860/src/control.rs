@@ -21,7 +21,7 @@ fn delayed(taken: bool, target: u32) -> Flow {
 
 /// Returns the address after a branch's delay slot. The slot is a pair if the code after the branch is in
 /// dual-instruction mode.
-fn behind_slot(unit: &Unit) -> u32 {
+fn after_slot_address(unit: &Unit) -> u32 {
     unit.core_pc().wrapping_add(if unit.after.is_dual() { 12 } else { 8 })
 }
 
@@ -78,7 +78,7 @@ impl Cpu {
     fn call_indirect(&mut self, i: &Instruction, unit: &Unit) -> Flow {
         let target = self.state.r(i.src1);
         // r1 may be the target register, so the target was read first.
-        self.state.set_r(1, behind_slot(unit));
+        self.state.set_r(1, after_slot_address(unit));
         Flow::Delayed(target & !3)
     }
 
@@ -91,7 +91,7 @@ impl Cpu {
         match i.op {
             Op::Br => Flow::Delayed(target),
             Op::Call => {
-                self.state.set_r(1, behind_slot(unit));
+                self.state.set_r(1, after_slot_address(unit));
                 Flow::Delayed(target)
             }
             Op::Bri => self.branch_indirect(i),

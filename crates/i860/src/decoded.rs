@@ -98,7 +98,7 @@ impl Decoded {
     /// Returns true if the instruction accesses data, branches or is `st.c`. Only these cost clocks that depend on
     /// their execution.
     #[inline]
-    pub(crate) fn is_told(&self) -> bool {
+    pub(crate) fn affects_clock(&self) -> bool {
         self.marks & (mark::ACCESSES | mark::BRANCH) != 0
     }
 

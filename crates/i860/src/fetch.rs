@@ -4,7 +4,7 @@ use crate::block::Block;
 use crate::bus::Bus;
 use crate::cache::InstructionTags;
 use crate::common::Common;
-use crate::memo::Filling;
+use crate::memo::ArrivingLine;
 use crate::timing::{ChipSizes, Freeze};
 use crate::translation::Translation;
 
@@ -56,9 +56,9 @@ impl Fetch {
 
     /// Returns the rest of the instruction line that is arriving.
     #[inline]
-    pub(crate) fn filling(&self, common: &Common) -> Filling {
+    pub(crate) fn filling(&self, common: &Common) -> ArrivingLine {
         let clocks = common.instruction_fill_end.saturating_sub(common.now);
-        Filling { clocks, first: if clocks == 0 { 0 } else { self.first } }
+        ArrivingLine { clocks, first: if clocks == 0 { 0 } else { self.first } }
     }
 
     /// Continues the numbering of cache states after `latest`, so that states of different processors have different
@@ -87,11 +87,11 @@ impl Fetch {
     #[inline]
     pub(crate) fn fetch<B: Bus>(&mut self, pc: u32, translation: &mut Translation, common: &mut Common, bus: &B) {
         if pc / LINE_BYTES != self.line || common.is_filling() {
-            self.fetch_slowly(pc, translation, common, bus);
+            self.fetch_new_line(pc, translation, common, bus);
         }
     }
 
-    fn fetch_slowly<B: Bus>(&mut self, pc: u32, translation: &mut Translation, common: &mut Common, bus: &B) {
+    fn fetch_new_line<B: Bus>(&mut self, pc: u32, translation: &mut Translation, common: &mut Common, bus: &B) {
         if !common.costs.applies(Freeze::InstructionMiss) {
             return;
         }

@@ -89,7 +89,7 @@ impl Cpu {
             Op::Fnop => {}
             Op::DualOp => self.dual_operation(i, from),
             Op::Fmul => self.multiply(i, from),
-            Op::Fmul3 => self.multiply_through_three_stages(i, from),
+            Op::Fmul3 => self.multiply_three_stages(i, from),
             Op::Fadd => self.add(i, Operation::Add, from),
             Op::Fsub => self.add(i, Operation::Subtract, from),
             Op::Pfgt | Op::Pfle | Op::Pfeq => self.compare(i, from),
@@ -120,7 +120,7 @@ impl Cpu {
         }
     }
 
-    fn multiply_through_three_stages(&mut self, i: &Instruction, from: Operands) {
+    fn multiply_three_stages(&mut self, i: &Instruction, from: Operands) {
         let bits = self.double(Operation::Multiply, from);
         let leaving = push(&mut self.state.multiplier, 2, PipeStage { bits, double: true });
         self.state.set_f(i.dest, leaving);

@@ -117,7 +117,7 @@ impl Cpu {
 
     /// Applies a write of the directory base to caches and translation, after its own time was counted.
     #[cold]
-    pub(crate) fn obey_directory_base(&mut self, value: u32) {
+    pub(crate) fn apply_directory_base(&mut self, value: u32) {
         if value & dirbase::ITI != 0 {
             self.code_changed = true;
             self.time.invalidate_instruction_cache();

@@ -76,7 +76,7 @@
 //! larger than the caches. `crates/pphigs/tests/memo.rs` checks the triangle kernels with every row switched. The
 //! benchmarks of `crates/pphigs` measure the gain for these kernels.
 //!
-//! A [`Shelf`] keeps decoded programs and their clocks for all processors that run them. Profiles by address
+//! A [`DecodedPrograms`] keeps decoded programs and their clocks for all processors that run them. Profiles by address
 //! ([`Cpu::watch`]) and address translation always count every instruction.
 //!
 //! # Conformance
@@ -160,7 +160,7 @@ pub use instruction::{Flags, Instruction, Op};
 pub use mnemonic::mnemonic;
 pub use profile::{AddressProfile, Profile};
 pub use seed::SeedTable;
-pub use shelf::Shelf;
+pub use shelf::DecodedPrograms;
 pub use state::State;
 pub use timing::{CHIP_PATH, Config};
 pub use trap::{RunEnd, Trap, TrapCause};

@@ -45,7 +45,7 @@ impl Clock {
     /// Reuses the clocks of a block whose accesses all hit. Returns false if its code is not in the cache, or if it is
     /// not remembered as one run.
     #[inline]
-    pub(crate) fn repeat_all(&mut self, block: &mut Block, execution: Execution) -> bool {
+    pub(crate) fn reuse_block_clocks(&mut self, block: &mut Block, execution: Execution) -> bool {
         let Some(entry) = self.memo.as_ref().and_then(Memo::present) else { return false };
         if !self.holds(block) {
             return false;
@@ -130,14 +130,14 @@ impl Clock {
         // The access that ended the run leaves the cache and is counted.
         if missing.is_some() {
             let address = course.accesses[course.accessed];
-            self.go_past(&block.accessing[course.accessed], address, bus);
+            self.count_cache_exit(&block.accessing[course.accessed], address, bus);
             course.accessed += 1;
         }
     }
 
     /// Counts an access that leaves the cache.
     #[inline]
-    fn go_past<B: Bus>(&mut self, unit: &AccessingUnit, address: u32, bus: &B) {
+    fn count_cache_exit<B: Bus>(&mut self, unit: &AccessingUnit, address: u32, bus: &B) {
         if !unit.is_store {
             self.write_board();
             return self.access(unit.access, address, bus);

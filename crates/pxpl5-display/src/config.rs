@@ -52,11 +52,11 @@ pub trait DisplayConfig: Any + Debug + Send + Sync {
 
     /// Sets the background colour 0x00RRGGBB of places where nothing is drawn. Displays whose pictures contain their
     /// own background ignore it.
-    fn show_behind_all(&mut self, _background: u32) {}
+    fn set_background(&mut self, _background: u32) {}
 
     /// Returns true if the display shows faces of a cube around the head, with depth, instead of pictures of an eye's
     /// view.
-    fn takes_faces(&self) -> bool {
+    fn shows_cube_faces(&self) -> bool {
         false
     }
 

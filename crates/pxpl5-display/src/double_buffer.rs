@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 /// A region, complete or not, with the messages that have arrived.
 #[derive(Clone, Debug)]
-struct Arriving {
+struct PartialRegion {
     pixels: RegionPixels,
     /// Left, top, width and height on the surface.
     rectangle: [u32; 4],
@@ -16,13 +16,13 @@ struct Arriving {
     first_part_at: Time,
 }
 
-impl Arriving {
+impl PartialRegion {
     const fn is_complete(&self) -> bool {
         self.arrived.count_ones() == self.pixels.parts
     }
 }
 
-type Regions = BTreeMap<RegionId, Arriving>;
+type Regions = BTreeMap<RegionId, PartialRegion>;
 
 /// Two buffers for one surface, of which one is shown.
 ///
@@ -105,7 +105,7 @@ impl DoubleBuffer {
         }
         let buffer = self.buffers.get_mut(usize::from(target.buffer)).ok_or_else(|| no_such_buffer(target.buffer))?;
         // The first message of a new copy replaces the old region.
-        let fresh = Arriving { pixels, rectangle, arrived: 0, first_part_at: now };
+        let fresh = PartialRegion { pixels, rectangle, arrived: 0, first_part_at: now };
         let region = buffer.entry(target.region).or_insert_with(|| fresh.clone());
         if region.pixels.target != target || region.is_complete() {
             *region = fresh;

@@ -2,7 +2,7 @@
 
 use crate::buffer::{Buffer, Regions};
 use crate::region::RegionWrite;
-use crate::seen::{BufferContents, SeenField};
+use crate::seen::{BufferContents, ScannedField};
 use crate::{
     Faults, FrameBufferConfig, FrameBufferConfigError, FrameBufferEvent, FrameBufferFault, FrameBufferOutput,
     FrameBufferStats, Video,
@@ -26,7 +26,7 @@ pub struct FrameBuffer {
     scanning: Option<PeriodNumber>,
     /// Swap requests that have not taken effect: time of arrival and buffer.
     swaps: Vec<(Time, u8)>,
-    seen: VecDeque<SeenField>,
+    seen: VecDeque<ScannedField>,
     stats: FrameBufferStats,
     faults: Faults,
 }
@@ -92,23 +92,23 @@ impl FrameBuffer {
 
     /// Returns a field as it was scanned; `None` before its end, and after the board has forgotten it.
     #[must_use]
-    pub fn seen(&self, field: PeriodNumber) -> Option<SeenField> {
+    pub fn seen(&self, field: PeriodNumber) -> Option<ScannedField> {
         self.seen.iter().find(|seen| seen.field == field).cloned()
     }
 
     /// Returns the field that was scanned last; `None` before the end of the first field.
     #[must_use]
-    pub fn last_seen(&self) -> Option<SeenField> {
+    pub fn last_seen(&self) -> Option<ScannedField> {
         self.seen.back().cloned()
     }
 
     /// Returns the current field as scanned up to `now`. Pixels that arrive later are not in it. `None` before the
     /// first retrace.
     #[must_use]
-    pub fn scanned_so_far(&self, now: Time) -> Option<SeenField> {
+    pub fn current_scan(&self, now: Time) -> Option<ScannedField> {
         let buffer = self.displayed;
         let regions: Regions = self.buffers[usize::from(buffer)].regions();
-        Some(SeenField { field: self.scanning?, buffer, ends_at: now, video: self.video, word: self.word, regions })
+        Some(ScannedField { field: self.scanning?, buffer, ends_at: now, video: self.video, word: self.word, regions })
     }
 
     /// Returns the contents of the displayed buffer, with all pixels that have arrived.
@@ -199,7 +199,7 @@ impl FrameBuffer {
             self.seen.pop_front();
         }
         let regions: Regions = self.buffers[usize::from(self.displayed)].share();
-        self.seen.push_back(SeenField {
+        self.seen.push_back(ScannedField {
             field,
             buffer: self.displayed,
             ends_at,

@@ -16,7 +16,7 @@ const FEW: usize = 128;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Buffer {
-    held: Vec<Held>,
+    held: Vec<StoredRegion>,
     /// Shared copy of `held`; `None` after a change.
     shared: Option<Regions>,
     search_above: usize,
@@ -29,7 +29,7 @@ pub(crate) struct Buffer {
 }
 
 #[derive(Clone, Debug)]
-struct Held {
+struct StoredRegion {
     region: Arc<RegionWrite>,
     hidden: bool,
 }
@@ -52,7 +52,7 @@ impl Buffer {
     }
 
     pub(crate) fn add(&mut self, region: RegionWrite) -> usize {
-        self.held.push(Held { region: Arc::new(region), hidden: false });
+        self.held.push(StoredRegion { region: Arc::new(region), hidden: false });
         self.arriving.push(self.held.len() - 1);
         self.held.len() - 1
     }
@@ -154,7 +154,7 @@ impl Buffer {
     }
 }
 
-fn regions_of(held: &[Held]) -> Regions {
+fn regions_of(held: &[StoredRegion]) -> Regions {
     held.iter().map(|held| Arc::clone(&held.region)).collect()
 }
 

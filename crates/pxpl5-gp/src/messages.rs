@@ -145,7 +145,7 @@ impl Gp {
 
     /// Stops the board with a fault of its own software. The program never continues.
     async fn stop(&self, fault: Fault) {
-        self.shared.borrow_mut().stopped_by = Some(fault);
+        self.shared.borrow_mut().software_fault = Some(fault);
         std::future::pending().await
     }
 }

@@ -65,7 +65,7 @@ mod ring;
 mod stats;
 mod timing;
 
-pub use channels::OnChannel;
+pub use channels::ChannelSnapshot;
 pub use port::{Request, RingError, RingEvent, RingOutput};
 pub use ring::Ring;
 pub use stats::{Refusals, RingStats, WaitReason, WaitingMessage};

@@ -1,6 +1,6 @@
 //! Ports and arbiter of the ring.
 
-use crate::channels::{MessageInFlight, OnChannel, RingChannels};
+use crate::channels::{ChannelSnapshot, MessageInFlight, RingChannels};
 use crate::{Refusals, Request, RingError, RingEvent, RingOutput, RingStats, RingTiming, WaitReason, WaitingMessage};
 use parameters::ParameterTable;
 use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
@@ -125,12 +125,12 @@ impl Ring {
         self.arbitrations.retain(|at| *at > now);
         self.settle(now);
         self.grant_all(now, context);
-        debug_assert!(self.counts_are_right(), "a count differs from what it counts: {self:?}");
+        debug_assert!(self.check_counters(), "a count differs from what it counts: {self:?}");
         self.arbitrate_at_next_end(context);
     }
 
     /// Recomputes every counter of the ring and compares it.
-    fn counts_are_right(&self) -> bool {
+    fn check_counters(&self) -> bool {
         let to_fifo = |node: NodeId| !self.is_elastic(node);
         let heads_for = |node: usize| self.heads.iter().filter(|head| usize::from(head.destination.0) == node).count();
         let source_limit = self.timing.source_channels;
@@ -179,8 +179,8 @@ impl Ring {
 
     /// Returns snapshots of the messages on channels at an instant that is not before the last event, by channel. The
     /// ring stays unchanged.
-    pub fn on_channels(&self, now: Time) -> impl Iterator<Item = OnChannel> + '_ {
-        self.channels.on_channels(now)
+    pub fn channel_snapshots(&self, now: Time) -> impl Iterator<Item = ChannelSnapshot> + '_ {
+        self.channels.channel_snapshots(now)
     }
 
     /// Returns true if no message is in flight or waits, as of the last grant or [`Ring::settle`].
@@ -261,7 +261,7 @@ impl Ring {
     fn arbitrate_at_next_end(&mut self, context: &mut RingContext) {
         // A source at its limit or a missing channel makes every end matter.
         let any_end = self.watched || self.at_limit > 0;
-        let next = if any_end || self.lacks_channel() {
+        let next = if any_end || self.is_channel_missing() {
             self.channels.first_end()
         } else if self.heads.is_empty() {
             None
@@ -280,7 +280,7 @@ impl Ring {
     }
 
     /// Returns true if a head waits for any channel to become free.
-    fn lacks_channel(&self) -> bool {
+    fn is_channel_missing(&self) -> bool {
         (!self.heads.is_empty() && !self.channels.has_free())
             || (self.heads_to_fifos > 0 && self.to_fifos >= self.timing.fifo_channels)
     }
@@ -315,7 +315,7 @@ impl Ring {
     /// Frees channels and ports of all messages that have ended by `now`, and adds them to the sums. The ring also does
     /// this before every grant.
     pub fn settle(&mut self, now: Time) {
-        let lacked_channel = self.lacks_channel();
+        let lacked_channel = self.is_channel_missing();
         while let Some((channel, ended, flight)) = self.channels.take_ended(now) {
             let destination = &mut self.destinations[usize::from(flight.destination.0)];
             // Free the destination, and keep it reserved if the message was held.
@@ -471,7 +471,7 @@ impl Ring {
         let earliest = flight.granted + self.timing.occupancy(flight.words) + flight.latency;
         let accepted = last_word_at.max(earliest);
         let end = now.max(Time(accepted.0 - flight.latency.0));
-        tell_sender((flight.source, flight.ticket), accepted.max(now + self.word), context);
+        notify_sender((flight.source, flight.ticket), accepted.max(now + self.word), context);
         self.channels.end_at(channel, end);
         self.arbitrate_at_next_end(context);
         if last_word_at < earliest {
@@ -512,10 +512,10 @@ fn port_name(node: NodeId) -> String {
 /// Outputs the delivery of a message to an elastic receiver, and the answer to its sender.
 fn deliver(message: Message, at: Time, sender: (NodeId, Option<u64>), context: &mut RingContext) {
     context.output(at, RingOutput::Delivered(message));
-    tell_sender(sender, at, context);
+    notify_sender(sender, at, context);
 }
 
-fn tell_sender((source, ticket): (NodeId, Option<u64>), at: Time, context: &mut RingContext) {
+fn notify_sender((source, ticket): (NodeId, Option<u64>), at: Time, context: &mut RingContext) {
     if let Some(ticket) = ticket {
         context.output(at, RingOutput::Sent { source, ticket });
     }

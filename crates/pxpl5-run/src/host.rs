@@ -12,7 +12,7 @@ pub trait Host: Debug + Send + Sync {
 
     /// Returns true if the result is no longer wanted. Runs, including dry runs, call this method from time to time. If
     /// it returns true, they end with [`ExperimentError::Stopped`](crate::ExperimentError::Stopped).
-    fn is_given_up(&self) -> bool {
+    fn is_stopped(&self) -> bool {
         false
     }
 

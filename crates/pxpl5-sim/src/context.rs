@@ -67,7 +67,7 @@ impl<E, O> Context<E, O> {
 
     /// Returns true if there is no output since the last [`Context::drain_outputs`].
     #[must_use]
-    pub const fn is_silent(&self) -> bool {
+    pub const fn has_no_outputs(&self) -> bool {
         self.outputs.is_empty()
     }
 
@@ -174,9 +174,9 @@ mod tests {
             assert_eq!(taken, expected);
             assert_eq!(context.drain_events().len(), 0);
         }
-        assert!(context.is_silent());
+        assert!(context.has_no_outputs());
         context.output(Time(9), 1);
-        assert!(!context.is_silent());
+        assert!(!context.has_no_outputs());
     }
 
     #[test]

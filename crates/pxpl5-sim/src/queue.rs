@@ -128,7 +128,7 @@ impl<E> EventQueue<E> {
 
     /// Returns true if the next event is in `soon`. Arrivals of the instant, and work scheduled before the instant,
     /// come first.
-    fn is_soon(&self, first: Option<Due>) -> bool {
+    fn is_current_work_next(&self, first: Option<Due>) -> bool {
         !self.soon.is_empty() && first.is_none_or(|first| first.key() >= work_key(self.now))
     }
 
@@ -144,8 +144,8 @@ impl<E> EventQueue<E> {
 
     /// Removes and returns the next event, and advances the current time to it.
     pub fn next_event(&mut self) -> Option<(Time, Phase, E)> {
-        if self.is_soon(self.first()) {
-            return self.take_soon().map(|event| (self.now, Phase::Work, event));
+        if self.is_current_work_next(self.first()) {
+            return self.take_current_work().map(|event| (self.now, Phase::Work, event));
         }
         let due = self.take_first()?;
         let event = self.take(due)?;
@@ -160,8 +160,8 @@ impl<E> EventQueue<E> {
     /// Removes and returns the next event if it is before `end`, and advances the current time to it.
     pub fn next_event_before(&mut self, end: Time) -> Option<(Time, E)> {
         let first = self.first();
-        if self.is_soon(first) {
-            let event = if self.now < end { self.take_soon() } else { None }?;
+        if self.is_current_work_next(first) {
+            let event = if self.now < end { self.take_current_work() } else { None }?;
             return Some((self.now, event));
         }
         if first?.time >= end {
@@ -171,7 +171,7 @@ impl<E> EventQueue<E> {
         Some((due.time, self.take(due)?))
     }
 
-    fn take_soon(&mut self) -> Option<E> {
+    fn take_current_work(&mut self) -> Option<E> {
         self.popped += 1;
         self.soon.pop_front()
     }
@@ -202,7 +202,7 @@ impl<E> EventQueue<E> {
     #[must_use]
     pub fn peek(&self) -> Option<(Time, &E)> {
         let first = self.first();
-        if self.is_soon(first) {
+        if self.is_current_work_next(first) {
             return Some((self.now, self.soon.front()?));
         }
         let due = first?;

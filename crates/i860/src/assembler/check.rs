@@ -73,11 +73,11 @@ pub(super) fn warnings(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usiz
 /// Number of operations pushed into a pipe since the last scalar operation; `None` if the contents of the pipe are
 /// unknown.
 #[derive(Clone, Copy, Default)]
-struct Refilled(Option<usize>);
+struct PipeFill(Option<usize>);
 
-impl Refilled {
+impl PipeFill {
     /// Returns true if a scalar operation has destroyed the result that leaves next from a pipe of this many stages.
-    fn has_lost(self, stages: usize) -> bool {
+    fn is_result_lost(self, stages: usize) -> bool {
         self.0.is_some_and(|operations| operations < stages)
     }
 
@@ -126,17 +126,17 @@ impl PipeUse {
 /// a straight run.
 fn lost_results(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usize, String)> {
     let mut faults = Vec::new();
-    let mut pipes = [Refilled::default(); 2];
+    let mut pipes = [PipeFill::default(); 2];
     for (address, line, i) in program {
         // The contents of the pipes are unknown after a jump.
         if labels.contains(address) || i.is_branch() {
-            pipes = [Refilled::default(); 2];
+            pipes = [PipeFill::default(); 2];
         }
         let used = PipeUse::of(i);
         let double = i.has(Flags::SOURCE_DOUBLE);
         // A multiply of doubles uses two stages only, except `pfmul3`.
         for (unit, stages) in [(0, 3), (1, if double && i.op != Op::Fmul3 { 2 } else { 3 })] {
-            if used.takes[unit] && pipes[unit].has_lost(stages) {
+            if used.takes[unit] && pipes[unit].is_result_lost(stages) {
                 let name = ["adder", "multiplier"][unit];
                 faults.push((
                     *line,
@@ -147,7 +147,7 @@ fn lost_results(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usize, Stri
                 pipes[unit].push();
             }
             if used.scalar[unit] {
-                pipes[unit] = Refilled(Some(0));
+                pipes[unit] = PipeFill(Some(0));
             }
         }
     }

@@ -26,12 +26,12 @@ struct Budget {
     /// Source line that is being expanded, and the budget before it.
     current: (usize, usize),
     /// Earlier source line that has used most of the budget, and its use.
-    greediest: (usize, usize),
+    largest_user: (usize, usize),
 }
 
 impl Budget {
     const fn new() -> Self {
-        Self { steps: MOST_STEPS, text: MOST_TEXT, current: (0, 0), greediest: (0, 0) }
+        Self { steps: MOST_STEPS, text: MOST_TEXT, current: (0, 0), largest_user: (0, 0) }
     }
 
     /// Returns the remaining budget as one number, with steps scaled to bytes.
@@ -41,14 +41,14 @@ impl Budget {
 
     /// Starts to count the budget that a new source line uses.
     fn begin(&mut self, line: usize) {
-        self.greediest = self.greediest();
+        self.largest_user = self.largest_user();
         self.current = (line, self.left());
     }
 
-    fn greediest(&self) -> (usize, usize) {
+    fn largest_user(&self) -> (usize, usize) {
         let (line, before) = self.current;
         let taken = before - self.left().min(before);
-        if taken > self.greediest.1 { (line, taken) } else { self.greediest }
+        if taken > self.largest_user.1 { (line, taken) } else { self.largest_user }
     }
 
     fn take(&mut self, steps: usize, text: usize) -> Result<(), AssemblyFault> {
@@ -56,7 +56,7 @@ impl Budget {
         let enough = steps <= self.steps && text <= self.text;
         self.steps = self.steps.saturating_sub(steps);
         self.text = self.text.saturating_sub(text);
-        if enough { Ok(()) } else { Err((self.greediest().0, spent())) }
+        if enough { Ok(()) } else { Err((self.largest_user().0, spent())) }
     }
 }
 

@@ -167,7 +167,7 @@ impl<'a> Placer<'a> {
             }
             pairs.push((floating, core));
             self.now += 1;
-            self.move_on();
+            self.skip_issued();
         }
         Ok(pairs)
     }
@@ -177,7 +177,7 @@ impl<'a> Placer<'a> {
     }
 
     /// Advances [`Placer::first`] past the lines that have issued.
-    fn move_on(&mut self) {
+    fn skip_issued(&mut self) {
         while self.first < self.operations.len() && self.issued[self.first].is_some() {
             self.first += 1;
         }
@@ -285,7 +285,7 @@ impl<'a> Placer<'a> {
         if width == Width::Integer {
             let spare = self.spare(n);
             return self.operations[n].register.is_some()
-                || self.frees_integer(n)
+                || self.is_last_integer_use(n)
                 || self.integers.free(self.now) > spare;
         }
         let piped = matches!(self.operations[n].name.unit, Unit::Adder | Unit::Multiplier { .. });
@@ -485,7 +485,7 @@ impl<'a> Placer<'a> {
     }
 
     /// Returns true if an integer operation is the last to read one of its sources.
-    fn frees_integer(&self, n: usize) -> bool {
+    fn is_last_integer_use(&self, n: usize) -> bool {
         let mut read = self.operations[n].reads();
         self.operations[n].name.unit == Unit::Integer
             && read.any(|value| self.width(value) == Width::Integer && self.uses_left[value] == 1)

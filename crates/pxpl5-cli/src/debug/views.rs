@@ -27,7 +27,7 @@ pub(super) fn time(stepper: &Stepper) -> String {
     if let Some(last) = stepper.last() {
         let _ = writeln!(text, "last    {}: {}", last.board, last.what);
     }
-    if let Some(next) = stepper.machine().next_happening() {
+    if let Some(next) = stepper.machine().next_event_description() {
         let _ = writeln!(text, "next    {} {}: {}", ms(next.time), next.board, next.what);
     }
     let _ = writeln!(text, "events  {}", stepper.machine().events());

@@ -13,7 +13,7 @@ mod surface;
 
 use std::ops::Range;
 
-use collapse::{Collapsing, Rules};
+use collapse::{Decimator, Rules};
 use surface::Surface;
 
 use crate::error::SceneError;
@@ -59,10 +59,10 @@ const fn is_kept(index: usize, all: usize, kept: usize) -> bool {
 fn triangles_kept(scene: &Scene, wanted: usize) -> Vec<Option<[u32; 3]>> {
     let mut surface = Surface::new(scene);
     // Later passes allow more damage: first too few triangles, then folded ones.
-    let mut collapsing = Collapsing::new(&mut surface);
+    let mut collapsing = Decimator::new(&mut surface);
     let passes = [(false, false), (false, true), (true, true)];
-    for (may_fold, may_overshoot) in passes {
-        collapsing.until(wanted, Rules { may_fold, may_overshoot });
+    for (may_flip_triangles, may_overshoot) in passes {
+        collapsing.until(wanted, Rules { may_flip_triangles, may_overshoot });
     }
     drop_pieces(&mut surface, wanted);
     drop_triangles(&mut surface, wanted);

@@ -42,8 +42,8 @@ impl Placement {
     /// Returns the motion of a head that looks at a model with this placement.
     fn motion(self) -> HeadMotion {
         match self {
-            Self::Fitted => mesh::seeing_fitted(),
-            Self::AsInFile => mesh::standing_at_the_origin(),
+            Self::Fitted => mesh::motion_for_fitted(),
+            Self::AsInFile => mesh::still_at_origin(),
         }
     }
 }

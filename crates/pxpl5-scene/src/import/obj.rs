@@ -6,7 +6,7 @@
 use glam::{DVec3, Vec3};
 
 use super::Source;
-use super::model::{Model, Places, Vertices, counted, direction, push_slowly};
+use super::model::{Model, Places, Vertices, counted, direction, push_with_slow_growth};
 use super::source::{excerpt, is_not_a_number, text};
 use crate::config::DEFAULT_COLOUR;
 use crate::error::{FilePlace, LoadError};
@@ -201,7 +201,7 @@ impl<'a> Reader<'a> {
         // Add the normal of a flat face, and replace the fan if the polygon is concave.
         if needs_normal {
             let normal = self.model.polygon_normal(first);
-            push_slowly(&mut self.model.normals, normal);
+            push_with_slow_growth(&mut self.model.normals, normal);
         }
         self.model.cut_polygon(first);
         self.model.check_reading(self.source, 0)

@@ -11,7 +11,7 @@ use crate::image::SliceImage;
 use crate::view::SliceView;
 use multiversion::multiversion;
 
-/// A fast renderer on one thread with the same voxels and the same counts as [`OracleRenderer`](super::OracleRenderer).
+/// A fast renderer on one thread with the same voxels and the same counts as [`ReferenceRenderer`](super::ReferenceRenderer).
 ///
 /// The loops are compiled once for each vector unit (see [`mod@multiversion`]), all from the same code and with the
 /// same results.

@@ -12,11 +12,11 @@ mod still;
 mod synthetic;
 mod walk;
 
-pub use growing::{Growing, GrowthError};
+pub use growing::{GrowingRecording, GrowthError};
 pub use pan::Pan;
 pub use pendulum::Pendulum;
 pub use recording::{Axes, Columns, End, Recording, RecordingError, RecordingFormat};
-pub use shifted::Shifted;
+pub use shifted::AdvancedMotion;
 pub use sinusoid::Sinusoid;
 pub use slide::Slide;
 pub use still::Still;
@@ -81,7 +81,7 @@ pub trait Motion: Debug {
         self.ends_ps()
     }
 
-    /// Returns true if the motion is known only up to the present of a run ([`Growing`]). Later poses must not be read
+    /// Returns true if the motion is known only up to the present of a run ([`GrowingRecording`]). Later poses must not be read
     /// then.
     fn grows(&self) -> bool {
         false

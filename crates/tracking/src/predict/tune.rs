@@ -73,7 +73,7 @@ pub fn training_seed(judged: u64) -> u64 {
 /// the motion.
 ///
 /// Training uses 100 seconds of the motion's [`Motion::sibling`], or of the motion itself if it has no sibling. The
-/// tracker has no bias, metal or faults, and its noise has another seed than `judged_seed`. The same (motion, tracker,
+/// tracker has no bias, metal or faults, and its noise has another seed than `evaluated_seed`. The same (motion, tracker,
 /// interval) gives the same result on every host.
 ///
 /// # Errors
@@ -84,17 +84,17 @@ pub fn tune<M: Motion + ?Sized>(
     tracker: &TrackerModel,
     interval_ps: u64,
     base: &PredictorConfig,
-    judged_seed: u64,
+    evaluated_seed: u64,
 ) -> Result<Tuned, SettingError> {
     // Check the settings before the long search.
     base.build()?;
-    let seed = training_seed(judged_seed);
+    let seed = training_seed(evaluated_seed);
     let tracker = TrackerModel::new(tracker.config().clone().without_systematic_errors())?;
     // Collect reports and true poses of another motion of the same kind, if there is one.
     let sibling = motion.sibling();
     let lesson = match &sibling {
-        Some(sibling) => Lesson::of(sibling.as_ref(), &tracker, interval_ps, seed),
-        None => Lesson::of(motion, &tracker, interval_ps, seed),
+        Some(sibling) => TrainingData::of(sibling.as_ref(), &tracker, interval_ps, seed),
+        None => TrainingData::of(motion, &tracker, interval_ps, seed),
     };
     let Some(lesson) = lesson.filter(|_| base.kind != PredictorKind::None) else {
         return Ok(Tuned { config: *base, training: None });
@@ -111,7 +111,7 @@ pub fn tune<M: Motion + ?Sized>(
 }
 
 /// The training data: reports, and the true pose to predict from each report.
-struct Lesson {
+struct TrainingData {
     reports: Vec<TrackerReport>,
     truths: Vec<Pose>,
     /// Number of reports at the start whose predictions are not evaluated.
@@ -123,7 +123,7 @@ struct Lesson {
     rates: [f64; 4],
 }
 
-impl Lesson {
+impl TrainingData {
     /// Collects the training data of a motion behind a tracker, or returns `None` if no report can be evaluated.
     fn of<M: Motion + ?Sized>(motion: &M, tracker: &TrackerModel, interval_ps: u64, seed: u64) -> Option<Self> {
         // A head that stands still at its end teaches the filter nothing.

@@ -124,14 +124,14 @@ impl<M: Motion> Reports<M> {
                     self.next_solution = self.model.solution_at(to_ps);
                     return true;
                 }
-                TrackerFault::RandomDropout { probability } if self.strikes(i, solution, probability) => return true,
+                TrackerFault::RandomDropout { probability } if self.occurs(i, solution, probability) => return true,
                 _ => {}
             }
         }
         false
     }
 
-    fn strikes(&self, fault: usize, solution: u64, probability: f64) -> bool {
+    fn occurs(&self, fault: usize, solution: u64, probability: f64) -> bool {
         unit(bits(stream(self.faults, fault as u64), solution)) < probability
     }
 
@@ -139,12 +139,12 @@ impl<M: Motion> Reports<M> {
     fn corrupt(&self, report: &mut TrackerReport) {
         for (i, fault) in self.model.config().faults.iter().enumerate() {
             match *fault {
-                TrackerFault::NotANumber { probability } if self.strikes(i, report.solution, probability) => {
+                TrackerFault::NotANumber { probability } if self.occurs(i, report.solution, probability) => {
                     report.pose = Pose { position: DVec3::NAN, orientation: DQuat::NAN };
                     return;
                 }
                 TrackerFault::Jump { probability, distance_m, angle_deg }
-                    if self.strikes(i, report.solution, probability) =>
+                    if self.occurs(i, report.solution, probability) =>
                 {
                     // The direction of a jump depends only on the seed, the fault and the measurement.
                     let draws = stream(stream(self.faults, i as u64), report.solution);
